@@ -1,0 +1,21 @@
+# `just` lists the recipes; `just check` is what CI runs.
+default:
+    @just --list
+
+# everything CI runs
+check:
+    bash .ci/run
+
+test *ARGS:
+    .venv/bin/python -m pytest {{ARGS}}
+
+lint:
+    .venv/bin/ruff check . && .venv/bin/ruff format --check . && .venv/bin/mypy && .venv/bin/lint-imports
+
+# timings against the budgets
+bench:
+    .venv/bin/python -m pytest benchmarks --benchmark-enable --benchmark-only
+
+# the committed sample reports
+samples:
+    .venv/bin/python reports/make_samples.py

@@ -1,0 +1,25 @@
+"""The design file: what a person writes, read into a `Design` in SI, every place kept."""
+
+from __future__ import annotations
+
+from .build import to_tree, with_values
+from .kinds import Fraction, position_at
+from .model import Design
+from .paths import canonical, get, numbers, quantity_of, split_assignment
+from .reader import LoadedDesign, Source, read_design
+
+__all__ = [
+    "Design",
+    "Fraction",
+    "LoadedDesign",
+    "Source",
+    "canonical",
+    "get",
+    "numbers",
+    "position_at",
+    "quantity_of",
+    "read_design",
+    "split_assignment",
+    "to_tree",
+    "with_values",
+]

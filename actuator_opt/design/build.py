@@ -1,0 +1,246 @@
+"""A tree of texts or numbers to a `Design`, or to all of its faults."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import ValidationError
+
+from .. import quantities
+from ..errors import Diagnostic, InputError
+from ..quantities import Quantity
+from . import suggest, wishes
+from .faults import Fault, Materials, cross_field, material_names
+from .kinds import Of, ValueFault, example, what
+from .model import Design, Section
+from .paths import put, resolve, spell
+from .structure import Entry, Loc, child, entries, leaves
+
+MOST_FAULTS = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Built:
+    """What became of a tree: a design, or faults."""
+
+    design: Design | None
+    faults: tuple[Fault, ...]
+
+
+def build(
+    tree: Mapping[str, Any],
+    *,
+    materials: Materials | None = None,
+    metrics: Mapping[str, Quantity] | None = None,
+) -> Built:
+    """The design a tree describes, or every fault it has.
+
+    Parameters
+    ----------
+    tree : dicts, lists, texts with units and SI numbers, in the shape of the design file
+    materials : names and kinds of the library; None leaves material names unchecked
+    metrics : metrics that requirements and the objective may name; default: `quantities.METRICS`
+    """
+    metrics = quantities.METRICS if metrics is None else metrics
+    copy: dict[str, Any] = copy_tree(tree)
+    faults = list(_nothing(copy, ()))
+    _to_si(copy)
+    faults += wishes.recheck(copy, metrics)
+    design = None
+    try:
+        design = Design.model_validate(copy)
+    except ValidationError as error:
+        faults += _unless_known(_translate(error, copy), faults)
+    faults += _unless_known(cross_field(copy), list(_nothing(copy, ())))
+    if materials is not None:
+        faults += material_names(copy, materials)
+    return Built(None if faults else design, tuple(faults))
+
+
+def copy_tree(node: Any) -> Any:
+    """Dicts and lists of a tree anew, its values as they are."""
+    if isinstance(node, Mapping):
+        return {key: copy_tree(value) for key, value in node.items()}
+    return [copy_tree(item) for item in node] if isinstance(node, (list, tuple)) else node
+
+
+def _nothing(node: Any, loc: Loc) -> Iterator[Fault]:
+    """Keys and list entries that stand there without a value."""
+    pairs = node.items() if isinstance(node, dict) else enumerate(node)
+    for key, value in pairs:
+        if value is None:
+            yield Fault((*loc, key), "no value", "write one, or remove the line")
+        elif isinstance(value, (dict, list)):
+            yield from _nothing(value, (*loc, key))
+
+
+def _to_si(tree: dict[str, Any]) -> None:
+    """Turn every good value of a known key into SI; faulty ones stay as they are written."""
+    for loc, entry, value in list(leaves(tree)):
+        if entry.kind is None or not isinstance(value, str):
+            continue
+        try:
+            number = entry.kind.validate(value)
+        except ValueFault:
+            continue
+        node: Any = tree
+        for key in loc[:-1]:
+            node = child(node, key)
+        node[loc[-1]] = number
+
+
+def _unless_known(faults: Iterable[Fault], known: Sequence[Fault]) -> list[Fault]:
+    """Faults at places where, and above which, none is known yet; the first of each place."""
+    faulty = {fault.loc for fault in known}
+    new = []
+    for fault in faults:
+        if not any(fault.loc[:depth] in faulty for depth in range(1, len(fault.loc) + 1)):
+            new.append(fault)
+            faulty.add(fault.loc)
+    return new
+
+
+def _section_at(tree: Any, loc: Loc) -> tuple[type[Section] | None, Entry | None]:
+    """The section and the entry of the model at a place (None inside tables)."""
+    section: type[Section] | None = Design
+    entry: Entry | None = None
+    for key in loc:
+        if isinstance(key, int):
+            continue
+        if section is None:
+            return None, None
+        entry = entries(section).get(key)
+        section = entry.section if entry is not None and entry.shape != "table" else None
+    return section, entry
+
+
+def _translate(error: ValidationError, tree: Any) -> Iterator[Fault]:
+    """Faults of the model's shape in the words of the design file."""
+    for item in error.errors(include_url=False):
+        loc: Loc = tuple(item["loc"])
+        kind, value = item["type"], item["input"]
+        section, entry = _section_at(tree, loc)
+        if kind == "value":
+            yield Fault(loc, item["ctx"]["message"], item["ctx"]["remedy"])
+        elif kind == "missing":
+            yield Fault(loc, "missing", _how_to_add(str(loc[-1]), entry))
+        elif kind == "extra_forbidden":
+            yield _unknown_key(loc, tree)
+        elif kind == "literal_error" and entry is not None:
+            word = value if isinstance(value, str) else ""
+            message = f'"{suggest.shown(word)}" is not a choice' if word else "need one word"
+            yield Fault(loc, message, suggest.remedy(word, entry.choices))
+        elif kind in ("too_short", "too_long"):
+            few = kind == "too_short"
+            if few and value:
+                continue  # entries there are, with faults of their own
+            limit = item["ctx"]["min_length" if few else "max_length"]
+            remedy = 'add one, starting with "- "' if few else f"keep at most {limit}"
+            yield Fault(loc, "the list is empty" if few else "too many entries", remedy)
+        elif kind in ("model_type", "model_attributes_type", "dict_type"):
+            keys = ", ".join(list(entries(section))[:6]) if section else "names"
+            yield Fault(
+                loc, f"need a block, not {_word(value)}", f"write its keys below it: {keys}"
+            )
+        elif kind == "tuple_type":
+            remedy = 'start each entry with "- " on a line of its own'
+            yield Fault(loc, f"need a list, not {_word(value)}", remedy)
+        elif kind == "string_type":
+            yield Fault(loc, f"need a text, not {_word(value)}", "write one value")
+        else:
+            yield Fault(loc, suggest.shown(item["msg"], 120))
+
+
+def _word(value: object) -> str:
+    return f'"{suggest.shown(value)}"' if isinstance(value, str) else what(value)
+
+
+def _unknown_key(loc: Loc, tree: Any) -> Fault:
+    section, _ = _section_at(tree, loc[:-1])
+    if loc[0] in ("variables", "requirements") and len(loc) == 3:
+        names = ["lower", "upper", "start"] if loc[0] == "variables" else ["min", "max"]
+    else:
+        names = list(entries(section)) if section else []
+    return Fault(loc, "unknown key", suggest.remedy(str(loc[-1]), names), at_key=True)
+
+
+def _how_to_add(name: str, entry: Entry | None) -> str:
+    """A line that adds a missing key."""
+    if entry is None:
+        return f'add "{name}: …"'
+    if isinstance(entry.kind, Of):
+        return f'add e.g. "{name}: {example(entry.kind.quantity)}"'
+    if entry.choices:
+        return f'add "{name}: {entry.choices[0]}" (or {", ".join(entry.choices[1:])})'
+    if entry.section is not None:
+        required = [key for key, below in entries(entry.section).items() if below.required]
+        dash = "- " if entry.shape == "list" else ""
+        return f'add a block "{name}:" with {dash}{", ".join(required)}'
+    good = entry.kind.example if entry.kind is not None else "…"
+    return f'add e.g. "{name}: {good}"'
+
+
+def to_tree(section: Section) -> dict[str, Any]:
+    """A design, or a section of one, as dicts, lists, texts and SI numbers; unset values absent."""
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, Section):
+            pairs = ((name, getattr(value, name)) for name in type(value).model_fields)
+            return {name: plain(below) for name, below in pairs if below is not None}
+        if isinstance(value, Mapping):
+            return {key: plain(below) for key, below in value.items()}
+        return [plain(item) for item in value] if isinstance(value, tuple) else value
+
+    tree: dict[str, Any] = plain(section)
+    return tree
+
+
+def with_values(
+    design: Design,
+    values: Mapping[str, float | str],
+    *,
+    materials: Materials | None = None,
+    metrics: Mapping[str, Quantity] | None = None,
+) -> Design:
+    """The design with other values: PATH to SI number or text with a unit; checked again.
+
+    A variable whose start was the old value starts from the new one.
+
+    Raises
+    ------
+    InputError
+        a PATH that names no value, a value that does not fit, or a contradiction it causes
+    """
+    tree = to_tree(design)
+    diagnostics = []
+    for path, value in values.items():
+        try:
+            target = resolve(path, tree, metrics)
+        except ValueFault as fault:
+            message = fault.message.removeprefix(f"{path}: ")
+            diagnostics.append(Diagnostic(message, fault.remedy, path=path))
+            continue
+        number = float(value) if isinstance(value, (int, float)) else value
+        old = child_at(tree, target.loc)
+        put(tree, target, number)
+        variable = tree.get("variables", {}).get(target.path)
+        if variable is not None and variable.get("start") == old:
+            variable["start"] = number
+    if not diagnostics:
+        built = build(tree, materials=materials, metrics=metrics)
+        diagnostics = [
+            Diagnostic(fault.message, fault.remedy, path=spell(fault.loc, tree))
+            for fault in built.faults
+        ]
+        if built.design is not None:
+            return built.design
+    raise InputError(diagnostics)
+
+
+def child_at(tree: Any, loc: Loc) -> Any:
+    """The value at a place of a tree; None where there is none."""
+    for key in loc:
+        tree = child(tree, key)
+    return tree

@@ -1,0 +1,354 @@
+"""Faults that only show when two values are read together, each at the place of one of them.
+
+Every check is a small function of a `View`; it yields nothing where a value it needs is missing
+or already faulty, so the checks also run on a file with other faults.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from .. import quantities
+from . import suggest
+from .kinds import MaterialName
+from .material import ROLES
+from .structure import Loc, child, leaves, number_of, value_at
+
+SQUEEZE_RANGE = {"plane_strain": (0.02, 0.40), "hertz_lindley": (0.02, 0.40), "chord": (0.0, 0.45)}
+"""Squeeze a contact law can be used at: outside, its width leaves the free section or the load
+law (compared with finite elements at 0.10 to 0.30) means nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A fault by its place in the tree; `at_key` points at the key instead of the value.
+
+    What is missing has the place it would have; the message then stands at its block.
+    """
+
+    loc: Loc
+    message: str
+    remedy: str = ""
+    at_key: bool = False
+
+
+class Materials(Protocol):
+    """What the input layer asks of the material library (`materials.Library` is one)."""
+
+    def __contains__(self, name: object) -> bool: ...
+
+    def names(self) -> Sequence[str]:
+        """Every name."""
+        ...
+
+    def kind(self, name: str) -> str | None:
+        """Kind of an entry: metal, ply, polymer, fluid, seal, adhesive."""
+        ...
+
+
+class View:
+    """A tree in SI, read by dotted keys, with the model's defaults; None where unusable."""
+
+    def __init__(self, tree: Any) -> None:
+        self.tree = tree
+
+    def number(self, *loc: str | int) -> float | None:
+        """The SI number at a place."""
+        return number_of(value_at(self.tree, loc))
+
+    def text(self, *loc: str | int) -> str | None:
+        """The text at a place."""
+        value = value_at(self.tree, loc)
+        return value if isinstance(value, str) else None
+
+    def items(self, *loc: str | int) -> Sequence[Any]:
+        """The entries of a list."""
+        value = value_at(self.tree, loc)
+        return value if isinstance(value, (list, tuple)) else ()
+
+    def has(self, *loc: str | int) -> bool:
+        """Whether the file states a value here."""
+        node = self.tree
+        for key in loc:
+            node = child(node, key)
+        return node is not None
+
+
+def _mm(value: float) -> str:
+    return quantities.INPUTS["length"].text(value)
+
+
+def _smaller(
+    view: View, inner: Loc, outer: Loc, *, factor: float = 1.0, why: str = ""
+) -> Iterator[Fault]:
+    """`inner` must be smaller than `factor` times `outer`."""
+    small, large = view.number(*inner), view.number(*outer)
+    if small is None or large is None or small < large * factor:
+        return
+    name = ".".join(str(key) for key in outer)
+    yield Fault(
+        inner,
+        f"{_mm(small)}: must be smaller than {name} ({_mm(large)}){why}",
+        f"write less than {_mm(large * factor)}",
+    )
+
+
+def rod(view: View) -> Iterator[Fault]:
+    """The rod fits the bore, its own bore fits the rod, its thread fits on it."""
+    yield from _smaller(view, ("rod", "outer_diameter"), ("cylinder", "bore"))
+    yield from _smaller(view, ("rod", "inner_diameter"), ("rod", "outer_diameter"))
+    yield from _smaller(view, ("cylinder", "port_diameter"), ("cylinder", "bore"))
+    thread, diameter = (
+        view.number("rod", "thread", "diameter"),
+        view.number("rod", "outer_diameter"),
+    )
+    if thread is not None and diameter is not None and thread > diameter:
+        yield Fault(
+            ("rod", "thread", "diameter"),
+            f"{_mm(thread)}: larger than the rod ({_mm(diameter)})",
+            f"write at most {_mm(diameter)}",
+        )
+    for owner in ("rod", "retention"):
+        yield from _smaller(
+            view,
+            (owner, "thread", "pitch"),
+            (owner, "thread", "diameter"),
+            factor=0.5,
+            why=": no core is left",
+        )
+
+
+def _groove(view: View, seal: str) -> tuple[float, float] | None:
+    """Gland depth at nominal squeeze and least width taken by all grooves of a seal."""
+    section = view.number("seals", seal, "section")
+    squeeze = view.number("seals", seal, "squeeze")
+    count = view.number("seals", seal, "count")
+    if section is None or squeeze is None or count is None or count == 0:
+        return None
+    width = view.number("seals", seal, "groove_width")
+    return section * (1 - squeeze), count * (section if width is None else width)
+
+
+def grooves(view: View) -> Iterator[Fault]:
+    """The seal grooves lie inside piston and head and leave a core and a wall."""
+    bore, rod_diameter = view.number("cylinder", "bore"), view.number("rod", "outer_diameter")
+    for seal, part in (("piston", "piston"), ("rod", "head")):
+        groove = _groove(view, seal)
+        if groove is None:
+            continue
+        depth, width = groove
+        length = view.number(part, "length")
+        given = "groove_width" if view.has("seals", seal, "groove_width") else "section"
+        if length is not None and width >= length:
+            yield Fault(
+                ("seals", seal, given),
+                f"grooves outside the {part}: they take at least {_mm(width)} of "
+                f"{part}.length {_mm(length)}",
+                f"lengthen {part}.length or use a smaller ring",
+            )
+        if bore is None or rod_diameter is None:
+            continue
+        if part == "piston":
+            core = view.number("rod", "thread", "diameter") or rod_diameter
+            left = bore - 2 * depth
+            if core < bore and left <= core:
+                yield Fault(
+                    ("seals", seal, "section"),
+                    f"groove too deep: {_mm(max(left, 0.0))} core left in the piston, "
+                    f"the rod needs {_mm(core)}",
+                    "use a smaller section, a larger bore or a rod thread that fits",
+                )
+        elif rod_diameter < bore <= rod_diameter + 2 * depth:
+            yield Fault(
+                ("seals", seal, "section"),
+                f"groove outside the head: it reaches {_mm(rod_diameter + 2 * depth)}, "
+                f"the bore is {_mm(bore)}",
+                "use a smaller section, a larger bore or a thinner rod",
+            )
+
+
+def squeeze(view: View) -> Iterator[Fault]:
+    """The nominal squeeze lies where the seal's law holds."""
+    for seal in ("piston", "rod"):
+        value, law = view.number("seals", seal, "squeeze"), view.text("seals", seal, "law")
+        low, high = SQUEEZE_RANGE.get(law or "", (0.0, 1.0))
+        if value is not None and not low <= value <= high:
+            yield Fault(
+                ("seals", seal, "squeeze"),
+                f"{value * 100:.4g} %: outside the range of the law {law}",
+                f"write {low * 100:g} % to {high * 100:g} %",
+            )
+
+
+def barrel_length(view: View) -> Iterator[Fault]:
+    """The barrel holds stroke, piston and head."""
+    length = view.number("barrel", "length")
+    parts = [
+        view.number("cylinder", "stroke"),
+        view.number("piston", "length"),
+        view.number("head", "length"),
+    ]
+    needed = sum(part for part in parts if part is not None)
+    if length is not None and length < needed * (1 - 1e-9):
+        yield Fault(
+            ("barrel", "length"),
+            f"{_mm(length)}: shorter than stroke + piston + head ({_mm(needed)})",
+            f"write at least {_mm(needed)}, or leave it out",
+        )
+
+
+def lines(view: View) -> Iterator[Fault]:
+    """Every line has a wall."""
+    for index in range(len(view.items("lines"))):
+        inner = view.number("lines", index, "inner_diameter")
+        outer = view.number("lines", index, "outer_diameter")
+        if inner is not None and outer is not None and outer <= inner:
+            yield Fault(
+                ("lines", index, "outer_diameter"),
+                f"{_mm(outer)}: not larger than inner_diameter ({_mm(inner)})",
+                f"write more than {_mm(inner)}",
+            )
+
+
+def supply(view: View) -> Iterator[Fault]:
+    """Supply above return, proof not below working pressure."""
+    pressure, back = view.number("supply", "pressure"), view.number("supply", "return_pressure")
+    ratio = view.number("supply", "proof_ratio")
+    text = quantities.INPUTS["pressure"].text
+    if pressure is not None and back is not None and back >= pressure:
+        yield Fault(
+            ("supply", "return_pressure"),
+            f"{text(back)}: not below supply.pressure ({text(pressure)})",
+            f"write less than {text(pressure)}",
+        )
+    if ratio is not None and ratio < 1:
+        yield Fault(
+            ("supply", "proof_ratio"),
+            f"{ratio:g}: proof pressure below supply pressure",
+            "write 1 or more",
+        )
+
+
+def environment(view: View) -> Iterator[Fault]:
+    """Coldest below hottest."""
+    low = view.number("environment", "temperature_min")
+    high = view.number("environment", "temperature_max")
+    text = quantities.INPUTS["temperature"].text
+    if low is not None and high is not None and low >= high:
+        yield Fault(
+            ("environment", "temperature_max"),
+            f"range reversed: {text(high)} is not above temperature_min ({text(low)})",
+            "swap them",
+        )
+
+
+def retention(view: View) -> Iterator[Fault]:
+    """A bond names its adhesive, a thread and tie rods name their thread."""
+    kind = view.text("retention", "type")
+    if kind in ("bond", "tie_rods") and not view.has("retention", "material"):
+        name = "epoxy_structural" if kind == "bond" else "steel_bolt_10_9"
+        what = "a bond needs its adhesive" if kind == "bond" else "tie rods need their material"
+        yield Fault(("retention", "material"), f"missing: {what}", f'add e.g. "material: {name}"')
+    if kind in ("thread", "tie_rods") and not view.has("retention", "thread"):
+        yield Fault(
+            ("retention", "thread"),
+            f"missing: {kind} needs it",
+            'add a block "thread:" with diameter, pitch',
+        )
+
+
+def load_cases(view: View) -> Iterator[Fault]:
+    """Unique names; a force or a joint torque on a lever arm; positions within the stroke."""
+    seen: dict[str, int] = {}
+    stroke = view.number("cylinder", "stroke")
+    for index, case in enumerate(view.items("load_cases")):
+        loc = ("load_cases", index)
+        name = child(case, "name")
+        if isinstance(name, str):
+            if name in seen:
+                message = f'"{suggest.shown(name)}": also the name of entry {seen[name]}'
+                yield Fault((*loc, "name"), message, "give each load case its own name")
+            seen.setdefault(name, index)
+        if isinstance(case, dict):
+            yield from _case_force(loc, case)
+        position = child(case, "position")
+        if isinstance(position, float) and stroke is not None and position > stroke:
+            yield Fault(
+                (*loc, "position"),
+                f"{_mm(position)}: beyond cylinder.stroke ({_mm(stroke)})",
+                f'write at most {_mm(stroke)}, or a share such as "50 %"',
+            )
+
+
+def _case_force(loc: Loc, case: dict[str, Any]) -> Iterator[Fault]:
+    force, torque, arm = (key in case for key in ("force", "joint_torque", "lever_arm"))
+    if force and (torque or arm):
+        other = "joint_torque" if torque else "lever_arm"
+        yield Fault(
+            (*loc, other),
+            "force and joint torque in one load case",
+            "keep one of them",
+            at_key=True,
+        )
+    elif torque and not arm:
+        yield Fault(
+            (*loc, "lever_arm"), "missing: joint_torque needs it", 'add e.g. "lever_arm: 40 mm"'
+        )
+    elif arm and not torque:
+        remedy = 'add e.g. "joint_torque: 120 N*m"'
+        yield Fault((*loc, "joint_torque"), "missing: lever_arm needs it", remedy)
+    elif not force:
+        remedy = 'add e.g. "force: 3 kN", or joint_torque with lever_arm'
+        yield Fault((*loc, "force"), "missing", remedy)
+
+
+CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+    rod,
+    grooves,
+    squeeze,
+    barrel_length,
+    lines,
+    supply,
+    environment,
+    retention,
+    load_cases,
+)
+
+
+def cross_field(tree: Any) -> Iterator[Fault]:
+    """Every fault between values of a tree in SI."""
+    view = View(tree)
+    for check in CHECKS:
+        yield from check(view)
+
+
+def _a(word: str | None) -> str:
+    return f"{'an' if word and word[0] in 'aeiou' else 'a'} {word}"
+
+
+def material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
+    """Unknown materials, and materials of a kind that cannot stand where they are named."""
+    bonded = View(tree).text("retention", "type") == "bond"
+    for loc, entry, name in leaves(tree):
+        if not isinstance(entry.kind, MaterialName) or not isinstance(name, str):
+            continue
+        fits = ROLES[entry.kind.role]
+        if loc == ("retention", "material"):
+            fits = ("adhesive",) if bonded else ("metal",)
+        if name in materials and materials.kind(name) in fits:
+            continue
+        fitting = [other for other in materials.names() if materials.kind(other) in fits]
+        if name not in materials:
+            message = f'"{suggest.shown(name)}": no such material'
+            yield Fault(loc, message, suggest.remedy(name, fitting))
+        else:
+            message = f"{name} is {_a(materials.kind(name))}, need {_a(' or '.join(fits))}"
+            yield Fault(loc, message, f"use e.g. {', '.join(fitting[:6])}" if fitting else "")
+    changed = child(tree, "materials")
+    for name in changed if isinstance(changed, Mapping) else ():
+        if name not in materials:
+            message = f'"{suggest.shown(name)}": no such material'
+            remedy = suggest.remedy(name, materials.names())
+            yield Fault(("materials", name), message, remedy, at_key=True)

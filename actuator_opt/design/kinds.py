@@ -1,0 +1,302 @@
+"""What a value of the design file can be: a quantity, a material's name, a text, a position.
+
+Each kind is an annotation of a field in `model`. It validates (pydantic calls it), and the
+reader, the PATHs, the writer and the JSON Schema read it: one declaration serves them all.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias, get_args
+
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from .. import quantities, units
+from ..numeric import Array
+from ..quantities import Quantity
+from .suggest import shown
+
+_LONGEST_NUMBER = 100
+_DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d")
+_NAME = re.compile(r"(?!\d+$)[^\W_][\w .+-]*", re.UNICODE)
+
+EXAMPLES = {
+    "bore": "25 mm", "stroke": "110 mm", "wall_thickness": "1.2 mm", "winding_angle": "55 deg",
+    "rod_diameter": "12 mm", "rod_inner_diameter": "6 mm", "length": "50 mm",
+    "part_length": "20 mm", "radial_clearance": "0.03 mm", "tolerance": "0.05 mm",
+    "cross_section": "3.53 mm", "squeeze": "12 %", "stretch": "2 %", "groove_width": "4.8 mm",
+    "seal_count": "1", "bolt_count": "4", "thread_diameter": "10 mm", "thread_pitch": "1.5 mm",
+    "diameter": "6 mm", "volume": "2 ml", "pressure": "2 bar", "working_pressure": "100 bar",
+    "temperature": "40 degC",
+    "temperature_rise": "10 K", "air_content": "0.5 %", "force": "3 kN", "torque": "120 N*m",
+    "lever_arm": "40 mm", "speed": "0.1 m/s", "load_mass": "20 kg", "position": "55 mm",
+    "fraction": "50 %", "friction_coefficient": "0.3", "breakaway_ratio": "1.5",
+    "stribeck_speed": "5 mm/s", "viscous_friction": "100 N*s/m", "safety_factor": "1.5",
+    "cycles": "20000", "stiffness": "50 kN/mm", "coefficient": "1", "surface_roughness": "0.2 um",
+}  # fmt: skip
+"""One good value of every input quantity, for messages, the schema and the start file."""
+
+
+MATERIAL_EXAMPLES = {
+    "structural": "al_7075_t6",
+    "fluid": "iso_vg_32",
+    "seal": "nbr_70",
+    "fastening": "epoxy_structural",
+}
+"""One library entry that can stand in each role."""
+
+
+class ValueFault(ValueError):  # noqa: N818
+    """A value that cannot be used: `message` says what, `remedy` what to do about it."""
+
+    def __init__(self, message: str, remedy: str) -> None:
+        super().__init__(f"{message}; {remedy}")
+        self.message = message
+        self.remedy = remedy
+
+
+def example(quantity: Quantity) -> str:
+    """A good value of a quantity, as text."""
+    if quantity.name in EXAMPLES:
+        return EXAMPLES[quantity.name]
+    value = max(quantity.lower, 0.0) if quantity.lower > -quantities.INFINITY else 0.0
+    if value == 0.0:
+        value = units.unit(quantity.unit, quantity.dimension).to_si(1.0) if quantity.unit else 1.0
+    return quantity.text(min(value, quantity.upper))
+
+
+def _range_fault(shown_value: str, number: float, quantity: Quantity) -> ValueFault:
+    signed = quantity.dimension in ("temperature", "temperature_difference", "angle")
+    if number <= 0 <= quantity.lower and not signed:
+        message = f"{shown_value}: must be {'> 0' if quantity.lower > 0 else '>= 0'}"
+    elif number != number:
+        message = f"{shown_value}: is not a number"
+    else:
+        message = f"{shown_value}: outside the valid range of a {quantity.label}"
+    return ValueFault(message, f"write {quantity.range_text()}")
+
+
+def check_range(number: float, quantity: Quantity, shown_value: str | None = None) -> float:
+    """`number` (SI) if it lies in the quantity's range; the last few bits are forgiven."""
+    slack = 1e-12
+    lower = quantity.lower - slack * abs(quantity.lower)
+    upper = quantity.upper + slack * abs(quantity.upper)
+    if not lower <= number <= upper:
+        text = shown_value or f"{number:.6g} {quantity.si_unit}".rstrip()
+        raise _range_fault(text, number, quantity)
+    if quantity.dimension == "count" and number != int(number):
+        raise ValueFault(
+            f"{shown_value or number}: must be a whole number", f"write {example(quantity)}"
+        )
+    return number
+
+
+def _unit_fault(text: str, quantity: Quantity, error: units.UnitError) -> ValueFault:
+    """The same fault, said with this quantity's own unit and example."""
+    name, message, remedy = shown(text.strip()), shown(error.message, 160), error.remedy
+    if _DECIMAL_COMMA.match(text):
+        return ValueFault(f'"{name}": decimal comma', f'write "{name.replace(",", ".", 1)}"')
+    if "unit missing" in message:
+        remedy = f'write e.g. "{name} {quantity.unit}"'
+    elif "not a number" in message or "not a finite" in message:
+        remedy = f'write e.g. "{example(quantity)}"'
+    elif remedy.startswith("use one of") and quantity.unit:
+        names = dict.fromkeys((quantity.unit, *units.units_of(quantity.dimension)))
+        remedy = f"use one of {', '.join(list(names)[:5])}"
+    elif quantity.dimension == "count":
+        remedy = f'write a bare number, e.g. "{example(quantity)}"'
+    return ValueFault(message if name in message else f'"{name}": {message}', remedy)
+
+
+def read_quantity(value: object, quantity: Quantity) -> float:
+    """SI value of what a person (text with a unit) or a script (an SI number) wrote.
+
+    Raises
+    ------
+    ValueFault
+        not a number, no unit, a unit of another dimension, outside the declared range
+    """
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return check_range(float(value), quantity)
+    if not isinstance(value, str):
+        raise ValueFault(
+            f"need a {quantity.label}, not {what(value)}",
+            f'write one value, e.g. "{example(quantity)}"',
+        )
+    try:
+        if len(value) > _LONGEST_NUMBER:
+            raise units.UnitError(f'"{shown(value)}" is not a number with a unit', "")
+        number = units.parse(value, quantity.dimension)
+    except units.UnitError as error:
+        raise _unit_fault(value, quantity, error) from None
+    return check_range(number, quantity, shown(value))
+
+
+def what(value: object) -> str:
+    """A value's shape in words."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, dict):
+        return "a block of keys"
+    if isinstance(value, (list, tuple)):
+        return "a list"
+    return "a text" if isinstance(value, str) else type(value).__name__
+
+
+class Kind:
+    """A kind of value; `help` says what it means in the field it annotates."""
+
+    help: str = ""
+    example: str = "…"
+
+    def validate(self, value: Any) -> Any:
+        """The value as the design holds it; raises `ValueFault`."""
+        raise NotImplementedError
+
+    def _call(self, value: Any) -> Any:
+        try:
+            return self.validate(value)
+        except ValueFault as fault:
+            context = {"message": fault.message, "remedy": fault.remedy}
+            raise PydanticCustomError("value", "{message}; {remedy}", context) from None
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        schema = core_schema.no_info_plain_validator_function(self._call)
+        return core_schema.nullable_schema(schema) if type(None) in get_args(source) else schema
+
+
+class Of(Kind):
+    """A float: the quantity it is. Text must carry its unit, a Python number is SI."""
+
+    def __init__(self, quantity: str, help: str = "") -> None:
+        self.quantity = quantities.INPUTS[quantity]
+        self.help = help
+        self.example = example(self.quantity)
+
+    def validate(self, value: Any) -> float:
+        """SI value."""
+        return read_quantity(value, self.quantity)
+
+
+@dataclass(frozen=True, slots=True)
+class Fraction:
+    """A position as a fraction of the stroke: it moves with the stroke."""
+
+    value: float
+
+
+class PositionKind(Kind):
+    """``worst``, a length from the cap end, or a fraction of the stroke (``50 %``)."""
+
+    help = "piston position from the cap end: worst, a length, or a share of the stroke (50 %)"
+    example = "50 %"
+    length = quantities.INPUTS["position"]
+    fraction = quantities.INPUTS["fraction"]
+
+    def quantity_of(self, value: object) -> Quantity:
+        """The quantity a position is written in."""
+        is_share = isinstance(value, Fraction) or (isinstance(value, str) and "%" in value)
+        return self.fraction if is_share else self.length
+
+    def validate(self, value: Any) -> Position:
+        """``"worst"``, a length in m, or a `Fraction`."""
+        if isinstance(value, Fraction):
+            return Fraction(check_range(value.value, self.fraction))
+        if isinstance(value, str):
+            if value.strip() == "worst":
+                return "worst"
+            if "%" in value:
+                return Fraction(read_quantity(value, self.fraction))
+        try:
+            return read_quantity(value, self.length)
+        except ValueFault as fault:
+            if "valid range" in fault.message or "must be" in fault.message:
+                raise
+            raise ValueFault(fault.message, 'write worst, "50 %" or "55 mm"') from None
+
+
+Position: TypeAlias = Literal["worst"] | float | Fraction
+"""Where the piston stands in a load case."""
+
+
+def position_at(position: Position, stroke: Array) -> Array | None:
+    """Distance of the piston from the cap end (m); None for the worst position."""
+    if isinstance(position, Fraction):
+        return position.value * stroke
+    return None if isinstance(position, str) else position
+
+
+class Text(Kind):
+    """Free text of at most `longest` characters; `multiline` for notes."""
+
+    example = "robot knee"
+
+    def __init__(self, help: str = "", longest: int = 200, multiline: bool = False) -> None:
+        self.help = help
+        self.longest = longest
+        self.multiline = multiline
+
+    def validate(self, value: Any) -> str:
+        """The text itself."""
+        if not isinstance(value, str):
+            raise ValueFault(f"need a text, not {what(value)}", "write one value")
+        bad = [c for c in value if not (c.isprintable() or (self.multiline and c in "\n\t"))]
+        if bad:
+            raise ValueFault(f'"{shown(value)}": has unprintable characters', "remove them")
+        if len(value) > self.longest:
+            raise ValueFault(
+                f'"{shown(value)}": {len(value)} characters are too many',
+                f"write at most {self.longest}",
+            )
+        if not value.strip() and not self.multiline:
+            raise ValueFault("the text is empty", "write a name")
+        return value
+
+
+class CaseName(Text):
+    """Name of a load case: usable inside a PATH, ``load_cases[NAME].force``."""
+
+    example = "stance"
+
+    def validate(self, value: Any) -> str:
+        """The name itself."""
+        text = super().validate(value)
+        if _NAME.fullmatch(text) is None:
+            raise ValueFault(
+                f'"{shown(text)}": not a usable name',
+                "start with a letter; use letters, digits, space, _ . + -",
+            )
+        return text
+
+
+class MaterialName(Text):
+    """Name of a library entry; `role` says which kinds of material can stand here."""
+
+    def __init__(self, role: Literal["structural", "fluid", "seal", "fastening"]) -> None:
+        super().__init__(f"name of a {role} material of the library")
+        self.role = role
+        self.example = MATERIAL_EXAMPLES[role]
+
+
+class Goal(Kind):
+    """A metric, or a block of metrics with weights above zero."""
+
+    help = "a metric, or several with weights (each is divided by its value in the design)"
+    example = "mass"
+
+    def validate(self, value: Any) -> str | dict[str, float]:
+        """The metric's name, or name to weight."""
+        if isinstance(value, str):
+            return value
+        if not isinstance(value, Mapping) or not value:
+            raise ValueFault(f"need a metric, not {what(value)}", "write e.g. mass")
+        for name, weight in value.items():
+            if not isinstance(weight, (int, float)) or not 0 < weight < math.inf:
+                raise ValueFault(f"{name}: need a weight above zero", "write e.g. mass: 1")
+        return {str(name): float(weight) for name, weight in value.items()}

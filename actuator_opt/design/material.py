@@ -1,0 +1,300 @@
+"""What a library knows of one material: properties with source, scatter, confidence and basis.
+
+All values are SI. A property may be a table over temperature or pressure; its `value` is then
+the one at the reference point, and scaling it scales the table.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+from ..numeric import Array, maximum, real, where
+from ..quantities import MATERIAL_PROPERTIES, Quantity
+
+KINDS: Final = ("metal", "ply", "polymer", "fluid", "seal", "adhesive")
+CONFIDENCES: Final = ("verified", "secondary", "unverified", "derived")
+BASES: Final = ("typical", "mean", "A", "B", "S", "minimum", "maximum", "limit", "nominal")
+FAMILIES: Final = ("mineral", "ester", "phosphate_ester", "water_glycol")
+"""Fluid families; a seal's `suits` lists those its compound withstands."""
+ROLES: Final[Mapping[str, tuple[str, ...]]] = {
+    "structural": ("metal", "ply", "polymer"),
+    "fluid": ("fluid",),
+    "seal": ("seal",),
+    "fastening": ("metal", "adhesive"),
+}
+"""Which kinds of material can stand where a design names one."""
+
+REQUIRED: Final[Mapping[str, tuple[str, ...]]] = {
+    "metal": ("density", "youngs_modulus", "poissons_ratio"),
+    "polymer": ("density", "youngs_modulus", "poissons_ratio"),
+    "ply": ("density",),
+    "fluid": ("density", "kinematic_viscosity", "bulk_modulus", "volume_expansion"),
+    "seal": ("density", "hardness", "friction_coefficient"),
+    "adhesive": ("bond_strength", "shear_modulus"),
+}
+PLY_REQUIRED: Final = (
+    "youngs_modulus_1", "youngs_modulus_2", "shear_modulus_12", "poissons_ratio_12",
+)  # fmt: skip
+PLY_CONSTANTS: Final = (
+    "youngs_modulus_1", "youngs_modulus_2", "youngs_modulus_3",
+    "shear_modulus_12", "shear_modulus_13", "shear_modulus_23",
+    "poissons_ratio_12", "poissons_ratio_13", "poissons_ratio_23",
+)  # fmt: skip
+
+_ROOM_TEMPERATURE = 296.15
+_MATRIX = ("strength_2_tension", "strength_2_compression", "strength_12", "strength_23")
+_FIBRE = ("strength_1_tension", "strength_1_compression")
+
+
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """Scatter as a number.
+
+    Parameters
+    ----------
+    kind : ``cv`` standard deviation over mean, ``tolerance`` half width over value, ``factor``
+        the value may be that many times larger or smaller
+    size : relative, or the factor
+    """
+
+    kind: str
+    size: float
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """One property of one material; `points` where it is a table over `argument`."""
+
+    quantity: Quantity
+    value: float
+    source: str
+    scatter: str
+    confidence: str
+    basis: str
+    note: str = ""
+    spread: Spread | None = None
+    argument: str | None = None
+    points: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def unit(self) -> str:
+        """SI unit of `value`."""
+        return self.quantity.si_unit
+
+    @property
+    def text(self) -> str:
+        """The value in the unit people read."""
+        return self.quantity.text(self.value)
+
+    @property
+    def arguments(self) -> tuple[float, ...]:
+        """Temperatures (K) or pressures (Pa) of the table."""
+        return tuple(argument for argument, _ in self.points)
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Values of the table, SI."""
+        return tuple(value for _, value in self.points)
+
+    def at(self, argument: Array, *, value: Array | None = None) -> Array:
+        """Linear interpolation of the table, held at its ends; the value itself without a table.
+
+        Parameters
+        ----------
+        argument : temperature (K) or pressure (Pa, gauge), as `argument` says
+        value : replaces `value` and scales the table with it
+        """
+        reference = self.value if value is None else value
+        if not self.points:
+            return reference
+        scale = reference / self.value
+        result: Array = self.points[0][1] + 0 * argument
+        for (x0, y0), (x1, y1) in zip(self.points, self.points[1:], strict=False):
+            result = where(
+                real(argument) > x0, y0 + (y1 - y0) / (x1 - x0) * (argument - x0), result
+            )
+        last, end = self.points[-1]
+        return scale * where(real(argument) > last, end + 0 * argument, result)
+
+    def to_dict(self) -> dict[str, object]:
+        """JSON form, SI."""
+        entry: dict[str, object] = {
+            "value": self.value, "unit": self.unit, "label": self.quantity.label,
+            "source": self.source, "scatter": self.scatter, "confidence": self.confidence,
+            "basis": self.basis, "note": self.note,
+        }  # fmt: skip
+        if self.argument:
+            entry["points"] = [{self.argument: x, "value": y} for x, y in self.points]
+        return entry
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A named entry of a library: what it is and what is known of it."""
+
+    name: str
+    kind: str
+    label: str
+    properties: Mapping[str, Property]
+    notes: str = ""
+    warning: str = ""
+    family: str = ""
+    suits: tuple[str, ...] = ()
+    file: str = ""
+    line: int = 0
+    numbers: Mapping[str, float] = field(init=False)
+    """Value of every stated property, SI."""
+
+    def __post_init__(self) -> None:
+        numbers = {name: entry.value for name, entry in self.properties.items()}
+        object.__setattr__(self, "numbers", numbers)
+
+    @property
+    def isotropic(self) -> bool:
+        """Whether one modulus describes it (metals, polymers, apparent values)."""
+        return "youngs_modulus" in self.properties and "youngs_modulus_1" not in self.properties
+
+    @property
+    def unverified(self) -> tuple[str, ...]:
+        """Names of the properties whose value nobody checked against its source.
+
+        Nominal values are stated conditions (a test temperature, a cycle count), not findings.
+        """
+        return tuple(
+            name
+            for name, entry in self.properties.items()
+            if entry.confidence == "unverified" and entry.basis != "nominal"
+        )
+
+    @property
+    def viscosity_points(self) -> tuple[tuple[float, float], ...]:
+        """Temperature (K) and kinematic viscosity (m^2/s) of a fluid's table."""
+        return self.properties["kinematic_viscosity"].points
+
+    def completed(self) -> dict[str, Property]:
+        """Stated properties and the ply constants that follow from them, marked ``derived``."""
+        properties = dict(self.properties)
+        if self.kind not in ROLES["structural"]:
+            return properties
+        how = "isotropic" if self.isotropic else "transversely isotropic"
+        for name, value in ply_constants(self.numbers).items():
+            if name not in properties:
+                properties[name] = Property(
+                    MATERIAL_PROPERTIES[name], value, "[derived] from the stated constants",
+                    "not stated", "derived", "typical", f"assumed {how}",
+                )  # fmt: skip
+        return properties
+
+    def to_dict(self) -> dict[str, object]:
+        """JSON form, SI."""
+        return {
+            "name": self.name, "kind": self.kind, "label": self.label, "notes": self.notes,
+            "warning": self.warning, "family": self.family, "suits": list(self.suits),
+            "properties": {n: p.to_dict() for n, p in self.completed().items()},
+        }  # fmt: skip
+
+
+def compatible(fluid: Material, seal: Material) -> bool | None:
+    """Whether a compound withstands a fluid; None where the library does not say."""
+    if not fluid.family or not seal.suits:
+        return None
+    return fluid.family in seal.suits
+
+
+def ply_constants(numbers: Mapping[str, Array]) -> dict[str, Array]:
+    """Complete the elastic constants of a ply; ply strengths too for isotropic materials.
+
+    Missing ply constants follow transverse isotropy: E3 = E2, nu13 = nu12, G13 = G12,
+    G23 = E2/(2(1 + nu23)), nu23 = 0.40. A material with one modulus becomes a ply with equal
+    constants, G = E/(2(1 + nu)) unless given, its yield (else ultimate) strength in tension and
+    compression, and that over sqrt(3) in shear (von Mises). Elementwise; complex-step safe.
+
+    Parameters
+    ----------
+    numbers : stated properties, SI
+    """
+    get = numbers.get
+    if "youngs_modulus_1" not in numbers:
+        if "youngs_modulus" not in numbers or "poissons_ratio" not in numbers:
+            return {}
+        return _isotropic_ply(numbers)
+    e2, g12, nu12 = (numbers[n] for n in PLY_REQUIRED[1:])
+    nu23 = get("poissons_ratio_23", 0.40)
+    g23 = get("shear_modulus_23")
+    result = {
+        "youngs_modulus_1": numbers["youngs_modulus_1"],
+        "youngs_modulus_2": e2,
+        "youngs_modulus_3": get("youngs_modulus_3", e2),
+        "shear_modulus_12": g12,
+        "shear_modulus_13": get("shear_modulus_13", g12),
+        "shear_modulus_23": e2 / (2 * (1 + nu23)) if g23 is None else g23,
+        "poissons_ratio_12": nu12,
+        "poissons_ratio_13": get("poissons_ratio_13", nu12),
+        "poissons_ratio_23": nu23,
+    }
+    for name in ("thermal_expansion_1", "thermal_expansion_2"):
+        if name in numbers:
+            result[name] = numbers[name]
+    return result
+
+
+def _isotropic_ply(numbers: Mapping[str, Array]) -> dict[str, Array]:
+    modulus, ratio = numbers["youngs_modulus"], numbers["poissons_ratio"]
+    shear = numbers.get("shear_modulus")
+    shear = modulus / (2 * (1 + ratio)) if shear is None else shear
+    by_letter = {"youngs": modulus, "shear_": shear, "poisso": ratio}
+    result = {name: by_letter[name[:6]] for name in PLY_CONSTANTS}
+    if "thermal_expansion" in numbers:
+        result["thermal_expansion_1"] = result["thermal_expansion_2"] = numbers["thermal_expansion"]
+    strength = numbers.get("yield_strength", numbers.get("ultimate_strength"))
+    if strength is not None:
+        result |= dict.fromkeys((*_FIBRE, *_MATRIX[:2]), strength)
+        result["strength_12"] = strength / math.sqrt(3)
+    return result
+
+
+def compliance_determinant(constants: Mapping[str, float]) -> float:
+    """Stability of a ply: its compliance is positive definite where this is positive.
+
+    1 - nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 [Lempriere1968]; the smallest of it
+    and the three factors 1 - nu_ij nu_ji is returned.
+    """
+    e1, e2, e3 = (constants[f"youngs_modulus_{i}"] for i in (1, 2, 3))
+    nu12, nu13, nu23 = (constants[f"poissons_ratio_{i}"] for i in (12, 13, 23))
+    a, b, c = nu12 * nu12 * e2 / e1, nu13 * nu13 * e3 / e1, nu23 * nu23 * e3 / e2
+    return min(1 - a, 1 - b, 1 - c, 1 - a - b - c - 2 * nu12 * nu23 * nu13 * e3 / e1)
+
+
+def allowable_factor(
+    numbers: Mapping[str, Array], name: str, *, basis: str, temperature: Array, wet: bool = False
+) -> Array:
+    """Share left of a strength: temperature x moisture x basis x process knock-downs.
+
+    The temperature factor is linear from 1 at 23 degC to the stated knock-down at
+    `knockdown_temperature` and continues beyond it, at least 0.05; an absent knock-down is 1.
+
+    Parameters
+    ----------
+    numbers : properties of the material, SI
+    name : the strength (``yield_strength``, ``strength_2_tension``, ``bond_strength``, ...)
+    basis : basis of its value; ``typical`` and ``mean`` are brought to the allowable basis
+    temperature : K
+    wet : saturated with moisture
+    """
+    prefix = "matrix_" if name in _MATRIX else ""
+    factor: Array = 1.0
+    hot = numbers.get(f"{prefix}temperature_knockdown")
+    if hot is not None and "knockdown_temperature" in numbers:
+        span = numbers["knockdown_temperature"] - _ROOM_TEMPERATURE
+        share = maximum((temperature - _ROOM_TEMPERATURE) / span, 0.0 * temperature)
+        factor = maximum(1 - (1 - hot) * share, 0.05 + 0.0 * share)
+    if wet:
+        factor = factor * numbers.get(f"{prefix}moisture_knockdown", 1.0)
+    if basis in ("typical", "mean"):
+        factor = factor * numbers.get("basis_knockdown", 1.0)
+    if name == "strength_1_tension":
+        factor = factor * numbers.get("process_knockdown", 1.0)
+    return factor

@@ -1,0 +1,289 @@
+"""The Design: what a person writes, in SI, as typed sections.
+
+Every number carries the name of its quantity (`Of`), so that parsing, range checks, the JSON
+Schema and reports read one declaration (`quantities.INPUTS`). Sections hold no physics.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from .kinds import CaseName, Goal, MaterialName, Of, Position, PositionKind, Text
+
+
+class Section(BaseModel):
+    """A block of the design file: unknown keys are faults."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class FluidSection(Section):
+    """The oil and its state."""
+
+    material: Annotated[str, MaterialName("fluid")]
+    temperature: Annotated[
+        float, Of("temperature", "oil temperature where a load case states none")
+    ] = 313.15
+    air_content: Annotated[
+        float, Of("air_content", "entrained air at atmospheric pressure, by volume")
+    ] = 0.005
+
+
+class Supply(Section):
+    """Pressures at the actuator's ports, gauge."""
+
+    pressure: Annotated[float, Of("working_pressure", "gauge pressure at the driven port")]
+    return_pressure: Annotated[float, Of("pressure", "gauge pressure at the other port")] = 0.0
+    proof_ratio: Annotated[float, Of("safety_factor", "proof pressure over supply pressure")] = 1.5
+
+
+class Environment(Section):
+    """Temperatures the actuator must survive (trapped oil, thermal mismatch, service limits)."""
+
+    temperature_min: Annotated[float, Of("temperature", "coldest the actuator gets")]
+    temperature_max: Annotated[float, Of("temperature", "hottest the actuator gets")]
+    assembly_temperature: Annotated[
+        float, Of("temperature", "temperature at which the parts are joined and filled")
+    ] = 293.15
+    trapped_rise: Annotated[
+        float | None, Of("temperature_rise", "warming of the oil while the ports are blocked")
+    ] = None
+    cure_temperature: Annotated[
+        float | None, Of("temperature", "temperature at which the laminate is stress-free")
+    ] = None
+
+
+class Cylinder(Section):
+    """The main dimensions and how the actuator is held."""
+
+    bore: Annotated[float, Of("bore", "inner diameter of the barrel")]
+    stroke: Annotated[float, Of("stroke", "travel of the piston")]
+    mount: Literal["cap_clevis", "head_flange", "head_trunnion", "cap_flange"] = "cap_clevis"
+    end_stop: Literal["internal", "external"] = "internal"
+    dead_volume_a: Annotated[
+        float, Of("volume", "oil volume of the cap side at zero stroke, ports included")
+    ] = 0.0
+    dead_volume_b: Annotated[
+        float, Of("volume", "oil volume of the rod side at full stroke, ports included")
+    ] = 0.0
+    port_diameter: Annotated[float | None, Of("diameter", "inner diameter of both ports")] = None
+    stop_travel: Annotated[
+        float, Of("length", "travel over which an internal end stop takes supply pressure's force")
+    ] = 0.2e-3
+    mount_stiffness: Annotated[
+        float | None, Of("stiffness", "axial stiffness of what holds the actuator")
+    ] = None
+
+
+class Ply(Section):
+    """One layer of the barrel, from the bore outwards; an angle means a balanced +-angle pair."""
+
+    material: Annotated[str, MaterialName("structural")]
+    thickness: Annotated[float, Of("wall_thickness", "thickness of the layer")]
+    angle: Annotated[
+        float, Of("winding_angle", "winding angle from the tube axis; a balanced +- pair")
+    ] = 0.0
+
+
+class Barrel(Section):
+    """The pressure tube; one isotropic layer is a metal barrel."""
+
+    layup: Annotated[tuple[Ply, ...], Field(min_length=1, max_length=24)]
+    model: Literal["auto", "isotropic", "thin_laminate", "as_published"] = "auto"
+    length: Annotated[
+        float | None, Of("part_length", "length of the tube; default: piston + stroke + head")
+    ] = None
+
+
+class Thread(Section):
+    """A metric thread."""
+
+    diameter: Annotated[float, Of("thread_diameter", "nominal diameter")]
+    pitch: Annotated[float, Of("thread_pitch", "pitch")]
+
+
+class Rod(Section):
+    """The piston rod; `extension` is what shows outside the head when retracted."""
+
+    material: Annotated[str, MaterialName("structural")]
+    outer_diameter: Annotated[float, Of("rod_diameter", "diameter through the rod seal")]
+    inner_diameter: Annotated[
+        float, Of("rod_inner_diameter", "bore of a hollow rod; 0 is solid")
+    ] = 0.0
+    extension: Annotated[float, Of("length", "what shows outside the head when retracted")] = 0.0
+    thread: Thread | None = None
+
+
+class Piston(Section):
+    """The piston: a disc with the seal grooves."""
+
+    material: Annotated[str, MaterialName("structural")]
+    length: Annotated[float, Of("part_length", "axial length of the piston")]
+    guide: Annotated[str | None, MaterialName("structural")] = None
+    clearance: Annotated[float, Of("radial_clearance", "radial clearance piston to bore")] = 3e-5
+
+
+class Head(Section):
+    """Rod-end head: carries rod bearing, rod seal and wiper over `length` inside the barrel."""
+
+    material: Annotated[str, MaterialName("structural")]
+    length: Annotated[float, Of("part_length", "axial length inside the barrel")]
+    guide: Annotated[str | None, MaterialName("structural")] = None
+    clearance: Annotated[float, Of("radial_clearance", "radial clearance rod to head")] = 3e-5
+
+
+class Caps(Section):
+    """End plates of cap end and head end."""
+
+    material: Annotated[str, MaterialName("structural")]
+    thickness: Annotated[float, Of("wall_thickness", "thickness of both end plates")]
+
+
+class Retention(Section):
+    """How caps and head are held: a skirt over the barrel's outside (bond, thread), or tie rods.
+
+    `length` is the overlap of skirt and barrel, `wall` the skirt's thickness, `material` the
+    adhesive or the tie-rod metal.
+    """
+
+    type: Literal["bond", "thread", "tie_rods"]
+    length: Annotated[
+        float, Of("part_length", "overlap of skirt and barrel, or tie-rod engagement")
+    ]
+    wall: Annotated[float, Of("wall_thickness", "thickness of the skirt")] = 1.5e-3
+    material: Annotated[str | None, MaterialName("fastening")] = None
+    count: Annotated[float, Of("bolt_count", "number of tie rods")] = 4.0
+    thread: Thread | None = None
+
+
+class Clevis(Section):
+    """Eyes at both ends, each on a pin in double shear."""
+
+    material: Annotated[str, MaterialName("structural")]
+    pin_diameter: Annotated[float, Of("diameter", "diameter of the pins")]
+
+
+class Seal(Section):
+    """A ring seal in a radial groove, `count` in a row."""
+
+    type: Literal["o_ring"] = "o_ring"
+    compound: Annotated[str, MaterialName("seal")]
+    section: Annotated[float, Of("cross_section", "free cross-section of the ring")]
+    squeeze: Annotated[float, Of("squeeze", "nominal squeeze over the free section")]
+    tolerance: Annotated[float, Of("tolerance", "tolerance of the gland depth")] = 0.0
+    groove_width: Annotated[
+        float | None, Of("groove_width", "axial width of the groove; default: the standard gland")
+    ] = None
+    stretch: Annotated[float, Of("stretch", "stretch of the ring in its groove")] = 0.02
+    count: Annotated[float, Of("seal_count", "seals in a row")] = 1.0
+    law: Literal["plane_strain", "hertz_lindley", "chord"] = "plane_strain"
+    hardness_model: Literal["gent", "ruess"] = "gent"
+    friction_coefficient: Annotated[
+        float | None,
+        Of("friction_coefficient", "dry friction on the counterface; default: the compound's"),
+    ] = None
+    breakaway_ratio: Annotated[
+        float | None,
+        Of("breakaway_ratio", "breakaway over running friction; default: the compound's"),
+    ] = None
+    stribeck_speed: Annotated[
+        float | None,
+        Of("stribeck_speed", "decay speed of the breakaway friction; default: the compound's"),
+    ] = None
+    viscous_friction: Annotated[
+        float, Of("viscous_friction", "viscous part of the seal friction")
+    ] = 0.0
+
+
+class Seals(Section):
+    """Piston and rod seals."""
+
+    piston: Seal
+    rod: Seal
+
+
+class Line(Section):
+    """A pipe or hose between valve and one chamber (a: cap side, b: rod side)."""
+
+    chamber: Literal["a", "b"]
+    length: Annotated[float, Of("part_length", "length of the line")]
+    inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
+    outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
+    material: Annotated[str, MaterialName("structural")]
+
+
+class Load(Section):
+    """What the rod moves."""
+
+    mass: Annotated[float, Of("load_mass", "moved mass, reflected to the rod")] = 0.0
+
+
+class LoadCase(Section):
+    """One duty: a force (or a joint torque on a lever arm), a direction, a speed, a place."""
+
+    name: Annotated[str, CaseName("how reports and PATHs call the case")]
+    direction: Literal["push", "pull"]
+    force: Annotated[float | None, Of("force", "axial force to deliver")] = None
+    joint_torque: Annotated[float | None, Of("torque", "joint torque, instead of a force")] = None
+    lever_arm: Annotated[float | None, Of("lever_arm", "lever arm of the joint torque")] = None
+    speed: Annotated[float, Of("speed", "piston speed")] = 0.0
+    position: Annotated[Position, PositionKind()] = "worst"
+    pressure: Annotated[
+        float | None, Of("pressure", "gauge pressure at the driven port; default: supply.pressure")
+    ] = None
+    temperature: Annotated[
+        float | None, Of("temperature", "oil temperature; default: fluid.temperature")
+    ] = None
+    side_load: Annotated[float, Of("force", "force across the rod end")] = 0.0
+
+
+class Variable(Section):
+    """Bounds and start (SI) of a dimension the optimiser may move; in the file, units by PATH."""
+
+    lower: float
+    upper: float
+    start: float
+
+
+class Limit(Section):
+    """Limits of a metric (SI); in the file, units by the metric."""
+
+    min: float | None = None
+    max: float | None = None
+
+
+class Objective(Section):
+    """One metric, or several with weights (each divided by its value in the file's design)."""
+
+    minimise: Annotated[str | dict[str, float] | None, Goal()] = None
+    maximise: Annotated[str | dict[str, float] | None, Goal()] = None
+
+
+class Design(Section):
+    """A hydraulic actuator with its duties, its freedom and its requirements."""
+
+    name: Annotated[str, Text("title of the design")]
+    notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
+    fluid: FluidSection
+    supply: Supply
+    environment: Environment | None = None
+    cylinder: Cylinder
+    barrel: Barrel
+    rod: Rod
+    piston: Piston
+    head: Head
+    caps: Caps
+    retention: Retention | None = None
+    clevis: Clevis | None = None
+    seals: Seals
+    lines: Annotated[tuple[Line, ...], Field(max_length=24)] = ()
+    load: Load = Load()
+    load_cases: Annotated[tuple[LoadCase, ...], Field(min_length=1, max_length=100)]
+    variables: dict[str, Variable] = {}
+    requirements: dict[str, Limit] = {}
+    waivers: dict[str, Annotated[str, Text("why the check does not apply")]] = {}
+    materials: dict[str, dict[str, float]] = {}
+    """Properties (SI) that replace the library's in this design, by material name."""
+    objective: Objective = Objective(minimise="mass")

@@ -1,0 +1,264 @@
+"""PATHs: how files, `--set`, scripts and reports name one value of a design.
+
+``cylinder.bore`` · ``barrel.layup[1].thickness`` · ``load_cases[stance].force`` ·
+``requirements.stiffness_min.min`` · ``variables.cylinder.bore.upper`` ·
+``materials.NAME.PROPERTY``. A load case may be named or counted from 0; its canonical PATH names
+it. Everything here takes a `Design` or the tree of dicts and lists it is built from.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from .. import quantities
+from ..errors import Diagnostic, InputError, UsageError
+from ..quantities import Quantity
+from . import suggest
+from .kinds import Fraction, ValueFault
+from .model import Design, Section
+from .structure import Entry, Loc, child, entries, leaves, number_of
+
+_PATH = re.compile(r"[^.\[\]=]+(\[[^\[\]=]+\])?(\.[^.\[\]=]+(\[[^\[\]=]+\])?)*")
+_TOKEN = re.compile(r"\[([^\[\]]+)\]|([^.\[\]]+)")
+_BOUNDS = ("lower", "upper", "start")
+_LIMITS = ("min", "max")
+
+
+class _Token(NamedTuple):
+    """One step of a PATH: a key, or what stands in brackets."""
+
+    text: str
+    bracket: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """What a PATH names: its canonical spelling, its place in the tree, its quantity if a number.
+
+    `entry` is None for values of tables (variables, requirements, materials, …).
+    """
+
+    path: str
+    loc: Loc
+    quantity: Quantity | None
+    entry: Entry | None = None
+
+
+def spell(loc: Loc, tree: Any = None) -> str:
+    """The canonical PATH of a place; load cases by name where `tree` knows a unique one.
+
+    >>> spell(("barrel", "layup", 1, "thickness"))
+    'barrel.layup[1].thickness'
+    """
+    text = ""
+    for depth, key in enumerate(loc):
+        if not isinstance(key, int):
+            text += f".{key}" if text else key
+            continue
+        name: object = key
+        if depth == 1 and loc[0] == "load_cases":
+            names = _case_names(tree)
+            if key < len(names) and isinstance(names[key], str) and names.count(names[key]) == 1:
+                name = names[key]
+        text += f"[{name}]"
+    return text
+
+
+def _case_names(tree: Any) -> list[Any]:
+    cases = child(tree, "load_cases")
+    return [child(case, "name") for case in cases] if isinstance(cases, (list, tuple)) else []
+
+
+def resolve(path: str, tree: Any, metrics: Mapping[str, Quantity] | None = None) -> Target:
+    """What `path` names in a design or a tree.
+
+    Raises
+    ------
+    ValueFault
+        malformed, unknown (with the nearest name), or a block instead of a value
+    """
+    path = path.strip()
+    if len(path) > 200 or _PATH.fullmatch(path) is None:
+        raise ValueFault(
+            f'"{suggest.shown(path)}": not a PATH',
+            "write e.g. cylinder.bore or barrel.layup[0].angle",
+        )
+    head, _, rest = path.partition(".")
+    if rest and head in ("variables", "requirements", "materials", "waivers", "objective"):
+        return _resolve_table(head, rest, tree, quantities.METRICS if metrics is None else metrics)
+    tokens = [_Token(m[1] or m[2], m[1] is not None) for m in _TOKEN.finditer(path)]
+    return _resolve_section(path, tokens, tree, tree, Design, ())
+
+
+def _resolve_section(
+    path: str, tokens: Sequence[_Token], tree: Any, node: Any, section: type[Section], loc: Loc
+) -> Target:
+    """Follow `tokens` from one section, whose node may be unset (None)."""
+    known = entries(section)
+    if not tokens:
+        raise _not_a_value(path, list(known))
+    name, rest = tokens[0].text, tokens[1:]
+    entry = known.get(name)
+    if entry is None or tokens[0].bracket:
+        raise _unknown(path, tree, [spell((*loc, key), tree) for key in known])
+    node, loc = child(node, name), (*loc, name)
+    if entry.shape in ("value", "choice"):
+        if rest:
+            raise ValueFault(f"{path}: {spell(loc, tree)} is a single value", "name just that")
+        return Target(spell(loc, tree), loc, entry.quantity(node), entry)
+    if entry.section is None or entry.shape == "table":
+        raise _not_a_value(path, ["NAME"])
+    if entry.shape == "list":
+        if not rest or not rest[0].bracket:
+            raise ValueFault(f"{path}: {name} is a list", f"write {spell(loc)}[0].…")
+        loc = (*loc, _index(path, rest[0].text, node, loc))
+        node, rest = child(node, loc[-1]), rest[1:]
+    return _resolve_section(path, rest, tree, node, entry.section, loc)
+
+
+def _index(path: str, text: str, node: Any, loc: Loc) -> int:
+    """Index of a list entry given by number or, in load cases, by name."""
+    items = node if isinstance(node, (list, tuple)) else ()
+    names = [child(item, "name") for item in items]
+    if text in names:
+        return names.index(text)
+    if text.isdecimal() and int(text) < len(items):
+        return int(text)
+    have = [str(n) for n in names if n is not None] or [str(i) for i in range(len(items))]
+    message = f"{path}: {spell(loc)} has no entry {suggest.shown(text)}"
+    raise ValueFault(message, suggest.remedy(text, have) or "it is empty")
+
+
+def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quantity]) -> Target:
+    """A value of a table: its name is free (a PATH, a metric, a material)."""
+    path = f"{head}.{rest}"
+    name, _, last = rest.rpartition(".")
+    if head == "waivers":
+        return Target(path, (head, rest), None)
+    if head == "objective":
+        if rest not in ("minimise", "maximise"):
+            raise _unknown(path, tree, ["objective.minimise", "objective.maximise"])
+        return Target(path, (head, rest), None)
+    if head == "variables":
+        if not name or last not in _BOUNDS:
+            raise ValueFault(f"{path}: no such PATH", f"end it with .{', .'.join(_BOUNDS)}")
+        target = resolve(name, tree, metrics)
+        return Target(f"{head}.{target.path}.{last}", (head, target.path, last), target.quantity)
+    if head == "requirements":
+        if last not in _LIMITS or not name:
+            raise ValueFault(f"{path}: no such PATH", f"end it with .{' or .'.join(_LIMITS)}")
+        known: Mapping[str, Quantity] = metrics
+        key = name
+    else:
+        known, key = quantities.MATERIAL_PROPERTIES, last
+        if not name:
+            raise ValueFault(f"{path}: no such PATH", "write materials.NAME.PROPERTY")
+    if key not in known:
+        what = "metric" if head == "requirements" else "material property"
+        raise ValueFault(f'{path}: "{key}" is not a {what}', suggest.remedy(key, known))
+    return Target(path, (head, name, last), known[key])
+
+
+def _not_a_value(path: str, below: Sequence[str]) -> ValueFault:
+    return ValueFault(f"{path}: names a block, not a value", f"add one of .{', .'.join(below[:8])}")
+
+
+def _unknown(path: str, tree: Any, siblings: Sequence[str]) -> ValueFault:
+    every = [*siblings, *(spell(loc, tree) for loc, _, _ in leaves(tree))]
+    return ValueFault(f"{path}: no such PATH", suggest.remedy(path, dict.fromkeys(every), 6))
+
+
+def canonical(path: str, design: Design) -> str:
+    """The one spelling of a PATH that results and records use; raises `InputError`."""
+    return _target(path, design).path
+
+
+def quantity_of(path: str, design: Design) -> Quantity:
+    """The quantity of the number a PATH names; raises `InputError` for a text or no such PATH."""
+    target = _target(path, design)
+    if target.quantity is None:
+        raise InputError(
+            Diagnostic(f"{target.path} is text, not a number", "name a number", path=path)
+        )
+    return target.quantity
+
+
+def get(design: Design, path: str) -> float | str | None:
+    """The value at a PATH: SI number, text, or None where an optional value is not set."""
+    node: Any = design
+    for key in _target(path, design).loc:
+        node = child(node, key)
+    number = number_of(node)
+    return node if number is None else number
+
+
+def _target(path: str, design: Design) -> Target:
+    try:
+        return resolve(path, design)
+    except ValueFault as fault:
+        message = fault.message.removeprefix(f"{path}: ")
+        raise InputError(Diagnostic(message, fault.remedy, path=path)) from None
+
+
+def numbers(design: Design) -> dict[str, float]:
+    """Every number of a design in SI by canonical PATH; optional values that are not set: absent.
+
+    Positions given as a fraction of the stroke are the fraction; bounds of variables are not
+    among them.
+    """
+    found: dict[str, float] = {}
+    for loc, _, value in leaves(design):
+        number = number_of(value)
+        if number is not None:
+            found[spell(loc, design)] = number
+    for metric, limit in design.requirements.items():
+        for sense in _LIMITS:
+            value = getattr(limit, sense)
+            if value is not None:
+                found[f"requirements.{metric}.{sense}"] = value
+    for material, properties in design.materials.items():
+        for name, value in properties.items():
+            found[f"materials.{material}.{name}"] = value
+    return found
+
+
+def split_assignment(text: str) -> tuple[str, str]:
+    """PATH and value of ``PATH=VALUE``; raises `UsageError`.
+
+    >>> split_assignment("supply.pressure=120 bar")
+    ('supply.pressure', '120 bar')
+    """
+    path, equals, value = text.partition("=")
+    if not equals or not path.strip() or not value.strip():
+        message = f'"{suggest.shown(text)}": not PATH=VALUE'
+        raise UsageError(Diagnostic(message, 'write e.g. --set "cylinder.bore=30 mm"'))
+    return path.strip(), value.strip()
+
+
+def put(tree: dict[str, Any], target: Target, value: object) -> None:
+    """Set a value in a tree of dicts and lists, adding the blocks on its way.
+
+    A number on a position written as a fraction of the stroke stays a fraction.
+
+    Raises
+    ------
+    ValueFault
+        something else stands where a block belongs
+    """
+    node: Any = tree
+    for depth, key in enumerate(target.loc[:-1]):
+        below = child(node, key)
+        if below is None:
+            below = node[key] = {}
+        if not isinstance(below, (dict, list)):
+            message = f"{spell(target.loc[: depth + 1])} is not a block"
+            raise ValueFault(message, "mend it in the file first")
+        node = below
+    key = target.loc[-1]
+    if isinstance(value, float) and target.quantity is not None and target.entry is not None:
+        is_share = target.quantity.name == "fraction"
+        value = Fraction(value) if is_share and target.entry.name == "position" else value
+    node[key] = value

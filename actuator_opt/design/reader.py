@@ -1,0 +1,213 @@
+"""Design files: read, checked in one pass, every fault at its line and column."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final, Literal
+
+from .. import units
+from ..errors import Diagnostic, InputError
+from ..quantities import Quantity
+from . import suggest
+from .build import MOST_FAULTS, build, copy_tree
+from .faults import Fault, Materials
+from .kinds import ValueFault
+from .model import Design
+from .paths import put, resolve, spell
+from .structure import Loc
+from .yaml_source import MAX_BYTES, Document, Span, decode, parse
+
+TEXT = "<text>"
+STDIN = "<stdin>"
+SET: Final = "--set"
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where a design's values stand, for faults found later (by an evaluation, a plug-in)."""
+
+    document: Document
+    overrides: Mapping[Loc, str] = field(default_factory=dict)
+    """Places set from outside the file, with the text that set them."""
+
+    @property
+    def file(self) -> str:
+        """Name of the file, as the person wrote it."""
+        return self.document.file
+
+    @property
+    def text(self) -> str:
+        """The file's text."""
+        return self.document.text
+
+    def diagnostic(self, path: str, message: str, remedy: str = "") -> Diagnostic:
+        """A fault of the value at a PATH; a PATH the file does not hold gets its block's place."""
+        try:
+            loc = resolve(path, self.document.data).loc
+        except ValueFault:
+            loc = ()
+        return self.at(Fault(loc, message, remedy), path)
+
+    def of_variable(self, path: str, message: str, remedy: str = "") -> Diagnostic:
+        """A fault of the entry of a PATH under `variables`."""
+        return self.at(Fault(("variables", path), message, remedy, at_key=True), path)
+
+    def at(self, fault: Fault, path: str | None = None) -> Diagnostic:
+        """A fault as a person reads it."""
+        if path is None:
+            path = spell(fault.loc, self.document.data) or None
+        if path is not None:
+            path = suggest.shown(path, 120)
+        place = self._find(fault)
+        if place == SET:
+            return Diagnostic(fault.message, fault.remedy, SET, path=path)
+        return self.document.diagnostic(place, fault.message, fault.remedy, path)
+
+    def place(self, fault: Fault) -> tuple[int, int]:
+        """Line and column of a fault, for sorting."""
+        found = self._find(fault)
+        return found[:2] if isinstance(found, Span) else (0, 0)
+
+    def _find(self, fault: Fault) -> Span | Literal["--set"] | None:
+        """The nearest place in the text at or above the fault's own."""
+        for depth in range(len(fault.loc), -1, -1):
+            loc = fault.loc[:depth]
+            if loc in self.overrides:
+                return SET
+            span = self.document.values.get(loc)
+            if fault.at_key or depth < len(fault.loc):
+                span = self.document.keys.get(loc) or span
+            if span is not None:
+                return span
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedDesign:
+    """A design and where it was read."""
+
+    design: Design
+    source: Source
+
+
+def read_design(
+    source: str | Path,
+    *,
+    overrides: Iterable[tuple[str, str]] = (),
+    materials: Materials | None = None,
+    metrics: Mapping[str, Quantity] | None = None,
+) -> LoadedDesign:
+    """Read a design file, or the text of one.
+
+    Parameters
+    ----------
+    source : path, ``"-"`` for standard input, or a text of several lines
+    overrides : (PATH, value) pairs that replace values before anything is checked; a bare
+        number is SI
+    materials : names and kinds of materials; default: the library
+    metrics : metrics that may be named; default: `quantities.METRICS`
+
+    Raises
+    ------
+    InputError
+        with every fault, in the order of the file's lines
+    """
+    text, file = _open(source)
+    return read_document(
+        parse(text, file), overrides=overrides, materials=materials, metrics=metrics
+    )
+
+
+def read_document(
+    document: Document,
+    *,
+    overrides: Iterable[tuple[str, str]] = (),
+    materials: Materials | None = None,
+    metrics: Mapping[str, Quantity] | None = None,
+) -> LoadedDesign:
+    """The design of a parsed YAML document; parameters as `read_design`."""
+    tree = copy_tree(document.data)
+    faults = list(document.faults)
+    places: dict[Loc, str] = {}
+    for path, value in overrides:
+        try:
+            target = resolve(path, tree, metrics)
+            put(tree, target, _bare_is_si(value, target.quantity))
+            places[target.loc] = value
+        except ValueFault as fault:
+            message = fault.message.removeprefix(f"{path}: ")
+            faults.append(Diagnostic(message, fault.remedy, SET, path=path))
+    source = Source(document, places)
+    built = build(tree, materials=library() if materials is None else materials, metrics=metrics)
+    found = [fault for fault in built.faults if not _unusable(fault, document)]
+    if built.design is None or faults or found:
+        raise InputError(_in_order(source, faults, found))
+    return LoadedDesign(built.design, source)
+
+
+def _unusable(fault: Fault, document: Document) -> bool:
+    return any(fault.loc[: len(loc)] == loc for loc in document.unusable)
+
+
+def _in_order(
+    source: Source, said: Sequence[Diagnostic], found: Sequence[Fault]
+) -> list[Diagnostic]:
+    """Faults by line and column, at most `MOST_FAULTS` and a line that counts the rest."""
+    first = sorted(found, key=source.place)[:MOST_FAULTS]
+    everything = [*said, *(source.at(fault) for fault in first)]
+    everything.sort(key=lambda fault: (fault.line or 0, fault.column or 0))
+    left = len(said) + len(found) - MOST_FAULTS
+    if left > 0:
+        more = Diagnostic(f"and {left} more faults", "mend these first", source.file)
+        everything = [*everything[:MOST_FAULTS], more]
+    return everything
+
+
+def _bare_is_si(value: str, quantity: Quantity | None) -> str:
+    """`value` with the SI unit where it is a bare number."""
+    if quantity is None:
+        return value
+    try:
+        number, unit = units.split(value)
+    except units.UnitError:
+        return value
+    if unit:
+        return value
+    return f"{number * 100!r} %" if quantity.name == "fraction" else f"{value} {quantity.si_unit}"
+
+
+def _open(source: str | Path) -> tuple[str, str]:
+    if isinstance(source, str) and ("\n" in source or "\r" in source):
+        return source, TEXT
+    if source == "-":
+        return decode(sys.stdin.buffer.read(MAX_BYTES + 1), STDIN), STDIN
+    path, file = Path(source), str(source)
+    try:
+        with path.open("rb") as stream:
+            return decode(stream.read(MAX_BYTES + 1), file), file
+    except FileNotFoundError:
+        raise InputError(Diagnostic("no such file", _near(path), file)) from None
+    except IsADirectoryError:
+        raise InputError(Diagnostic("is a folder", "name a design file in it", file)) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(Diagnostic(f"cannot be read: {reason}", "", file)) from None
+
+
+def _near(path: Path) -> str:
+    try:
+        names = [p.name for p in path.parent.iterdir() if p.suffix in (".yaml", ".yml")]
+    except OSError:
+        return "check the path"
+    match = suggest.closest(path.name, names)
+    return f"did you mean {path.parent / match}?" if match else "check the path"
+
+
+def library() -> Materials:
+    """The shipped material library; imported when a design is read."""
+    from .materials import load_library
+
+    return load_library()

@@ -1,0 +1,275 @@
+"""Standard sizes as data: ISO 3320 bores and rods, ISO 6020-2/6022 pairs, O-rings and glands.
+
+Lengths are in m, pressures in Pa. Every row knows its source and confidence.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+from .. import store
+from ..errors import Diagnostic, InputError
+from . import yaml_source
+
+Use: TypeAlias = Literal["reciprocating", "static"]
+Direction: TypeAlias = Literal["nearest", "up", "down"]
+
+_SAME = 0.005
+"""A gland row counts for sections within 0.5 % of its own; others are interpolated."""
+
+
+@dataclass(frozen=True, slots=True)
+class StandardSize:
+    """One size of a series."""
+
+    value: float
+    confidence: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class CylinderPair:
+    """Bore and rod of a standard cylinder."""
+
+    series: str
+    bore: float
+    rod_diameter: float
+    pressure: float
+    confidence: str
+    source: str
+
+    @property
+    def area_ratio(self) -> float:
+        """Cap side over rod side area."""
+        return self.bore**2 / (self.bore**2 - self.rod_diameter**2)
+
+
+@dataclass(frozen=True, slots=True)
+class ORing:
+    """A ring of a size list."""
+
+    inside_diameter: float
+    section: float
+    tolerance: float
+    confidence: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Gland:
+    """The groove of an O-ring: depth is the radial room of the ring, rod or bore included.
+
+    A table without tolerances gives equal limits and no radii (0).
+    """
+
+    use: str
+    table: str
+    section: float
+    section_tolerance: float
+    depth_min: float
+    depth_max: float
+    width_min: float
+    width_max: float
+    radius_min: float
+    radius_max: float
+    interpolated: bool
+    confidence: str
+    source: str
+
+    @property
+    def depth(self) -> float:
+        """Mid-tolerance depth."""
+        return (self.depth_min + self.depth_max) / 2
+
+    @property
+    def width(self) -> float:
+        """Mid-tolerance width."""
+        return (self.width_min + self.width_max) / 2
+
+    @property
+    def squeeze(self) -> float:
+        """Nominal squeeze over the section."""
+        return 1 - self.depth / self.section
+
+    @property
+    def squeeze_min(self) -> float:
+        """Smallest squeeze: thinnest ring in the deepest gland."""
+        section = self.section - self.section_tolerance
+        return 1 - self.depth_max / section
+
+    @property
+    def squeeze_max(self) -> float:
+        """Largest squeeze: thickest ring in the shallowest gland."""
+        section = self.section + self.section_tolerance
+        return 1 - self.depth_min / section
+
+
+@functools.lru_cache(maxsize=1)
+def _tables() -> Mapping[str, Any]:
+    path = store.data_folder("materials") / "standards.yaml"
+    text = yaml_source.decode(path.read_bytes(), str(path))
+    document = yaml_source.parse(text, str(path))
+    if document.faults:
+        raise InputError(document.faults)
+    return document.data
+
+
+def _mm(text: str) -> float:
+    """Length in m of a number in mm, as exact as the decimal text."""
+    return float(f"{text}e-3")
+
+
+def _source(key: str) -> str:
+    return str(_tables()["sources"][key])
+
+
+@functools.cache
+def _series(kind: str) -> tuple[StandardSize, ...]:
+    table = _tables()[kind]
+    source = _source(table["source"])
+    return tuple(
+        sorted(
+            (
+                StandardSize(_mm(text), confidence, source)
+                for confidence in ("verified", "secondary", "unverified")
+                for text in table.get(confidence, ())
+            ),
+            key=lambda size: size.value,
+        )
+    )
+
+
+def bores() -> tuple[StandardSize, ...]:
+    """ISO 3320 bores, ascending, m."""
+    return _series("bores")
+
+
+def rods() -> tuple[StandardSize, ...]:
+    """ISO 3320 rod diameters, ascending, m."""
+    return _series("rods")
+
+
+@functools.cache
+def cylinder_pairs(series: str | None = None) -> tuple[CylinderPair, ...]:
+    """Bore and rod pairs of ISO 6020-2 (160 bar) and ISO 6022 (250 bar); of one series if named."""
+    return tuple(
+        CylinderPair(
+            group["series"], _mm(bore), _mm(rod),
+            float(group["pressure_bar"]) * 1e5, group["confidence"], _source(group["source"]),
+        )
+        for group in _tables()["cylinder_pairs"]
+        if series in (None, group["series"])
+        for bore, rod in group["rows"]
+    )  # fmt: skip
+
+
+@functools.cache
+def o_rings() -> tuple[ORing, ...]:
+    """GB/T 3452.1 series G rings, by section, then inside diameter, m."""
+    table = _tables()["o_rings"]
+    source = _source(table["source"])
+    return tuple(
+        ORing(_mm(inside), _mm(group["section"]), _mm(group["tolerance"]),
+              table["confidence"], source)
+        for group in table["series"]
+        for inside in group["inside_diameters"]
+    )  # fmt: skip
+
+
+@functools.cache
+def glands(use: Use, table: str | None = None) -> tuple[Gland, ...]:
+    """Tabulated glands of a use, ascending by section; ``as568`` or ``metric`` or both."""
+    found: list[Gland] = []
+    for name in ("as568", "metric"):
+        if table not in (None, name):
+            continue
+        data = _tables()[f"glands_{name}"]
+        confidence, source = data["confidence"], _source(data["source"])
+        for row in data[use]:
+            numbers = [_mm(text) for text in row]
+            if name == "metric":
+                section, depth, width = numbers
+                numbers = [section, 0.0, depth, depth, width, width, 0.0, 0.0]
+            w, tolerance, d0, d1, g0, g1, r0, r1 = numbers
+            found.append(
+                Gland(use, name, w, tolerance, d0, d1, g0, g1, r0, r1, False, confidence, source)
+            )
+    return tuple(sorted(found, key=lambda gland: (gland.section, gland.table)))
+
+
+def o_ring_sections(table: str | None = None) -> tuple[float, ...]:
+    """Free sections with a tabulated reciprocating gland, ascending, m."""
+    return tuple(sorted({gland.section for gland in glands("reciprocating", table)}))
+
+
+def gland(section: float, use: Use = "reciprocating", *, table: str | None = None) -> Gland:
+    """Gland of a section: the tabulated one, else interpolated between its neighbours.
+
+    Parameters
+    ----------
+    section : free section, m
+    use : ``reciprocating`` or ``static``
+    table : ``as568`` or ``metric``; default: AS568 for its own sections, else metric
+
+    Raises
+    ------
+    InputError : the section lies outside the tables
+    """
+    for rows in (glands(use, table or "as568"), glands(use, table or "metric")):
+        nearest = min(rows, key=lambda row: abs(row.section - section))
+        if abs(nearest.section - section) <= _SAME * nearest.section:
+            return nearest
+    if not rows[0].section < section < rows[-1].section:
+        low, high = rows[0].section * 1e3, rows[-1].section * 1e3
+        message = f"no {use} gland for a section of {section * 1e3:.4g} mm"
+        raise InputError(Diagnostic(message, f"the tables cover {low:.4g} to {high:.4g} mm"))
+    return _between(rows, section)
+
+
+def _between(rows: Sequence[Gland], section: float) -> Gland:
+    above = next(i for i, row in enumerate(rows) if row.section >= section)
+    first, second = rows[above - 1], rows[above]
+    share = (section - first.section) / (second.section - first.section)
+
+    def mix(name: str) -> float:
+        one, two = getattr(first, name), getattr(second, name)
+        return float(one + share * (two - one))
+
+    return Gland(
+        first.use, first.table, section, mix("section_tolerance"),
+        mix("depth_min"), mix("depth_max"), mix("width_min"), mix("width_max"),
+        mix("radius_min"), mix("radius_max"), True, first.confidence, first.source,
+    )  # fmt: skip
+
+
+def nearest_standard(
+    kind: Literal["bore", "rod", "section"], value: float, direction: Direction = "nearest"
+) -> float:
+    """Find the standard size next to a value, m.
+
+    Parameters
+    ----------
+    kind : ``bore`` or ``rod`` (ISO 3320), ``section`` (AS568 sections of moving O-rings)
+    value : m
+    direction : ``nearest`` (by ratio), ``up`` (not smaller) or ``down`` (not larger)
+
+    Raises
+    ------
+    InputError : no standard size lies in that direction
+    """
+    if kind == "section":
+        sizes: tuple[float, ...] = o_ring_sections("as568")
+    else:
+        sizes = tuple(size.value for size in (bores() if kind == "bore" else rods()))
+    slack = 1e-9
+    if direction == "up":
+        sizes = tuple(size for size in sizes if size >= value * (1 - slack))[:1]
+    elif direction == "down":
+        sizes = tuple(size for size in sizes if size <= value * (1 + slack))[-1:]
+    if not sizes or value <= 0:
+        message = f"no standard {kind} {direction} of {value * 1e3:.4g} mm"
+        raise InputError(Diagnostic(message, "choose another size or direction"))
+    return min(sizes, key=lambda size: max(size / value, value / size))

@@ -1,0 +1,141 @@
+"""The shape of the model: which keys each section has and what kind of value each one takes.
+
+The reader, the PATHs, the writer and the JSON Schema walk this, so none of them names a field.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from types import UnionType
+from typing import Any, Literal, TypeAlias, Union, get_args, get_origin
+
+from ..quantities import Quantity
+from .kinds import Fraction, Kind, Of, PositionKind
+from .model import Design, Section
+
+Loc: TypeAlias = tuple[str | int, ...]
+"""Keys and indices from the design to a value."""
+
+Shape: TypeAlias = Literal["value", "choice", "section", "list", "table"]
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One key of a section.
+
+    `kind` is set for a value, `choices` for a choice, `section` for a section, a list of
+    sections, or a table of sections under free names; a table without section holds texts,
+    numbers or tables (waivers, objective, materials).
+    """
+
+    name: str
+    shape: Shape
+    required: bool
+    default: Any
+    kind: Kind | None = None
+    choices: tuple[str, ...] = ()
+    section: type[Section] | None = None
+    least: int = 0
+    most: int | None = None
+    """Least and largest number of entries of a list."""
+
+    def quantity(self, value: object = None) -> Quantity | None:
+        """The quantity of a number here; a position's depends on how it is written."""
+        if isinstance(self.kind, PositionKind):
+            return self.kind.quantity_of(value)
+        return self.kind.quantity if isinstance(self.kind, Of) else None
+
+
+@cache
+def entries(section: type[Section]) -> Mapping[str, Entry]:
+    """Every key of a section, in file order."""
+    return {name: _entry(name, info) for name, info in section.model_fields.items()}
+
+
+def _entry(name: str, info: Any) -> Entry:
+    required = info.is_required()
+    default = None if required else info.default
+    kind = next((m for m in info.metadata if isinstance(m, Kind)), None)
+    if kind is not None:
+        return Entry(name, "value", required, default, kind)
+    least = next((m.min_length for m in info.metadata if hasattr(m, "min_length")), 0)
+    most = next((m.max_length for m in info.metadata if hasattr(m, "max_length")), None)
+    options = [a for a in _options(info.annotation) if a is not type(None)]
+    annotation = options[0]
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Literal:
+        return Entry(name, "choice", required, default, choices=arguments)
+    if origin is tuple:
+        return Entry(name, "list", required, default, None, (), arguments[0], least, most)
+    if origin is dict:
+        inner = arguments[1]
+        section = inner if isinstance(inner, type) and issubclass(inner, Section) else None
+        return Entry(name, "table", required, default, section=section)
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        return Entry(name, "section", required, default, section=annotation)
+    return Entry(name, "value", required, default)
+
+
+def _options(annotation: Any) -> tuple[Any, ...]:
+    if get_origin(annotation) in (Union, UnionType):
+        return get_args(annotation)
+    return (annotation,)
+
+
+def child(node: Any, key: str | int) -> Any:
+    """A node's child, None where it has none; nodes are sections, dicts, lists or None."""
+    if isinstance(node, Mapping):
+        return node.get(key)
+    if isinstance(node, (list, tuple)):
+        return node[key] if isinstance(key, int) and -len(node) <= key < len(node) else None
+    return getattr(node, str(key), None) if isinstance(node, Section) else None
+
+
+def leaves(
+    node: Any, section: type[Section] = Design, loc: Loc = ()
+) -> Iterator[tuple[Loc, Entry, Any]]:
+    """Every value and choice below a node that is present: (loc, entry, value).
+
+    Tables of free names (variables, requirements, …) are not entered. A dict may be faulty:
+    what does not have the model's shape is passed over.
+    """
+    for name, entry in entries(section).items():
+        below = child(node, name)
+        if below is None:
+            continue
+        if entry.shape in ("value", "choice"):
+            yield (*loc, name), entry, below
+        elif entry.shape == "section" and entry.section is not None:
+            yield from leaves(below, entry.section, (*loc, name))
+        elif entry.shape == "list" and entry.section is not None:
+            items = below if isinstance(below, (list, tuple)) else ()
+            for index, item in enumerate(items):
+                yield from leaves(item, entry.section, (*loc, name, index))
+
+
+def number_of(value: object) -> float | None:
+    """The SI number of a leaf's value; None for texts."""
+    if isinstance(value, Fraction):
+        return value.value
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value)
+    return None
+
+
+def value_at(tree: Any, loc: Loc) -> Any:
+    """The value at a place of a design or a tree, else the default the model gives it there."""
+    node, default = tree, None
+    section: type[Section] = Design
+    for key in loc:
+        node = child(node, key)
+        if isinstance(key, int):
+            default = None
+            continue
+        entry = entries(section).get(key)
+        if entry is None:
+            return node
+        default = entry.default
+        section = entry.section or section
+    return default if node is None else node

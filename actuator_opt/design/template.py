@@ -1,0 +1,179 @@
+"""The start file of `init`: a whole design, commented, every value with its unit."""
+
+from __future__ import annotations
+
+from .kinds import Text
+from .model import Design
+from .reader import LoadedDesign
+from .writer import scalar, to_yaml
+
+_TEXT = """\
+# A hydraulic actuator: what it is, what it must do, what may change.
+#
+# Every physical value carries its unit (25 mm, 100 bar, 40 degC, 0.5 %); only 0, ratios and
+# counts may be bare. Any value has a PATH, e.g. cylinder.bore or barrel.layup[1].thickness,
+# which --set, --vary and the block `variables` below understand.
+#
+#   actuator-opt check FILE       all faults of this file
+#   actuator-opt evaluate FILE    every quantity and check as it stands
+#   actuator-opt optimise FILE    the lightest design that meets the requirements
+name: @NAME@
+
+fluid:
+  material: iso_vg_32          # actuator-opt materials list
+  temperature: 40 degC
+  air_content: 0.5 %           # entrained air: lowers the stiffness of the oil
+
+supply:
+  pressure: 100 bar            # gauge, at the actuator's port
+  return_pressure: 2 bar
+  proof_ratio: 1.5             # proof pressure over supply pressure
+
+environment:
+  temperature_min: -20 degC
+  temperature_max: 80 degC
+  assembly_temperature: 20 degC
+  cure_temperature: 120 degC   # where the laminate is free of stress
+
+cylinder:
+  bore: 25 mm
+  stroke: 110 mm
+  mount: cap_clevis            # or head_flange, head_trunnion, cap_flange
+  port_diameter: 6 mm
+
+barrel:
+  model: auto                  # isotropic for one metal layer, else thin_laminate
+  layup:                       # from the bore outwards; one isotropic layer = a metal barrel
+    - material: al_6061_t6     # liner: seals, and takes the wear of the piston seal
+      thickness: 0.8 mm
+    - material: t700_epoxy     # hoop layer: holds the pressure
+      angle: 88 deg            # from the tube axis; a balanced +- pair
+      thickness: 1.2 mm
+    - material: t700_epoxy     # axial layer: holds the cap ends together
+      angle: 20 deg
+      thickness: 0.8 mm
+
+rod:
+  material: steel_42crmo4
+  outer_diameter: 12 mm
+  inner_diameter: 4 mm         # 0 = solid
+  extension: 25 mm             # what shows when retracted
+  thread:
+    diameter: 10 mm
+    pitch: 1.5 mm
+
+piston:
+  material: al_7075_t6
+  length: 18 mm
+  clearance: 0.03 mm           # radial
+
+head:
+  material: al_7075_t6
+  length: 22 mm
+  clearance: 0.03 mm
+
+caps:
+  material: al_7075_t6
+  thickness: 6 mm
+
+retention:                     # how caps and head are held in the barrel
+  type: bond                   # or thread, tie_rods
+  material: epoxy_structural
+  length: 20 mm
+  wall: 1.5 mm
+
+clevis:
+  material: al_7075_t6
+  pin_diameter: 10 mm
+
+seals:
+  piston:
+    type: o_ring
+    compound: nbr_70
+    section: 3.53 mm
+    squeeze: 12 %
+    tolerance: 0.05 mm
+  rod:
+    type: o_ring
+    compound: nbr_70
+    section: 3.53 mm
+    squeeze: 12 %
+    tolerance: 0.05 mm
+
+lines:                         # between valve and chambers; leave out if there are none
+  - chamber: a                 # a: cap side, b: rod side
+    length: 0.2 m
+    inner_diameter: 5 mm
+    outer_diameter: 8 mm
+    material: steel_e235
+  - chamber: b
+    length: 0.2 m
+    inner_diameter: 5 mm
+    outer_diameter: 8 mm
+    material: steel_e235
+
+load:
+  mass: 20 kg                  # moved mass, reflected to the rod
+
+load_cases:                    # each requirement is met in the worst of these
+  - name: stance
+    direction: push
+    force: 3 kN                # or joint_torque: 120 N*m with lever_arm: 40 mm
+    speed: 0.1 m/s
+    position: worst            # or a length, or a share of the stroke (50 %)
+    side_load: 20 N
+  - name: swing
+    direction: pull
+    force: 1 kN
+    speed: 0.3 m/s
+
+variables:                     # what the optimiser may move; everything else is fixed
+  cylinder.bore:
+    lower: 18 mm
+    upper: 40 mm
+  barrel.layup[1].thickness:
+    lower: 0.2 mm
+    upper: 4 mm
+  barrel.layup[2].thickness:
+    lower: 0.2 mm
+    upper: 4 mm
+  rod.outer_diameter:
+    lower: 10 mm
+    upper: 20 mm
+  rod.inner_diameter:
+    lower: 0 mm
+    upper: 16 mm
+  caps.thickness:
+    lower: 3 mm
+    upper: 12 mm
+
+requirements:                  # METRIC with min and/or max; every metric: actuator-opt schema
+  stiffness_min:
+    min: 4 kN/mm
+  buckling_factor:
+    min: 3.5
+  seal_gap:
+    max: 80 um
+  friction_running:
+    max: 300 N
+
+objective:
+  minimise: mass
+"""
+
+
+def init_text(name: str = "my actuator", from_design: LoadedDesign | Design | None = None) -> str:
+    """A start file: the commented template, or an existing design under a new name.
+
+    Raises
+    ------
+    ValueFault
+        a name that cannot stand in a design file
+    """
+    title = Text().validate(name)
+    if from_design is None:
+        return _TEXT.replace("@NAME@", scalar(title))
+    if isinstance(from_design, Design):
+        return to_yaml(from_design.model_copy(update={"name": title}))
+    design = from_design.design.model_copy(update={"name": title})
+    return to_yaml(design, from_design.source)

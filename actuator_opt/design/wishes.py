@@ -1,0 +1,231 @@
+"""What a person wants: variables, requirements, objective, waivers, changed material properties.
+
+Their units depend on what they name (a PATH, a metric, a property). Each function turns the
+texts of its block into SI numbers in place and yields the faults it finds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from .. import quantities
+from ..quantities import Quantity
+from . import suggest
+from .faults import Fault
+from .kinds import ValueFault, example, read_quantity, what
+from .paths import Target, resolve
+from .structure import Loc, number_of, value_at
+
+_LARGEST = {
+    "ratio": 1e12, "length": 1e3, "mass": 1e7, "force": 1e9, "stiffness": 1e13, "pressure": 1e12,
+    "speed": 1e4, "temperature_difference": 1e4, "kinematic_viscosity": 10.0, "frequency": 1e7,
+    "flow": 1e3, "damping": 1e13, "energy": 1e12, "power": 1e12, "torque": 1e10,
+}  # fmt: skip
+"""Limits beyond these SI values are slips, whatever the metric."""
+
+
+def limit_quantity(metric: Quantity) -> Quantity:
+    """A metric as the quantity of its limits: magnitudes, within what can make sense."""
+    largest = _LARGEST.get(metric.dimension, 1e15)
+    return replace(metric, lower=max(metric.lower, 0.0), upper=min(metric.upper, largest))
+
+
+def _number(block: dict[str, Any], loc: Loc, quantity: Quantity) -> Fault | None:
+    """Turn the last key of `loc` into SI where it is present."""
+    key = str(loc[-1])
+    if block.get(key) is None:
+        return None
+    try:
+        block[key] = read_quantity(block[key], quantity)
+    except ValueFault as fault:
+        return Fault(loc, fault.message, fault.remedy)
+    return None
+
+
+def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
+    """Known metrics, limits in the metric's unit, at least one limit, in order."""
+    block = tree.get("requirements")
+    for metric, limit in block.items() if isinstance(block, dict) else ():
+        loc = ("requirements", metric)
+        if metric not in metrics:
+            message = f'"{suggest.shown(metric)}" is not a metric'
+            yield Fault(loc, message, suggest.remedy(metric, metrics), at_key=True)
+            continue
+        quantity = limit_quantity(metrics[metric])
+        if not isinstance(limit, dict):
+            if limit is not None:
+                good = suggest.shown(limit) if isinstance(limit, str) else example(quantity)
+                yield Fault(
+                    loc, f"need limits, not {what(limit)}", f'write "min: {good}" or "max: {good}"'
+                )
+            continue
+        faults = [_number(limit, (*loc, sense), quantity) for sense in ("min", "max")]
+        yield from (fault for fault in faults if fault)
+        low, high = limit.get("min"), limit.get("max")
+        if "min" not in limit and "max" not in limit:
+            remedy = f'add e.g. "min: {example(quantity)}" or "max: …"'
+            yield Fault((*loc, "min"), "missing: no limit given", remedy)
+        elif isinstance(low, float) and isinstance(high, float) and low > high:
+            yield Fault(
+                (*loc, "max"),
+                f"limits reversed: max {quantity.text(high)} is below min {quantity.text(low)}",
+                "swap them",
+            )
+
+
+def variables(tree: dict[str, Any]) -> Iterator[Fault]:
+    """PATHs of numbers, bounds in their range and in order, the start between them."""
+    block = tree.get("variables")
+    for path, bounds in block.items() if isinstance(block, dict) else ():
+        loc = ("variables", path)
+        try:
+            target = _movable(path, tree)
+        except ValueFault as fault:
+            yield Fault(loc, fault.message, fault.remedy, at_key=True)
+            continue
+        quantity = target.quantity
+        if not isinstance(bounds, dict) or quantity is None:
+            if bounds is not None:
+                yield Fault(
+                    loc, f"need bounds, not {what(bounds)}", 'write "lower: …" and "upper: …"'
+                )
+            continue
+        faults = [_number(bounds, (*loc, key), quantity) for key in ("lower", "upper", "start")]
+        yield from (fault for fault in faults if fault)
+        yield from _start(loc, bounds, target, tree)
+
+
+def _movable(path: str, tree: dict[str, Any]) -> Target:
+    """The number a variable moves; raises `ValueFault`."""
+    try:
+        target = resolve(path, tree)
+    except ValueFault as fault:
+        raise ValueFault(fault.message.removeprefix(f"{path}: "), fault.remedy) from None
+    if target.quantity is None:
+        raise ValueFault("is text, not a number", "name a number of the design")
+    if target.quantity.dimension == "count":
+        raise ValueFault(
+            "is a count and cannot be moved continuously", "fix it and compare designs"
+        )
+    if target.entry is None:
+        raise ValueFault("is not a dimension of the actuator", "name a number of the design")
+    if target.path != path:
+        raise ValueFault("is not the canonical PATH", f"write {target.path}")
+    return target
+
+
+def _start(
+    loc: tuple[str, str], bounds: dict[str, Any], target: Target, tree: dict[str, Any]
+) -> Iterator[Fault]:
+    """Order of the bounds; the start is `start`, else the design's own value."""
+    quantity = target.quantity
+    assert quantity is not None
+    lower, upper, start = (bounds.get(key) for key in ("lower", "upper", "start"))
+    raw = value_at(tree, target.loc)
+    place: Loc = (*loc, "start") if "start" in bounds else target.loc
+    if raw is None:
+        yield Fault(
+            (*loc, "start"),
+            f"missing: {target.path} is not set, so there is nothing to start from",
+            f'write e.g. "{target.loc[-1]}: {example(quantity)}" in its block',
+        )
+    if "start" not in bounds:
+        start = number_of(raw)
+        bounds["start"] = 0.0 if start is None else start
+    if not isinstance(lower, float) or not isinstance(upper, float):
+        return
+    if lower >= upper:
+        yield Fault(
+            (*loc, "upper"),
+            f"bounds reversed: upper {quantity.text(upper)} is not above lower "
+            f"{quantity.text(lower)}",
+            "swap them",
+        )
+    elif isinstance(start, float) and not lower <= start <= upper:
+        yield Fault(
+            place,
+            f"{quantity.text(start)}: start value outside its bounds",
+            f"write {quantity.text(lower)} to {quantity.text(upper)}, or widen "
+            f"variables.{target.path}",
+        )
+
+
+def objective(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
+    """Exactly one of minimise and maximise; known metrics; weights above zero."""
+    block = tree.get("objective")
+    if not isinstance(block, dict):
+        return
+    given = [key for key in ("minimise", "maximise") if key in block]
+    if len(given) != 1:
+        if given:
+            message = "both minimise and maximise"
+            yield Fault(("objective", given[1]), message, "keep one of them", at_key=True)
+        else:
+            yield Fault(("objective", "minimise"), "missing", 'add e.g. "minimise: mass"')
+    for key in given:
+        terms = block[key]
+        loc = ("objective", key)
+        if isinstance(terms, str):
+            if terms not in metrics:
+                message = f'"{suggest.shown(terms)}" is not a metric'
+                yield Fault(loc, message, suggest.remedy(terms, metrics))
+        elif isinstance(terms, dict):
+            yield from _weights(loc, terms, metrics)
+
+
+def _weights(
+    loc: tuple[str, str], terms: dict[str, Any], metrics: Mapping[str, Quantity]
+) -> Iterator[Fault]:
+    weight = replace(quantities.INPUTS["coefficient"], label="weight", upper=1e6)
+    for metric in terms:
+        fault = _number(terms, (*loc, metric), weight)
+        if metric not in metrics:
+            message = f'"{suggest.shown(metric)}" is not a metric'
+            fault = Fault((*loc, metric), message, suggest.remedy(metric, metrics), at_key=True)
+        elif terms[metric] == 0:
+            fault = Fault((*loc, metric), "0: must be > 0", "write a weight, or remove the line")
+        if fault is not None:
+            yield fault
+            terms[metric] = 1.0  # reported: the model need not refuse it again
+
+
+def waivers(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
+    """Waivers name a metric of the check list."""
+    block = tree.get("waivers")
+    for metric in block if isinstance(block, dict) else ():
+        if metric not in metrics:
+            message = f'"{suggest.shown(metric)}" is not a metric'
+            yield Fault(("waivers", metric), message, suggest.remedy(metric, metrics), at_key=True)
+
+
+def materials(tree: dict[str, Any]) -> Iterator[Fault]:
+    """Changed properties in their own units (their material's name is checked in `faults`)."""
+    block = tree.get("materials")
+    known = quantities.MATERIAL_PROPERTIES
+    for material, properties in block.items() if isinstance(block, dict) else ():
+        loc = ("materials", material)
+        if not isinstance(properties, dict):
+            if properties is not None:
+                yield Fault(
+                    loc, f"need properties, not {what(properties)}", "write PROPERTY: value"
+                )
+            continue
+        for name in properties:
+            if name not in known:
+                message = f'"{suggest.shown(name)}" is not a material property'
+                yield Fault((*loc, name), message, suggest.remedy(name, known), at_key=True)
+                continue
+            fault = _number(properties, (*loc, name), known[name])
+            if fault is not None:
+                yield fault
+
+
+def recheck(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
+    """All of the above."""
+    yield from variables(tree)
+    yield from requirements(tree, metrics)
+    yield from objective(tree, metrics)
+    yield from waivers(tree, metrics)
+    yield from materials(tree)

@@ -1,0 +1,302 @@
+"""A design back to YAML, exactly: reading the text again gives every number bit for bit.
+
+Where the design was read from a text, only what changed is replaced in it, so comments, units and
+layout stay; a text that cannot be edited so is written anew.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from .. import quantities, units
+from ..errors import InputError
+from ..quantities import Quantity
+from .build import build, to_tree
+from .kinds import Fraction
+from .model import Design, Section
+from .paths import resolve
+from .reader import Source
+from .structure import Loc, child, entries, number_of, value_at
+from .yaml_source import Document, parse
+
+_PLAIN = re.compile(r"[^\W\d_][\w .()/+%-]*(?<! )")
+_WORDS = frozenset(("y", "n", "yes", "no", "on", "off", "true", "false", "null", "none"))
+
+
+def scalar(text: str) -> str:
+    """A text as a YAML scalar that any reader takes as this text.
+
+    >>> scalar("robot knee"), scalar("no"), scalar("a: b")
+    ('robot knee', "'no'", "'a: b'")
+    """
+    if _PLAIN.fullmatch(text) and text.lower() not in _WORDS:
+        return text
+    if text.isprintable():
+        return "'" + text.replace("'", "''") + "'"
+    return json.dumps(text, ensure_ascii=True)
+
+
+def exact_text(value: float, quantity: Quantity | None, unit: str | None = None) -> str:
+    """Shortest text with a unit that is read back as exactly `value` (SI).
+
+    >>> exact_text(0.025, quantities.INPUTS["bore"])
+    '25 mm'
+    """
+    if quantity is None or quantity.dimension == "count":
+        return repr(int(value)) if value == int(value) else repr(value)
+    for name in dict.fromkeys((unit, quantity.unit, quantity.si_unit)):
+        if name is None:
+            continue
+        of = units.unit(name, quantity.dimension) if name else units.Unit("", "", 1.0)
+        for number in _candidates(of.from_si(value)):
+            if of.to_si(float(number)) == value:
+                return f"{number} {name}".rstrip()
+    return f"{value!r} {quantity.si_unit}".rstrip()
+
+
+def _candidates(value: float) -> Iterator[str]:
+    """Texts of a number and of its nearest neighbours, shortest first."""
+    for digits in (6, 9, 12, 15, 16, 17):
+        yield f"{value:.{digits}g}"
+    low = high = value
+    for _ in range(4):
+        low, high = math.nextafter(low, -math.inf), math.nextafter(high, math.inf)
+        yield repr(low)
+        yield repr(high)
+
+
+def to_yaml(
+    design: Design,
+    source: Source | None = None,
+    *,
+    metrics: Mapping[str, Quantity] | None = None,
+) -> str:
+    """The text of a design file that reads back as `design`, bit for bit.
+
+    Parameters
+    ----------
+    design : what to write
+    source : text it was read from, to keep its comments
+    metrics : metrics it may name; default: `quantities.METRICS`
+    """
+    metrics = quantities.METRICS if metrics is None else metrics
+    if source is not None:
+        try:
+            text = _edited(design, source.document, metrics)
+        except _CannotEdit:
+            text = ""
+        if text and _reads_back(text, design, metrics):
+            return text
+    writer = _Leaves(design, metrics)
+    return "\n".join(_lines(_stated(to_tree(design), Design, design), (), writer, "")) + "\n"
+
+
+class _CannotEdit(Exception):  # noqa: N818
+    """The text does not have the shape of the design (flow style, removed blocks)."""
+
+
+class _Edit(NamedTuple):
+    """Replacement of ``text[start:end]`` by `new`, which stands `depth` blocks deep."""
+
+    start: int
+    end: int
+    new: str
+    depth: int
+
+
+class _Leaves:
+    """Writes the values of one design."""
+
+    def __init__(self, design: Design, metrics: Mapping[str, Quantity]) -> None:
+        self.design = design
+        self.metrics = metrics
+
+    def quantity(self, loc: Loc, value: object) -> Quantity | None:
+        """The quantity of the number at a place of a design file."""
+        head = loc[0]
+        if head == "variables":
+            return resolve(str(loc[1]), self.design, self.metrics).quantity
+        if head == "requirements":
+            return self.metrics[str(loc[1])]
+        if head == "materials":
+            return quantities.MATERIAL_PROPERTIES[str(loc[2])]
+        section: type[Section] = Design
+        entry = None
+        for key in loc:
+            if isinstance(key, str):
+                entry = entries(section).get(key)
+                section = (entry.section if entry else None) or section
+        return entry.quantity(value) if entry else None
+
+    def text(self, loc: Loc, value: Any, old: str | None = None) -> str:
+        """The YAML scalar of a value, in the unit of the text it replaces."""
+        number = number_of(value)
+        if number is None:
+            return scalar(value)
+        unit = None
+        quantity = self.quantity(loc, value)
+        if old is not None and quantity is not None:
+            try:
+                unit = units.unit(units.split(old)[1], quantity.dimension).name
+            except units.UnitError:
+                unit = None
+        return exact_text(number, quantity, unit)
+
+    def same(self, loc: Loc, value: Any, old: str) -> bool:
+        """Whether the text `old` already says `value`."""
+        number = number_of(value)
+        if number is None:
+            return bool(value == old)
+        quantity = self.quantity(loc, value)
+        if isinstance(value, Fraction) != ("%" in old) and loc[-1] == "position":
+            return False
+        try:
+            return (units.parse(old, quantity.dimension) if quantity else float(old)) == number
+        except (units.UnitError, ValueError):
+            return False
+
+
+def _is_default(key: str, value: Any, section: type[Section] | None, loc: Loc, design: Any) -> bool:
+    """Whether a value need not stand in the file."""
+    if loc[0] == "variables" and key == "start":
+        target = resolve(str(loc[1]), design)
+        return bool(number_of(value_at(design, target.loc)) == number_of(value))
+    entry = entries(section).get(key) if section is not None else None
+    if entry is None or entry.required:
+        return False
+    default = entry.default
+    default = to_tree(default) if isinstance(default, Section) else default
+    return bool(value == (list(default) if isinstance(default, tuple) else default))
+
+
+def _below(section: type[Section] | None, key: str) -> type[Section] | None:
+    entry = entries(section).get(key) if section is not None else None
+    return entry.section if entry is not None else None
+
+
+def _stated(
+    node: dict[str, Any], section: type[Section] | None, design: Design, loc: Loc = ()
+) -> dict[str, Any]:
+    """A tree without what the model would assume anyway."""
+    stated: dict[str, Any] = {}
+    table = loc in (("variables",), ("requirements",))
+    for key, value in node.items():
+        here = (*loc, key)
+        if not table and _is_default(key, value, section, here, design):
+            continue
+        below = section if table else _below(section, key)
+        if isinstance(value, dict):
+            stated[key] = _stated(value, below, design, here)
+        elif isinstance(value, list):
+            stated[key] = [_stated(item, below, design, (*here, i)) for i, item in enumerate(value)]
+        else:
+            stated[key] = value
+    return stated
+
+
+def _lines(node: dict[str, Any], loc: Loc, writer: _Leaves, indent: str) -> Iterator[str]:
+    """A block in block style."""
+    for key, value in node.items():
+        here = (*loc, key)
+        name = key if re.fullmatch(r"[^\W\d]\w*[\w.\[\] +-]*", key) else scalar(key)
+        if isinstance(value, dict):
+            yield f"{indent}{name}:" if value else f"{indent}{name}: {{}}"
+            yield from _lines(value, here, writer, indent + "  ")
+        elif isinstance(value, list):
+            yield f"{indent}{name}:" if value else f"{indent}{name}: []"
+            for index, item in enumerate(value):
+                block = list(_lines(item, (*here, index), writer, indent + "    "))
+                yield f"{indent}  - {block[0].lstrip()}"
+                yield from block[1:]
+        else:
+            yield f"{indent}{name}: {writer.text(here, value)}"
+
+
+def _reads_back(text: str, design: Design, metrics: Mapping[str, Quantity]) -> bool:
+    try:
+        document = parse(text, "")
+    except InputError:
+        return False
+    built = build(document.data, metrics=metrics)
+    again = None if document.faults else built.design
+    return again is not None and to_tree(again) == to_tree(design)
+
+
+def _edited(design: Design, document: Document, metrics: Mapping[str, Quantity]) -> str:
+    """The document's text with the design's values."""
+    writer = _Leaves(design, metrics)
+    edits: list[_Edit] = []
+    _compare(to_tree(design), document.data, (), Design, document, writer, edits)
+    text = document.text
+    # from the end backwards; of lines put at one place, those of inner blocks come first
+    order = sorted(enumerate(edits), key=lambda pair: (pair[1].start, -pair[1].depth, pair[0]))
+    for _, edit in reversed(order):
+        text = text[: edit.start] + edit.new + text[edit.end :]
+    return text
+
+
+def _compare(
+    node: dict[str, Any],
+    old: Any,
+    loc: Loc,
+    section: type[Section] | None,
+    document: Document,
+    writer: _Leaves,
+    edits: list[_Edit],
+) -> None:
+    """Collect the edits of one block."""
+    if not isinstance(old, dict) or any(key not in node for key in old):
+        raise _CannotEdit
+    table = loc in (("variables",), ("requirements",))
+    for key, value in node.items():
+        here = (*loc, key)
+        below = section if table else _below(section, key)
+        if key not in old:
+            if table or not _is_default(key, value, section, here, writer.design):
+                stated = _stated({key: value}, section, writer.design, loc)
+                edits.append(_insertion(stated, loc, document, writer))
+        elif isinstance(value, dict):
+            _compare(value, old[key], here, below, document, writer, edits)
+        elif isinstance(value, list):
+            if not isinstance(old[key], list) or len(old[key]) != len(value):
+                raise _CannotEdit
+            for index, (item, was) in enumerate(zip(value, old[key], strict=True)):
+                _compare(item, was, (*here, index), below, document, writer, edits)
+        elif not isinstance(old[key], str):
+            raise _CannotEdit
+        elif not writer.same(here, value, old[key]):
+            span = document.values[here]
+            if document.text[span.start : span.start + 1] in ("|", ">"):
+                raise _CannotEdit
+            new = writer.text(here, value, old[key])
+            edits.append(_Edit(span.start, span.end, new, len(here)))
+
+
+def _insertion(stated: dict[str, Any], loc: Loc, document: Document, writer: _Leaves) -> _Edit:
+    """New lines at the end of a block: below the line of its last value."""
+    text = document.text
+    block = document.values[loc]
+    node: Any = document.data
+    for key in loc:
+        node = child(node, key)
+    if text[block.start : block.start + 1] == "{" or not node:
+        raise _CannotEdit
+    column = document.keys[(*loc, next(iter(node)))].column
+    last = loc
+    while isinstance(node, (dict, list)) and node:
+        key = list(node)[-1] if isinstance(node, dict) else len(node) - 1
+        last, node = (*last, key), child(node, key)
+    end = document.values[last].end
+    if not text.startswith("\n", end - 1):  # a block scalar ends after its line
+        end = text.find("\n", end) + 1 or len(text)
+    newline = "\r\n" if "\r\n" in text else "\n"
+    lead = "" if text.startswith("\n", end - 1) else newline
+    lines = (line + newline for line in _lines(stated, loc, writer, " " * (column - 1)))
+    return _Edit(end, end, lead + "".join(lines), len(loc))
+
+
+__all__ = ["exact_text", "scalar", "to_yaml"]

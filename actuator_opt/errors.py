@@ -1,0 +1,90 @@
+"""What can go wrong, said in one line each: where, what, what to do.
+
+Every failure a user can cause leaves the program as an `InputError` (exit 3) or an
+`Unsolvable` (exit 4); both carry `Diagnostic` records, which the terminal prints as plain lines
+and ``--json`` prints as objects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from enum import IntEnum
+
+
+class ExitCode(IntEnum):
+    """Exit statuses of every command (CONTRACT: stable)."""
+
+    MET = 0
+    MISSED = 1
+    USAGE = 2
+    BAD_INPUT = 3
+    SOLVER_FAILED = 4
+    INTERRUPTED = 130
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One fault of one input, with its place and its remedy.
+
+    Parameters
+    ----------
+    message : what is wrong, without a final full stop
+    remedy : what to do about it
+    file, line, column : place in the source, 1-based; None where there is no source text
+    path : PATH of the value inside the design (``barrel.layup[1].thickness``)
+    source : the source line itself, for the caret display
+    """
+
+    message: str
+    remedy: str = ""
+    file: str | None = None
+    line: int | None = None
+    column: int | None = None
+    path: str | None = None
+    source: str | None = None
+
+    def to_dict(self) -> dict[str, object]:
+        """The JSON form: file, line, column, path, message, remedy."""
+        fields = asdict(self)
+        del fields["source"]
+        return fields
+
+    def __str__(self) -> str:
+        place = ":".join(str(p) for p in (self.file, self.line, self.column) if p is not None)
+        head = ": ".join(p for p in (place, self.path or "", self.message) if p)
+        lines = [f"{head}; {self.remedy}" if self.remedy else head]
+        if self.source is not None and self.column is not None:
+            lines.append(f"    {self.source}")
+            lines.append("    " + " " * (self.column - 1) + "^")
+        return "\n".join(lines)
+
+
+class ActuatorError(Exception):
+    """Base of every error the library raises on purpose."""
+
+    exit_code = ExitCode.BAD_INPUT
+
+    def __init__(self, diagnostics: Iterable[Diagnostic] | Diagnostic | str) -> None:
+        if isinstance(diagnostics, str):
+            diagnostics = Diagnostic(diagnostics)
+        if isinstance(diagnostics, Diagnostic):
+            diagnostics = [diagnostics]
+        self.diagnostics: list[Diagnostic] = list(diagnostics)
+        super().__init__("\n".join(str(d) for d in self.diagnostics))
+
+
+class InputError(ActuatorError):
+    """A file, a value or a path that cannot be used (exit 3)."""
+
+
+class UsageError(ActuatorError):
+    """A command line that cannot be understood (exit 2)."""
+
+    exit_code = ExitCode.USAGE
+
+
+class Unsolvable(ActuatorError):
+    """The solver could not produce a usable answer (exit 4)."""
+
+    exit_code = ExitCode.SOLVER_FAILED

@@ -1,0 +1,367 @@
+"""From one pass over the models to an Evaluation: rows, checks, warnings, provenance."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from .. import quantities
+from ..design import paths, standards
+from ..design.material import compatible
+from ..design.materials import Library, load_library
+from ..design.model import Design
+from ..models import laminate, seals
+from ..version import VERSION
+from . import outline
+from .evaluation import (
+    Check,
+    Evaluation,
+    Metric,
+    ModelUse,
+    Requirement,
+    StrokeCurve,
+    Unverified,
+)
+from .kernel import Pass, Subject, compute
+from .limits import CHECK_LIST, CheckLine, Limit, all_limits, check_limits, default_limits
+from .plugin import Plugin
+from .provenance import model_of
+from .rows import ALL_CASES, Computed, Row, by_case, rows_of
+from .values import Values
+from .wall import kind
+
+SENSES: dict[str, str] = {line.metric: line.sense for line in CHECK_LIST if line.metric} | {
+    "stiffness_oil": "min",
+    "stiffness_rod": "min",
+    "stiffness_barrel": "min",
+    "liner_yield_factor": "min",
+}
+TOLERANCE = 1e-6
+"""A margin of at least −TOLERANCE counts as met (CONTRACT)."""
+
+
+def names_of_materials(design: Design) -> list[str]:
+    """Every material a design names, once, in order of appearance."""
+    names = [design.fluid.material]
+    names += [ply.material for ply in design.barrel.layup]
+    names += [design.rod.material, design.piston.material, design.head.material]
+    names += [part.guide for part in (design.piston, design.head) if part.guide is not None]
+    names.append(design.caps.material)
+    if design.retention is not None and design.retention.material is not None:
+        names.append(design.retention.material)
+    if design.clevis is not None:
+        names.append(design.clevis.material)
+    names += [design.seals.piston.compound, design.seals.rod.compound]
+    names += [line.material for line in design.lines]
+    return list(dict.fromkeys(names))
+
+
+def prepare(
+    design: Design, library: Library | None = None, plugins: tuple[Plugin, ...] = ()
+) -> Subject:
+    """A design with the materials it names and all its numbers, ready to evaluate."""
+    library = load_library() if library is None else library
+    materials = {name: library.get(name) for name in names_of_materials(design)}
+    numbers = default_limits() | paths.numbers(design)
+    for name, material in materials.items():
+        for key, value in material.numbers.items():
+            numbers[f"materials.{name}.{key}"] = value
+    return Subject(design, materials, numbers, plugins)
+
+
+def spec_hash(subject: Subject) -> str:
+    """Hash of everything that decides the result: design, material numbers, version."""
+    content = {
+        "design": subject.design.model_dump(mode="json"),
+        "materials": {k: v for k, v in subject.numbers.items() if k.startswith("materials.")},
+        "version": VERSION,
+    }
+    text = json.dumps(content, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def evaluate(subject: Subject) -> Evaluation:
+    """Every metric, requirement and check of one design."""
+    v = subject.values()
+    done = compute(subject, v)
+    computed = done.computed
+    design = subject.design
+    own = [x for x in all_limits(design, subject.plugins) if x.origin in ("requirement", "case")]
+    requirements = tuple(_requirement(limit, computed, v) for limit in own)
+    warnings = list(_warnings(subject, v, done))
+    outside = {metric for metric, _ in warnings}
+    metrics = {
+        name: _metric(name, computed, v, subject, outside) for name in subject.quantities
+    }
+    checks = tuple(_checks(design, computed, v, requirements))
+    warnings += [
+        ("", f"check missed: {c.name}: {_against(c)}") for c in checks if c.status == "missed"
+    ]
+    return Evaluation(
+        name=design.name,
+        version=VERSION,
+        spec_hash=spec_hash(subject),
+        design=design,
+        metrics=metrics,
+        requirements=requirements,
+        checks=checks,
+        warnings=tuple(dict.fromkeys(text for _, text in warnings)),
+        unverified=tuple(_unverified(subject, v)),
+        models=tuple(_models(metrics, subject, outside)),
+        mass_parts={name: float(np.squeeze(m)) for name, m in done.mass_parts.items()},
+        curve=_curve(done, v, metrics["stiffness_min"].case),
+        outlines=outline.outlines(design, subject.materials, done.geometry),
+        lengths=outline.lengths(design, done.geometry),
+    )
+
+
+def _finite(value: float) -> bool:
+    return math.isfinite(value)
+
+
+def _metric(
+    name: str, computed: Computed, v: Values, subject: Subject, outside: set[str]
+) -> Metric:
+    laminated = kind_of(subject) == "thin_laminate"
+    model = model_of(name, laminated=laminated)
+    rows: list[tuple[float, str, str]] = []
+    for place, array in computed.metrics.get(name, {}).items():
+        for case, value in by_case(computed, name, array, v.cases):
+            rows.append((float(value[0]), case, place))
+    usable = [row for row in rows if _finite(row[0])]
+    if not usable:
+        why = computed.why.get(name, "the models have no finite answer for these dimensions")
+        if rows and all(math.isinf(row[0]) for row in rows):
+            why = "nothing loads it: the factor is unlimited"
+        definition = None if name in quantities.METRICS else subject.quantities[name]
+        return Metric(name=name, value=None, why=why, definition=definition)
+    pick = min if SENSES.get(name, "max") == "min" else max
+    value, case, place = pick(usable, key=lambda row: row[0])
+    per_case: dict[str, float] = {}
+    for one, where, _ in usable:
+        per_case[where] = pick(one, per_case.get(where, one))
+    return Metric(
+        name=name,
+        value=value,
+        case=None if case == ALL_CASES else case,
+        place=place or None,
+        by_case=per_case,
+        model="" if model is None else model.name,
+        reference="" if model is None else model.reference,
+        in_range=name not in outside,
+        definition=None if name in quantities.METRICS else subject.quantities[name],
+    )
+
+
+def kind_of(subject: Subject) -> str:
+    """The wall model a design uses."""
+    from .allow import Stock
+
+    return kind(subject.design, Stock(subject.values(), subject.design, subject.materials))
+
+
+def _worst(rows: Iterable[Row]) -> Row | None:
+    """The row of least margin; NaN counts as worst."""
+    return min(
+        rows,
+        key=lambda row: -math.inf if math.isnan(row.margin[0]) else float(row.margin[0]),
+        default=None,
+    )
+
+
+def _requirement(limit: Limit, computed: Computed, v: Values) -> Requirement:
+    row = _worst(rows_of(limit, computed, v))
+    bound = float(np.squeeze(limit.value(v)))
+    if row is None or not _finite(float(row.value[0])):
+        unlimited = row is not None and float(row.value[0]) == math.inf
+        return Requirement(
+            limit.name, limit.metric, limit.sense, bound, None, None, unlimited,
+            limit.case, path=limit.path or "",
+        )
+    margin = float(row.margin[0])
+    return Requirement(
+        name=limit.name,
+        metric=limit.metric,
+        sense=limit.sense,
+        limit=bound,
+        value=float(row.value[0]),
+        margin=margin,
+        met=margin >= -TOLERANCE,
+        case=None if row.case == ALL_CASES else row.case,
+        place=row.place or None,
+        path=limit.path or "",
+    )
+
+
+def _checks(
+    design: Design, computed: Computed, v: Values, requirements: tuple[Requirement, ...]
+) -> Iterable[Check]:
+    limits = {limit.metric: limit for limit in check_limits(design)}
+    for line in CHECK_LIST:
+        if line.metric == "standard_sizes":
+            yield _standard_sizes(line, design)
+        elif line.metric is None:
+            yield Check(line.name, "not_checked", line.why_not)
+        elif line.metric in design.waivers:
+            yield Check(
+                line.name, "not_checked", f"waived: {design.waivers[line.metric]}", line.metric
+            )
+        else:
+            yield _check(line, limits.get(line.metric), computed, v, requirements)
+
+
+def _check(
+    line: CheckLine,
+    limit: Limit | None,
+    computed: Computed,
+    v: Values,
+    requirements: tuple[Requirement, ...],
+) -> Check:
+    own = [r for r in requirements if r.metric == line.metric and r.sense == line.sense]
+    if limit is not None:
+        result, source = _requirement(limit, computed, v), limit.source
+    elif own:
+        result = min(own, key=lambda r: -math.inf if r.margin is None else r.margin)
+        source = "requirement of the design"
+    else:
+        value = computed.why.get(line.metric or "")
+        reason = value or f"no limit stated: add requirements.{line.metric}.{line.sense}"
+        return Check(line.name, "not_checked", reason, line.metric, line.sense)
+    if result.value is None and not result.met:
+        reason = computed.why.get(
+            line.metric or "", "the models have no finite answer for these dimensions"
+        )
+        status = "not_checked" if line.metric in computed.why else "missed"
+        return Check(line.name, status, reason, line.metric, line.sense, result.limit)
+    return Check(
+        name=line.name,
+        status="met" if result.met else "missed",
+        metric=line.metric,
+        sense=line.sense,
+        limit=result.limit,
+        value=result.value,
+        margin=result.margin,
+        case=result.case,
+        place=result.place,
+        source=source,
+    )
+
+
+def _standard_sizes(line: CheckLine, design: Design) -> Check:
+    """Whether bore and rod are ISO 3320 sizes; says the nearest larger ones where not."""
+    odd = []
+    for kind_name, value in (("bore", design.cylinder.bore), ("rod", design.rod.outer_diameter)):
+        near = standards.nearest_standard(kind_name, value, "nearest")
+        if abs(near - value) > 1e-9:
+            odd.append(f"{kind_name} {1e3 * value:.4g} mm (nearest {1e3 * near:g} mm)")
+    if odd:
+        reason = "free sizes: " + ", ".join(odd)
+        return Check(line.name, "not_checked", reason, source=line.source)
+    return Check(line.name, "met", "bore and rod are standard sizes", source=line.source)
+
+
+def _against(check: Check) -> str:
+    if check.value is None or check.limit is None or check.metric is None:
+        return check.reason
+    quantity = quantities.METRICS[check.metric]
+    word = "at least" if check.sense == "min" else "at most"
+    return f"{quantity.text(check.value)}, should be {word} {quantity.text(check.limit)}"
+
+
+def _warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
+    """(metric, sentence) for everything used outside its range or doubtful."""
+    design, g = subject.design, done.geometry
+    thin = float(np.max(done.wall.thin_ratio))
+    if kind_of(subject) == "thin_laminate" and thin > laminate.THIN_WALL_LIMIT:
+        text = (
+            f"thin-laminate barrel used at t/r = {thin:.3f}, above {laminate.THIN_WALL_LIMIT}: "
+            "bore strain and first ply may be 10 % or more from the exact tube"
+        )
+        for metric in ("bore_growth", "first_ply_factor", "burst_factor"):
+            yield metric, text
+    for name, pressure in (("piston", done.state.moving_a - done.state.moving_b),
+                           ("rod", done.state.moving_b)):
+        section = getattr(design.seals, name)
+        law = seals.LAWS[section.law]
+        modulus = seals.MODULUS_LAWS[section.hardness_model].modulus(
+            hardness=v[f"materials.{section.compound}.hardness"]
+        )
+        ratio = float(np.max(np.abs(pressure))) / modulus
+        low, high = law.squeeze_range
+        if not low <= section.squeeze <= high:
+            yield "friction_running", (
+                f"{name} seal: squeeze {100 * section.squeeze:.3g} % outside the "
+                f"{100 * low:.0f}-{100 * high:.0f} % the {law.name} law was compared with data on"
+            )
+        if ratio > law.pressure_range[1]:
+            yield "friction_running", (
+                f"{name} seal: pressure is {ratio:.1f} times Young's modulus, the {law.name} law "
+                f"was compared with data up to {law.pressure_range[1]:g}"
+            )
+        verdict = compatible(
+            subject.materials[design.fluid.material], subject.materials[section.compound]
+        )
+        if verdict is False:
+            yield "", f"{name} seal: {section.compound} does not withstand {design.fluid.material}"
+    for name, reason in done.wall.missing and [("burst_factor", done.wall.missing[0])] or []:
+        yield name, f"barrel: {reason}"
+    for material in subject.materials.values():
+        if material.warning:
+            yield "", f"{material.name}: {material.warning}"
+    if float(np.max(np.abs(v.case("side_load")))) > 0:
+        yield "", (
+            "side load pushes the piston over: on one side the extrusion gap is the clearance "
+            f"larger, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
+        )
+
+
+def _models(
+    metrics: dict[str, Metric], subject: Subject, outside: set[str]
+) -> Iterable[ModelUse]:
+    laminated = kind_of(subject) == "thin_laminate"
+    seen: dict[str, ModelUse] = {}
+    for name, metric in metrics.items():
+        model = model_of(name, laminated=laminated)
+        if model is None or metric.value is None:
+            continue
+        used = metric.quantity.text(metric.value)
+        at = f"{name} = {used}" + (f" ({metric.case})" if metric.case else "")
+        if model.name in seen:
+            old = seen[model.name]
+            at = f"{old.used_at}; {at}"
+        seen[model.name] = ModelUse(
+            model.name, model.summary, model.reference, model.valid, at,
+            name not in outside and (model.name not in seen or seen[model.name].in_range),
+        )
+    return seen.values()
+
+
+def _unverified(subject: Subject, v: Values) -> Iterable[Unverified]:
+    for name, material in subject.materials.items():
+        for key in material.unverified:
+            if f"materials.{name}.{key}" in v.read or key == "kinematic_viscosity":
+                entry = material.properties[key]
+                yield Unverified(name, key, entry.text, entry.source, entry.note)
+
+
+def _curve(done: Pass, v: Values, case: str | None) -> StrokeCurve:
+    """Stiffness over the stroke in the governing case."""
+    stroke = float(np.squeeze(done.geometry.stroke))
+    position = np.linspace(0.0, stroke, 101)
+    index = v.cases.index(case) if case in v.cases else 0
+    parts = {
+        name: np.broadcast_to(np.atleast_2d(value), (len(v.cases), position.size))[index]
+        for name, value in done.springs.compliances(position).items()
+    }
+    return StrokeCurve(
+        case=v.cases[index],
+        position=position,
+        stiffness=1 / sum(parts.values()),
+        contributions=parts,
+    )
+
+

@@ -1,0 +1,219 @@
+"""The Evaluation: every quantity of a design against its requirements, ready to print or export."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from .. import quantities
+from ..design.model import Design
+from ..numeric import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Metric:
+    """One computed quantity at its governing case (and place: a ply, a seal, a part).
+
+    `value` is SI, or None with the reason in `why`; `by_case` holds every case's worst value.
+    """
+
+    name: str
+    value: float | None
+    why: str | None = None
+    case: str | None = None
+    place: str | None = None
+    by_case: Mapping[str, float] = field(default_factory=dict)
+    model: str = ""
+    reference: str = ""
+    in_range: bool = True
+    definition: quantities.Quantity | None = None
+    """The quantity of a user's own metric; None for the project's."""
+
+    @property
+    def quantity(self) -> quantities.Quantity:
+        return self.definition or quantities.METRICS[self.name]
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """One limit with its value and margin = (value − limit)/|limit|, negated for `max`."""
+
+    name: str
+    metric: str
+    sense: Literal["min", "max"]
+    limit: float
+    value: float | None
+    margin: float | None
+    met: bool
+    case: str | None = None
+    place: str | None = None
+    path: str = ""
+    """PATH of the limit in the design (``requirements.stiffness_min.min``)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One line of the professional check list: met, missed, or not checked and why."""
+
+    name: str
+    status: Literal["met", "missed", "not_checked"]
+    reason: str = ""
+    metric: str | None = None
+    sense: Literal["min", "max"] | None = None
+    limit: float | None = None
+    value: float | None = None
+    margin: float | None = None
+    case: str | None = None
+    place: str | None = None
+    source: str = ""
+    """Where the limit comes from (a standard, a paper, or a stated choice)."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelUse:
+    """A model as used here: its equation's source, its valid range, where it was used."""
+
+    name: str
+    equation: str
+    reference: str
+    valid_range: str
+    used_at: str
+    in_range: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Unverified:
+    """A library value this design uses that nobody has checked against its primary source."""
+
+    material: str
+    property: str
+    value: str
+    source: str
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class StrokeCurve:
+    """Stiffness over the stroke, of the governing case; arrays along `position` (m, from cap end).
+
+    `stiffness` is the total (N/m); `contributions` maps a part (oil, barrel, lines, rod, mount)
+    to its compliance (m/N), so that the contributions add up to 1/stiffness.
+    """
+
+    case: str
+    position: Array
+    stiffness: Array
+    contributions: Mapping[str, Array]
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """Half-section of one part: closed polygons of (axial position, radius) in m, retracted."""
+
+    part: str
+    material: str
+    polygons: tuple[tuple[tuple[float, float], ...], ...]
+    kind: Literal["metal", "composite", "polymer", "seal", "oil"]
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """Everything known about one design: metrics, requirements, checks, drawing, provenance."""
+
+    name: str
+    version: str
+    spec_hash: str
+    design: Design
+    metrics: Mapping[str, Metric]
+    requirements: tuple[Requirement, ...]
+    checks: tuple[Check, ...]
+    warnings: tuple[str, ...]
+    unverified: tuple[Unverified, ...]
+    models: tuple[ModelUse, ...]
+    mass_parts: Mapping[str, float]
+    """kg per part, dry, in assembly order; sums to `mass`; oil is `metrics["mass_oil"]`."""
+    curve: StrokeCurve
+    outlines: tuple[Outline, ...]
+    lengths: Mapping[str, float]
+    """Dimensions for the drawing (m): bore, rod, barrel outer diameter, stroke, closed length…"""
+
+    @property
+    def met(self) -> bool:
+        """Whether every requirement is met."""
+        return all(row.met for row in self.requirements)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The `evaluate --json` object (SI)."""
+        return {
+            "name": self.name,
+            "version": self.version,
+            "spec_hash": self.spec_hash,
+            "metrics": {
+                m.name: {
+                    "value": m.value,
+                    "unit": m.quantity.si_unit,
+                    "label": m.quantity.label,
+                    "model": m.model,
+                    "reference": m.reference,
+                    "in_range": m.in_range,
+                    "case": m.case,
+                    "place": m.place,
+                }
+                | ({"why": m.why} if m.value is None else {})
+                for m in self.metrics.values()
+            },
+            "checks": [
+                {
+                    "name": c.name,
+                    "status": c.status,
+                    "reason": c.reason,
+                    "metric": c.metric,
+                    "sense": c.sense,
+                    "limit": c.limit,
+                    "value": c.value,
+                    "margin": c.margin,
+                    "case": c.case,
+                    "place": c.place,
+                    "source": c.source,
+                }
+                for c in self.checks
+            ],
+            "requirements": [
+                {
+                    "name": r.name,
+                    "metric": r.metric,
+                    "sense": r.sense,
+                    "limit": r.limit,
+                    "value": r.value,
+                    "margin": r.margin,
+                    "met": r.met,
+                    "case": r.case,
+                    "place": r.place,
+                }
+                for r in self.requirements
+            ],
+            "warnings": list(self.warnings),
+            "unverified": [
+                {
+                    "material": u.material,
+                    "property": u.property,
+                    "value": u.value,
+                    "source": u.source,
+                    "note": u.note,
+                }
+                for u in self.unverified
+            ],
+        }
+
+    def columns(self) -> dict[str, list[Any]]:
+        """Metrics as columns (name, value, unit, case), in display units, for tables."""
+        rows = list(self.metrics.values())
+        return {
+            "name": [m.name for m in rows],
+            "value": [
+                None if m.value is None else m.quantity.to_display(m.value) for m in rows
+            ],
+            "unit": [m.quantity.unit for m in rows],
+            "case": [m.case for m in rows],
+        }

@@ -1,0 +1,140 @@
+"""Derived dimensions of the actuator, once for physics, mass and drawing.
+
+Axial layout, from the outer face of the cap plate: plate, barrel (piston retracted against the
+plate, stroke, head plug), head plate, exposed rod, eye. Both plates carry a skirt over the
+barrel's outside (bond or thread), or are clamped by tie rods.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..design.model import Design
+from ..models import forces, glands, mass
+from ..numeric import Array
+from .values import Values
+
+LAND = 1e-3
+"""Least wall beside or under a groove, least rod wall and least room between rod and bore (m):
+a choice for turned parts in this size range."""
+
+
+@dataclass(frozen=True, slots=True)
+class Groove:
+    """A radial seal groove: free section, gland depth at nominal squeeze, width, how many."""
+
+    section: Array
+    gland_depth: Array
+    width: Array
+    count: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Geometry:
+    """Dimensions in m, areas in m²; floats or arrays (designs,)."""
+
+    bore: Array
+    inner_radius: Array
+    outer_radius: Array
+    thicknesses: tuple[Array, ...]
+    stroke: Array
+    area_a: Array
+    area_b: Array
+    rod_diameter: Array
+    rod_inner_diameter: Array
+    rod_extension: Array
+    rod_length: Array
+    piston_length: Array
+    piston_clearance: Array
+    head_length: Array
+    head_clearance: Array
+    plate: Array
+    plate_radius: Array
+    skirt_length: Array
+    skirt_wall: Array
+    barrel_length: Array
+    eye_offset: Array
+    pin_diameter: Array
+    closed_length: Array
+    piston_groove: Groove
+    rod_groove: Groove
+    bearing_span: Array
+
+
+def _groove(v: Values, seal: str) -> Groove:
+    section = v[f"seals.{seal}.section"]
+    width = v.get(f"seals.{seal}.groove_width", None)
+    return Groove(
+        section=section,
+        gland_depth=section * (1 - v[f"seals.{seal}.squeeze"]),
+        width=glands.groove_width(section=section) if width is None else width,
+        count=v[f"seals.{seal}.count"],
+    )
+
+
+def derive(v: Values, design: Design) -> Geometry:
+    """All derived dimensions of a design."""
+    bore, stroke = v["cylinder.bore"], v["cylinder.stroke"]
+    rod, rod_inner = v["rod.outer_diameter"], v["rod.inner_diameter"]
+    thicknesses = tuple(v[f"barrel.layup[{i}].thickness"] for i in range(len(design.barrel.layup)))
+    inner_radius = bore / 2
+    outer_radius = inner_radius + sum(thicknesses)
+    piston_length, head_length = v["piston.length"], v["head.length"]
+    needed = piston_length + stroke + head_length
+    barrel_length = v["barrel.length"] if "barrel.length" in v else needed
+    plate = v["caps.thickness"]
+    extension = v["rod.extension"]
+    retention = design.retention
+    skirt_length: Array = 0.0
+    skirt_wall: Array = 0.0
+    plate_radius = outer_radius
+    if retention is not None and retention.type == "tie_rods":
+        plate_radius = outer_radius + 2 * v["retention.thread.diameter"]
+    elif retention is not None:
+        skirt_length, skirt_wall = v["retention.length"], v["retention.wall"]
+        plate_radius = outer_radius + skirt_wall
+    pin = v["clevis.pin_diameter"] if design.clevis is not None else 0.0
+    eye_offset = mass.eye_length(pin_diameter=pin)
+    return Geometry(
+        bore=bore,
+        inner_radius=inner_radius,
+        outer_radius=outer_radius,
+        thicknesses=thicknesses,
+        stroke=stroke,
+        area_a=forces.piston_area(bore=bore),
+        area_b=forces.annulus_area(bore=bore, rod_diameter=rod),
+        rod_diameter=rod,
+        rod_inner_diameter=rod_inner,
+        rod_extension=extension,
+        rod_length=barrel_length - piston_length + plate + extension,
+        piston_length=piston_length,
+        piston_clearance=v["piston.clearance"],
+        head_length=head_length,
+        head_clearance=v["head.clearance"],
+        plate=plate,
+        plate_radius=plate_radius,
+        skirt_length=skirt_length,
+        skirt_wall=skirt_wall,
+        barrel_length=barrel_length,
+        eye_offset=eye_offset,
+        pin_diameter=pin,
+        closed_length=barrel_length + 2 * plate + extension + 2 * eye_offset,
+        piston_groove=_groove(v, "piston"),
+        rod_groove=_groove(v, "rod"),
+        bearing_span=(piston_length + head_length + plate) / 2,
+    )
+
+
+def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
+    """Walls that must not vanish: every one is a constraint of the optimiser."""
+    g = geometry
+    piston, rod = g.piston_groove, g.rod_groove
+    return {
+        "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,
+        "geometry_rod_wall": (g.rod_diameter - g.rod_inner_diameter) / 2,
+        "geometry_piston_groove": (g.piston_length - piston.count * piston.width)
+        / (piston.count + 1),
+        "geometry_piston_core": g.inner_radius - piston.gland_depth - thread_radius,
+        "geometry_head_groove": (g.head_length - rod.count * rod.width) / (rod.count + 1),
+        "geometry_head_wall": g.inner_radius - g.rod_diameter / 2 - rod.gland_depth,
+    }

@@ -1,0 +1,112 @@
+"""The kernel: every metric of one or many designs, from one pass over the models."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..design.material import Material
+from ..design.model import Design
+from ..models import forces
+from ..numeric import Array, minimum, where
+from ..quantities import METRICS, Quantity
+from . import geometry as geometry_module
+from . import hydraulics, sealing, state, strength, wall, weight
+from .allow import Stock
+from .geometry import Geometry
+from .plugin import Plugin
+from .rows import Computed
+from .state import State
+from .values import Values
+from .wall import Wall
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """A design with its materials and all its numbers by PATH (materials' included)."""
+
+    design: Design
+    materials: dict[str, Material]
+    numbers: Mapping[str, float]
+    plugins: tuple[Plugin, ...] = ()
+
+    @property
+    def quantities(self) -> Mapping[str, Quantity]:
+        """Every metric of this design, the user's own included."""
+        return METRICS | {plugin.name: plugin.quantity for plugin in self.plugins}
+
+    @property
+    def cases(self) -> tuple[str, ...]:
+        """Names of the load cases."""
+        return tuple(case.name for case in self.design.load_cases)
+
+    def values(self, varied: Mapping[str, Array] | None = None) -> Values:
+        """The numbers to evaluate, some of them replaced by arrays."""
+        return Values(self.numbers, self.cases, varied)
+
+
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """One pass over the models, with the intermediate results the Evaluation draws on."""
+
+    computed: Computed
+    geometry: Geometry
+    state: State
+    wall: Wall
+    springs: hydraulics.Springs
+    mass_parts: dict[str, Array]
+
+
+def compute(subject: Subject, v: Values) -> Pass:
+    """Every metric of the designs in `v`; invalid designs come out as NaN."""
+    design = subject.design
+    with np.errstate(all="ignore"):
+        out = Computed()
+        stock = Stock(v, design, subject.materials)
+        g = geometry_module.derive(v, design)
+        case_state = state.derive(v, design, stock, g)
+        barrel = wall.compute(v, design, stock, g, case_state)
+        out.put("bore_growth", barrel.growth)
+        friction = sealing.compute(v, design, g, case_state, barrel, out)
+        net = _forces(g, case_state, friction, out)
+        parts = weight.parts(v, design, g)
+        out.put("mass", sum(parts.values()))
+        out.put("mass_oil", weight.oil(v, design, g))
+        springs = hydraulics.springs(v, design, g, case_state, barrel)
+        moving = v["load.mass"] + parts["rod"] + parts["piston"] + parts["fastening"]
+        least = hydraulics.compute_stiffness(springs, moving, out)
+        hydraulics.compute_damping(v, g, case_state, friction, least, moving, out)
+        hydraulics.compute_flow(v, design, g, case_state, out)
+        strength.compute(v, design, stock, g, case_state, barrel, moving, net, out)
+        thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
+        for name, value in geometry_module.lands(g, thread / 2).items():
+            out.put(name, value)
+        out.put("barrel_length", g.barrel_length)
+        out.put("closed_length", g.closed_length)
+        out.skip("leakage", "needs the film of the running seal; static O-rings hold")
+        for plugin in subject.plugins:
+            out.put(plugin.name, plugin.call(v, out.metrics))
+    return Pass(out, g, case_state, barrel, springs, parts)
+
+
+def _forces(g: Geometry, s: State, friction: sealing.Friction, out: Computed) -> Array:
+    sides = {
+        "pressure_a": s.moving_a,
+        "pressure_b": s.moving_b,
+        "area_a": g.area_a,
+        "area_b": g.area_b,
+        "friction": friction.running,
+    }
+    push, pull = forces.push_force(**sides), forces.pull_force(**sides)
+    pushes = s.push[:, 0]
+    for name, value, cases in (("push_force", push, pushes), ("pull_force", pull, ~pushes)):
+        out.put(name, value, cases=cases)
+        if not cases.any():
+            out.skip(name, f"no load case {name[:4]}s")
+    net = where(s.push, push, pull)
+    driven = where(s.push, g.area_a, g.area_b)
+    out.put("efficiency", forces.efficiency(force=net, pressure=s.driven_pressure, area=driven))
+    out.put("power", forces.power(force=minimum(net, s.force), speed=s.speed))
+    return net

@@ -1,0 +1,225 @@
+"""What a design must satisfy: its own requirements, its load cases' forces, and the check list.
+
+The check list is what a professional checks on every actuator; each line has a limit with its
+source, unless only the user can know one. A requirement on the same metric and sense replaces a
+line's limit; `waivers` take a line out, with the reason printed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from ..design.model import Design
+from ..numeric import Array, absolute, real, where
+from .geometry import LAND
+from .plugin import Plugin
+from .values import Values
+
+Sense = Literal["min", "max"]
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """One limit on one metric: a number of the design (`path`) or a constant.
+
+    Where a load case states a joint torque, `path` is the torque and `lever` the arm's PATH.
+    """
+
+    name: str
+    metric: str
+    sense: Sense
+    path: str | None = None
+    constant: float | None = None
+    origin: Literal["requirement", "case", "check", "geometry"] = "requirement"
+    case: str | None = None
+    source: str = ""
+    lever: str | None = None
+
+    def value(self, v: Values) -> Array:
+        """The limit in SI (an array when a parameter study varies it)."""
+        if self.path is None:
+            return self.constant
+        return v[self.path] if self.lever is None else v[self.path] / v[self.lever]
+
+
+@dataclass(frozen=True, slots=True)
+class CheckLine:
+    """A line of the check list; `limit` None means only the design's author can set one."""
+
+    name: str
+    metric: str | None
+    sense: Sense = "min"
+    limit: float | None = None
+    source: str = ""
+    why_not: str = ""
+
+
+_ASK = "no limit stated: add requirements.{metric}"
+
+CHECK_LIST: tuple[CheckLine, ...] = (
+    CheckLine("push force net of friction and back-pressure", "push_force"),
+    CheckLine("pull force net of friction and back-pressure", "pull_force"),
+    CheckLine("wall stress at working pressure", "yield_factor", "min", 1.5,
+              "choice: 1.5 on yield of every metal part"),
+    CheckLine("proof pressure (yield or first ply)", "proof_factor", "min", 1.0,
+              "ISO 10100 practice: proof 1.5 x working pressure"),
+    CheckLine("burst pressure", "burst_factor", "min", 4.0,
+              "4:1 industrial practice (2.5:1 aerospace option)"),
+    CheckLine("first-ply (leak) pressure", "first_ply_factor", "min", 1.5,
+              "choice: no matrix crack up to proof pressure"),
+    CheckLine("bore growth", "bore_growth", "max"),
+    CheckLine("extrusion gap at the piston seal", "seal_gap", "max"),
+    CheckLine("extrusion of the seals (gap against pressure and hardness)", "extrusion_factor",
+              "min", 1.0, "compound data: largest gap at pressure"),
+    CheckLine("column buckling at full extension", "buckling_factor", "min", 3.5,
+              "ISO/TS 13725 idealisation, safety factor 3.5"),
+    CheckLine("rod thread root", "thread_factor", "min", 1.5, "choice: 1.5 on yield"),
+    CheckLine("cap retention", "retention_factor", "min", 1.5,
+              "choice: 1.5 on the elastic peak shear of a bond, on thread shear or tie-rod yield"),
+    CheckLine("end plate bending", "cap_factor", "min", 1.5, "choice: 1.5 on yield"),
+    CheckLine("clevis pins", "pin_factor", "min", 2.0, "choice: 2 on shear yield"),
+    CheckLine("smallest seal squeeze", "seal_squeeze", "min", 0.08,
+              "AS568 reciprocating glands: 8 % least squeeze"),
+    CheckLine("largest seal squeeze", "seal_squeeze_max", "max", 0.25,
+              "AS568 reciprocating glands: 25 % at 1.78 mm"),
+    CheckLine("groove fill", "seal_fill", "max", 0.85, "common limit 85 %"),
+    CheckLine("seal stretch", "seal_stretch", "max", 0.05, "ISO 3601-2 practice: 5 %"),
+    CheckLine("cross-section of moving O-rings", "seal_section", "min", 3.53e-3,
+              "advice against spiral failure: 3.53 mm or more"),
+    CheckLine("breakaway friction", "friction_breakaway", "max"),
+    CheckLine("running friction", "friction_running", "max"),
+    CheckLine("force efficiency", "efficiency", "min", 0.85, "choice: 85 %"),
+    CheckLine("stiffness at the weakest position", "stiffness_min", "min"),
+    CheckLine("natural frequency at the load mass", "natural_frequency", "min"),
+    CheckLine("seal damping", "damping_seal", "max"),
+    CheckLine("damping ratio", "damping_ratio", "min", 0.0,
+              "negative damping is stick-slip"),
+    CheckLine("port velocity", "port_velocity", "max", 8.0, "common practice, pressure ports"),
+    CheckLine("line velocity", "line_velocity", "max", 6.0, "common practice, pressure lines"),
+    CheckLine("line pressure drop", "line_drop_ratio", "max", 0.05,
+              "choice: 5 % of the supply pressure"),
+    CheckLine("flow", "flow", "max"),
+    CheckLine("piston speed", "piston_speed", "max", 0.5,
+              "standard seals and cylinders: 0.5 m/s"),
+    CheckLine("end-stop peak pressure", "end_stop_factor", "min", 1.0,
+              "choice: peak within proof pressure"),
+    CheckLine("end-stop energy", "end_stop_energy", "max"),
+    CheckLine("bearing overlap", "bearing_overlap", "min", 1.0, "span of at least one rod diameter"),
+    CheckLine("guide pressure under side load", "bearing_factor", "min", 1.0,
+              "allowable bearing pressure of the guide material"),
+    CheckLine("pressure-cycle life", "cycle_life", "min", 20000.0,
+              "MIL-PRF-5503: 20 000 cycles at rated pressure"),
+    CheckLine("fatigue strength", "fatigue_factor", "min"),
+    CheckLine("temperature range", "temperature_margin", "min", 0.0,
+              "service limits of every material used"),
+    CheckLine("trapped-fluid pressure", "trapped_factor", "min", 1.0,
+              "choice: trapped oil stays within proof pressure"),
+    CheckLine("liner/laminate mismatch", "liner_mismatch_factor", "min", 1.0,
+              "liner yield under cool-down"),
+    CheckLine("mass", "mass", "max"),
+    CheckLine("leakage", None, why_not="needs the film of the running seal (EHL model), "
+              "which this version does not have; static O-rings hold"),
+    CheckLine("standard sizes", "standard_sizes", "max", None, "ISO 3320"),
+)
+
+GEOMETRY: tuple[str, ...] = (
+    "geometry_rod_in_bore",
+    "geometry_rod_wall",
+    "geometry_piston_groove",
+    "geometry_piston_core",
+    "geometry_head_groove",
+    "geometry_head_wall",
+)
+
+
+def requirement_limits(design: Design) -> list[Limit]:
+    """The limits a person wrote: `requirements` and the force of every load case."""
+    limits = []
+    for metric, limit in design.requirements.items():
+        for sense in ("min", "max"):
+            if getattr(limit, sense) is not None:
+                both = limit.min is not None and limit.max is not None
+                name = f"{metric} ({sense})" if both else metric
+                path = f"requirements.{metric}.{sense}"
+                limits.append(Limit(name, metric, sense, path))
+    for case in design.load_cases:
+        metric = f"{case.direction}_force"
+        at = f"load_cases[{case.name}]"
+        path, lever = f"{at}.force", None
+        if case.force is None:
+            path, lever = f"{at}.joint_torque", f"{at}.lever_arm"
+        limits.append(
+            Limit(
+                name=f"force[{case.name}]",
+                metric=metric,
+                sense="min",
+                path=path,
+                origin="case",
+                case=case.name,
+                source="load case",
+                lever=lever,
+            )
+        )
+    return limits
+
+
+def check_limits(design: Design) -> list[Limit]:
+    """The check list's own limits, where the design neither replaces nor waives them."""
+    limits = []
+    for line in CHECK_LIST:
+        if line.metric is None or line.limit is None or line.metric in design.waivers:
+            continue
+        requirement = design.requirements.get(line.metric)
+        if requirement is not None and getattr(requirement, line.sense) is not None:
+            continue
+        path = f"requirements.{line.metric}.{line.sense}"
+        limits.append(
+            Limit(
+                name=line.name,
+                metric=line.metric,
+                sense=line.sense,
+                path=path,
+                origin="check",
+                source=line.source,
+            )
+        )
+    return limits
+
+
+def default_limits() -> dict[str, float]:
+    """The check list's limits by PATH, so that they can be studied like any other number."""
+    return {
+        f"requirements.{line.metric}.{line.sense}": line.limit
+        for line in CHECK_LIST
+        if line.metric is not None and line.limit is not None
+    }
+
+
+def geometry_limits() -> list[Limit]:
+    """Walls and rooms that must exist for the parts to be parts."""
+    return [
+        Limit(name, name, "min", constant=LAND, origin="geometry", source="choice: 1 mm least wall")
+        for name in GEOMETRY
+    ]
+
+
+def all_limits(design: Design, plugins: Iterable[Plugin] = ()) -> list[Limit]:
+    """Every limit a design must hold: its own, the check list's, geometry and user constraints."""
+    own = [
+        Limit(plugin.name, plugin.name, plugin.sense, constant=0.0, source="user constraint")
+        for plugin in plugins
+        if plugin.sense is not None
+    ]
+    return requirement_limits(design) + own + check_limits(design) + geometry_limits()
+
+
+def margin(value: Array, limit: Array, sense: Sense) -> Array:
+    """Relative margin, ≥ 0 where the limit holds: (value − limit)/|limit|, negated for `max`.
+
+    A limit of zero gives ± the value itself.
+    """
+    scale = where(real(limit) == 0, 1.0 + 0 * limit, absolute(limit))
+    difference = (value - limit) / scale
+    return difference if sense == "min" else -difference

@@ -1,0 +1,139 @@
+"""Which model stands behind a metric, read from the model's own docstring."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
+
+from ..models import (
+    barrel,
+    damping,
+    dynamics,
+    end_plate,
+    endurance,
+    forces,
+    friction,
+    gland,
+    laminate,
+    lines,
+    mass,
+    ply_discount,
+    retention,
+    rod,
+    seals,
+    stepped,
+    stiffness,
+    strength_modes,
+)
+from ..models import density as oil_density
+from ..models import fluid
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A model function as its docstring describes it."""
+
+    name: str
+    summary: str
+    reference: str
+    valid: str
+
+
+_VALID = re.compile(r"^\s*Valid: (.*?)(?:\n\s*\n|\Z)", re.DOTALL | re.MULTILINE)
+_REFERENCES = re.compile(r"References\n\s*-+\n(.*?)(?:\n\s*\n|\Z)", re.DOTALL)
+
+
+@cache
+def describe(function: Callable[..., object]) -> Model:
+    """Name, first sentence, source and valid range of a model function."""
+    doc = function.__doc__ or ""
+    valid = _VALID.search(doc)
+    reference = _REFERENCES.search(doc)
+
+    def flat(match: re.Match[str] | None) -> str:
+        return " ".join(match[1].split()) if match else ""
+
+    module = function.__module__.rpartition(".")[2]
+    return Model(
+        name=f"{module}.{function.__name__}",
+        summary=doc.strip().partition("\n")[0].rstrip("."),
+        reference=flat(reference),
+        valid=flat(valid),
+    )
+
+
+METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
+    {
+        "mass": mass.tube_mass,
+        "mass_oil": mass.oil_mass,
+        "push_force": forces.push_force,
+        "pull_force": forces.pull_force,
+        "efficiency": forces.efficiency,
+        "power": forces.power,
+        "stiffness_min": stiffness.hydraulic_stiffness,
+        "stiffness_oil": stiffness.chamber_stiffness,
+        "stiffness_barrel": barrel.chamber_compliance,
+        "stiffness_rod": rod.axial_stiffness,
+        "natural_frequency": dynamics.natural_frequency,
+        "damping_ratio": dynamics.friction_damping_ratio,
+        "bore_growth": barrel.bore_growth,
+        "seal_gap": gland.extrusion_gap,
+        "extrusion_factor": gland.extrusion_gap,
+        "seal_squeeze": gland.squeeze_in_place,
+        "seal_squeeze_max": gland.squeeze_after,
+        "seal_fill": gland.gland_fill,
+        "seal_stretch": gland.stretched_section,
+        "contact_width": gland.limited_width,
+        "contact_pressure": seals.modulus_gent,
+        "friction_running": friction.stribeck_level,
+        "friction_breakaway": friction.breakaway,
+        "damping_seal": damping.secant,
+        "damping_pipe": damping.pipe_flow,
+        "damping_annular": damping.annular_couette,
+        "proof_factor": barrel.von_mises,
+        "yield_factor": barrel.von_mises,
+        "liner_yield_factor": barrel.von_mises,
+        "burst_factor": barrel.burst_pressure_thick,
+        "first_ply_factor": strength_modes.max_stress_modes,
+        "buckling_factor": stepped.stepped_column_load,
+        "thread_factor": rod.thread_stress_area,
+        "retention_factor": retention.bond_edge_shear,
+        "cap_factor": end_plate.end_plate_stress,
+        "pin_factor": retention.pin_shear_stress,
+        "bearing_overlap": retention.guide_forces,
+        "bearing_pressure": retention.guide_forces,
+        "bearing_factor": retention.guide_forces,
+        "fatigue_factor": endurance.fatigue_factor,
+        "cycle_life": endurance.cycles_to_failure,
+        "end_stop_energy": endurance.end_stop_energy,
+        "end_stop_pressure": endurance.end_stop_peak_pressure,
+        "end_stop_factor": endurance.end_stop_peak_pressure,
+        "trapped_pressure": oil_density.thermal_pressure_slope,
+        "trapped_factor": oil_density.thermal_pressure_slope,
+        "liner_mismatch_factor": laminate.thermal_line_forces,
+        "flow": forces.chamber_flow,
+        "port_velocity": lines.port_velocity,
+        "line_velocity": lines.line_velocity,
+        "line_pressure_drop": lines.line_pressure_drop,
+        "line_drop_ratio": lines.line_pressure_drop,
+        "oil_viscosity": fluid.viscosity_astm_d341,
+    }
+)
+"""The leading model of every metric that has one; the rest is plain geometry."""
+
+LAMINATED: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
+    {
+        "bore_growth": laminate.bore_growth_thin,
+        "burst_factor": ply_discount.burst_by_ply_discount,
+    }
+)
+"""What replaces it where the barrel is a thin laminate."""
+
+
+def model_of(metric: str, *, laminated: bool) -> Model | None:
+    """The model behind a metric; None for plain geometry and inputs."""
+    function = (LAMINATED.get(metric) if laminated else None) or METRIC_MODELS.get(metric)
+    return None if function is None else describe(function)

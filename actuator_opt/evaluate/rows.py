@@ -1,0 +1,82 @@
+"""From computed metrics to rows: one margin per limit, load case and place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..numeric import Array, real, where
+from .limits import Limit, margin
+from .values import Values
+
+ALL_CASES = "all"
+UNLIMITED = 1e300
+"""Stands for an infinite value (nothing loads the part) in margins, which must stay finite."""
+
+
+@dataclass(slots=True)
+class Computed:
+    """What a kernel computed: metric → place → array, and why a metric could not be computed.
+
+    Arrays are floats, (designs,), (cases, 1) or (cases, designs). A place is a ply, a seal or a
+    part; "" where the metric has only one. `applies` marks the cases a metric has a meaning in.
+    """
+
+    metrics: dict[str, dict[str, Array]] = field(default_factory=dict)
+    why: dict[str, str] = field(default_factory=dict)
+    applies: dict[str, Array] = field(default_factory=dict)
+
+    def put(self, name: str, value: Array | Mapping[str, Array], cases: Array = None) -> None:
+        """Record a metric: one array, or one per place; `cases` marks where it applies."""
+        self.metrics[name] = dict(value) if isinstance(value, Mapping) else {"": value}
+        if cases is not None:
+            self.applies[name] = cases
+
+    def skip(self, name: str, why: str) -> None:
+        """Record why a metric does not apply or cannot be known."""
+        self.why[name] = why
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One limit in one case at one place: `value`, `limit` and `margin` are (designs,)."""
+
+    limit_of: Limit
+    case: str
+    place: str
+    value: Array
+    limit: Array
+    margin: Array
+
+    @property
+    def label(self) -> str:
+        where = ", ".join(p for p in (self.case if self.case != ALL_CASES else "", self.place) if p)
+        return f"{self.limit_of.name} ({where})" if where else self.limit_of.name
+
+
+def by_case(
+    computed: Computed, metric: str, array: Array, cases: tuple[str, ...]
+) -> Iterator[tuple[str, Array]]:
+    """Split a computed array into (case name, (designs,) array) where the metric applies."""
+    array = np.asarray(array)
+    if array.ndim < 2:
+        yield ALL_CASES, np.atleast_1d(array)
+        return
+    applies = computed.applies.get(metric)
+    for i, case in enumerate(cases):
+        if applies is None or applies[i]:
+            yield case, array[i]
+
+
+def rows_of(limit: Limit, computed: Computed, v: Values) -> Iterator[Row]:
+    """Every row of one limit; none where the metric was not computed."""
+    bound = limit.value(v)
+    for place, array in computed.metrics.get(limit.metric, {}).items():
+        for case, value in by_case(computed, limit.metric, array, v.cases):
+            if limit.case is not None and case not in (ALL_CASES, limit.case):
+                continue
+            unlimited = real(value) == np.inf
+            finite = where(unlimited, UNLIMITED, value)
+            yield Row(limit, case, place, value, bound, margin(finite, bound, limit.sense))

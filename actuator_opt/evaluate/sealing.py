@@ -1,0 +1,189 @@
+"""Piston and rod seals in an evaluation: squeeze after growth, contact, gap, friction, damping."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..design.model import Design
+from ..models import damping, friction, gland, seals
+from ..numeric import Array, absolute, maximum, real, where
+from .geometry import Geometry, Groove
+from .rows import Computed
+from .state import State
+from .values import Values
+from .wall import SEAL_STEP, Wall
+
+STRIBECK_EXPONENT = 2.0
+"""Shape of the Stribeck curve where no record says otherwise ([MECE5005], [Huang2017] Table 2)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Friction:
+    """Friction of all seals per case, N; `slope` is dF/dv at the case's speed, N·s/m."""
+
+    running: Array
+    breakaway: Array
+    slope: Array
+
+
+@dataclass(frozen=True, slots=True)
+class _SealState:
+    squeeze: Array
+    youngs_modulus: Array
+    coefficient: Array
+    breakaway_ratio: Array
+    stribeck_speed: Array
+    pressure: Array
+    growth: Array
+    diameter: Array
+    groove: Groove
+
+
+def _seal_state(
+    v: Values, design: Design, name: str, diameter: Array, groove: Groove, pressure: Array,
+    growth: Array,
+) -> _SealState:
+    section = getattr(design.seals, name)
+    compound = f"materials.{section.compound}."
+    at = f"seals.{name}."
+
+    def own(field: str) -> Array:
+        return v[at + field] if at + field in v else v[compound + field]
+
+    modulus = seals.MODULUS_LAWS[section.hardness_model].modulus(
+        hardness=v[compound + "hardness"]
+    )
+    return _SealState(
+        squeeze=v[at + "squeeze"],
+        youngs_modulus=modulus,
+        coefficient=own("friction_coefficient"),
+        breakaway_ratio=own("breakaway_ratio"),
+        stribeck_speed=own("stribeck_speed"),
+        pressure=pressure,
+        growth=growth,
+        diameter=diameter,
+        groove=groove,
+    )
+
+
+def _gland_metrics(
+    v: Values, name: str, state: _SealState, full_growth: Array
+) -> dict[str, Array]:
+    at = f"seals.{name}."
+    section, tolerance = state.groove.section, v[at + "tolerance"]
+    thin = gland.stretched_section(section=section, stretch=v[at + "stretch"])
+    return {
+        "seal_squeeze": gland.squeeze_in_place(
+            squeeze=state.squeeze,
+            section=section,
+            stretch=v[at + "stretch"],
+            growth=full_growth,
+            tolerance=tolerance,
+        ),
+        "seal_squeeze_max": state.squeeze + tolerance / section,
+        "seal_fill": gland.gland_fill(
+            section=thin,
+            groove_width=state.groove.width,
+            gland_depth=state.groove.gland_depth - tolerance,
+        ),
+        "seal_stretch": v[at + "stretch"],
+        "seal_section": section,
+    }
+
+
+def _contact(law: seals.SealLaw, state: _SealState) -> tuple[Array, Array, Array]:
+    squeeze = gland.squeeze_after(
+        squeeze=state.squeeze, section=state.groove.section, growth=state.growth, tolerance=0.0
+    )
+    inputs = {
+        "squeeze": squeeze,
+        "section": state.groove.section,
+        "youngs_modulus": state.youngs_modulus,
+        "pressure": state.pressure,
+    }
+    width = gland.limited_width(
+        contact_width=law.contact_width(**inputs), groove_width=state.groove.width
+    )
+    return law.line_load(**inputs), width, law.peak_pressure(**inputs)
+
+
+def compute(
+    v: Values, design: Design, geometry: Geometry, state: State, wall: Wall, out: Computed
+) -> Friction:
+    """Gland, contact and friction metrics of both seals; returns the cylinder's friction."""
+    supply = v["supply.pressure"]
+    full_growth = SEAL_STEP * wall.growth
+    case_growth = full_growth * (state.driven_pressure / supply)
+    parts = {
+        "piston seal": _seal_state(
+            v, design, "piston", geometry.bore, geometry.piston_groove,
+            absolute(state.moving_a - state.moving_b), case_growth,
+        ),
+        "rod seal": _seal_state(
+            v, design, "rod", geometry.rod_diameter, geometry.rod_groove,
+            maximum(state.moving_b, 0.0), 0.0,
+        ),
+    }
+    places: dict[str, dict[str, Array]] = {}
+    running: Array = 0.0
+    breakaway: Array = 0.0
+    slope: Array = 0.0
+    for place, part in parts.items():
+        name = place.split()[0]
+        section = getattr(design.seals, name)
+        grown = full_growth if name == "piston" else 0.0
+        for metric, value in _gland_metrics(v, name, part, grown).items():
+            places.setdefault(metric, {})[place] = value
+        load, width, peak = _contact(seals.LAWS[section.law], part)
+        places.setdefault("contact_width", {})[place] = width
+        places.setdefault("contact_pressure", {})[place] = peak
+        coulomb = friction.seal_friction(
+            line_load=load,
+            diameter=part.diameter,
+            friction_coefficient=part.coefficient,
+            count=part.groove.count,
+        )
+        static = friction.breakaway(running=coulomb, ratio=part.breakaway_ratio)
+        curve = {
+            "speed": state.speed,
+            "coulomb": coulomb,
+            "static": static,
+            "stribeck_speed": part.stribeck_speed,
+            "exponent": STRIBECK_EXPONENT,
+        }
+        viscous = v[f"seals.{name}.viscous_friction"]
+        level = friction.stribeck_level(**curve)
+        sliding = level + viscous * state.speed
+        running = running + where(real(state.speed) > 0, sliding, coulomb)
+        breakaway = breakaway + static
+        slope = slope + friction.stribeck_slope(**curve, viscous=viscous)
+        _extrusion(v, design, name, place, geometry, full_growth, places)
+    for metric, by_place in places.items():
+        out.put(metric, by_place)
+    if "extrusion_factor" not in places:
+        out.skip("extrusion_factor", "the seal compounds state no extrusion_gap_max")
+    out.put("seal_gap", gland.extrusion_gap(
+        clearance=geometry.piston_clearance, growth=full_growth
+    ))
+    out.put("friction_running", running)
+    out.put("friction_breakaway", breakaway)
+    moving = real(state.speed)[:, 0] > 0
+    out.put("damping_seal", damping.secant(friction=running, speed=state.speed), cases=moving)
+    if not moving.any():
+        out.skip("damping_seal", "a secant damping needs a speed; no load case states one")
+    return Friction(running, breakaway, slope)
+
+
+def _extrusion(
+    v: Values, design: Design, name: str, place: str, geometry: Geometry, growth: Array,
+    places: dict[str, dict[str, Array]],
+) -> None:
+    path = f"materials.{getattr(design.seals, name).compound}.extrusion_gap_max"
+    if path not in v:
+        return
+    gap = (
+        gland.extrusion_gap(clearance=geometry.piston_clearance, growth=growth)
+        if name == "piston"
+        else geometry.head_clearance
+    )
+    places.setdefault("extrusion_factor", {})[place] = v[path] / gap

@@ -1,0 +1,51 @@
+"""The numbers a design is evaluated at: fixed ones as floats, varied ones as arrays.
+
+Arrays of varied numbers are (designs,); numbers of load cases are (cases, 1) or (cases, designs),
+so that everything a kernel computes broadcasts to (cases, designs). Every PATH that is read is
+remembered: a variable that no model reads is a fault of the design file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ..numeric import Array
+
+
+class Values:
+    """Numbers by PATH, in SI."""
+
+    def __init__(
+        self,
+        numbers: Mapping[str, float],
+        cases: Sequence[str],
+        varied: Mapping[str, Array] | None = None,
+    ) -> None:
+        self._numbers = numbers
+        self._varied = varied or {}
+        self.cases = tuple(cases)
+        self.read: set[str] = set()
+        self._case_cache: dict[str, Array] = {}
+
+    def __contains__(self, path: str) -> bool:
+        return path in self._varied or path in self._numbers
+
+    def __getitem__(self, path: str) -> Array:
+        self.read.add(path)
+        found = self._varied.get(path)
+        return self._numbers[path] if found is None else found
+
+    def get(self, path: str, default: Array) -> Array:
+        """The number at `path`, or `default` where the design does not state it."""
+        return self[path] if path in self else default
+
+    def case(self, field: str, default: Array = None) -> Array:
+        """One field of every load case, (cases, 1) or (cases, designs)."""
+        if field not in self._case_cache:
+            rows = [self.get(f"load_cases[{name}].{field}", default) for name in self.cases]
+            self._case_cache[field] = np.stack(
+                np.broadcast_arrays(*[np.atleast_1d(np.asarray(row)) for row in rows])
+            )
+        return self._case_cache[field]

@@ -1,0 +1,139 @@
+"""Mass of every part in an evaluation, each a formula that can be checked by hand."""
+
+from __future__ import annotations
+
+from ..design.model import Design
+from ..models import mass
+from ..numeric import Array
+from .geometry import Geometry
+from .values import Values
+
+PARTS = ("barrel", "rod", "piston", "caps", "glands", "seals", "fastening", "clevises")
+"""Parts of the mass breakdown, in assembly order."""
+
+
+def _barrel(v: Values, design: Design, g: Geometry) -> Array:
+    total: Array = 0.0
+    radius = g.inner_radius
+    for ply, thickness in zip(design.barrel.layup, g.thicknesses, strict=True):
+        total = total + mass.tube_mass(
+            density=v[f"materials.{ply.material}.density"],
+            inner_diameter=2 * radius,
+            outer_diameter=2 * (radius + thickness),
+            length=g.barrel_length,
+        )
+        radius = radius + thickness
+    return total
+
+
+def _piston(v: Values, design: Design, g: Geometry) -> Array:
+    density = v[f"materials.{design.piston.material}.density"]
+    diameter = g.bore - 2 * g.piston_clearance
+    groove = g.piston_groove
+    removed = groove.count * mass.piston_groove_volume(
+        diameter=diameter, depth=groove.gland_depth - g.piston_clearance, width=groove.width
+    )
+    disc = mass.disc_mass(density=density, diameter=diameter, thickness=g.piston_length)
+    return disc - density * removed
+
+
+def _plate(density: Array, g: Geometry, hole: Array) -> Array:
+    """One end plate with its skirt over the barrel."""
+    plate = mass.tube_mass(
+        density=density, inner_diameter=hole, outer_diameter=2 * g.plate_radius, length=g.plate
+    )
+    skirt = mass.tube_mass(
+        density=density,
+        inner_diameter=2 * g.outer_radius,
+        outer_diameter=2 * (g.outer_radius + g.skirt_wall),
+        length=g.skirt_length,
+    )
+    return plate + skirt
+
+
+def _gland(v: Values, design: Design, g: Geometry) -> Array:
+    density = v[f"materials.{design.head.material}.density"]
+    hole = g.rod_diameter + 2 * g.head_clearance
+    groove = g.rod_groove
+    removed = groove.count * mass.rod_groove_volume(
+        diameter=hole, depth=groove.gland_depth - g.head_clearance, width=groove.width
+    )
+    plug = mass.tube_mass(
+        density=density, inner_diameter=hole, outer_diameter=g.bore, length=g.head_length
+    )
+    return plug - density * removed
+
+
+def _seals(v: Values, design: Design, g: Geometry) -> Array:
+    rings: Array = 0.0
+    for groove, compound, centre in (
+        (g.piston_groove, design.seals.piston.compound, g.bore - g.piston_groove.gland_depth),
+        (g.rod_groove, design.seals.rod.compound, g.rod_diameter + g.rod_groove.gland_depth),
+    ):
+        ring = mass.ring_mass(
+            density=v[f"materials.{compound}.density"],
+            section=groove.section,
+            centre_diameter=centre,
+        )
+        rings = rings + groove.count * ring
+    return rings
+
+
+def _fastening(v: Values, design: Design, g: Geometry) -> Array:
+    """Rod-end stud with the plugs of a hollow rod, and tie rods."""
+    total: Array = 0.0
+    if design.rod.thread is not None:
+        density = v[f"materials.{design.rod.material}.density"]
+        diameter, pitch = v["rod.thread.diameter"], v["rod.thread.pitch"]
+        stud = mass.stud_mass(density=density, diameter=diameter, pitch=pitch, length=diameter)
+        plug = mass.disc_mass(density=density, diameter=g.rod_inner_diameter, thickness=diameter)
+        total = total + stud + 2 * plug
+    retention = design.retention
+    if retention is not None and retention.type == "tie_rods":
+        total = total + mass.tie_rod_mass(
+            density=v[f"materials.{retention.material}.density"],
+            diameter=v["retention.thread.diameter"],
+            length=g.barrel_length + 2 * g.plate,
+            count=v["retention.count"],
+        )
+    return total
+
+
+def parts(v: Values, design: Design, geometry: Geometry) -> dict[str, Array]:
+    """Mass of every dry part, kg."""
+    g = geometry
+    caps = v[f"materials.{design.caps.material}.density"]
+    hole = g.rod_diameter + 2 * g.head_clearance
+    clevises: Array = 0.0
+    if design.clevis is not None:
+        density = v[f"materials.{design.clevis.material}.density"]
+        clevises = 2 * density * mass.eye_volume(pin_diameter=g.pin_diameter)
+    rod = mass.tube_mass(
+        density=v[f"materials.{design.rod.material}.density"],
+        inner_diameter=g.rod_inner_diameter,
+        outer_diameter=g.rod_diameter,
+        length=g.rod_length,
+    )
+    values = (
+        _barrel(v, design, g),
+        rod,
+        _piston(v, design, g),
+        _plate(caps, g, 0.0) + _plate(caps, g, hole),
+        _gland(v, design, g),
+        _seals(v, design, g),
+        _fastening(v, design, g),
+        clevises,
+    )
+    return dict(zip(PARTS, values, strict=True))
+
+
+def oil(v: Values, design: Design, geometry: Geometry) -> Array:
+    """Mass of the oil inside with the piston at the cap end, lines not counted."""
+    g = geometry
+    volume = (
+        v["cylinder.dead_volume_a"]
+        + v["cylinder.dead_volume_b"]
+        + g.area_b * (g.barrel_length - g.piston_length - g.head_length)
+    )
+    density = v[f"materials.{design.fluid.material}.density"]
+    return mass.oil_mass(density=density, volume=volume)

@@ -1,0 +1,273 @@
+"""What happens along the barrel: axial force, tie rods, growth beside a pressure step.
+
+The barrel's axial force follows from how the cylinder is mounted, never from a fixed "open" or
+"closed" end; the wall's growth at the piston seal is the far-field growth times a step factor.
+"""
+
+from __future__ import annotations
+
+from ..numeric import Array, absolute, namespace, positive, real, sqrt, where
+
+
+def pressure_shortening(
+    *,
+    pressure: Array,
+    inner_radius: Array,
+    outer_radius: Array,
+    youngs_modulus: Array,
+    poissons_ratio: Array,
+    length: Array,
+) -> Array:
+    """Free axial shortening of an open barrel by its internal pressure.
+
+    delta_p = 2 nu p L/(E (k^2 - 1)): the Poisson contraction that unloads a tie-rod joint.
+
+    Parameters
+    ----------
+    pressure : internal gauge pressure [Pa]
+    inner_radius, outer_radius : radii of the wall [m]
+    youngs_modulus : Young's modulus [Pa]
+    poissons_ratio : Poisson's ratio [-]
+    length : pressurised length [m]
+
+    Returns
+    -------
+    shortening [m], positive; NaN where the wall has no thickness
+
+    Notes
+    -----
+    Valid: linear elastic, no axial force.
+
+    References
+    ----------
+    [derived] epsilon_z = -nu (sigma_r + sigma_theta)/E of Lamé's cylinder
+
+    Examples
+    --------
+    >>> d = pressure_shortening(pressure=28e6, inner_radius=16e-3, outer_radius=20e-3,
+    ...                         youngs_modulus=71.7e9, poissons_ratio=0.33, length=0.18)
+    >>> print(f"{d * 1e6:.3f} um")
+    82.477 um
+    """
+    inner, outer = inner_radius * inner_radius, outer_radius * outer_radius
+    contraction = 2 * poissons_ratio * pressure * inner / positive(outer - inner)
+    return contraction * length / youngs_modulus
+
+
+def shell_decay_length(*, radius: Array, hoop_stiffness: Array, bending_stiffness: Array) -> Array:
+    """Axial length over which a shell's growth settles beside a pressure step.
+
+    1/beta = (4 R^2 D_z/(E_theta t))^(1/4).
+
+    Parameters
+    ----------
+    radius : mid-radius of the wall [m]
+    hoop_stiffness : E_theta t at free axial force, from the laminate [N/m]
+    bending_stiffness : axial bending stiffness D_z per circumference [N m]
+
+    Returns
+    -------
+    decay length 1/beta [m]
+
+    Notes
+    -----
+    Valid: thin shells, R/t above about 5; transverse shear neglected.
+
+    References
+    ----------
+    [Timoshenko1959] axisymmetric bending of a circular cylindrical shell
+
+    Examples
+    --------
+    >>> d = 71.7e9 * 1.5e-3**3 / (12 * (1 - 0.33**2))
+    >>> x = shell_decay_length(radius=16.75e-3, hoop_stiffness=71.7e9 * 1.5e-3,
+    ...                        bending_stiffness=d)
+    >>> print(f"{x * 1e3:.5f} mm")
+    3.92005 mm
+    """
+    return sqrt(sqrt(4 * radius * radius * bending_stiffness / hoop_stiffness))
+
+
+def decay_length(
+    *,
+    radius: Array,
+    thickness: Array,
+    hoop_modulus: Array,
+    axial_modulus: Array,
+    poissons_product: Array = 0.0,
+) -> Array:
+    """Axial length over which an orthotropic wall's growth settles beside a pressure step.
+
+    1/beta = (4 R^2 D_z/(E_theta t))^(1/4), D_z = E_z t^3/(12 (1 - nu_ztheta nu_thetaz)); isotropic:
+    sqrt(R t)/(3 (1 - nu^2))^(1/4).
+
+    Parameters
+    ----------
+    radius : mid-radius of the wall [m]
+    thickness : wall thickness [m]
+    hoop_modulus, axial_modulus : effective moduli of the wall [Pa]
+    poissons_product : nu_ztheta nu_thetaz, nu^2 for an isotropic wall [-]
+
+    Returns
+    -------
+    decay length 1/beta [m]
+
+    Notes
+    -----
+    Valid: thin homogeneous shells; layered walls by `shell_decay_length`.
+
+    References
+    ----------
+    [Timoshenko1959] axisymmetric bending of a circular cylindrical shell
+
+    Examples
+    --------
+    >>> x = decay_length(radius=16.75e-3, thickness=1.5e-3, hoop_modulus=1.0, axial_modulus=1.0,
+    ...                  poissons_product=0.33**2)
+    >>> print(f"{x * 1e3:.5f} mm")
+    3.92005 mm
+    """
+    bending = axial_modulus * thickness * thickness * thickness / (12 * (1 - poissons_product))
+    return shell_decay_length(
+        radius=radius, hoop_stiffness=hoop_modulus * thickness, bending_stiffness=bending
+    )
+
+
+def pressure_step_factor(*, distance: Array, decay_length: Array) -> Array:
+    """Share of the far-field growth at a distance from the pressure step at the piston seal.
+
+    y >= 0 (pressurised side): 1 - exp(-beta y) cos(beta y)/2; y < 0: exp(beta y) cos(beta y)/2.
+
+    Parameters
+    ----------
+    distance : y from the step, positive towards the pressure [m]
+    decay_length : 1/beta [m]
+
+    Returns
+    -------
+    w/w_inf [-]: one half at the step, overshoot at most 3.4 %
+
+    Notes
+    -----
+    Valid: long thin shell, pressure on one side of the step only.
+
+    References
+    ----------
+    [Timoshenko1959] shell under a band of pressure; [derived] by symmetry of the step
+
+    Examples
+    --------
+    >>> print(f"{pressure_step_factor(distance=3e-3, decay_length=3.92005e-3):.6f}")
+    0.832256
+    """
+    steps = absolute(distance) / decay_length
+    xp = namespace(steps)
+    half = xp.exp(-steps) * xp.cos(steps) / 2
+    return where(real(distance) >= 0, 1 - half, half)
+
+
+def axial_force_cap_mounted(
+    *, rod_side_pressure: Array, rod_side_area: Array, stop_force: Array = 0.0
+) -> Array:
+    """Axial force in the barrel wall of a cylinder held at its cap.
+
+    N = p_B A_B + F_stop: the pressure on the head, and the piston pressing on it.
+
+    Parameters
+    ----------
+    rod_side_pressure : p_B, gauge [Pa]
+    rod_side_area : A_B [m^2]
+    stop_force : force of the piston on the head at its end stop [N]
+
+    Returns
+    -------
+    tensile force [N]
+
+    Notes
+    -----
+    Valid: seal friction on the wall neglected.
+
+    References
+    ----------
+    [derived] free body of head and barrel
+
+    Examples
+    --------
+    >>> print(round(axial_force_cap_mounted(rod_side_pressure=10e6, rod_side_area=3e-4), 6))
+    3000.0
+    """
+    return rod_side_pressure * rod_side_area + stop_force
+
+
+def axial_force_head_mounted(*, cap_side_pressure: Array, cap_side_area: Array) -> Array:
+    """Axial force in the barrel wall of a cylinder held at its head.
+
+    N = p_A A_A: the pressure on the cap.
+
+    Parameters
+    ----------
+    cap_side_pressure : p_A, gauge [Pa]
+    cap_side_area : A_A [m^2]
+
+    Returns
+    -------
+    tensile force [N]
+
+    Notes
+    -----
+    Valid: seal friction on the wall neglected, no load on the cap from outside.
+
+    References
+    ----------
+    [derived] free body of cap and barrel
+
+    Examples
+    --------
+    >>> print(round(axial_force_head_mounted(cap_side_pressure=10e6, cap_side_area=5e-4), 6))
+    5000.0
+    """
+    return cap_side_pressure * cap_side_area
+
+
+def tie_rod_forces(
+    *,
+    axial_force: Array,
+    preload: Array,
+    barrel_stiffness: Array,
+    tie_rod_stiffness: Array,
+    free_shortening: Array = 0.0,
+) -> tuple[Array, Array]:
+    """Share an axial force between a barrel and the tie rods that clamp it.
+
+    N_b = -F_0 + N k_b/(k_b + k_t) + delta_p k_b k_t/(k_b + k_t), F_t = N - N_b.
+
+    Parameters
+    ----------
+    axial_force : N, force that tears the ends apart [N]
+    preload : F_0, total tie-rod tension without pressure [N]
+    barrel_stiffness, tie_rod_stiffness : axial stiffness of the barrel, of all rods [N/m]
+    free_shortening : delta_p, free axial shortening of the barrel by pressure [m]
+
+    Returns
+    -------
+    barrel force (tension positive) and total tie-rod force [N]; the joint opens where the barrel
+    force is not negative
+
+    Notes
+    -----
+    Valid: joint closed (barrel force negative). Beyond, the rods alone carry N.
+
+    References
+    ----------
+    [derived] two springs in parallel with preload
+
+    Examples
+    --------
+    >>> barrel, rods = tie_rod_forces(axial_force=12e3, preload=9e3, barrel_stiffness=300e6,
+    ...                               tie_rod_stiffness=90e6, free_shortening=3e-6)
+    >>> print(f"{barrel:.1f} {rods:.1f}")
+    438.5 11561.5
+    """
+    share = barrel_stiffness / (barrel_stiffness + tie_rod_stiffness)
+    barrel = share * (axial_force + free_shortening * tie_rod_stiffness) - preload
+    return barrel, axial_force - barrel

@@ -1,0 +1,243 @@
+"""Buckling: Euler, Johnson, shear correction, local shell, and the stepped column rod + barrel.
+
+The stepped column lives in `stepped` (two segments, elementwise) and `stepped_segments` (any
+number of segments, scalar); both are offered here too.
+"""
+
+from __future__ import annotations
+
+from math import pi
+
+from ..numeric import Array, namespace, real, sqrt, where
+from .stepped import End, Ends, stepped_column_load
+from .stepped_segments import stepped_column_load_segments
+
+__all__ = [
+    "End",
+    "Ends",
+    "cowper_tube",
+    "engesser_load",
+    "euler_load",
+    "johnson_load",
+    "local_shell_knockdown",
+    "local_shell_stress",
+    "stepped_column_load",
+    "stepped_column_load_segments",
+]
+
+
+def euler_load(*, bending_stiffness: Array, effective_length: Array) -> Array:
+    """Euler's critical load.
+
+    P = pi^2 EI/(K L)^2.
+
+    Parameters
+    ----------
+    bending_stiffness : EI [N m^2]
+    effective_length : K L [m]: L pinned-pinned, 2 L fixed-free, 0.699 L fixed-pinned, L/2 fixed
+
+    Returns
+    -------
+    critical load [N]
+
+    Notes
+    -----
+    Valid: elastic, slender, one section.
+
+    References
+    ----------
+    [TimoshenkoGere1961] uniform column
+
+    Examples
+    --------
+    >>> p = euler_load(bending_stiffness=210e9 * 3216.99e-12, effective_length=0.6)
+    >>> print(f"{p / 1e3:.3f} kN")
+    18.521 kN
+    """
+    return pi * pi * bending_stiffness / (effective_length * effective_length)
+
+
+def johnson_load(
+    *,
+    area: Array,
+    second_moment: Array,
+    youngs_modulus: Array,
+    yield_strength: Array,
+    effective_length: Array,
+) -> Array:
+    """Critical load of a short or slender metal column: Johnson's parabola, then Euler.
+
+    P = A s_y [1 - s_y m^2/(4 pi^2 E)] below the slenderness m_c = sqrt(2 pi^2 E/s_y), Euler above;
+    m = K L/sqrt(I/A). Value and slope join at m_c.
+
+    Parameters
+    ----------
+    area : cross-section [m^2]
+    second_moment : second moment of area [m^4]
+    youngs_modulus : Young's modulus [Pa]
+    yield_strength : compressive yield strength [Pa]
+    effective_length : K L [m]
+
+    Returns
+    -------
+    critical load [N]
+
+    Notes
+    -----
+    Valid: metals, one section.
+
+    References
+    ----------
+    [Shigley2011] J. B. Johnson column
+
+    Examples
+    --------
+    >>> p = johnson_load(area=201.062e-6, second_moment=3216.99e-12, youngs_modulus=210e9,
+    ...                  yield_strength=600e6, effective_length=0.2)
+    >>> print(f"{p / 1e3:.3f} kN")
+    98.810 kN
+    """
+    euler = euler_load(
+        bending_stiffness=youngs_modulus * second_moment, effective_length=effective_length
+    )
+    squash = area * yield_strength
+    return where(real(2 * euler) >= real(squash), squash * (1 - squash / (4 * euler)), euler)
+
+
+def cowper_tube(*, poissons_ratio: Array, radius_ratio: Array) -> Array:
+    """Shear coefficient of a round tube.
+
+    kappa = 6 (1 + nu)(1 + m^2)^2/[(7 + 6 nu)(1 + m^2)^2 + (20 + 12 nu) m^2], m = r_i/r_o.
+
+    Parameters
+    ----------
+    poissons_ratio : Poisson's ratio [-]
+    radius_ratio : m [-], 0 for a solid bar
+
+    Returns
+    -------
+    kappa [-]
+
+    Notes
+    -----
+    Valid: isotropic; usual for composite tubes with their axial-hoop Poisson's ratio.
+
+    References
+    ----------
+    [Cowper1966] hollow circular section
+
+    Examples
+    --------
+    >>> print(f"{cowper_tube(poissons_ratio=0.28, radius_ratio=0.75):.6f}")
+    0.546147
+    """
+    hollow = radius_ratio * radius_ratio
+    square = (1 + hollow) * (1 + hollow)
+    below = (7 + 6 * poissons_ratio) * square + (20 + 12 * poissons_ratio) * hollow
+    return 6 * (1 + poissons_ratio) * square / below
+
+
+def engesser_load(*, critical_load: Array, shear_stiffness: Array) -> Array:
+    """Critical load of a column that also gives in shear.
+
+    P = P_E/(1 + P_E/(kappa G A)).
+
+    Parameters
+    ----------
+    critical_load : P_E, load by bending alone [N]
+    shear_stiffness : kappa G A [N]
+
+    Returns
+    -------
+    critical load [N]
+
+    Notes
+    -----
+    Valid: exact for a uniform pinned column, on the safe side for others.
+
+    References
+    ----------
+    [TimoshenkoGere1961] effect of shearing force
+
+    Examples
+    --------
+    >>> engesser_load(critical_load=100.0, shear_stiffness=900.0)
+    90.0
+    """
+    return critical_load / (1 + critical_load / shear_stiffness)
+
+
+def local_shell_knockdown(*, radius: Array, thickness: Array) -> Array:
+    """Knock-down of a thin shell's axial buckling stress for its imperfections.
+
+    gamma = 1 - 0.901 (1 - exp(-sqrt(R/t)/16)).
+
+    Parameters
+    ----------
+    radius : mid-radius [m]
+    thickness : wall thickness [m]
+
+    Returns
+    -------
+    gamma [-]
+
+    Notes
+    -----
+    Valid: R/t < 1500.
+
+    References
+    ----------
+    [NASA-SP-8007] unstiffened isotropic cylinder, axial compression
+
+    Examples
+    --------
+    >>> print(f"{local_shell_knockdown(radius=15.0, thickness=1.2):.5f}")
+    0.82137
+    """
+    slender = sqrt(radius / thickness) / 16
+    return 1 - 0.901 * (1 - namespace(slender).exp(-slender))
+
+
+def local_shell_stress(
+    *,
+    youngs_modulus: Array,
+    thickness: Array,
+    radius: Array,
+    poissons_ratio: Array,
+    knockdown: Array | None = None,
+) -> Array:
+    """Axial stress at which the wall of a compressed tube buckles locally.
+
+    sigma = gamma E t/(R sqrt(3 (1 - nu^2))).
+
+    Parameters
+    ----------
+    youngs_modulus : Young's modulus; sqrt(E_z E_theta) of a laminate (a choice) [Pa]
+    thickness : wall thickness [m]
+    radius : mid-radius [m]
+    poissons_ratio : Poisson's ratio; sqrt(nu_ztheta nu_thetaz) of a laminate [-]
+    knockdown : gamma [-]; None takes `local_shell_knockdown`, 1 the classical stress
+
+    Returns
+    -------
+    stress [Pa]
+
+    Notes
+    -----
+    Valid: thin shells longer than about their radius.
+
+    References
+    ----------
+    [TimoshenkoGere1961] axially compressed cylindrical shell, [NASA-SP-8007]
+
+    Examples
+    --------
+    >>> s = local_shell_stress(youngs_modulus=70e9, thickness=1.2e-3, radius=15e-3,
+    ...                        poissons_ratio=0.3)
+    >>> print(f"{s / 1e6:.1f} MPa")
+    2783.8 MPa
+    """
+    if knockdown is None:
+        knockdown = local_shell_knockdown(radius=radius, thickness=thickness)
+    curve = radius * sqrt(3 * (1 - poissons_ratio * poissons_ratio))
+    return knockdown * youngs_modulus * thickness / curve

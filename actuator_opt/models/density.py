@@ -1,0 +1,162 @@
+"""Density of the oil over temperature and pressure, and the pressure of trapped warming oil.
+
+Pressures are gauge, temperatures in kelvin. `fluid` re-exports these functions.
+"""
+
+from __future__ import annotations
+
+from ..numeric import Array, namespace
+
+
+def density_dowson_higginson(
+    *,
+    reference_density: Array,
+    pressure: Array,
+    coefficient_a: Array = 0.6e-9,
+    coefficient_b: Array = 1.7e-9,
+) -> Array:
+    """Density under pressure, rho = rho0 [1 + a p/(1 + b p)].
+
+    Parameters
+    ----------
+    reference_density : at zero gauge pressure, kg/m^3
+    pressure : gauge, Pa
+    coefficient_a, coefficient_b : 1/Pa; the defaults are the usual mineral-oil constants
+        (the source paper prints none: unverified)
+
+    Returns
+    -------
+    kg/m^3
+
+    Valid: 0 to 1 GPa, mineral oils.
+
+    Examples
+    --------
+    >>> print(f"{density_dowson_higginson(reference_density=870.0, pressure=20e6):.2f}")
+    880.10
+
+    References
+    ----------
+    [Huang2017] eq. 3, [DowsonHigginson1966]
+    """
+    return reference_density * (1 + coefficient_a * pressure / (1 + coefficient_b * pressure))
+
+
+def density_thermal(
+    *,
+    reference_density: Array,
+    volume_expansion: Array,
+    temperature: Array,
+    reference_temperature: Array = 288.15,
+) -> Array:
+    """Density at a temperature, rho = rho0/(1 + alpha_V (T - T0)).
+
+    Parameters
+    ----------
+    reference_density : at `reference_temperature`, kg/m^3
+    volume_expansion : volumetric expansion coefficient, 1/K
+    temperature, reference_temperature : K; oil data sheets state 15 degC
+
+    Returns
+    -------
+    kg/m^3
+
+    Valid: within about 150 K of the reference temperature.
+
+    Examples
+    --------
+    >>> round(density_thermal(reference_density=870.0, volume_expansion=7e-4,
+    ...                       temperature=313.15), 2)
+    855.04
+
+    References
+    ----------
+    [derived] definition of alpha_V, taken on the reference volume
+    """
+    return reference_density / (1 + volume_expansion * (temperature - reference_temperature))
+
+
+def density_tait(
+    *,
+    temperature: Array,
+    pressure: Array,
+    reference_density: Array = 870.0,
+    volume_expansion: Array = 7.7e-4,
+    reference_temperature: Array = 273.15,
+    zero_modulus: Array = 8.4e9,
+    temperature_coefficient: Array = 0.0058,
+    pressure_coefficient: Array = 11.9,
+) -> Array:
+    """Density of a mineral oil by the Tait equation.
+
+    V/V0 = [1 + alpha_V (T - T0)] [1 - ln(1 + B p/K0)/B], K0 = zero_modulus exp(-c T);
+    rho = rho0/(V/V0).
+
+    Parameters
+    ----------
+    temperature, reference_temperature : K
+    pressure : gauge, Pa
+    reference_density : at T0 and zero gauge pressure, kg/m^3
+    volume_expansion : 1/K
+    zero_modulus : Pa; temperature_coefficient : 1/K; pressure_coefficient : B = 1 + K0', -
+
+    Returns
+    -------
+    kg/m^3
+
+    Valid: 0 to 150 degC, up to 350 bar for the default constants.
+
+    Examples
+    --------
+    >>> print(f"{density_tait(temperature=313.15, pressure=200e5):.1f}")
+    855.6
+
+    References
+    ----------
+    [Dymond1988] Tait equation; constants of a generic mineral oil [OpenHydraulics]
+    """
+    xp = namespace(temperature, pressure, zero_modulus)
+    modulus = zero_modulus * xp.exp(-temperature_coefficient * temperature)
+    shrink = xp.log1p(pressure_coefficient * pressure / modulus) / pressure_coefficient
+    expand = 1 + volume_expansion * (temperature - reference_temperature)
+    return reference_density / (expand * (1 - shrink))
+
+
+def thermal_pressure_slope(
+    *,
+    volume_expansion: Array,
+    wall_expansion_axial: Array,
+    wall_expansion_hoop: Array,
+    bulk_modulus: Array,
+    wall_compliance_per_volume: Array,
+) -> Array:
+    """Pressure rise of trapped oil per kelvin.
+
+    dp/dT = (alpha_V - alpha_z - 2 alpha_theta)/(1/K + (dV/dp)_wall/V).
+
+    Parameters
+    ----------
+    volume_expansion : of the oil, 1/K
+    wall_expansion_axial, wall_expansion_hoop : linear expansions of the wall, 1/K
+    bulk_modulus : tangent value with air, Pa
+    wall_compliance_per_volume : (dV/dp)/V of the wall, 1/Pa
+
+    Returns
+    -------
+    Pa/K
+
+    Valid: no leakage, no relief valve, chamber full.
+
+    Examples
+    --------
+    >>> slope = thermal_pressure_slope(volume_expansion=7e-4, wall_expansion_axial=12e-6,
+    ...     wall_expansion_hoop=12e-6, bulk_modulus=1.4e9, wall_compliance_per_volume=1.3627e-10)
+    >>> print(f"{slope / 1e5:.2f} bar/K")
+    7.81 bar/K
+
+    References
+    ----------
+    [derived] oil volume = chamber volume, both functions of p and T
+    """
+    wall = wall_expansion_axial + 2 * wall_expansion_hoop
+    return (volume_expansion - wall) / (1 / bulk_modulus + wall_compliance_per_volume)

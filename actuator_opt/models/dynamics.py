@@ -1,0 +1,229 @@
+"""Linear dynamics of the load on the oil spring: frequency, damping ratio, dynamic stiffness."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from ..numeric import Array, namespace, real, where
+
+
+def natural_frequency(*, stiffness: Array, mass: Array) -> Array:
+    """Natural frequency of a mass on the actuator, f = sqrt(k/m)/(2 pi).
+
+    Parameters
+    ----------
+    stiffness : axial stiffness with rod and mounting, N/m
+    mass : load, rod and piston, reflected to the rod, kg
+
+    Returns
+    -------
+    Hz; NaN at mass <= 0 or stiffness < 0.
+
+    Valid: one degree of freedom, ports closed.
+
+    Examples
+    --------
+    >>> print(f"{natural_frequency(stiffness=20.6583e6, mass=30.0):.3f}")
+    132.071
+
+    References
+    ----------
+    [Merritt1967] hydraulic natural frequency
+    """
+    valid = (real(mass) > 0) & (real(stiffness) >= 0)
+    square = where(valid, stiffness, 1.0) / where(valid, mass, 1.0)
+    return where(valid, (0.5 / math.pi) * namespace(square).sqrt(square), math.nan)
+
+
+def friction_damping_ratio(*, incremental_damping: Array, stiffness: Array, mass: Array) -> Array:
+    """Share of the damping ratio from friction, B_inc/(2 sqrt(k m)).
+
+    Parameters
+    ----------
+    incremental_damping : dF_fr/dv at the stated speed, N s/m; negative on the falling Stribeck
+        branch (stick-slip). Never the secant F/v.
+    stiffness : N/m
+    mass : kg
+
+    Returns
+    -------
+    -; NaN where k m <= 0.
+
+    Valid: small vibration about a steady sliding speed.
+
+    Examples
+    --------
+    >>> zeta = friction_damping_ratio(incremental_damping=400.0, stiffness=20.6583e6, mass=30.0)
+    >>> print(f"{zeta:.6f}")
+    0.008034
+
+    References
+    ----------
+    [derived] linear oscillator
+    """
+    product = stiffness * mass
+    valid = real(product) > 0
+    safe = where(valid, product, 1.0)
+    return where(valid, 0.5 * incremental_damping / namespace(safe).sqrt(safe), math.nan)
+
+
+def conductance_damping_ratio(
+    *,
+    stiffness: Array,
+    mass: Array,
+    area_a: Array,
+    compliance_a: Array,
+    conductance_a: Array,
+    area_b: Array,
+    compliance_b: Array,
+    conductance_b: Array,
+) -> Array:
+    """Share of the damping ratio from leakage and valve conductance.
+
+    (1/(2 omega k_h)) sum (A_i^2/C_i)(G_i/C_i), omega = sqrt(k/m), k_h = sum A_i^2/C_i.
+
+    Parameters
+    ----------
+    stiffness : N/m, of omega; k_h unless rod and mounting matter
+    mass : kg
+    area_a, area_b : m^2
+    compliance_a, compliance_b : m^3/Pa
+    conductance_a, conductance_b : G = dq/dp out of each chamber, m^3/s/Pa
+
+    Returns
+    -------
+    -; NaN where k m <= 0.
+
+    Valid: G/(omega C) much smaller than one.
+
+    Examples
+    --------
+    >>> zeta = conductance_damping_ratio(stiffness=1e7, mass=10.0, area_a=5e-4, area_b=5e-4,
+    ...     compliance_a=5e-14, compliance_b=5e-14, conductance_a=1e-12, conductance_b=1e-12)
+    >>> print(f"{zeta:.4f}")
+    0.0100
+
+    References
+    ----------
+    [derived] first-order perturbation of m s^2 + sum A_i^2 s/(C_i s + G_i) = 0
+    """
+    valid = (real(stiffness) > 0) & (real(mass) > 0)
+    square = where(valid, stiffness, 1.0) / where(valid, mass, 1.0)
+    omega = namespace(square).sqrt(square)
+    side_a = area_a * area_a / compliance_a
+    side_b = area_b * area_b / compliance_b
+    leak = side_a * conductance_a / compliance_a + side_b * conductance_b / compliance_b
+    return where(valid, 0.5 * leak / (omega * (side_a + side_b)), math.nan)
+
+
+def damping_ratio(
+    *,
+    incremental_damping: Array,
+    stiffness: Array,
+    mass: Array,
+    area_a: Array,
+    compliance_a: Array,
+    area_b: Array,
+    compliance_b: Array,
+    conductance_a: Array = 0.0,
+    conductance_b: Array = 0.0,
+) -> Array:
+    """Damping ratio of the load on the closed cylinder, friction plus conductance.
+
+    zeta = B_inc/(2 sqrt(k m)) + (1/(2 omega k_h)) sum (A_i^2/C_i)(G_i/C_i).
+
+    Parameters
+    ----------
+    incremental_damping : dF_fr/dv at the stated speed, N s/m (never the secant F/v)
+    stiffness : N/m
+    mass : kg
+    area_a, area_b : m^2
+    compliance_a, compliance_b : m^3/Pa
+    conductance_a, conductance_b : leakage and valve dq/dp, m^3/s/Pa
+
+    Returns
+    -------
+    -; NaN where k or m <= 0; negative where falling friction out-weighs the leakage (stick-slip).
+
+    Valid: lightly damped, one degree of freedom.
+
+    Examples
+    --------
+    >>> zeta = damping_ratio(incremental_damping=400.0, stiffness=1e7, mass=10.0, area_a=5e-4,
+    ...     compliance_a=5e-14, area_b=5e-4, compliance_b=5e-14)
+    >>> print(f"{zeta:.4f}")
+    0.0200
+
+    References
+    ----------
+    [derived] sum of `friction_damping_ratio` and `conductance_damping_ratio`
+    """
+    valid = (real(stiffness) > 0) & (real(mass) > 0)
+    square = where(valid, stiffness, 1.0) / where(valid, mass, 1.0)
+    side_a = area_a * area_a / compliance_a
+    side_b = area_b * area_b / compliance_b
+    leak = side_a * conductance_a / compliance_a + side_b * conductance_b / compliance_b
+    rate = incremental_damping / where(valid, mass, 1.0) + leak / (side_a + side_b)
+    return where(valid, 0.5 * rate / namespace(square).sqrt(square), math.nan)
+
+
+class DynamicStiffness(NamedTuple):
+    """Real and imaginary part of force over displacement, N/m."""
+
+    storage: Array
+    loss: Array
+
+
+def dynamic_stiffness(
+    *,
+    frequency: Array,
+    mass: Array,
+    damping: Array,
+    area_a: Array,
+    compliance_a: Array,
+    area_b: Array,
+    compliance_b: Array,
+    admittance_a: Array = 0.0,
+    admittance_b: Array = 0.0,
+) -> DynamicStiffness:
+    """Dynamic stiffness of the cylinder, in real parts so that it stays differentiable.
+
+    k = -m omega^2 + i omega B + sum A_i^2/(C_i + Y_i/(i omega)); each chamber gives
+    A^2 (C + i Y/omega)/(C^2 + (Y/omega)^2). |k| = hypot, phase = atan2(loss, storage) > 0:
+    the force leads.
+
+    Parameters
+    ----------
+    frequency : Hz, > 0
+    mass : kg
+    damping : incremental, N s/m
+    area_a, area_b : m^2
+    compliance_a, compliance_b : m^3/Pa
+    admittance_a, admittance_b : real line-end admittance Y, m^3/s/Pa (0 closed)
+
+    Returns
+    -------
+    storage, loss : N/m
+
+    Valid: lumped chambers; resistive line ends.
+
+    Examples
+    --------
+    >>> k = dynamic_stiffness(frequency=10.0, mass=0.0, damping=100.0, area_a=5e-4,
+    ...     compliance_a=5e-14, area_b=5e-4, compliance_b=5e-14)
+    >>> print(f"{k.storage:.0f} {k.loss:.0f}")
+    10000000 6283
+
+    References
+    ----------
+    [derived] force balance and continuity at omega
+    """
+    omega = (2 * math.pi) * frequency
+    leak_a, leak_b = admittance_a / omega, admittance_b / omega
+    gain_a = area_a * area_a / (compliance_a * compliance_a + leak_a * leak_a)
+    gain_b = area_b * area_b / (compliance_b * compliance_b + leak_b * leak_b)
+    return DynamicStiffness(
+        gain_a * compliance_a + gain_b * compliance_b - mass * omega * omega,
+        gain_a * leak_a + gain_b * leak_b + damping * omega,
+    )

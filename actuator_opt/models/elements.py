@@ -1,0 +1,212 @@
+"""Lumped hydraulic elements: orifice, resistance, inertance, capacitance and their resonances.
+
+`lines` re-exports these functions.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..numeric import Array, sqrt
+
+
+def resistance(*, inner_diameter: Array, length: Array, dynamic_viscosity: Array) -> Array:
+    """Laminar resistance of a line, R = 128 eta l/(pi d^4).
+
+    Parameters
+    ----------
+    inner_diameter, length : m
+    dynamic_viscosity : Pa s
+
+    Returns
+    -------
+    Pa s/m^3
+
+    Valid: Re below 2300.
+
+    Examples
+    --------
+    >>> print(f"{resistance(inner_diameter=8e-3, length=1.2, dynamic_viscosity=0.04):.5e}")
+    4.77465e+08
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
+    """
+    square = inner_diameter * inner_diameter
+    return (128 / math.pi) * dynamic_viscosity * length / (square * square)
+
+
+def inertance(*, inner_diameter: Array, length: Array, density: Array) -> Array:
+    """Inertance of a line, L = rho l/A.
+
+    Parameters
+    ----------
+    inner_diameter, length : m
+    density : kg/m^3
+
+    Returns
+    -------
+    kg/m^4
+
+    Valid: uniform velocity over the section.
+
+    Examples
+    --------
+    >>> print(f"{inertance(inner_diameter=8e-3, length=1.2, density=865.0):.5e}")
+    2.06504e+07
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
+    """
+    return (4 / math.pi) * density * length / (inner_diameter * inner_diameter)
+
+
+def capacitance(*, volume: Array, bulk_modulus: Array) -> Array:
+    """Capacitance of an oil volume, C = V/K.
+
+    Parameters
+    ----------
+    volume : m^3
+    bulk_modulus : effective tangent value, Pa
+
+    Returns
+    -------
+    m^3/Pa
+
+    Valid: rigid walls (add their compliance).
+
+    Examples
+    --------
+    >>> print(f"{capacitance(volume=6.031858e-5, bulk_modulus=1.4e9):.5e}")
+    4.30847e-14
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
+    """
+    return volume / bulk_modulus
+
+
+def sound_speed(*, bulk_modulus: Array, density: Array) -> Array:
+    """Speed of sound in the oil, a = sqrt(K/rho).
+
+    Parameters
+    ----------
+    bulk_modulus : effective tangent value, Pa
+    density : kg/m^3
+
+    Returns
+    -------
+    m/s
+
+    Valid: rigid walls; about 1300 m/s in practice.
+
+    Examples
+    --------
+    >>> print(f"{sound_speed(bulk_modulus=1.4e9, density=865.0):.2f}")
+    1272.20
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
+    """
+    return sqrt(bulk_modulus / density)
+
+
+def quarter_wave_frequency(*, length: Array, sound_speed: Array) -> Array:
+    """First quarter-wave frequency of a plugged branch, f = a/(4 l).
+
+    Odd multiples amplify, even multiples attenuate.
+
+    Parameters
+    ----------
+    length : m
+    sound_speed : m/s
+
+    Returns
+    -------
+    Hz
+
+    Valid: one end closed, one open.
+
+    Examples
+    --------
+    >>> print(f"{quarter_wave_frequency(length=1.2, sound_speed=1272.2):.2f}")
+    265.04
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
+    """
+    return 0.25 * sound_speed / length
+
+
+def resonance_frequency(*, inertance: Array, capacitance: Array) -> Array:
+    """Frequency of a lumped inertance on a capacitance, f = 1/(2 pi sqrt(L C)).
+
+    A Helmholtz resonator is the inertance of its neck on the capacitance of its volume.
+
+    Parameters
+    ----------
+    inertance : kg/m^4
+    capacitance : m^3/Pa
+
+    Returns
+    -------
+    Hz
+
+    Valid: wavelength much longer than the line.
+
+    Examples
+    --------
+    >>> print(f"{resonance_frequency(inertance=2.06504e7, capacitance=4.30847e-14):.3f}")
+    168.731
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
+    """
+    return (0.5 / math.pi) / sqrt(inertance * capacitance)
+
+
+def orifice_flow(
+    *,
+    area: Array,
+    pressure_difference: Array,
+    density: Array,
+    discharge_coefficient: Array = 0.611,
+    smoothing_pressure: Array = 1.0,
+) -> Array:
+    """Flow through a sharp orifice, q = C_q A sqrt(2 |dp|/rho) sgn(dp), smooth at zero.
+
+    sqrt(|dp|) sgn(dp) is written dp/(dp^2 + delta^2)^(1/4).
+
+    Parameters
+    ----------
+    area : m^2
+    pressure_difference : Pa, either sign
+    density : kg/m^3
+    discharge_coefficient : 0.611 in turbulent flow, falling with Re
+    smoothing_pressure : delta, Pa
+
+    Returns
+    -------
+    m^3/s, with the sign of the pressure difference
+
+    Valid: |dp| much larger than delta for the plain square root.
+
+    Examples
+    --------
+    >>> q = orifice_flow(area=0.3e-4, pressure_difference=5e5, density=870.0)
+    >>> print(f"{q * 60000:.3f} l/min")
+    37.287 l/min
+
+    References
+    ----------
+    [AaltoThesis] eq. 9
+    """
+    square = pressure_difference * pressure_difference + smoothing_pressure * smoothing_pressure
+    root = pressure_difference / sqrt(sqrt(square))
+    return discharge_coefficient * area * root * (2 / density) ** 0.5

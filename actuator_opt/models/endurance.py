@@ -1,0 +1,258 @@
+"""Life and extremes: pressure cycles, the end of the stroke, oil trapped while it warms."""
+
+from __future__ import annotations
+
+from ..numeric import Array, namespace, real, sqrt, where
+
+_LOW_CYCLES = 1e3
+_LOW_SHARE = 0.9
+
+
+def fatigue_strength(
+    *, cycles: Array, ultimate_strength: Array, fatigue_limit: Array, limit_cycles: Array = 1e6
+) -> Array:
+    """Fully reversed stress amplitude that a metal or ply stands for a number of cycles.
+
+    Basquin line through (1e3, 0.9 R_m) and (limit_cycles, fatigue_limit) in log-log, continued
+    beyond the limit (no endurance limit is assumed: safe under a varying pressure).
+
+    Parameters
+    ----------
+    cycles : required number of cycles [-]
+    ultimate_strength : R_m [Pa]
+    fatigue_limit : amplitude stood for `limit_cycles`, fully reversed, with all reductions [Pa]
+    limit_cycles : cycles of that limit [-]
+
+    Returns
+    -------
+    amplitude [Pa]
+
+    Notes
+    -----
+    Valid: 1e3 cycles and more.
+
+    References
+    ----------
+    [Shigley2011] stress-life method
+
+    Examples
+    --------
+    >>> s = fatigue_strength(cycles=1e5, ultimate_strength=700e6, fatigue_limit=300e6)
+    >>> print(f"{s / 1e6:.1f} MPa")
+    384.2 MPa
+    """
+    xp = namespace(cycles, ultimate_strength, fatigue_limit, limit_cycles)
+    low = _LOW_SHARE * ultimate_strength
+    share = xp.log(cycles / _LOW_CYCLES) / xp.log(limit_cycles / _LOW_CYCLES)
+    return low * xp.exp(share * xp.log(fatigue_limit / low))
+
+
+def cycles_to_failure(
+    *,
+    peak_stress: Array,
+    ultimate_strength: Array,
+    fatigue_limit: Array,
+    limit_cycles: Array = 1e6,
+    stress_ratio: Array = 0.0,
+) -> Array:
+    """Cycles of a pulsating stress until failure.
+
+    Amplitude and mean s_a, s_m = s (1 -+ R)/2; Goodman s_r = s_a/(1 - s_m/R_m); the Basquin line
+    of `fatigue_strength` solved for N.
+
+    Parameters
+    ----------
+    peak_stress : largest stress of the cycle, notch included [Pa]
+    ultimate_strength : R_m [Pa]
+    fatigue_limit : amplitude stood for `limit_cycles`, fully reversed, with all reductions [Pa]
+    limit_cycles : cycles of that limit [-]
+    stress_ratio : R, smallest over largest stress [-]; 0 for a pressure that falls to zero
+
+    Returns
+    -------
+    cycles [-]; 0 where the mean stress alone reaches R_m, infinite without tension
+
+    Notes
+    -----
+    Valid: 1e3 to about 1e9 cycles; uniaxial tension or its von Mises equivalent.
+
+    References
+    ----------
+    [Shigley2011] stress-life method, modified Goodman line
+
+    Examples
+    --------
+    >>> n = cycles_to_failure(peak_stress=420e6, ultimate_strength=700e6, fatigue_limit=300e6)
+    >>> print(f"{n:.3g}")
+    1e+06
+    """
+    xp = namespace(peak_stress, ultimate_strength, fatigue_limit, limit_cycles)
+    amplitude = peak_stress * (1 - stress_ratio) / 2
+    left = 1 - peak_stress * (1 + stress_ratio) / (2 * ultimate_strength)
+    idle, lost = real(amplitude) <= 0, real(left) <= 0
+    low = _LOW_SHARE * ultimate_strength
+    reversed_stress = where(idle | lost, low + 0 * amplitude, amplitude) / where(
+        lost, 0 * left + 1, left
+    )
+    slope = xp.log(limit_cycles / _LOW_CYCLES) / xp.log(fatigue_limit / low)
+    life = _LOW_CYCLES * xp.exp(slope * xp.log(reversed_stress / low))
+    life = where(idle, 0 * life + float("inf"), life)
+    return where(lost, 0 * amplitude, life)
+
+
+def fatigue_factor(
+    *,
+    peak_stress: Array,
+    ultimate_strength: Array,
+    amplitude_strength: Array,
+    stress_ratio: Array = 0.0,
+) -> Array:
+    """Factor by which a pulsating stress may grow before its required life is lost.
+
+    1/(s_a/S_f + s_m/R_m), S_f from `fatigue_strength` at the required cycles.
+
+    Parameters
+    ----------
+    peak_stress : largest stress of the cycle, notch included [Pa]
+    ultimate_strength : R_m [Pa]
+    amplitude_strength : S_f [Pa]
+    stress_ratio : R, smallest over largest stress [-]
+
+    Returns
+    -------
+    factor [-]; infinite without tension
+
+    Notes
+    -----
+    Valid: tensile mean stress.
+
+    References
+    ----------
+    [Shigley2011] modified Goodman line
+
+    Examples
+    --------
+    >>> f = fatigue_factor(peak_stress=420e6, ultimate_strength=700e6, amplitude_strength=300e6)
+    >>> print(f"{f:.4f}")
+    1.0000
+    """
+    share = (1 - stress_ratio) / (2 * amplitude_strength)
+    used = peak_stress * (share + (1 + stress_ratio) / (2 * ultimate_strength))
+    idle = real(used) <= 0
+    return where(idle, 0 * used + float("inf"), 1 / where(idle, 0 * used + 1, used))
+
+
+def end_stop_compression(
+    *, driving_force: Array, stiffness: Array, mass: Array, velocity: Array
+) -> Array:
+    """Travel into a linear end stop, or into oil trapped before it.
+
+    delta = [F_d + sqrt(F_d^2 + k m v^2)]/k; trapped oil has k = K A^2/V.
+
+    Parameters
+    ----------
+    driving_force : F_d, net force that keeps pushing [N]
+    stiffness : k of the stop [N/m]
+    mass : moving mass [kg]
+    velocity : v at the stop [m/s]
+
+    Returns
+    -------
+    travel [m]
+
+    Notes
+    -----
+    Valid: no damping (conservative).
+
+    References
+    ----------
+    [derived] m v^2/2 + F_d delta = k delta^2/2
+
+    Examples
+    --------
+    >>> d = end_stop_compression(driving_force=6000.0, stiffness=3e7, mass=40.0, velocity=0.3)
+    >>> print(f"{d * 1e3:.3f} mm")
+    0.600 mm
+    """
+    inside = driving_force * driving_force + stiffness * mass * velocity * velocity
+    return (driving_force + sqrt(inside)) / stiffness
+
+
+def end_stop_energy(
+    *, driving_force: Array, compression: Array, mass: Array, velocity: Array
+) -> Array:
+    """Energy an end stop takes: m v^2/2 + F_d delta [J].
+
+    Examples
+    --------
+    >>> e = end_stop_energy(driving_force=6000.0, compression=0.6e-3, mass=40.0, velocity=0.3)
+    >>> print(f"{e:.2f} J")
+    5.40 J
+    """
+    return mass * velocity * velocity / 2 + driving_force * compression
+
+
+def end_stop_peak_force(*, stiffness: Array, compression: Array) -> Array:
+    """Peak force of a linear end stop: k delta [N].
+
+    Examples
+    --------
+    >>> print(f"{end_stop_peak_force(stiffness=3e7, compression=0.6e-3):.0f} N")
+    18000 N
+    """
+    return stiffness * compression
+
+
+def end_stop_peak_pressure(*, pressure: Array, peak_force: Array, area: Array) -> Array:
+    """Peak gauge pressure of oil trapped at the end of the stroke: p_0 + F_peak/A [Pa].
+
+    Examples
+    --------
+    >>> p = end_stop_peak_pressure(pressure=1e6, peak_force=18e3, area=9e-4)
+    >>> print(f"{p / 1e6:.1f} MPa")
+    21.0 MPa
+    """
+    return pressure + peak_force / area
+
+
+def trapped_pressure_rate(
+    *,
+    liquid_expansion: Array,
+    wall_axial_expansion: Array,
+    wall_hoop_expansion: Array,
+    bulk_modulus: Array,
+    wall_compliance_per_volume: Array,
+) -> Array:
+    """Pressure rise per kelvin of oil locked in a chamber.
+
+    dp/dT = (alpha_V - alpha_z - 2 alpha_theta)/(1/K + (dV/dp)_wall/V).
+
+    Parameters
+    ----------
+    liquid_expansion : alpha_V of the oil, volumetric [1/K]
+    wall_axial_expansion, wall_hoop_expansion : alpha_z, alpha_theta of the barrel [1/K]
+    bulk_modulus : K of the oil [Pa]
+    wall_compliance_per_volume : (dV/dp)/V of the wall, 2 u/(p r_i) of a plain tube [1/Pa]
+
+    Returns
+    -------
+    pressure rise [Pa/K]
+
+    Notes
+    -----
+    Valid: no leakage, no free gas; integrate where K varies much.
+
+    References
+    ----------
+    [derived] volume balance of oil and chamber
+
+    Examples
+    --------
+    >>> r = trapped_pressure_rate(liquid_expansion=7e-4, wall_axial_expansion=12e-6,
+    ...                           wall_hoop_expansion=12e-6, bulk_modulus=1.4e9,
+    ...                           wall_compliance_per_volume=1.36278e-10)
+    >>> print(f"{r / 1e5:.3f} bar/K")
+    7.807 bar/K
+    """
+    surplus = liquid_expansion - wall_axial_expansion - 2 * wall_hoop_expansion
+    return surplus / (1 / bulk_modulus + wall_compliance_per_volume)

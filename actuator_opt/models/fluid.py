@@ -1,0 +1,398 @@
+"""Hydraulic fluid: viscosity, density, bulk modulus, entrained and trapped air.
+
+Pressures are gauge unless a name says ``absolute``; temperatures are in kelvin. A bulk modulus
+without a qualifier is the isothermal *tangent* value K = -V dp/dV; secant values say so.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from ..numeric import Array, expm1_quotient, maximum, namespace, real, where
+from .density import density_dowson_higginson, density_tait, density_thermal, thermal_pressure_slope
+
+__all__ = [
+    "ATMOSPHERIC_PRESSURE",
+    "barus",
+    "bulk_modulus_linear",
+    "bulk_modulus_tait",
+    "bulk_modulus_warm",
+    "density_dowson_higginson",
+    "density_tait",
+    "density_thermal",
+    "dynamic_viscosity",
+    "effective_bulk_modulus",
+    "roelands",
+    "secant_bulk_modulus_tait",
+    "thermal_pressure_slope",
+    "trapped_bubble_volume_change",
+    "viscosity_astm_d341",
+]
+
+ATMOSPHERIC_PRESSURE = 101325.0
+"""Standard atmosphere, Pa absolute."""
+
+
+def viscosity_astm_d341(
+    *, temperature: Array, points_temperature: Sequence[Array], points_viscosity: Sequence[Array]
+) -> Array:
+    """Kinematic viscosity at a temperature, from two or more known points.
+
+    ln ln(nu + 0.7) = a - b ln T between neighbouring points (nu in mm^2/s); the end segments
+    continue outside. Exact at every given point.
+
+    Parameters
+    ----------
+    temperature : K
+    points_temperature : K, strictly ascending
+    points_viscosity : m^2/s, one per temperature
+
+    Returns
+    -------
+    Kinematic viscosity, m^2/s; NaN at temperature <= 0.
+
+    Raises
+    ------
+    ValueError : fewer than two points, or lists of unequal length
+
+    Valid: 2 mm^2/s and above; two points cannot carry a fluid with viscosity improver to the
+    cold (give three or more).
+
+    Examples
+    --------
+    >>> vg32 = dict(points_temperature=(313.15, 373.15), points_viscosity=(32e-6, 5.36e-6))
+    >>> print(f"{viscosity_astm_d341(temperature=293.15, **vg32) * 1e6:.1f} mm2/s")
+    86.8 mm2/s
+
+    References
+    ----------
+    [ASTM-D341]
+    """
+    if len(points_temperature) != len(points_viscosity) or len(points_temperature) < 2:
+        raise ValueError("need two or more points, as many viscosities as temperatures")
+    xp = namespace(temperature, *points_temperature, *points_viscosity)
+    valid = real(temperature) > 0
+    x = xp.log(where(valid, temperature, points_temperature[0]))
+    xs = [xp.log(t) for t in points_temperature]
+    ys = [xp.log(xp.log(1e6 * nu + 0.7)) for nu in points_viscosity]
+    y: Array = None
+    for x0, x1, y0, y1 in zip(xs, xs[1:], ys, ys[1:], strict=False):
+        segment = y0 + (y1 - y0) / (x1 - x0) * (x - x0)
+        y = segment if y is None else where(real(x) > real(x0), segment, y)
+    return where(valid, 1e-6 * (xp.exp(xp.exp(y)) - 0.7), math.nan)
+
+
+def dynamic_viscosity(*, kinematic_viscosity: Array, density: Array) -> Array:
+    """Dynamic viscosity eta = rho nu.
+
+    Parameters
+    ----------
+    kinematic_viscosity : m^2/s
+    density : kg/m^3
+
+    Returns
+    -------
+    Pa s
+
+    Valid: everywhere.
+
+    Examples
+    --------
+    >>> round(dynamic_viscosity(kinematic_viscosity=46e-6, density=870.0), 5)
+    0.04002
+
+    References
+    ----------
+    [derived] definition of the kinematic viscosity
+    """
+    return density * kinematic_viscosity
+
+
+def barus(*, viscosity: Array, pressure: Array, coefficient: Array) -> Array:
+    """Dynamic viscosity under pressure, eta = eta0 exp(alpha p).
+
+    Parameters
+    ----------
+    viscosity : dynamic viscosity at zero gauge pressure, Pa s
+    pressure : gauge, Pa
+    coefficient : pressure-viscosity coefficient alpha, 1/Pa
+
+    Returns
+    -------
+    Pa s
+
+    Valid: up to about 0.1 GPa; Roelands beyond.
+
+    Examples
+    --------
+    >>> print(f"{barus(viscosity=0.0186, pressure=30e6, coefficient=20e-9):.6f}")
+    0.033891
+
+    References
+    ----------
+    [Barus1893]
+    """
+    product = coefficient * pressure
+    return viscosity * namespace(product).exp(product)
+
+
+def roelands(*, viscosity: Array, pressure: Array, coefficient: Array) -> Array:
+    """Dynamic viscosity under pressure by Roelands; tends to Barus as p -> 0.
+
+    eta = eta0 exp{L [(1 + p/p0)^Z - 1]}, L = ln eta0 + 9.67, Z = alpha/(5.1e-9 L),
+    p0 = 1.96e8 Pa.
+
+    Parameters
+    ----------
+    viscosity : dynamic viscosity at zero gauge pressure, Pa s
+    pressure : gauge, Pa
+    coefficient : Barus coefficient alpha at zero pressure, 1/Pa
+
+    Returns
+    -------
+    Pa s; NaN below eta0 = 6.3e-5 Pa s (L <= 0) or p <= -p0.
+
+    Valid: 0 to 1 GPa.
+
+    Examples
+    --------
+    >>> print(f"{roelands(viscosity=0.0186, pressure=30e6, coefficient=20e-9):.6f}")
+    0.033449
+
+    References
+    ----------
+    [Huang2017] eq. 2 (minus signs lost in the text copy), [Roelands1966]
+    """
+    xp = namespace(viscosity, pressure, coefficient)
+    valid = (real(viscosity) > 6.32e-5) & (real(pressure) > -1.96e8)
+    safe = where(valid, viscosity, 1.0)
+    slope = xp.log(safe) + 9.67
+    exponent = coefficient / (5.1e-9 * slope)
+    growth = xp.exp(exponent * xp.log1p(where(valid, pressure, 0.0) / 1.96e8)) - 1
+    return where(valid, safe * xp.exp(slope * growth), math.nan)
+
+
+def bulk_modulus_linear(*, bulk_modulus: Array, slope: Array, pressure: Array) -> Array:
+    """Tangent bulk modulus growing linearly with pressure, K = K0 + m p.
+
+    Parameters
+    ----------
+    bulk_modulus : tangent value at zero gauge pressure, Pa
+    slope : m = dK/dp, - (0 for a constant, about 6 to 11 for mineral oils)
+    pressure : gauge, Pa
+
+    Returns
+    -------
+    Tangent bulk modulus, Pa
+
+    Valid: 0 to 500 bar, pure liquid.
+
+    Examples
+    --------
+    >>> round(bulk_modulus_linear(bulk_modulus=1.4e9, slope=6.0, pressure=200e5) / 1e6)
+    1520
+
+    References
+    ----------
+    [derived] first-order expansion of K(p)
+    """
+    return bulk_modulus + slope * pressure
+
+
+def bulk_modulus_warm(
+    *, bulk_modulus: Array, decay: Array, temperature: Array, reference_temperature: Array
+) -> Array:
+    """Bulk modulus at another temperature, K = K_ref exp(-b (T - T_ref)).
+
+    Parameters
+    ----------
+    bulk_modulus : K_ref at the reference temperature, Pa
+    decay : b, relative fall per kelvin, 1/K (0.0058 for mineral oil)
+    temperature, reference_temperature : K
+
+    Returns
+    -------
+    Pa
+
+    Valid: within some 60 K of the reference.
+
+    Examples
+    --------
+    >>> k = bulk_modulus_warm(bulk_modulus=1367e6, decay=0.0058, temperature=333.15,
+    ...                       reference_temperature=313.15)
+    >>> print(f"{k / 1e6:.0f} MPa")
+    1217 MPa
+
+    References
+    ----------
+    [derived] the exponential factor of `bulk_modulus_tait`'s K0
+    """
+    change = decay * (reference_temperature - temperature)
+    return bulk_modulus * namespace(change).exp(change)
+
+
+def bulk_modulus_tait(
+    *,
+    temperature: Array,
+    pressure: Array,
+    zero_modulus: Array = 8.4e9,
+    temperature_coefficient: Array = 0.0058,
+    pressure_coefficient: Array = 11.9,
+) -> Array:
+    """Isothermal tangent bulk modulus of a mineral oil by the Tait equation.
+
+    K = (K0 + B p) [1 - ln(1 + B p/K0)/B], K0 = zero_modulus exp(-c T), B = 1 + K0'.
+
+    Parameters
+    ----------
+    temperature : K
+    pressure : gauge, Pa
+    zero_modulus : Pa; temperature_coefficient : 1/K; pressure_coefficient : B, -
+
+    Returns
+    -------
+    Tangent bulk modulus, Pa
+
+    Valid: 0 to 150 degC, up to 350 bar for the default constants.
+
+    Examples
+    --------
+    >>> print(f"{bulk_modulus_tait(temperature=313.15, pressure=280e5) / 1e6:.1f}")
+    1668.1
+
+    References
+    ----------
+    [Dymond1988] Tait equation; constants of a generic mineral oil [OpenHydraulics]
+    """
+    xp = namespace(temperature, pressure, zero_modulus)
+    modulus = zero_modulus * xp.exp(-temperature_coefficient * temperature)
+    load = pressure_coefficient * pressure
+    return (modulus + load) * (1 - xp.log1p(load / modulus) / pressure_coefficient)
+
+
+def secant_bulk_modulus_tait(
+    *,
+    temperature: Array,
+    pressure: Array,
+    zero_modulus: Array = 8.4e9,
+    temperature_coefficient: Array = 0.0058,
+    pressure_coefficient: Array = 11.9,
+) -> Array:
+    """Isothermal secant bulk modulus from zero gauge pressure, p V0/(V0 - V), by Tait.
+
+    K_s = B p/ln(1 + B p/K0), the tangent K0 at p = 0.
+
+    Parameters
+    ----------
+    temperature : K
+    pressure : gauge, Pa
+    zero_modulus : Pa; temperature_coefficient : 1/K; pressure_coefficient : B, -
+
+    Returns
+    -------
+    Secant bulk modulus, Pa
+
+    Valid: 0 to 150 degC, up to 350 bar for the default constants.
+
+    Examples
+    --------
+    >>> print(f"{secant_bulk_modulus_tait(temperature=313.15, pressure=280e5) / 1e6:.1f}")
+    1526.6
+
+    References
+    ----------
+    [Dymond1988] Tait equation; [derived] from V/V0 = 1 - ln(1 + B p/K0)/B
+    """
+    xp = namespace(temperature, pressure, zero_modulus)
+    modulus = zero_modulus * xp.exp(-temperature_coefficient * temperature)
+    return modulus * expm1_quotient(xp.log1p(pressure_coefficient * pressure / modulus))
+
+
+def effective_bulk_modulus(
+    *,
+    bulk_modulus: Array,
+    pressure: Array,
+    air_content: Array,
+    polytropic_index: Array = 1.4,
+    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
+) -> Array:
+    """Tangent bulk modulus of oil with entrained air: oil and polytropic gas in parallel.
+
+    K_eff = K (1 + alpha r)/(1 + alpha r K/(n (p_a + p))), r = (p_a/(p_a + p))^(1/n).
+
+    Parameters
+    ----------
+    bulk_modulus : tangent value of the pure oil at this pressure, Pa
+    pressure : gauge, Pa; below -0.9 p_a the value at -0.9 p_a (cavitation)
+    air_content : free air over oil volume at atmospheric pressure, -
+    polytropic_index : n; 1.4 fast (adiabatic), 1.0 slow (isothermal)
+    atmospheric_pressure : Pa absolute
+
+    Returns
+    -------
+    Tangent bulk modulus, Pa
+
+    Valid: undissolved air only; air content up to about 0.2.
+
+    Examples
+    --------
+    >>> k = effective_bulk_modulus(bulk_modulus=1600e6, pressure=20e5, air_content=0.005)
+    >>> print(f"{k / 1e6:.0f}")
+    1220
+
+    References
+    ----------
+    [AaltoThesis] eq. 5
+    """
+    absolute_pressure = maximum(pressure, -0.9 * atmospheric_pressure) + atmospheric_pressure
+    gas = air_content * (atmospheric_pressure / absolute_pressure) ** (1 / polytropic_index)
+    softening = gas * bulk_modulus / (polytropic_index * absolute_pressure)
+    return bulk_modulus * (1 + gas) / (1 + softening)
+
+
+def trapped_bubble_volume_change(
+    *,
+    volume: Array,
+    air_volume: Array,
+    bulk_modulus: Array,
+    pressure: Array,
+    initial_pressure: Array,
+    polytropic_index: Array = 1.4,
+    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
+) -> Array:
+    """Volume change of a closed chamber that holds a constant mass of air.
+
+    dV = -(V - V_air)(p - p_0)/K + V_air [(p_a/(p + p_a))^(1/n) - (p_a/(p_0 + p_a))^(1/n)].
+
+    Parameters
+    ----------
+    volume : chamber volume at the initial pressure, m^3
+    air_volume : air, stated at atmospheric pressure, m^3
+    bulk_modulus : secant value of the oil between both pressures, Pa
+    pressure, initial_pressure : gauge, Pa, above -p_a
+    polytropic_index : n, -
+    atmospheric_pressure : Pa absolute
+
+    Returns
+    -------
+    m^3, negative when the pressure rises
+
+    Valid: air neither dissolves nor is released.
+
+    Examples
+    --------
+    >>> dv = trapped_bubble_volume_change(volume=1e-4, air_volume=2e-7, bulk_modulus=1.5e9,
+    ...                                   pressure=40e5, initial_pressure=20e5)
+    >>> print(f"{dv * 1e9:.1f} mm3")
+    -141.8 mm3
+
+    References
+    ----------
+    [derived] liquid at constant K beside a polytropic gas of constant mass
+    """
+    index = 1 / polytropic_index
+    now = (atmospheric_pressure / (pressure + atmospheric_pressure)) ** index
+    before = (atmospheric_pressure / (initial_pressure + atmospheric_pressure)) ** index
+    liquid = (volume - air_volume) * (pressure - initial_pressure) / bulk_modulus
+    return air_volume * (now - before) - liquid

@@ -1,0 +1,336 @@
+"""Seal friction: dry sum over the seals, Stribeck curve, LuGre, and published parameters.
+
+Friction has the sign of the speed; the magnitudes here are positive.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..numeric import Array, absolute, maximum, namespace, real, where
+from .lugre import (
+    LuGreStep,
+    lugre_bristle_damping,
+    lugre_bristle_stiffness,
+    lugre_passive_speed,
+    lugre_steady_deflection,
+    lugre_step,
+    lugre_tapered_damping,
+)
+
+__all__ = [
+    "HUANG_TABLE_2",
+    "LuGreStep",
+    "StribeckParameters",
+    "breakaway",
+    "coulomb_as_published",
+    "cylinder_friction",
+    "lugre_bristle_damping",
+    "lugre_bristle_stiffness",
+    "lugre_passive_speed",
+    "lugre_steady_deflection",
+    "lugre_step",
+    "lugre_tapered_damping",
+    "seal_friction",
+    "stribeck",
+    "stribeck_level",
+    "stribeck_slope",
+]
+
+
+def seal_friction(
+    *, line_load: Array, diameter: Array, friction_coefficient: Array, count: Array = 1.0
+) -> Array:
+    """Dry running friction of equal ring seals, F = n mu f pi D.
+
+    Parameters
+    ----------
+    line_load : normal force per length of circumference, N/m
+    diameter : of the sliding surface (bore or rod), m
+    friction_coefficient : -
+    count : number of rings that carry this line load, - (back-to-back rings do not both carry
+        the pressure)
+
+    Returns
+    -------
+    N
+
+    Valid: dry or boundary lubrication; oil film carries part of the load above it.
+
+    Examples
+    --------
+    >>> print(f"{seal_friction(line_load=2000.0, diameter=25e-3, friction_coefficient=0.1):.2f}")
+    15.71
+
+    References
+    ----------
+    [ElAsswad2018] eq. 15, with the squeeze preload inside the line load [derived]
+    """
+    return math.pi * friction_coefficient * line_load * diameter * count
+
+
+def cylinder_friction(
+    *,
+    piston_line_load: Array,
+    bore: Array,
+    piston_friction_coefficient: Array,
+    rod_line_load: Array,
+    rod_diameter: Array,
+    rod_friction_coefficient: Array,
+    piston_count: Array = 1.0,
+    rod_count: Array = 1.0,
+) -> Array:
+    """Dry running friction of a cylinder, mu pi (n_p f_p D + n_r f_r d).
+
+    The piston line load is taken at |p_A - p_B|, the rod's at max(p_B, 0), both at the squeeze
+    left after barrel growth.
+
+    Parameters
+    ----------
+    piston_line_load, rod_line_load : N/m
+    bore, rod_diameter : m
+    piston_friction_coefficient, rod_friction_coefficient : -
+    piston_count, rod_count : -
+
+    Returns
+    -------
+    N
+
+    Valid: as `seal_friction`.
+
+    Examples
+    --------
+    >>> f = cylinder_friction(piston_line_load=2000.0, bore=25e-3, rod_line_load=1500.0,
+    ...     piston_friction_coefficient=0.1, rod_diameter=12e-3, rod_friction_coefficient=0.1)
+    >>> print(f"{f:.2f}")
+    21.36
+
+    References
+    ----------
+    [ElAsswad2018] eq. 15 with preload [derived]
+    """
+    piston = piston_friction_coefficient * piston_line_load * bore * piston_count
+    return math.pi * (piston + rod_friction_coefficient * rod_line_load * rod_diameter * rod_count)
+
+
+def coulomb_as_published(
+    *,
+    pressure: Array,
+    friction_coefficient: Array,
+    piston_contact_width: Array,
+    bore: Array,
+    rod_contact_width: Array,
+    rod_diameter: Array,
+) -> Array:
+    """Coulomb friction as printed, F = mu dp (pi b_p D + pi b_r d).
+
+    Zero at dp = 0: the squeeze preload is missing.
+
+    Parameters
+    ----------
+    pressure : pressure difference, the same at both seals, Pa
+    friction_coefficient : -
+    piston_contact_width, rod_contact_width : `seals.width_as_published`, m
+    bore, rod_diameter : at pressure (D + 2 delta_r), m
+
+    Returns
+    -------
+    N
+
+    Valid: reproduction only.
+
+    Examples
+    --------
+    >>> f = coulomb_as_published(pressure=1e6, friction_coefficient=0.61, bore=25e-3,
+    ...     piston_contact_width=1e-3, rod_contact_width=1e-3, rod_diameter=12e-3)
+    >>> print(f"{f:.2f}")
+    70.91
+
+    References
+    ----------
+    [ElAsswad2018] eq. 15, 16, 17, 18, 20
+    """
+    area = math.pi * (piston_contact_width * bore + rod_contact_width * rod_diameter)
+    return friction_coefficient * pressure * area
+
+
+def breakaway(*, running: Array, ratio: Array) -> Array:
+    """Breakaway friction from running friction, F_S = ratio F_C.
+
+    Parameters
+    ----------
+    running : N
+    ratio : measured input, - (1.5 to 3 for elastomers)
+
+    Returns
+    -------
+    N
+
+    Valid: the dwell time the ratio was measured after.
+
+    Examples
+    --------
+    >>> breakaway(running=100.0, ratio=2.0)
+    200.0
+
+    References
+    ----------
+    [derived] definition of the ratio
+    """
+    return ratio * running
+
+
+def stribeck_level(
+    *, speed: Array, coulomb: Array, static: Array, stribeck_speed: Array, exponent: Array
+) -> Array:
+    """Friction level without sign and viscous part, g = F_C + (F_S - F_C) e^(-|v/v_s|^delta).
+
+    Parameters
+    ----------
+    speed : m/s
+    coulomb, static : F_C, F_S, N
+    stribeck_speed : v_s, m/s
+    exponent : delta, -
+
+    Returns
+    -------
+    N
+
+    Valid: F_S >= F_C > 0.
+
+    Examples
+    --------
+    >>> g = stribeck_level(speed=0.02, coulomb=500.0, static=1000.0, stribeck_speed=0.02,
+    ...                    exponent=2.0)
+    >>> print(f"{g:.2f}")
+    683.94
+
+    References
+    ----------
+    [AaltoThesis] eq. 30, [Huang2017] eq. 31
+    """
+    decay = (absolute(speed) / stribeck_speed) ** exponent
+    return coulomb + (static - coulomb) * namespace(decay).exp(-decay)
+
+
+def stribeck(
+    *,
+    speed: Array,
+    coulomb: Array,
+    static: Array,
+    stribeck_speed: Array,
+    exponent: Array,
+    viscous: Array,
+    smoothing_speed: Array | None = None,
+) -> Array:
+    """Steady friction, F = [F_C + (F_S - F_C) e^(-|v/v_s|^delta)] sgn v + sigma2 v.
+
+    Parameters
+    ----------
+    speed : m/s, signed
+    coulomb, static : N
+    stribeck_speed : m/s (papers print mm/s)
+    exponent : delta, -
+    viscous : sigma2, N s/m
+    smoothing_speed : v_eps much smaller than v_s replaces sgn v by tanh(v/v_eps), m/s;
+        None keeps the step (0 at v = 0)
+
+    Returns
+    -------
+    N, with the sign of the speed
+
+    Valid: steady sliding.
+
+    Examples
+    --------
+    >>> f = stribeck(speed=0.04, coulomb=500.0, static=1000.0, stribeck_speed=0.02,
+    ...              exponent=2.0, viscous=1000.0)
+    >>> print(f"{f:.3f}")
+    549.158
+
+    References
+    ----------
+    [Huang2017] eq. 31, [AaltoThesis] eq. 31, [MECE5005] Stribeck curve
+    """
+    level = stribeck_level(
+        speed=speed,
+        coulomb=coulomb,
+        static=static,
+        stribeck_speed=stribeck_speed,
+        exponent=exponent,
+    )
+    if smoothing_speed is None:
+        direction = where(real(speed) > 0, 1.0, where(real(speed) < 0, -1.0, 0.0 * real(speed)))
+    else:
+        ratio = speed / smoothing_speed
+        direction = namespace(ratio).tanh(ratio)
+    return level * direction + viscous * speed
+
+
+def stribeck_slope(
+    *,
+    speed: Array,
+    coulomb: Array,
+    static: Array,
+    stribeck_speed: Array,
+    exponent: Array,
+    viscous: Array,
+) -> Array:
+    """Incremental damping of the Stribeck curve, dF/dv; negative where it falls (stick-slip).
+
+    dF/dv = sigma2 - (F_S - F_C) (delta/v_s) y^(delta - 1) e^(-y^delta), y = |v|/v_s; the same
+    for both signs of the speed. At rest: the limit v -> 0+ of the sliding branch, taken at
+    y = 1e-9 (delta < 1 has none).
+
+    Parameters
+    ----------
+    speed : m/s
+    coulomb, static : N
+    stribeck_speed : m/s
+    exponent : delta, -
+    viscous : sigma2, N s/m
+
+    Returns
+    -------
+    N s/m
+
+    Valid: sliding; it says nothing about stiction.
+
+    Examples
+    --------
+    >>> b = stribeck_slope(speed=0.02, coulomb=500.0, static=1000.0, stribeck_speed=0.02,
+    ...                    exponent=2.0, viscous=1000.0)
+    >>> print(f"{b:.1f}")
+    -17394.0
+
+    References
+    ----------
+    [derived] derivative of [Huang2017] eq. 31 times v
+    """
+    y = maximum(absolute(speed) / stribeck_speed, 1e-9)
+    decay = y**exponent
+    fall = (static - coulomb) * exponent * decay * namespace(decay).exp(-decay)
+    return viscous - fall / (y * stribeck_speed)
+
+
+@dataclass(frozen=True, slots=True)
+class StribeckParameters:
+    """Stribeck parameters identified at one chamber pressure, SI."""
+
+    pressure: float
+    static: float
+    coulomb: float
+    exponent: float
+    stribeck_speed: float
+    viscous: float
+
+
+HUANG_TABLE_2 = (
+    StribeckParameters(0.6e6, 2100.0, 1419.0, 2.0, 1.5e-3, 1.1e4),
+    StribeckParameters(2.0e6, 1900.0, 800.0, 1.2, 1.9e-3, 1.0e4),
+    StribeckParameters(4.0e6, 1100.0, 362.8, 1.3, 2.2e-3, 1.3e4),
+    StribeckParameters(6.0e6, 1100.0, 300.0, 2.0, 1.2e-3, 1.6e4),
+)
+"""[Huang2017] Table 2, 125 mm plunger cylinder with step ring and Yx seal; v_s printed in mm/s,
+sigma2 in 1e4 N s/m, here in SI."""

@@ -1,0 +1,316 @@
+"""Masses and volumes of parts, in closed forms one can check by hand.
+
+Masses are density times volume; `oil_mass` is reported apart from the dry mass.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..numeric import Array
+
+
+def tube_mass(
+    *, density: Array, inner_diameter: Array, outer_diameter: Array, length: Array
+) -> Array:
+    """Mass of a tube, rod (inner diameter 0) or ring, rho pi (Do^2 - Di^2) L/4.
+
+    Parameters
+    ----------
+    density : kg/m^3
+    inner_diameter, outer_diameter, length : m
+
+    Returns
+    -------
+    kg
+
+    Valid: Do >= Di.
+
+    Examples
+    --------
+    >>> m = tube_mass(density=7850.0, inner_diameter=0.0, outer_diameter=12e-3, length=0.15)
+    >>> print(f"{m * 1e3:.1f} g")
+    133.2 g
+
+    References
+    ----------
+    [derived] hollow cylinder
+    """
+    ring = outer_diameter * outer_diameter - inner_diameter * inner_diameter
+    return (0.25 * math.pi) * density * ring * length
+
+
+def disc_mass(*, density: Array, diameter: Array, thickness: Array) -> Array:
+    """Mass of a solid disc (piston, cap), rho pi D^2 t/4.
+
+    Parameters
+    ----------
+    density : kg/m^3
+    diameter, thickness : m
+
+    Returns
+    -------
+    kg
+
+    Valid: everywhere.
+
+    Examples
+    --------
+    >>> print(f"{disc_mass(density=2700.0, diameter=30e-3, thickness=8e-3) * 1e3:.2f} g")
+    15.27 g
+
+    References
+    ----------
+    [derived] cylinder
+    """
+    return (0.25 * math.pi) * density * diameter * diameter * thickness
+
+
+def piston_groove_volume(*, diameter: Array, depth: Array, width: Array) -> Array:
+    """Material removed by an outer groove (piston), pi w h (D - h).
+
+    Parameters
+    ----------
+    diameter : outer diameter the groove is cut into, m
+    depth : radial, m
+    width : axial, m
+
+    Returns
+    -------
+    m^3
+
+    Valid: depth < diameter/2.
+
+    Examples
+    --------
+    >>> v = piston_groove_volume(diameter=25e-3, depth=1.7e-3, width=2.4e-3)
+    >>> print(f"{v * 1e9:.1f} mm3")
+    298.7 mm3
+
+    References
+    ----------
+    [derived] pi/4 (D^2 - (D - 2h)^2) w
+    """
+    return math.pi * width * depth * (diameter - depth)
+
+
+def rod_groove_volume(*, diameter: Array, depth: Array, width: Array) -> Array:
+    """Material removed by an inner groove (rod seal in the head), pi w h (d + h).
+
+    Parameters
+    ----------
+    diameter : hole diameter the groove is cut into, m
+    depth : radial, m
+    width : axial, m
+
+    Returns
+    -------
+    m^3
+
+    Valid: everywhere.
+
+    Examples
+    --------
+    >>> v = rod_groove_volume(diameter=12e-3, depth=1.7e-3, width=2.4e-3)
+    >>> print(f"{v * 1e9:.1f} mm3")
+    175.6 mm3
+
+    References
+    ----------
+    [derived] pi/4 ((d + 2h)^2 - d^2) w
+    """
+    return math.pi * width * depth * (diameter + depth)
+
+
+def pitch_diameter(*, diameter: Array, pitch: Array) -> Array:
+    """Pitch diameter of a metric thread, d2 = d - (3 sqrt(3)/8) P.
+
+    Parameters
+    ----------
+    diameter : nominal, m
+    pitch : m
+
+    Returns
+    -------
+    m
+
+    Valid: ISO metric profile.
+
+    Examples
+    --------
+    >>> print(f"{pitch_diameter(diameter=10e-3, pitch=1.5e-3) * 1e3:.3f} mm")
+    9.026 mm
+
+    References
+    ----------
+    [ISO724] basic dimensions
+    """
+    return diameter - (3 * math.sqrt(3) / 8) * pitch
+
+
+def stud_mass(*, density: Array, diameter: Array, pitch: Array, length: Array) -> Array:
+    """Mass of a threaded stud, the cylinder of its pitch diameter.
+
+    Ridges above and roots below the pitch line have equal section, so the pitch cylinder holds
+    the thread's volume but for its curvature and rounding (choice).
+
+    Parameters
+    ----------
+    density : kg/m^3
+    diameter, pitch, length : m
+
+    Returns
+    -------
+    kg
+
+    Valid: ISO metric profile, full thread.
+
+    Examples
+    --------
+    >>> m = stud_mass(density=7850.0, diameter=10e-3, pitch=1.5e-3, length=20e-3)
+    >>> print(f"{m * 1e3:.2f} g")
+    10.05 g
+
+    References
+    ----------
+    [ISO724] pitch diameter; [derived]
+    """
+    return disc_mass(
+        density=density, diameter=pitch_diameter(diameter=diameter, pitch=pitch), thickness=length
+    )
+
+
+def tie_rod_mass(*, density: Array, diameter: Array, length: Array, count: Array) -> Array:
+    """Mass of tie rods, n plain round bars of the nominal diameter (choice: nuts not counted).
+
+    Parameters
+    ----------
+    density : kg/m^3
+    diameter, length : m
+    count : -
+
+    Returns
+    -------
+    kg
+
+    Valid: everywhere.
+
+    Examples
+    --------
+    >>> m = tie_rod_mass(density=7850.0, diameter=6e-3, length=0.2, count=4.0)
+    >>> print(f"{m * 1e3:.1f} g")
+    177.6 g
+
+    References
+    ----------
+    [derived] cylinders
+    """
+    return count * disc_mass(density=density, diameter=diameter, thickness=length)
+
+
+def eye_volume(*, pin_diameter: Array) -> Array:
+    """Volume of a clevis eye, pi d^3, in proportions of its pin diameter d.
+
+    Choices: a round lug of outer radius d and thickness d with a hole d (3/4 pi d^3), and a
+    round neck of diameter d and length d from the lug's rim (1/4 pi d^3). The crescent between
+    rim and flat neck end (about pi d^3/128) and fillets are neglected.
+
+    Parameters
+    ----------
+    pin_diameter : m
+
+    Returns
+    -------
+    m^3
+
+    Valid: these proportions.
+
+    Examples
+    --------
+    >>> print(f"{eye_volume(pin_diameter=8e-3) * 1e9:.1f} mm3")
+    1608.5 mm3
+
+    References
+    ----------
+    [derived] disc minus hole plus cylinder
+    """
+    return math.pi * pin_diameter * pin_diameter * pin_diameter
+
+
+def eye_length(*, pin_diameter: Array) -> Array:
+    """Distance from the pin centre to the end of the eye's neck, 2 d (see `eye_volume`).
+
+    Parameters
+    ----------
+    pin_diameter : m
+
+    Returns
+    -------
+    m
+
+    Valid: the proportions of `eye_volume`.
+
+    Examples
+    --------
+    >>> eye_length(pin_diameter=8e-3)
+    0.016
+
+    References
+    ----------
+    [derived] lug radius d and neck length d
+    """
+    return 2 * pin_diameter
+
+
+def ring_mass(*, density: Array, section: Array, centre_diameter: Array) -> Array:
+    """Mass of an O-ring, the torus rho pi^2 W^2 D_m/4.
+
+    Parameters
+    ----------
+    density : kg/m^3
+    section : free section W, m
+    centre_diameter : diameter of the free ring's centre line, m
+
+    Returns
+    -------
+    kg
+
+    Valid: W < D_m.
+
+    Examples
+    --------
+    >>> m = ring_mass(density=1300.0, section=2e-3, centre_diameter=23e-3)
+    >>> print(f"{m * 1e3:.3f} g")
+    0.295 g
+
+    References
+    ----------
+    [derived] Pappus' theorem
+    """
+    return (0.25 * math.pi**2) * density * section * section * centre_diameter
+
+
+def oil_mass(*, density: Array, volume: Array) -> Array:
+    """Mass of the oil in a volume, rho V.
+
+    Parameters
+    ----------
+    density : kg/m^3
+    volume : m^3
+
+    Returns
+    -------
+    kg
+
+    Valid: full of oil.
+
+    Examples
+    --------
+    >>> round(oil_mass(density=870.0, volume=60e-6), 4)
+    0.0522
+
+    References
+    ----------
+    [derived] definition of the density
+    """
+    return density * volume

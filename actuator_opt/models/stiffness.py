@@ -1,0 +1,339 @@
+"""Axial stiffness of the closed cylinder: per chamber, along the stroke, and as published.
+
+Each chamber has one compliance C = V/K + dV/dp of barrel, pipes and hoses; the two chambers act
+in parallel on the piston, in series with rod and mounting. Chamber A is at the cap end, its
+length is the piston position x; chamber B is at the rod end, its length is stroke - x.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from ..numeric import Array, clip, maximum, real, sqrt, where
+from .fluid import ATMOSPHERIC_PRESSURE
+from .stiffness_published import (
+    barrel_stiffness_as_published,
+    cylinder_expansion_as_published,
+    line_stiffness_as_published,
+    oil_stiffness_as_published,
+    series_of_totals_as_published,
+)
+
+__all__ = [
+    "HoldingPressures",
+    "LoadStep",
+    "barrel_stiffness_as_published",
+    "chamber_compliance",
+    "chamber_stiffness",
+    "cylinder_expansion_as_published",
+    "holding_pressures",
+    "hydraulic_stiffness",
+    "line_stiffness_as_published",
+    "oil_stiffness_as_published",
+    "series",
+    "series_of_totals_as_published",
+    "trapped_air_load_step",
+    "weakest_position",
+]
+
+
+def chamber_compliance(*, volume: Array, bulk_modulus: Array, wall_compliance: Array) -> Array:
+    """Volume a closed chamber takes per pressure, C = V/K + (dV/dp)_walls.
+
+    Parameters
+    ----------
+    volume : oil volume with lines and dead volume, m^3
+    bulk_modulus : effective tangent value at the chamber's pressure, Pa
+    wall_compliance : sum over barrel, pipes and hoses, m^3/Pa
+
+    Returns
+    -------
+    m^3/Pa
+
+    Valid: small pressure changes.
+
+    Examples
+    --------
+    >>> print(f"{chamber_compliance(volume=7e-5, bulk_modulus=1.4e9, wall_compliance=2e-14):.2e}")
+    7.00e-14
+
+    References
+    ----------
+    [derived] oil and walls see the same pressure
+    """
+    return volume / bulk_modulus + wall_compliance
+
+
+def chamber_stiffness(
+    *, area: Array, volume: Array, bulk_modulus: Array, wall_compliance: Array
+) -> Array:
+    """Stiffness of one closed chamber on its piston face, k = A^2/C.
+
+    Parameters
+    ----------
+    area : m^2
+    volume : oil volume with lines and dead volume, m^3
+    bulk_modulus : effective tangent value at the chamber's pressure, Pa
+    wall_compliance : sum over barrel, pipes and hoses, m^3/Pa
+
+    Returns
+    -------
+    N/m
+
+    Valid: small pressure changes.
+
+    Examples
+    --------
+    >>> k = chamber_stiffness(area=5e-4, volume=5e-5, bulk_modulus=1.4e9, wall_compliance=0.0)
+    >>> round(k)
+    7000000
+
+    References
+    ----------
+    [AaltoThesis] eq. 6, one term, with the walls added [derived]
+    """
+    return area * area / (volume / bulk_modulus + wall_compliance)
+
+
+def hydraulic_stiffness(
+    *, area_a: Array, compliance_a: Array, area_b: Array, compliance_b: Array
+) -> Array:
+    """Stiffness of both closed chambers, k_h = A_A^2/C_A + A_B^2/C_B.
+
+    Parameters
+    ----------
+    area_a, area_b : m^2
+    compliance_a, compliance_b : of the chambers at the piston position, m^3/Pa
+
+    Returns
+    -------
+    N/m
+
+    Valid: ports closed.
+
+    Examples
+    --------
+    >>> round(hydraulic_stiffness(area_a=5e-4, compliance_a=5e-14,
+    ...                           area_b=4e-4, compliance_b=4e-14))
+    9000000
+
+    References
+    ----------
+    [AaltoThesis] eq. 6 with the walls inside each chamber [derived]
+    """
+    return area_a * area_a / compliance_a + area_b * area_b / compliance_b
+
+
+def weakest_position(
+    *,
+    area_a: Array,
+    area_b: Array,
+    compliance_a0: Array,
+    compliance_a_per_length: Array,
+    compliance_b0: Array,
+    compliance_b_per_length: Array,
+    stroke: Array,
+) -> Array:
+    """Piston position where the closed cylinder is softest, clipped to the stroke.
+
+    With C_A = a0 + a' x, C_B = b0 + b' (s - x), dk_h/dx = 0 where
+    C_A/C_B = r = (A_A/A_B) sqrt(a'/b'), so x = [r (b0 + b' s) - a0]/(a' + r b').
+
+    Parameters
+    ----------
+    area_a, area_b : m^2
+    compliance_a0, compliance_b0 : chamber compliance at zero chamber length, m^3/Pa
+    compliance_a_per_length, compliance_b_per_length : growth with chamber length, m^2/Pa
+    stroke : m
+
+    Returns
+    -------
+    m from the cap end
+
+    Valid: positive areas and compliances; k_h is convex in x, so the point is the minimum.
+
+    Examples
+    --------
+    >>> x = weakest_position(area_a=4e-4, area_b=4e-4, compliance_a0=1e-14, stroke=0.1,
+    ...     compliance_a_per_length=3e-13, compliance_b0=1e-14, compliance_b_per_length=3e-13)
+    >>> print(f"{x:.3f}")
+    0.050
+
+    References
+    ----------
+    [derived] stationary point of A_A^2/C_A + A_B^2/C_B
+    """
+    ratio = area_a / area_b * sqrt(compliance_a_per_length / compliance_b_per_length)
+    top = ratio * (compliance_b0 + compliance_b_per_length * stroke) - compliance_a0
+    position = top / (compliance_a_per_length + ratio * compliance_b_per_length)
+    return clip(position, 0.0, stroke)
+
+
+def series(*stiffnesses: Array) -> Array:
+    """Stiffness of springs in series, 1/k = sum 1/k_i.
+
+    Parameters
+    ----------
+    stiffnesses : N/m, positive (infinity is a rigid part)
+
+    Returns
+    -------
+    N/m
+
+    Valid: everywhere; never stiffer than the softest part.
+
+    Examples
+    --------
+    >>> series(2.0, 2.0)
+    1.0
+
+    References
+    ----------
+    [derived] equal force, added deflections
+    """
+    flexibility: Array = 0.0
+    for stiffness in stiffnesses:
+        flexibility = flexibility + 1 / stiffness
+    return 1 / flexibility
+
+
+class HoldingPressures(NamedTuple):
+    """Chamber pressures of the holding state, gauge, Pa."""
+
+    pressure_a: Array
+    pressure_b: Array
+
+
+def holding_pressures(
+    *, force: Array, supply_pressure: Array, return_pressure: Array, area_a: Array, area_b: Array
+) -> HoldingPressures:
+    """Chamber pressures after a critical-centre servo valve has closed on a held load.
+
+    p_A = [F + (p_s + p_r) A_B]/(A_A + A_B), p_B = p_s + p_r - p_A, both within [p_r, p_s].
+
+    Parameters
+    ----------
+    force : force the rod exerts on its load, > 0 push, < 0 pull, N
+    supply_pressure, return_pressure : gauge, Pa
+    area_a, area_b : m^2
+
+    Returns
+    -------
+    pressure_a, pressure_b : gauge, Pa
+
+    Valid: matched symmetrical valve edges; beyond the stall force the limits hold.
+
+    Examples
+    --------
+    >>> holding_pressures(force=0.0, supply_pressure=1e7, return_pressure=0.0,
+    ...                   area_a=4e-4, area_b=4e-4)
+    HoldingPressures(pressure_a=5000000.0, pressure_b=5000000.0)
+
+    References
+    ----------
+    [Merritt1967] p_s = p_1 + p_2 of a matched valve; [derived] force balance of the piston
+    """
+    total = supply_pressure + return_pressure
+    pressure = (force + total * area_b) / (area_a + area_b)
+    pressure_a = clip(pressure, return_pressure, supply_pressure)
+    return HoldingPressures(pressure_a, total - pressure_a)
+
+
+class LoadStep(NamedTuple):
+    """Answer of a closed cylinder to a load step."""
+
+    displacement: Array
+    pressure_a: Array
+    pressure_b: Array
+    stiffness: Array
+
+
+def trapped_air_load_step(
+    *,
+    force: Array,
+    area_a: Array,
+    area_b: Array,
+    volume_a: Array,
+    volume_b: Array,
+    air_volume_a: Array,
+    air_volume_b: Array,
+    initial_pressure_a: Array,
+    initial_pressure_b: Array,
+    bulk_modulus: Array,
+    polytropic_index: Array = 1.4,
+    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
+) -> LoadStep:
+    """Secant answer of a closed cylinder with a constant mass of air in each chamber.
+
+    Solves dV_A(p_A) = A_A dx, dV_B(p_B) = -A_B dx and
+    (p_A - p_A0) A_A - (p_B - p_B0) A_B = F, dV by `fluid.trapped_bubble_volume_change`.
+    Substituting leaves one decreasing convex equation in p_A; Newton from its left end (either
+    chamber at -0.9 p_a) climbs to the root without overshoot, in a fixed 40 steps.
+
+    Parameters
+    ----------
+    force : step of the force the rod exerts, > 0 push (the rod gives way inwards), N
+    area_a, area_b : m^2
+    volume_a, volume_b : chamber volumes with lines, m^3
+    air_volume_a, air_volume_b : at atmospheric pressure, m^3
+    initial_pressure_a, initial_pressure_b : gauge, Pa
+    bulk_modulus : secant value of the oil, Pa
+    polytropic_index, atmospheric_pressure : -, Pa absolute
+
+    Returns
+    -------
+    displacement (m, > 0 extends), pressure_a, pressure_b (Pa), secant stiffness -F/dx (N/m);
+    all NaN where no state above -0.9 p_a carries the load, the stiffness also at zero force.
+
+    Valid: air neither dissolves nor is released; rigid walls.
+
+    Examples
+    --------
+    >>> step = trapped_air_load_step(force=1000.0, area_a=8e-4, area_b=8e-4, volume_a=8e-5,
+    ...     volume_b=8e-5, air_volume_a=0.0, air_volume_b=0.0, initial_pressure_a=50e5,
+    ...     initial_pressure_b=50e5, bulk_modulus=1.5e9)
+    >>> print(f"{step.displacement * 1e3:.4f} mm, {step.stiffness / 1e6:.0f} kN/mm")
+    -0.0417 mm, 24 kN/mm
+
+    References
+    ----------
+    [derived] from the volume and force balances; idea of constant air [AaltoThesis] section 5.1
+    """
+    index = 1 / polytropic_index
+    start_a = initial_pressure_a + atmospheric_pressure
+    start_b = initial_pressure_b + atmospheric_pressure
+    gas_a = air_volume_a * (atmospheric_pressure / start_a) ** index
+    gas_b = air_volume_b * (atmospheric_pressure / start_b) ** index
+    liquid_a = (volume_a - air_volume_a) / bulk_modulus
+    liquid_b = (volume_b - air_volume_b) / bulk_modulus
+    lever = area_a / area_b
+
+    def residual(absolute_a: Array) -> tuple[Array, Array, Array, Array]:
+        """Volume mismatch and its slope over p_A, with dV_A and p_B (absolute)."""
+        absolute_b = start_b + ((absolute_a - start_a) * area_a - force) / area_b
+        bubble_a = gas_a * (start_a / absolute_a) ** index
+        bubble_b = gas_b * (start_b / absolute_b) ** index
+        change_a = bubble_a - gas_a - liquid_a * (absolute_a - start_a)
+        change_b = bubble_b - gas_b - liquid_b * (absolute_b - start_b)
+        slope_a = -liquid_a - index * bubble_a / absolute_a
+        slope_b = -(liquid_b + index * bubble_b / absolute_b) * lever
+        mismatch = change_b + change_a / lever
+        return mismatch, slope_b + slope_a / lever, change_a, absolute_b
+
+    floor = 0.1 * atmospheric_pressure
+    pressure = maximum(floor, start_a + (force - (start_b - floor) * area_b) / area_a)
+    pressure = pressure * (1 + 1e-12)
+    mismatch, slope, _, _ = residual(pressure)
+    valid = real(mismatch) >= 0
+    for _ in range(40):
+        pressure = pressure - where(valid, mismatch, 0 * mismatch) / slope
+        mismatch, slope, change_a, absolute_b = residual(pressure)
+    displacement = where(valid, change_a / area_a, math.nan)
+    moved = valid & (real(change_a) != 0)
+    return LoadStep(
+        displacement,
+        where(valid, pressure - atmospheric_pressure, math.nan),
+        where(valid, absolute_b - atmospheric_pressure, math.nan),
+        where(moved, -force * area_a / where(moved, change_a, 1.0), math.nan),
+    )

@@ -1,0 +1,199 @@
+"""Stiffness formulas exactly as the sources print them, to reproduce and compare.
+
+They put the *totals* of oil, barrel and hoses in series, which is off by up to 13 % with hoses;
+`stiffness` holds the correct forms. `stiffness` re-exports these functions.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..numeric import Array, real, where
+
+
+def _expansion(inner_diameter: Array, outer_diameter: Array) -> Array:
+    """Wall coefficient lambda = (Do^2 + D^2)/(Do^2 - D^2), NaN without a wall."""
+    inner, outer = inner_diameter * inner_diameter, outer_diameter * outer_diameter
+    valid = real(outer - inner) > 0
+    return where(valid, (outer + inner) / where(valid, outer - inner, 1.0), math.nan)
+
+
+def series_of_totals_as_published(
+    *, oil: Array, barrel: Array, rod: Array, lines: Array = math.inf, other: Array = math.inf
+) -> Array:
+    """Total stiffness as the sources write it: totals of each kind in series.
+
+    1/k = 1/k_oil + 1/k_rod + 1/k_barrel + 1/k_lines + 1/k_other.
+
+    Parameters
+    ----------
+    oil : N/m, `oil_stiffness_as_published`
+    barrel : sum of both chambers' barrel stiffness, N/m
+    rod : N/m
+    lines : sum of both chambers' line stiffness, N/m (infinite: rigid)
+    other : load cell, mounting, seals, N/m (infinite: rigid)
+
+    Returns
+    -------
+    N/m
+
+    Valid: reproduction of the sources only; `stiffness.hydraulic_stiffness` is the correct form.
+
+    Examples
+    --------
+    >>> print(f"{series_of_totals_as_published(oil=2480e3, barrel=1e99, rod=13430e3):.4g}")
+    2.093e+06
+
+    References
+    ----------
+    [AaltoThesis] eq. 3, 37, 38; [ElAsswad2018] eq. 7
+    """
+    return 1 / (1 / oil + 1 / barrel + 1 / rod + 1 / lines + 1 / other)
+
+
+def oil_stiffness_as_published(
+    *,
+    bulk_modulus_a: Array,
+    bulk_modulus_b: Array,
+    area_a: Array,
+    area_b: Array,
+    volume_a: Array,
+    volume_b: Array,
+) -> Array:
+    """Stiffness of the oil alone, k_o = K_A A_A^2/V_A + K_B A_B^2/V_B.
+
+    Parameters
+    ----------
+    bulk_modulus_a, bulk_modulus_b : Pa ([ElAsswad2018] uses one value)
+    area_a, area_b : m^2
+    volume_a, volume_b : chamber volumes with line volumes, m^3
+
+    Returns
+    -------
+    N/m
+
+    Valid: rigid walls.
+
+    Examples
+    --------
+    >>> round(oil_stiffness_as_published(bulk_modulus_a=8e8, bulk_modulus_b=8e8, area_a=5e-4,
+    ...                                  area_b=5e-4, volume_a=5e-5, volume_b=5e-5))
+    8000000
+
+    References
+    ----------
+    [ElAsswad2018] eq. 9, [AaltoThesis] eq. 6
+    """
+    side_a = bulk_modulus_a * area_a * area_a / volume_a
+    return side_a + bulk_modulus_b * area_b * area_b / volume_b
+
+
+def barrel_stiffness_as_published(
+    *,
+    bore: Array,
+    outer_diameter: Array,
+    area: Array,
+    chamber_length: Array,
+    youngs_modulus: Array,
+    poissons_ratio: Array,
+) -> Array:
+    """Barrel expansion stiffness of one chamber, k_c = E A/(2 l (lambda + nu)).
+
+    With A = A_A (eq. 22) it equals A^2/(dV/dp); with A = A_B (eq. 23) it is too stiff by
+    A_A/A_B, since the wall swells over the full bore in both chambers.
+
+    Parameters
+    ----------
+    bore, outer_diameter : m
+    area : the chamber's effective piston area, m^2
+    chamber_length : m
+    youngs_modulus, poissons_ratio : Pa, -
+
+    Returns
+    -------
+    N/m
+
+    Valid: eq. 22 isotropic open-ended barrel; eq. 23 reproduction only.
+
+    Examples
+    --------
+    >>> k = barrel_stiffness_as_published(bore=0.04, outer_diameter=0.05, area=1.2566e-3,
+    ...     chamber_length=0.11, youngs_modulus=210e9, poissons_ratio=0.3)
+    >>> print(f"{k / 1e6:.1f} MN/m")
+    247.0 MN/m
+
+    References
+    ----------
+    [AaltoThesis] eq. 22, 23, 24
+    """
+    growth = _expansion(bore, outer_diameter) + poissons_ratio
+    return 0.5 * youngs_modulus * area / (chamber_length * growth)
+
+
+def line_stiffness_as_published(
+    *,
+    area: Array,
+    inner_diameter: Array,
+    outer_diameter: Array,
+    length: Array,
+    youngs_modulus: Array,
+    poissons_ratio: Array,
+) -> Array:
+    """Expansion stiffness of one chamber's pipe or hose, k = 2 E A^2/(pi D^2 l (lambda + nu)).
+
+    Parameters
+    ----------
+    area : the chamber's effective piston area, m^2
+    inner_diameter, outer_diameter, length : of the line, m
+    youngs_modulus, poissons_ratio : Pa, -
+
+    Returns
+    -------
+    N/m
+
+    Valid: isotropic open-ended line; exact as A^2/(dV/dp).
+
+    Examples
+    --------
+    >>> k = line_stiffness_as_published(area=1.2566e-3, inner_diameter=9.5e-3, length=0.6,
+    ...     outer_diameter=12e-3, youngs_modulus=17.8e9, poissons_ratio=0.3)
+    >>> print(f"{k / 1e6:.1f} MN/m")
+    70.9 MN/m
+
+    References
+    ----------
+    [AaltoThesis] eq. 25, 26
+    """
+    growth = _expansion(inner_diameter, outer_diameter) + poissons_ratio
+    compliance = (0.5 * math.pi) * inner_diameter * inner_diameter * length * growth
+    return youngs_modulus * area * area / compliance
+
+
+def cylinder_expansion_as_published(*, pressure: Array, area: Array, stroke: Array) -> Array:
+    """Evaluate the "cylinder expansion stiffness" dp A/L_p: the unit fits, but it is no stiffness.
+
+    It grows with pressure; A^2/(dV/dp) does not.
+
+    Parameters
+    ----------
+    pressure : pressure difference, Pa
+    area : m^2
+    stroke : m
+
+    Returns
+    -------
+    N/m
+
+    Valid: reproduction only.
+
+    Examples
+    --------
+    >>> k = cylinder_expansion_as_published(pressure=1e6, area=4.9087e-4, stroke=0.11)
+    >>> print(f"{k / 1e3:.2f} N/mm")
+    4.46 N/mm
+
+    References
+    ----------
+    [ElAsswad2018] eq. 10
+    """
+    return pressure * area / stroke

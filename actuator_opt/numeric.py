@@ -1,0 +1,105 @@
+"""Small numerical helpers that every model shares.
+
+Models are written once for floats, NumPy arrays, arrays of any array-API namespace, and complex
+numbers: the derivative of a model is its imaginary part under a tiny imaginary step
+[Squire1998]. The functions here are the ones whose NumPy counterparts are silently wrong or
+refuse complex input; every comparison is made on real parts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+
+Array: TypeAlias = Any
+"""A float, or an array of any array-API namespace, real or (under differentiation) complex."""
+
+STEP = 1e-30
+"""Imaginary step of the complex-step derivative: far below rounding, so the error is O(1e-60)."""
+
+
+def namespace(*values: Array) -> Any:
+    """The array-API namespace of the arguments: NumPy unless an array brings its own."""
+    for value in values:
+        if not isinstance(value, (float, int, complex, np.ndarray, np.generic)):
+            return value.__array_namespace__()
+    return np
+
+
+def real(value: Array) -> Array:
+    """The real part of a real or complex value."""
+    if isinstance(value, (float, int, complex)):
+        return value.real
+    if isinstance(value, np.ndarray):
+        return value.real
+    xp = namespace(value)
+    return xp.real(value) if xp.isdtype(value.dtype, "complex floating") else value
+
+
+def where(condition: Array, yes: Array, no: Array) -> Array:
+    """Elementwise choice; `condition` must come from real parts."""
+    if isinstance(condition, (bool, np.bool_)):
+        return yes if condition else no
+    return namespace(condition, yes, no).where(condition, yes, no)
+
+
+def absolute(value: Array) -> Array:
+    """|value| with the derivative sign(value); `abs` of a complex step is silently wrong."""
+    return where(real(value) >= 0, value, -value)
+
+
+def maximum(first: Array, second: Array) -> Array:
+    """The larger by real part (the derivative of the larger one)."""
+    return where(real(first) >= real(second), first, second)
+
+
+def minimum(first: Array, second: Array) -> Array:
+    """The smaller by real part (the derivative of the smaller one)."""
+    return where(real(first) <= real(second), first, second)
+
+
+def clip(value: Array, lower: Array, upper: Array) -> Array:
+    """`value` limited to [lower, upper]: only for a physical limit, never to hide a fault."""
+    return minimum(maximum(value, lower), upper)
+
+
+def positive(value: Array) -> Array:
+    """`value` where its real part is positive, NaN elsewhere: guards a domain without raising."""
+    return where(real(value) > 0, value, np.nan)
+
+
+def sqrt(value: Array) -> Array:
+    """Square root that stays NaN for a negative real part, also under a complex step."""
+    xp = namespace(value)
+    negative = real(value) < 0
+    root = xp.sqrt(where(negative, 0 * value + 1, value))
+    return where(negative, 0 * root + np.nan, root)
+
+
+def expm1_quotient(value: Array) -> Array:
+    """expm1(value)/value, 1 at 0, smooth and complex-step safe."""
+    xp = namespace(value)
+    small = (real(value) < 1e-5) & (real(value) > -1e-5)
+    safe = where(small, 0 * value + 1, value)
+    return where(small, 1 + value / 2 + value * value / 6, xp.expm1(safe) / safe)
+
+
+def jacobian(function: Callable[[Array], Array], point: Array) -> tuple[Array, Array]:
+    """Value and Jacobian of a function of a vector, by one batched complex-step evaluation.
+
+    Parameters
+    ----------
+    function : maps an array (n, k) of k points, real or complex, to an array (m, k)
+    point : array (n,)
+
+    Returns
+    -------
+    value (m,), jacobian (m, n)
+    """
+    n = len(point)
+    batch = np.repeat(np.asarray(point, dtype=complex)[:, None], n, axis=1)
+    batch[np.arange(n), np.arange(n)] += 1j * STEP
+    result = np.asarray(function(batch))
+    return result[:, 0].real.copy(), result.imag / STEP

@@ -1,0 +1,209 @@
+"""The actuator as an optimisation problem: variables by PATH, one margin per limit, case, place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import Diagnostic, InputError
+from ..evaluate import Subject, compute
+from ..evaluate.limits import Limit, all_limits
+from ..evaluate.rows import Computed, Row, by_case, rows_of
+from ..evaluate.values import Values as Numbers
+from ..numeric import Array, maximum, minimum, real, where
+from .problem import ParametricProblem, Problem, Values
+
+Fault = Callable[[str, str, str], Diagnostic]
+"""Makes a Diagnostic of a variable's (path, message, remedy) at its place in the file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """What is minimised: metrics with weights, each divided by its scale; sign −1 maximises."""
+
+    weights: Mapping[str, float]
+    scales: Mapping[str, float]
+    sign: float
+
+    @property
+    def single(self) -> str | None:
+        """The metric, where there is only one."""
+        return next(iter(self.weights)) if len(self.weights) == 1 else None
+
+    def value(self, computed: Computed, cases: tuple[str, ...]) -> Array:
+        """The objective of every design, to be minimised."""
+        total: Array = 0.0
+        for metric, weight in self.weights.items():
+            worst = governing(computed, metric, cases, largest=self.sign > 0)
+            total = total + weight / self.scales[metric] * worst
+        return self.sign * total
+
+    def shown(self, objective: float) -> float:
+        """The objective as the user states it (a maximised metric with its own sign)."""
+        return self.sign * objective
+
+
+def governing(computed: Computed, metric: str, cases: tuple[str, ...], *, largest: bool) -> Array:
+    """The worst of a metric over load cases and places, (designs,)."""
+    pick = maximum if largest else minimum
+    worst: Array = None
+    for array in computed.metrics.get(metric, {}).values():
+        for _, value in by_case(computed, metric, array, cases):
+            worst = value if worst is None else pick(worst, value)
+    if worst is None:
+        reason = computed.why.get(metric, "it does not apply to this design")
+        raise InputError(
+            Diagnostic(
+                f"{metric} cannot be an objective here: {reason}",
+                "choose a metric that `actuator-opt evaluate` shows a value for",
+                path="objective",
+            )
+        )
+    return worst
+
+
+def goal_of(subject: Subject) -> Goal:
+    """The objective of a design; weighted metrics are divided by their present value."""
+    objective = subject.design.objective
+    sign = 1.0 if objective.minimise is not None else -1.0
+    stated = objective.minimise if objective.minimise is not None else objective.maximise
+    assert stated is not None
+    if isinstance(stated, str):
+        return Goal({stated: 1.0}, {stated: 1.0}, sign)
+    done = compute(subject, subject.values())
+    scales = {}
+    for metric in stated:
+        present = governing(done.computed, metric, subject.cases, largest=sign > 0)
+        scales[metric] = abs(float(np.squeeze(present))) or 1.0
+    return Goal(dict(stated), scales, sign)
+
+
+@dataclass(frozen=True)
+class ActuatorProblem:
+    """A design with variables, as the generic solver sees it, and back."""
+
+    subject: Subject
+    goal: Goal
+    paths: tuple[str, ...]
+    rows: tuple[Row, ...]
+    fixed: tuple[Row, ...]
+    """Rows no variable changes: met or missed for good."""
+    problem: Problem
+    _wanted: tuple[tuple[Limit, str, str], ...]
+
+    def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
+        """The same problem with prices asked for the numbers at `parameters`."""
+
+        def evaluate(points: Array, values: Array) -> Values:
+            varied = dict(zip(parameters, values, strict=True))
+            return self.evaluate(points, varied)
+
+        present = np.array([self.subject.numbers[path] for path in parameters])
+        return ParametricProblem(self.problem, parameters, present, evaluate)
+
+    def evaluate(self, points: Array, parameters: Mapping[str, Array] | None = None) -> Values:
+        """Objective and constraint margins of points (variables, designs)."""
+        varied = dict(parameters or {}) | dict(zip(self.paths, points, strict=True))
+        numbers = self.subject.values(varied)
+        done = compute(self.subject, numbers)
+        return Values(
+            self.goal.value(done.computed, self.subject.cases),
+            _margins(self._wanted, done.computed, numbers, points.shape[1]),
+        )
+
+
+def _bounded(margin: Array) -> Array:
+    """A margin as the solver sees it: m below 0, m/(1 + m) above, so that infinity is 1.
+
+    Same sign, and same value and slope where the limit holds exactly.
+    """
+    large = real(margin) > 1e9
+    held = where(large, 0.0, margin)
+    inside = where(real(held) > 0, held / (1 + where(real(held) > 0, held, 0.0)), held)
+    return where(large, 1.0, inside)
+
+
+def _margins(
+    wanted: tuple[tuple[Limit, str, str], ...], computed: Computed, numbers: Numbers, count: int
+) -> Array:
+    found: dict[tuple[int, str, str], Array] = {}
+    for limit in {id(item[0]): item[0] for item in wanted}.values():
+        for row in rows_of(limit, computed, numbers):
+            found[id(limit), row.case, row.place] = row.margin
+    keys = [(id(limit), case, place) for limit, case, place in wanted]
+    rows = [np.broadcast_to(found[key], (count,)) for key in keys]
+    return _bounded(np.array(rows)) if rows else np.empty((0, count))
+
+
+def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
+    """The optimisation problem of a design.
+
+    Parameters
+    ----------
+    subject : the prepared design
+    fault : places a variable's fault in its file; default: by PATH only
+
+    Raises
+    ------
+    InputError
+        no variables, or a variable that no model reads
+    """
+    design = subject.design
+    if not design.variables:
+        raise InputError(
+            Diagnostic(
+                "the design has no variables: nothing may move",
+                "add a `variables` block with lower and upper bounds",
+                path="variables",
+            )
+        )
+    paths = tuple(design.variables)
+    lower = np.array([design.variables[path].lower for path in paths], dtype=float)
+    upper = np.array([design.variables[path].upper for path in paths], dtype=float)
+    start = np.array(
+        [
+            subject.numbers[path] if variable.start is None else variable.start
+            for path, variable in design.variables.items()
+        ],
+        dtype=float,
+    )
+    goal = goal_of(subject)
+    limits = tuple(all_limits(subject.design, subject.plugins))
+    numbers = subject.values({path: np.array([v, v]) for path, v in zip(paths, start, strict=True)})
+    done = compute(subject, numbers)
+    goal.value(done.computed, subject.cases)
+    everything = [row for limit in limits for row in rows_of(limit, done.computed, numbers)]
+    _check_read(numbers, paths, fault)
+    rows = tuple(row for row in everything if np.size(row.margin) > 1)
+    fixed = tuple(row for row in everything if np.size(row.margin) == 1)
+    wanted = tuple((row.limit_of, row.case, row.place) for row in rows)
+    missed = [row for row in fixed if not float(row.margin[0]) >= -1e-6]
+    wanted += tuple((row.limit_of, row.case, row.place) for row in missed)
+    rows += tuple(missed)
+    holder: list[ActuatorProblem] = []
+    problem = Problem(
+        names=paths,
+        lower=lower,
+        upper=upper,
+        evaluate=lambda points: holder[0].evaluate(points),
+        constraint_names=tuple(row.label for row in rows),
+        start=start,
+        relaxable=tuple(row.limit_of.origin != "geometry" for row in rows),
+    )
+    holder.append(ActuatorProblem(subject, goal, paths, rows, fixed, problem, wanted))
+    return holder[0]
+
+
+def _check_read(numbers: Numbers, paths: tuple[str, ...], fault: Fault | None) -> None:
+    """Every variable must be read by some model."""
+    faults = []
+    for path in paths:
+        if path not in numbers.read:
+            message = "no model reads this variable for this design"
+            remedy = "remove it, or check that the part it belongs to is used"
+            place = fault(path, message, remedy) if fault else None
+            faults.append(place or Diagnostic(message, remedy, path=f"variables.{path}"))
+    if faults:
+        raise InputError(faults)

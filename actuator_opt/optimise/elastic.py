@@ -1,0 +1,116 @@
+"""Elastic problems: the same problem with constraints that may be missed at a price."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ..numeric import Array
+from .evaluator import Evaluator, Point
+from .newton import polish
+from .nlopt_wrapper import run
+from .problem import Problem, Values, Vector
+
+FEASIBLE = 1e-6
+"""Slack that counts as none."""
+
+
+def common(problem: Problem, room: float) -> Problem:
+    """Minimise one slack that every constraint and equality may be missed by."""
+    m, e = len(problem.constraint_names), len(problem.equality_names)
+    n = len(problem.names)
+
+    def evaluate(x: Array) -> Values:
+        rows = problem.rows(x[:n])
+        slack = x[n]
+        margins = [rows[1 : 1 + m] + slack]
+        if e:
+            margins += [slack - rows[1 + m :], slack + rows[1 + m :]]
+        return Values(slack, np.concatenate(margins))
+
+    names = tuple(str(i) for i in range(m + 2 * e))
+    return _extended(problem, evaluate, ["slack"], room, names, ())
+
+
+def separate(
+    problem: Problem, relaxed: npt.NDArray[np.intp], room: Sequence[float]
+) -> Problem:
+    """Minimise the sum of the slacks of the constraints `relaxed`; the others hold."""
+    n, m = len(problem.names), len(problem.constraint_names)
+
+    def evaluate(x: Array) -> Values:
+        rows = problem.rows(x[:n])
+        margins = np.array(rows[1 : 1 + m], dtype=np.result_type(rows, x))
+        margins[relaxed] = margins[relaxed] + x[n:]
+        return Values(x[n:].sum(axis=0), margins, rows[1 + m :])
+
+    names = [f"relax {problem.constraint_names[i]}" for i in relaxed]
+    return _extended(
+        problem, evaluate, names, room, problem.constraint_names, problem.equality_names
+    )
+
+
+def maximise_margin(problem: Problem, index: int) -> Problem:
+    """Maximise one margin, the other constraints held."""
+    m = len(problem.constraint_names)
+    others = np.array([i for i in range(m) if i != index], dtype=np.intp)
+
+    def evaluate(x: Array) -> Values:
+        rows = problem.rows(x)
+        return Values(-rows[1 + index], rows[1 : 1 + m][others], rows[1 + m :])
+
+    return replace(
+        problem,
+        evaluate=evaluate,
+        constraint_names=tuple(problem.constraint_names[i] for i in others),
+        relaxable=None,
+    )
+
+
+def _extended(
+    problem: Problem,
+    evaluate: object,
+    names: Sequence[str],
+    room: float | Sequence[float],
+    constraint_names: Sequence[str],
+    equality_names: Sequence[str],
+) -> Problem:
+    count = len(names)
+    return replace(
+        problem,
+        names=(*problem.names, *names),
+        lower=np.concatenate([problem.lower, np.zeros(count)]),
+        upper=np.concatenate([problem.upper, np.broadcast_to(np.asarray(room), (count,))]),
+        evaluate=evaluate,
+        constraint_names=tuple(constraint_names),
+        equality_names=tuple(equality_names),
+        start=None,
+        relaxable=None,
+    )
+
+
+def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
+    """A feasible point near `point`, by minimising one common slack; None where none is near."""
+    if point.violation <= FEASIBLE:
+        return point
+    found, used = descend(
+        common(evaluator.problem, 2.0 * point.violation + 1.0), point.x, [point.violation]
+    )
+    evaluator.evaluations += used
+    evaluator.check_limits()
+    if not found.valid or found.violation + found.objective > FEASIBLE:
+        return None
+    return evaluator.point(evaluator.space.to_z(found.x[: len(point.x)]))
+
+
+def descend(problem: Problem, x: Vector, slack: Sequence[float]) -> tuple[Point, int]:
+    """Solve an elastic problem from a point and slacks; also the evaluations used."""
+    inner = Evaluator(problem)
+    start = inner.point(inner.space.to_z(np.concatenate([x, np.asarray(slack, dtype=float)])))
+    if not start.valid:
+        return start, 1
+    found = polish(inner, run(inner, start, "LD_SLSQP", most=400).point)
+    return found, inner.evaluations

@@ -1,0 +1,278 @@
+"""A problem as the solvers see it: one evaluation per point, exact gradients, NaN screened.
+
+Values come from real evaluations, so that a domain fault (the root of a negative number) shows
+as NaN; gradients come from one batched complex step [Squire1998] and rows that fail the one
+finite-difference check fall back to central differences.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..numeric import STEP
+from .problem import Problem, Space, Vector
+
+CHUNK = 4096
+"""Most columns in one call of the model."""
+
+DIFFERENCE_STEP = 6e-6
+"""Step of central differences of values in solver coordinates, near the cube root of rounding."""
+
+HESSIAN_STEP = 1e-5
+"""Step of central differences of exact gradients."""
+
+CEILING = 1e9
+"""A margin of plus infinity (nothing loads the part) counts as this much, with no slope."""
+
+
+class LimitReached(Exception):  # noqa: N818 - not an error: the solver keeps its best point
+    """The evaluation or time limit of a run is used up."""
+
+
+@dataclass(slots=True)
+class Point:
+    """One evaluated point in solver coordinates."""
+
+    z: Vector
+    x: Vector
+    rows: Vector
+    valid: bool
+    violation: float
+    jacobian: Vector | None = None
+
+    @property
+    def objective(self) -> float:
+        return float(self.rows[0])
+
+
+class Evaluator:
+    """Values, gradients and Hessians of one problem in solver coordinates.
+
+    Parameters
+    ----------
+    problem : the problem
+    max_evaluations, max_seconds : limits after which `point` raises `LimitReached`
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        *,
+        max_evaluations: int | None = None,
+        max_seconds: float | None = None,
+    ) -> None:
+        self.problem = problem
+        self.space = Space(problem)
+        self.constraint_count = len(problem.constraint_names)
+        self.max_evaluations = max_evaluations
+        self.max_seconds = max_seconds
+        self.began = time.perf_counter()
+        self.limited = True
+        self.exhausted = False
+        self.evaluations = 0
+        self.gradients = 0
+        self.invalid = 0
+        self.bad_slopes = 0
+        self.complex_works = problem.has_complex_step
+        self.difference_rows = np.zeros(problem.row_count, dtype=bool)
+        self.influence = np.zeros((2, self.space.size))
+        self.trace: list[tuple[int, float, float]] = []
+        self._cache: dict[bytes, Point] = {}
+
+    def check_limits(self) -> None:
+        """Raise `LimitReached` if the run has used up its evaluations or its time."""
+        if not self.limited:
+            return
+        over = self.max_evaluations is not None and self.evaluations >= self.max_evaluations
+        if self.max_seconds is not None:
+            over = over or time.perf_counter() - self.began >= self.max_seconds
+        if over:
+            self.exhausted = True
+            raise LimitReached
+
+    def point(self, z: Vector) -> Point:
+        """The evaluated point at z (nf,); evaluated once."""
+        key = z.tobytes()
+        found = self._cache.get(key)
+        if found is not None:
+            return found
+        self.check_limits()
+        x = self.space.to_x(z[:, None])
+        rows = self._screen(self.problem.rows(x))
+        valid = bool(np.isfinite(rows).all())
+        self.evaluations += 1
+        self.invalid += not valid
+        point = Point(
+            z.copy(), x[:, 0], rows[:, 0], valid, float(self.violations(rows, "worst")[0])
+        )
+        if len(self._cache) >= 256:
+            self._cache.clear()
+        self._cache[key] = point
+        if valid:
+            self._note(point)
+        return point
+
+    def _note(self, point: Point) -> None:
+        """Add a point to the trace if it improves on the last one there."""
+        missed = point.violation if point.violation > 1e-6 else 0.0
+        if self.trace:
+            _, objective, violation = self.trace[-1]
+            if (missed, point.objective) >= (violation if violation > 1e-6 else 0.0, objective):
+                return
+        self.trace.append((self.evaluations, point.objective, point.violation))
+
+    def batch(self, z: Vector) -> Vector:
+        """Rows (rows, k) of coordinates (nf, k), in one call; NaN where the model is undefined."""
+        return self._screen(self.problem.rows(self.space.to_x(z)))
+
+    @staticmethod
+    def _screen(rows: npt.NDArray[np.generic]) -> Vector:
+        values = np.array(rows.real, dtype=float)
+        margins = values[1:]
+        margins[margins == np.inf] = CEILING
+        values[np.isinf(values)] = np.nan
+        return values
+
+    def violations(self, rows: Vector, kind: str) -> Vector:
+        """Infeasibility (k,) of rows (rows, k): "worst" margin missed, or the bounded "sum".
+
+        The sum counts v/(1 + v) of each violation v, so that no single wild row rules the
+        ranking. NaN rows are infinitely infeasible.
+        """
+        margins = rows[1 : 1 + self.constraint_count]
+        missed = np.concatenate([np.maximum(-margins, 0.0), np.abs(rows[1 + len(margins) :])])
+        if kind == "worst":
+            result = missed.max(axis=0, initial=0.0)
+        else:
+            result = (missed / (1.0 + missed)).sum(axis=0)
+        return np.where(np.isfinite(rows).all(axis=0), result, np.inf)
+
+    def jacobian(self, point: Point) -> Vector:
+        """Gradients (rows, nf) at a point, in solver coordinates; a missing slope counts as 0."""
+        if point.jacobian is None:
+            slopes = self.jacobians(point.z[:, None])[:, 0]
+            broken = ~np.isfinite(slopes)
+            if broken.any():
+                self.bad_slopes += 1
+                slopes = np.where(broken, 0.0, slopes)
+            point.jacobian = slopes
+            row = np.abs(point.jacobian)
+            self.influence[0] = np.maximum(self.influence[0], row[0])
+            self.influence[1] = np.maximum(self.influence[1], row.max(axis=0))
+        return point.jacobian
+
+    def jacobians(self, z: Vector, *, inside: bool = True) -> Vector:
+        """Gradients (rows, k, nf) at coordinates (nf, k); NaN where a slope does not exist."""
+        size = max(1, CHUNK // max(1, self.space.size))
+        parts = [
+            self._jacobian_chunk(z[:, i : i + size], inside=inside)
+            for i in range(0, z.shape[1], size)
+        ]
+        self.gradients += z.shape[1]
+        return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
+
+    def _jacobian_chunk(self, z: Vector, *, inside: bool) -> Vector:
+        rows, (n, count) = self.problem.row_count, z.shape
+        if self.complex_works and not self.difference_rows.all():
+            result = self._complex_step(z, inside=inside)
+            if self.difference_rows.any():
+                result[self.difference_rows] = self._differences(z)[self.difference_rows]
+            return result
+        return self._differences(z) if n else np.zeros((rows, count, 0))
+
+    def _complex_step(self, z: Vector, *, inside: bool) -> Vector:
+        n, count = z.shape
+        x = self.space.to_x(z, inside=inside)
+        seeds = self.space.slope(x)
+        batch = np.repeat(x.astype(complex), n, axis=1)
+        columns = np.arange(count * n).reshape(count, n)
+        batch[self.space.free[None, :], columns] += 1j * STEP * seeds.T
+        rows = self.problem.rows(batch)
+        return np.asarray(rows.imag / STEP, dtype=float).reshape(len(rows), count, n)
+
+    def _differences(self, z: Vector) -> Vector:
+        n, count = z.shape
+        step = DIFFERENCE_STEP * np.eye(n)[:, None, :]
+        both = [(z[:, :, None] + sign * step).reshape(n, count * n) for sign in (1, -1)]
+        above, below = (
+            self._screen(self.problem.rows(self.space.to_x(side, inside=False))) for side in both
+        )
+        slopes = (above - below) / (2 * DIFFERENCE_STEP)
+        broken = np.isnan(slopes)
+        if broken.any():
+            slopes = np.where(broken, self._one_sided(z, above, below), slopes)
+        return slopes.reshape(len(slopes), count, n)
+
+    def _one_sided(self, z: Vector, above: Vector, below: Vector) -> Vector:
+        middle = np.repeat(self.batch(z), z.shape[0], axis=1)
+        forward = (above - middle) / DIFFERENCE_STEP
+        return np.where(np.isnan(above), (middle - below) / DIFFERENCE_STEP, forward)
+
+    def hessian(self, point: Point, weights: Vector, columns: npt.NDArray[np.intp]) -> Vector:
+        """Hessian (nf, nf) of weights @ rows; only the rows and columns named, zero elsewhere."""
+        n = self.space.size
+        result = np.zeros((n, n))
+        if len(columns) == 0:
+            return result
+        inexact = self.difference_rows.any() or not self.complex_works
+        step = 1e-3 if inexact else HESSIAN_STEP
+        moves = step * np.eye(n)[:, columns]
+        z = point.z[:, None]
+        active = np.flatnonzero(weights)
+        slopes = self.jacobians(np.concatenate([z + moves, z - moves], axis=1), inside=False)
+        slopes = np.tensordot(weights[active], slopes[active], axes=1)
+        above, below = slopes[: len(columns)], slopes[len(columns) :]
+        if not np.isfinite(slopes).all():  # outside the domain on one side: one-sided, or none
+            middle = weights @ self.jacobian(point)
+            above = np.where(np.isfinite(above), above, 2 * middle - below)
+            below = np.where(np.isfinite(below), below, 2 * middle - above)
+            above, below = np.nan_to_num(above), np.nan_to_num(below)
+        part = ((above - below) / (2 * step))[:, columns]
+        result[np.ix_(columns, columns)] = (part + part.T) / 2
+        return result
+
+    def check_gradients(self, point: Point) -> tuple[str, ...]:
+        """Compare the complex step with finite differences once; rows that differ fall back.
+
+        Returns the warnings to give.
+        """
+        if not self.problem.has_complex_step:
+            return ("gradients are finite differences: the model takes no complex numbers",)
+        try:
+            exact = self._complex_step(point.z[:, None], inside=True)[:, 0]
+        except (TypeError, ValueError, np.exceptions.ComplexWarning) as error:
+            self.complex_works = False
+            return (
+                f"gradients fall back to finite differences: the model refuses complex "
+                f"numbers ({error}); avoid float(), abs and math functions in own functions",
+            )
+        wrong = self._disagreement(point, exact)
+        self.difference_rows = wrong
+        labels = ("objective", *self.problem.constraint_names, *self.problem.equality_names)
+        return tuple(
+            f"the gradient of {labels[i]} falls back to finite differences: the complex step "
+            f"disagrees with them; avoid abs, max, sign and float() in own functions"
+            for i in np.flatnonzero(wrong)
+        )
+
+    def _disagreement(self, point: Point, exact: Vector) -> npt.NDArray[np.bool_]:
+        n = self.space.size
+        wrong = np.ones(len(exact), dtype=bool)
+        for step in (1e-5, 1e-4, 1e-6):  # a kink or rounding spoils one step, not all three
+            moves = step * np.eye(n)
+            z = point.z[:, None]
+            sides = np.concatenate([z + moves, z - moves], axis=1)
+            rows = self._screen(self.problem.rows(self.space.to_x(sides, inside=False)))
+            slopes = (rows[:, :n] - rows[:, n:]) / (2 * step)
+            known = np.isfinite(slopes) & np.isfinite(exact)
+            size = np.abs(np.where(known, slopes, 0.0)).max(axis=1, initial=0.0)
+            room = 1e-4 * size + 1e-11 / step * (1.0 + np.abs(point.rows))
+            far = np.where(known, np.abs(slopes - exact) > room[:, None], False)
+            wrong &= far.any(axis=1)
+            if not wrong.any():
+                break
+        return wrong

@@ -1,0 +1,264 @@
+"""First- and second-order optimality of a point: multipliers, residual, rank, curvature.
+
+The residual is the contract's: the norm of grad f - sum(multiplier * grad g) over that of
+grad f, in solver coordinates, multipliers at least 0, over the constraints and bounds active
+within 1e-6. Multipliers are non-negative least squares [LawsonHanson1974].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+
+from .evaluator import Evaluator, Point
+from .problem import Vector
+
+ACTIVE = 1e-6
+"""A margin, or a distance to a bound in solver coordinates, below this is active."""
+
+
+class Curvature(Enum):
+    """Sign of the Hessian of the Lagrangian along the directions the active set leaves free."""
+
+    VERTEX = "vertex: the active set leaves no direction free"
+    POSITIVE = "positive definite: a strict local minimum"
+    FLAT = "flat: some direction changes nothing to second order"
+    NEGATIVE = "negative: not a minimum"
+
+
+@dataclass(frozen=True)
+class Active:
+    """The active set at a point: rows of gradients of margins, bounds included.
+
+    Parameters
+    ----------
+    gradients : (a, nf), each of a margin that is at least 0
+    margins : (a,)
+    constraint, lower, upper : index of the constraint or variable of each row, in this order
+    """
+
+    gradients: Vector
+    margins: Vector
+    constraint: npt.NDArray[np.intp]
+    lower: npt.NDArray[np.intp]
+    upper: npt.NDArray[np.intp]
+
+    @property
+    def count(self) -> int:
+        return len(self.margins)
+
+
+@dataclass(frozen=True)
+class Kkt:
+    """How well a point satisfies the optimality conditions.
+
+    Parameters
+    ----------
+    residual : relative norm of the gradient of the Lagrangian
+    active : labels of active constraints, equalities and bounds ("NAME lower", "NAME upper")
+    count, rank : number of active gradients and how many are independent; the multipliers are
+        unique when they are equal
+    multipliers : (m,) of the constraints: change of the objective per unit of margin demanded
+    equality_multipliers : (e,)
+    lower_multipliers, upper_multipliers : (n,) of the bounds, per unit of solver coordinate
+    curvature : second-order condition; None where it was not asked for
+    """
+
+    residual: float
+    active: tuple[str, ...]
+    count: int
+    rank: int
+    multipliers: Vector
+    equality_multipliers: Vector
+    lower_multipliers: Vector
+    upper_multipliers: Vector
+    curvature: Curvature | None = None
+
+    @property
+    def unique(self) -> bool:
+        """Whether the multipliers are unique (independent active gradients)."""
+        return self.rank == self.count
+
+
+def nnls(matrix: Vector, vector: Vector) -> Vector:
+    """Non-negative least squares: min |matrix @ result - vector|, result >= 0.
+
+    First all columns unconstrained (enough at a regular optimum), else the active-set method of
+    Lawson and Hanson, which ends on independent columns.
+    """
+    size = np.sqrt((matrix**2).sum(axis=0))
+    used = np.flatnonzero(size > 1e-14 * size.max(initial=0.0))
+    result = np.zeros(matrix.shape[1])
+    if len(used) == 0:
+        return result
+    scaled = matrix[:, used] / size[used]
+    if len(used) <= matrix.shape[0]:
+        guess, _, rank, _ = np.linalg.lstsq(scaled, vector, rcond=1e-10)
+        if rank == len(used) and (guess >= 0).all():
+            result[used] = guess / size[used]
+            return result
+    result[used] = _lawson_hanson(scaled, vector) / size[used]
+    return result
+
+
+def _lawson_hanson(matrix: Vector, vector: Vector) -> Vector:
+    count = matrix.shape[1]
+    result = np.zeros(count)
+    passive = np.zeros(count, dtype=bool)
+    refused = np.zeros(count, dtype=bool)
+    tolerance = 1e-13 * (1e-300 + float(np.linalg.norm(vector)))
+    for _ in range(5 * count):
+        pull = matrix.T @ (vector - matrix @ result)
+        pull[passive | refused] = -np.inf
+        entering = int(np.argmax(pull))
+        if pull[entering] <= tolerance:
+            break
+        passive[entering] = True
+        trial, rank = _restricted(matrix, vector, passive)
+        if rank < passive.sum() or trial[entering] <= 0:  # dependent, or only rounding pulls
+            passive[entering], refused[entering] = False, True
+            continue
+        while trial[passive].min() <= 0:
+            falling = np.flatnonzero(passive & (trial <= 0))
+            shares = result[falling] / (result[falling] - trial[falling])
+            result = result + shares.min() * (trial - result)
+            passive[falling[shares <= shares.min() * (1 + 1e-12)]] = False
+            result[~passive] = 0.0
+            if not passive.any():
+                trial = result
+                break
+            trial, _ = _restricted(matrix, vector, passive)
+        result = trial
+        refused[:] = False
+    return result
+
+
+def _restricted(
+    matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_]
+) -> tuple[Vector, int]:
+    trial = np.zeros(matrix.shape[1])
+    trial[passive], _, rank, _ = np.linalg.lstsq(matrix[:, passive], vector, rcond=1e-10)
+    return trial, int(rank)
+
+
+def active_set(evaluator: Evaluator, point: Point, width: float = ACTIVE) -> Active:
+    """Constraints and bounds within `width` of their limit at a point, with gradients."""
+    space, m = evaluator.space, evaluator.constraint_count
+    jacobian = evaluator.jacobian(point)
+    margins = point.rows[1 : 1 + m]
+    constraint = np.flatnonzero(margins <= width)
+    lower = np.flatnonzero(point.z - space.lower <= width)
+    upper = np.flatnonzero(space.upper - point.z <= width)
+    unit = np.eye(space.size)
+    return Active(
+        np.concatenate([jacobian[1 : 1 + m][constraint], unit[lower], -unit[upper]]),
+        np.concatenate(
+            [margins[constraint], (point.z - space.lower)[lower], (space.upper - point.z)[upper]]
+        ),
+        constraint,
+        lower,
+        upper,
+    )
+
+
+def multipliers(
+    slope: Vector, active: Active, equalities: Vector, damping: float = 0.0
+) -> tuple[Vector, Vector]:
+    """Multipliers (a,) >= 0 of an active set and (e,) free of the equalities.
+
+    `damping` > 0 discourages multipliers on rows with a margin left, which identifies the active
+    set from a point that is only near the optimum.
+    """
+    matrix, vector = active.gradients.T, slope
+    if len(equalities):
+        basis, _ = np.linalg.qr(equalities.T)
+        matrix = matrix - basis @ (basis.T @ matrix)
+        vector = vector - basis @ (basis.T @ vector)
+    if damping > 0 and active.count:
+        size = np.sqrt((active.gradients**2).sum(axis=1))
+        extra = np.diag(damping * np.maximum(active.margins, 0.0) * size)
+        matrix = np.concatenate([matrix, extra])
+        vector = np.concatenate([vector, np.zeros(active.count)])
+    inequality = nnls(matrix, vector)
+    free = np.zeros(len(equalities))
+    if len(equalities):
+        rest = slope - active.gradients.T @ inequality
+        free = np.linalg.lstsq(equalities.T, rest, rcond=1e-12)[0]
+    return inequality, free
+
+
+def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0) -> float:
+    """The divisor of the residual: |grad f|.
+
+    At a stationary objective (no constraint holds it) |grad f| itself vanishes; a thousandth of
+    the objective's magnitude then takes its place.
+    """
+    slope = float(np.linalg.norm(evaluator.jacobian(point)[0]))
+    floor = max(1e-3 * abs(point.objective), 1e-6 * objective_scale)
+    return max(slope, floor, 1e-300)
+
+
+def check(
+    evaluator: Evaluator, point: Point, *, curvature: bool = False, objective_scale: float = 0.0
+) -> Kkt:
+    """Check the optimality conditions at a point."""
+    problem, m = evaluator.problem, evaluator.constraint_count
+    jacobian = evaluator.jacobian(point)
+    active = active_set(evaluator, point)
+    equalities = jacobian[1 + m :]
+    inequality, free = multipliers(jacobian[0], active, equalities)
+    rest = jacobian[0] - active.gradients.T @ inequality - equalities.T @ free
+    residual = float(np.linalg.norm(rest)) / slope_scale(evaluator, point, objective_scale)
+    stacked = np.concatenate([active.gradients, equalities])
+    size = np.sqrt((stacked**2).sum(axis=1, keepdims=True))
+    rank = int(np.linalg.matrix_rank(stacked / np.where(size > 0, size, 1.0), tol=1e-8))
+    if len(stacked) == 0:
+        rank = 0
+    a, b = len(active.constraint), len(active.constraint) + len(active.lower)
+    full = [np.zeros(m), np.zeros(len(problem.names)), np.zeros(len(problem.names))]
+    free_variables = evaluator.space.free
+    full[0][active.constraint] = inequality[:a]
+    full[1][free_variables[active.lower]] = inequality[a:b]
+    full[2][free_variables[active.upper]] = inequality[b:]
+    labels = [problem.constraint_names[i] for i in active.constraint]
+    labels += list(problem.equality_names)
+    labels += [f"{problem.names[free_variables[j]]} lower" for j in active.lower]
+    labels += [f"{problem.names[free_variables[j]]} upper" for j in active.upper]
+    found = None
+    if curvature:
+        strong = active.gradients[inequality * np.sqrt((active.gradients**2).sum(axis=1)) > 0]
+        found = _curvature(evaluator, point, full[0], free, np.concatenate([strong, equalities]))
+    return Kkt(residual, tuple(labels), len(stacked), rank, full[0], free, *full[1:], found)
+
+
+def lagrangian_weights(constraints: Vector, equalities: Vector) -> Vector:
+    """Weights of the rows (objective, constraints, equalities) in the Lagrangian."""
+    return np.concatenate([[1.0], -constraints, -equalities])
+
+
+def null_space(rows: Vector, size: int) -> Vector:
+    """Orthonormal basis (size, k) of the directions that leave all rows (a, size) unchanged."""
+    if len(rows) == 0:
+        return np.eye(size)
+    lengths = np.sqrt((rows**2).sum(axis=1, keepdims=True))
+    _, values, basis = np.linalg.svd(rows / np.where(lengths > 0, lengths, 1.0))
+    return np.asarray(basis[int((values > 1e-8).sum()) :].T)
+
+
+def _curvature(
+    evaluator: Evaluator, point: Point, constraints: Vector, equalities: Vector, held: Vector
+) -> Curvature:
+    size = evaluator.space.size
+    basis = null_space(held, size)
+    if basis.shape[1] == 0:
+        return Curvature.VERTEX
+    weights = lagrangian_weights(constraints, equalities)
+    hessian = evaluator.hessian(point, weights, np.arange(size))
+    values = np.linalg.eigvalsh(basis.T @ hessian @ basis)
+    room = 1e-6 * max(float(np.abs(hessian).max()), 1e-3 * abs(point.objective), 1e-300)
+    if values[0] < -room:
+        return Curvature.NEGATIVE
+    return Curvature.POSITIVE if values[0] > room else Curvature.FLAT

@@ -1,0 +1,363 @@
+"""NLopt behind a guard: named algorithms, screened callbacks, results that are re-checked.
+
+NLopt reports success on infeasible points (MMA, CCSAQ, COBYLA), crashes on NaN (AGS), turns
+exceptions of callbacks into others and hides good results behind RoundoffLimited [NLopt]. Here
+its return code is only recorded: callbacks never raise and never return NaN, the best feasible
+iterate is kept, and whoever calls judges the point itself.
+"""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from typing import Any
+
+import nlopt  # type: ignore[import-untyped]
+import numpy as np
+
+from ..errors import Diagnostic, UsageError
+from .evaluator import Evaluator, LimitReached, Point
+from .problem import Problem, Vector
+
+FEASIBLE = 1e-8
+"""Violation below which an iterate counts as feasible when the best one is kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Algorithm:
+    """An NLopt algorithm and what it can be given.
+
+    Parameters
+    ----------
+    name : NLopt's name
+    scope : "local", "global", or "wrapper" for one that needs another inside
+    inequalities, equalities : whether it takes them
+    most_variables : largest number of free variables it is allowed
+    most_evaluations : of one run (the original DIRECT slows down with their cube)
+    about : what it is, in words
+    """
+
+    name: str
+    scope: str
+    inequalities: bool
+    equalities: bool
+    most_variables: int
+    most_evaluations: int
+    about: str
+
+    @property
+    def uses_gradients(self) -> bool:
+        return self.name.startswith(("LD_", "GD_"))
+
+
+def _table(text: str) -> dict[str, Algorithm]:
+    table = {}
+    for line in text.strip().splitlines():
+        name, scope, rows, most, effort, about = (cell.strip() for cell in line.split("|"))
+        table[name] = Algorithm(
+            name, scope, "i" in rows, "e" in rows, int(most), int(effort), about
+        )
+    return table
+
+
+ALGORITHMS = _table("""
+ LD_SLSQP                   | local   | ie | 1000 |  2000 | sequential quadratic programming, Kraft
+ LD_MMA                     | local   | i  | 1000 |  2000 | method of moving asymptotes, Svanberg
+ LD_CCSAQ                   | local   | i  | 1000 |  2000 | conservative convex separable quadratic approximation
+ LN_COBYLA                  | local   | ie | 1000 |  2000 | linear approximations without gradients, Powell
+ LD_LBFGS                   | local   | -  | 1000 |  2000 | limited-memory BFGS
+ LD_TNEWTON                 | local   | -  | 1000 |  2000 | truncated Newton
+ LD_TNEWTON_RESTART         | local   | -  | 1000 |  2000 | truncated Newton with restarts
+ LD_TNEWTON_PRECOND         | local   | -  | 1000 |  2000 | preconditioned truncated Newton
+ LD_TNEWTON_PRECOND_RESTART | local   | -  | 1000 |  2000 | preconditioned truncated Newton with restarts
+ LD_VAR1                    | local   | -  | 1000 |  2000 | shifted limited-memory variable metric, rank 1
+ LD_VAR2                    | local   | -  | 1000 |  2000 | shifted limited-memory variable metric, rank 2
+ LN_BOBYQA                  | local   | -  | 200  |  2000 | quadratic models without gradients, Powell
+ LN_NEWUOA_BOUND            | local   | -  | 200  |  2000 | quadratic models without gradients, older
+ LN_NELDERMEAD              | local   | -  | 100  |  2000 | simplex, Nelder and Mead
+ LN_SBPLX                   | local   | -  | 200  |  2000 | simplex in subspaces, Rowan
+ LN_PRAXIS                  | local   | -  | 100  |  2000 | principal axes, Brent
+ GN_ISRES                   | global  | ie | 200  | 20000 | evolution strategy with stochastic ranking
+ GN_ORIG_DIRECT             | global  | i  | 30   |  1500 | dividing rectangles, original code
+ GN_ORIG_DIRECT_L           | global  | i  | 30   |  1500 | dividing rectangles, locally biased, original code
+ GN_AGS                     | global  | i  | 10   |  5000 | Peano curves with Lipschitz bounds
+ GN_DIRECT                  | global  | -  | 30   | 20000 | dividing rectangles
+ GN_DIRECT_L                | global  | -  | 30   | 20000 | dividing rectangles, locally biased
+ GN_DIRECT_L_RAND           | global  | -  | 30   | 20000 | dividing rectangles, locally biased, randomised
+ GN_CRS2_LM                 | global  | -  | 200  | 20000 | controlled random search
+ GN_ESCH                    | global  | -  | 200  | 20000 | evolutionary algorithm
+ GD_STOGO                   | global  | -  | 10   | 20000 | branch and bound with gradients
+ AUGLAG                     | wrapper | ie | 1000 | 20000 | augmented Lagrangian around an algorithm inside
+ AUGLAG_EQ                  | wrapper | ie | 1000 | 20000 | augmented Lagrangian for the equalities only
+ G_MLSL_LDS                 | wrapper | -  | 200  | 20000 | multi-level single linkage around a local algorithm
+""")
+
+OLDER = {
+    "LD_AUGLAG": "AUGLAG+LD_LBFGS",
+    "LN_AUGLAG": "AUGLAG+LN_BOBYQA",
+    "LD_AUGLAG_EQ": "AUGLAG_EQ+LD_MMA",
+    "LN_AUGLAG_EQ": "AUGLAG_EQ+LN_COBYLA",
+    "GD_MLSL": "G_MLSL_LDS+LD_LBFGS",
+    "GD_MLSL_LDS": "G_MLSL_LDS+LD_LBFGS",
+    "GN_MLSL": "G_MLSL_LDS+LN_BOBYQA",
+    "GN_MLSL_LDS": "G_MLSL_LDS+LN_BOBYQA",
+    "G_MLSL": "G_MLSL_LDS+LD_LBFGS",
+}
+"""Names of NLopt that say in one word what here is written as a sum."""
+
+INSIDE = {"AUGLAG": "LD_LBFGS", "AUGLAG_EQ": "LD_MMA", "G_MLSL_LDS": "LD_LBFGS"}
+"""The algorithm inside a wrapper where none is named."""
+
+
+def find(text: str) -> tuple[Algorithm, Algorithm | None]:
+    """The algorithm called `text`, and the one inside it ("AUGLAG+LD_LBFGS").
+
+    Case does not matter, and the prefix may be left out where the rest is unique ("slsqp").
+
+    Raises
+    ------
+    UsageError
+        Where there is no such algorithm, with the nearest names.
+    """
+    name = OLDER.get(text.strip().upper(), text.strip().upper())
+    outer, _, inner = name.partition("+")
+    first = _one(outer)
+    if first.scope != "wrapper":
+        if inner:
+            raise _refusal(f"{first.name} takes no algorithm inside", f"write {first.name}")
+        return first, None
+    second = _one(inner or INSIDE[first.name])
+    if second.scope == "wrapper":
+        raise _refusal(f"{second.name} cannot stand inside {first.name}", "name a local algorithm")
+    return first, second
+
+
+def _one(name: str) -> Algorithm:
+    name = name.strip()
+    if name in ALGORITHMS:
+        return ALGORITHMS[name]
+    short = [a for a in ALGORITHMS.values() if a.name.split("_", 1)[-1] == name]
+    if len(short) == 1:
+        return short[0]
+    near = difflib.get_close_matches(name, [*ALGORITHMS, *OLDER], n=3, cutoff=0.5)
+    choice = ", ".join(near or ["LD_SLSQP", "AUGLAG+LD_LBFGS", "GN_ISRES"])
+    raise _refusal(f'there is no algorithm "{name}"', f"did you mean {choice}?")
+
+
+def _refusal(message: str, remedy: str) -> UsageError:
+    return UsageError(Diagnostic(message, remedy, path="--algorithm"))
+
+
+def suit(text: str, problem: Problem) -> str:
+    """The full name of an algorithm that suits the problem.
+
+    Raises
+    ------
+    UsageError
+        Where it cannot solve such a problem, with the one to write instead.
+    """
+    outer, inner = find(text)
+    inequalities, equalities = bool(problem.constraint_names), bool(problem.equality_names)
+    free = int(np.count_nonzero(problem.upper > problem.lower))
+    if inequalities and not outer.inequalities or equalities and not outer.equalities:
+        kind = "constraints" if not outer.inequalities else "equality constraints"
+        remedy = "write LD_SLSQP or LN_COBYLA"
+        if outer.scope == "local" or inner is not None:
+            remedy = f"write AUGLAG+{(inner or outer).name}"
+        elif inequalities and not equalities:
+            remedy = "write GN_ORIG_DIRECT_L or GN_ISRES"
+        raise _refusal(f"{outer.name} takes no {kind}, and this problem has some", remedy)
+    if outer.name == "AUGLAG_EQ" and inequalities and inner and not inner.inequalities:
+        message = f"AUGLAG_EQ leaves the inequalities to {inner.name}, which takes none"
+        raise _refusal(message, f"write AUGLAG+{inner.name} or AUGLAG_EQ+LD_MMA")
+    if outer.name == "G_MLSL_LDS" and inner is not None and inner.scope != "local":
+        raise _refusal(f"G_MLSL_LDS needs a local algorithm inside, not {inner.name}",
+                       "write G_MLSL_LDS+LD_LBFGS")
+    for part in (outer, inner):
+        if part is not None and free > part.most_variables:
+            message = f"{part.name} is for at most {part.most_variables} variables, not {free}"
+            raise _refusal(message, "fix some variables, or write LD_SLSQP or GN_ISRES")
+    return outer.name if inner is None else f"{outer.name}+{inner.name}"
+
+
+@dataclass(frozen=True)
+class Run:
+    """What one call of NLopt led to: the point to go on from, and NLopt's own word for it."""
+
+    point: Point
+    code: int
+    algorithm: str
+
+
+class _Guard:
+    """Callbacks that never raise and never return NaN, in logarithmic or linear coordinates."""
+
+    def __init__(self, evaluator: Evaluator, start: Point, *, linear: bool, handle: Any) -> None:
+        self.evaluator, self.handle, self.linear = evaluator, handle, linear
+        space, problem = evaluator.space, evaluator.problem
+        self.low = problem.lower[space.free]
+        self.width = problem.upper[space.free] - self.low
+        self.scale = abs(start.objective) if start.valid and start.objective != 0 else 1.0
+        self.worst = 1.0
+        self.error: BaseException | None = None
+        self.best: Point | None = None
+        self.last: Point | None = None
+
+    def point(self, u: Vector) -> Point:
+        return self.evaluator.point(self.to_z(u))
+
+    def to_z(self, u: Vector) -> Vector:
+        space = self.evaluator.space
+        if not self.linear:
+            return np.clip(u, space.lower, space.upper)
+        x = self.evaluator.problem.lower.copy()
+        x[space.free] = self.low + np.clip(u, 0.0, 1.0) * self.width
+        return space.to_z(x)
+
+    def from_point(self, point: Point) -> Vector:
+        if not self.linear:
+            return point.z.copy()
+        inner = point.x[self.evaluator.space.free]
+        return np.asarray(np.clip((inner - self.low) / self.width, 0.0, 1.0))
+
+    def _slopes(self, point: Point) -> Vector:
+        jacobian = self.evaluator.jacobian(point)
+        if not self.linear:
+            return jacobian
+        slope = self.evaluator.space.slope(point.x[:, None])[:, 0]
+        return np.asarray(jacobian * (self.width / slope))
+
+    def _visit(self, u: Vector) -> Point | None:
+        """The point, or None where the run must stop."""
+        if self.error is not None:
+            return None
+        try:
+            point = self.point(np.array(u, dtype=float))
+        except BaseException as error:  # re-raised after NLopt has returned
+            return self._stop(error)
+        self.last = point
+        if point.valid:
+            self.worst = max(self.worst, abs(point.objective) / self.scale)
+            best = self.best
+            if point.violation <= FEASIBLE and (best is None or point.objective < best.objective):
+                self.best = point
+        return point
+
+    def _stop(self, error: BaseException) -> None:
+        self.error = error
+        self.handle.force_stop()
+
+    def objective(self, u: Vector, slope: Vector) -> float:
+        point = self._visit(u)
+        if slope.size:
+            slope[:] = 0.0
+        if point is None or not point.valid:
+            return 10.0 * self.worst
+        if slope.size:
+            try:
+                slope[:] = self._slopes(point)[0] / self.scale
+            except BaseException as error:  # re-raised after NLopt has returned
+                self._stop(error)
+        return point.objective / self.scale
+
+    def _rows(self, result: Vector, u: Vector, slopes: Vector, rows: slice, fault: float) -> None:
+        point = self._visit(u)
+        if slopes.size:
+            slopes[:] = 0.0
+        if point is None or not point.valid:
+            result[:] = fault
+            return
+        result[:] = -point.rows[rows]
+        if slopes.size:
+            try:
+                slopes[:] = -self._slopes(point)[rows]
+            except BaseException as error:  # re-raised after NLopt has returned
+                self._stop(error)
+
+    def inequalities(self, result: Vector, u: Vector, slopes: Vector) -> None:
+        self._rows(result, u, slopes, slice(1, 1 + self.evaluator.constraint_count), 1.0)
+
+    def worst_margin(self, u: Vector, slope: Vector) -> float:
+        """The constraint missed most, as one number (for AGS)."""
+        result = np.zeros(self.evaluator.constraint_count)
+        self.inequalities(result, u, slope)
+        return float(result.max())
+
+    def equalities(self, result: Vector, u: Vector, slopes: Vector) -> None:
+        self._rows(result, u, slopes, slice(1 + self.evaluator.constraint_count, None), 1.0)
+
+
+def run(
+    evaluator: Evaluator,
+    start: Point,
+    algorithm: str,
+    *,
+    linear: bool = False,
+    tolerance: float = 1e-9,
+    most: int | None = None,
+    seed: int = 0,
+) -> Run:
+    """Run one algorithm from one point, at most `most` evaluations (default: its own).
+
+    Returns the better of NLopt's point and the best feasible iterate. Exceptions of the model,
+    interrupts included, surface here as they were raised; a used-up limit ends the run quietly.
+    """
+    if evaluator.space.size == 0:
+        return Run(start, 1, algorithm)
+    outer, inner = find(algorithm)
+    size, most = evaluator.space.size, most or outer.most_evaluations
+    handle = _handle(outer, size, tolerance, most)
+    guard = _Guard(evaluator, start, linear=linear, handle=handle)
+    bounds = (
+        (np.zeros(size), np.ones(size)) if linear else (evaluator.space.lower, evaluator.space.upper)
+    )
+    handle.set_lower_bounds(bounds[0])
+    handle.set_upper_bounds(bounds[1])
+    handle.set_min_objective(guard.objective)
+    m, e = evaluator.constraint_count, len(evaluator.problem.equality_names)
+    if m and outer.name == "GN_AGS":  # takes scalar constraints only, and few
+        handle.add_inequality_constraint(guard.worst_margin, tolerance)
+    elif m:
+        handle.add_inequality_mconstraint(guard.inequalities, np.full(m, tolerance))
+    if e:
+        handle.add_equality_mconstraint(guard.equalities, np.full(e, tolerance))
+    if inner is not None:
+        local = _handle(inner, size, tolerance, max(20, most // 4))
+        handle.set_local_optimizer(local)
+    nlopt.srand(seed + 1)
+    try:
+        found = handle.optimize(guard.from_point(start))
+    except (RuntimeError, ValueError, SystemError, MemoryError):  # NLopt's own complaints
+        found = None
+    code = int(handle.last_optimize_result())
+    if guard.error is not None and not isinstance(guard.error, LimitReached):
+        raise guard.error
+    return Run(_pick(evaluator, guard, found, start), code, algorithm)
+
+
+def _handle(algorithm: Algorithm, size: int, tolerance: float, most: int) -> Any:
+    handle = nlopt.opt(getattr(nlopt, algorithm.name), size)
+    handle.set_exceptions_enabled(False)
+    handle.set_ftol_rel(tolerance)
+    handle.set_xtol_rel(tolerance)
+    handle.set_maxeval(most)
+    return handle
+
+
+def _pick(evaluator: Evaluator, guard: _Guard, found: Vector | None, start: Point) -> Point:
+    """The best of NLopt's point, the best feasible iterate, the last iterate and the start."""
+    candidates = [guard.best, guard.last, start]
+    if found is not None and guard.error is None and np.isfinite(found).all():
+        limited, evaluator.limited = evaluator.limited, False
+        candidates.insert(0, guard.point(np.asarray(found)))
+        evaluator.limited = limited
+    usable = [p for p in candidates if p is not None]
+    return min(usable, key=_rank)
+
+
+def _rank(point: Point) -> tuple[float, float]:
+    """Feasible points by objective, others by violation; a point without values comes last."""
+    if not point.valid:
+        return (np.inf, np.inf)
+    missed = point.violation if point.violation > 1e-6 else 0.0
+    return (missed, point.objective)

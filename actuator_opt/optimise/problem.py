@@ -1,0 +1,215 @@
+"""What the optimiser is given: a vector function in a box, and nothing about what it means.
+
+Constraints are relative margins, at least zero where met; an evaluation is a pure function of a
+batch of points (one column per point), real or complex. The solver's coordinates are logarithms
+where a variable's lower bound is positive and multiples of the half-width of the box elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import InputError
+from ..numeric import Array
+
+Vector: TypeAlias = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Values:
+    """What one evaluation of k points yields.
+
+    Parameters
+    ----------
+    objective : (k,), to be minimised
+    constraints : (m, k), margins, at least 0 where met; None without constraints
+    equalities : (e, k), residuals, 0 where met; None without equalities
+    """
+
+    objective: Array
+    constraints: Array = None
+    equalities: Array = None
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Minimise an objective over a box, subject to margins >= 0 and equalities = 0.
+
+    Parameters
+    ----------
+    names : label of each variable
+    lower, upper : finite bounds (n,); equal bounds fix a variable
+    evaluate : maps points (n, k), real or complex, to `Values`
+    constraint_names, equality_names : label of each row of the values
+    start : a first guess inside the box, or None
+    relaxable : for each constraint, whether it is a wish (True) or a law such as geometry (False)
+    has_complex_step : False if `evaluate` cannot take complex points; finite differences then
+    linear : labels of variables to keep linear although their lower bound is positive
+    """
+
+    names: Sequence[str]
+    lower: Vector
+    upper: Vector
+    evaluate: Callable[[Array], Values]
+    constraint_names: Sequence[str] = ()
+    equality_names: Sequence[str] = ()
+    start: Vector | None = None
+    relaxable: Sequence[bool] | None = None
+    has_complex_step: bool = True
+    linear: Sequence[str] = ()
+
+    def __post_init__(self) -> None:
+        n = len(self.names)
+        lower, upper = (np.array(b, dtype=float) for b in (self.lower, self.upper))
+        if n == 0:
+            raise InputError("an optimisation needs at least one variable")
+        if lower.shape != (n,) or upper.shape != (n,):
+            raise InputError(f"{n} variables need {n} lower and {n} upper bounds")
+        for name, low, high in zip(self.names, lower, upper, strict=True):
+            if not (np.isfinite(low) and np.isfinite(high)):
+                raise InputError(f"{name}: a bound is missing or not finite; give both bounds")
+            if low > high:
+                raise InputError(f"{name}: the bounds {low:g} and {high:g} are reversed")
+        object.__setattr__(self, "lower", lower)
+        object.__setattr__(self, "upper", upper)
+        if self.relaxable is not None and len(self.relaxable) != len(self.constraint_names):
+            raise InputError("`relaxable` needs one entry per constraint")
+        if self.start is not None:
+            self._check_start(np.array(self.start, dtype=float))
+
+    def _check_start(self, start: Vector) -> None:
+        if start.shape != self.lower.shape:
+            raise InputError(f"the start needs {len(self.names)} values")
+        room = 1e-9 * (np.abs(self.lower) + np.abs(self.upper))
+        for j in np.flatnonzero(~((start >= self.lower - room) & (start <= self.upper + room))):
+            raise InputError(
+                f"{self.names[j]}: the start {start[j]:g} is outside its bounds "
+                f"{self.lower[j]:g} to {self.upper[j]:g}"
+            )
+        object.__setattr__(self, "start", np.clip(start, self.lower, self.upper))
+
+    @property
+    def row_count(self) -> int:
+        """Number of rows of an evaluation: objective, constraints, equalities."""
+        return 1 + len(self.constraint_names) + len(self.equality_names)
+
+    def rows(self, points: Array) -> npt.NDArray[np.generic]:
+        """Objective, constraints and equalities of points (n, k), stacked to (rows, k)."""
+        count = points.shape[1]
+        with np.errstate(all="ignore"):
+            values = self.evaluate(points)
+        parts = []
+        wanted = (1, len(self.constraint_names), len(self.equality_names))
+        given = (values.objective, values.constraints, values.equalities)
+        for what, size, part in zip(
+            ("objective", "constraints", "equalities"), wanted, given, strict=True
+        ):
+            if size == 0 and part is None:
+                continue
+            array = np.asarray(part)
+            try:
+                array = np.broadcast_to(array.reshape(size, -1) if size else array, (size, count))
+            except ValueError:
+                message = f"the {what} have shape {array.shape}, need ({size}, {count})"
+                raise InputError(message) from None
+            parts.append(array)
+        return np.concatenate(parts)
+
+
+@dataclass(frozen=True)
+class ParametricProblem:
+    """A problem that also depends on parameters whose price is asked for.
+
+    Parameters
+    ----------
+    problem : the problem at the present parameter values (its own `evaluate` may be faster)
+    parameter_names : label of each parameter (q,)
+    parameters : present values (q,)
+    evaluate : maps points (n, k) and parameters (q, k) or (q, 1), real or complex, to `Values`
+    """
+
+    problem: Problem
+    parameter_names: Sequence[str]
+    parameters: Vector
+    evaluate: Callable[[Array, Array], Values]
+
+    def __post_init__(self) -> None:
+        values = np.array(self.parameters, dtype=float)
+        if values.shape != (len(self.parameter_names),):
+            raise InputError(f"{len(self.parameter_names)} parameters need as many values")
+        object.__setattr__(self, "parameters", values)
+
+    def at(self, parameters: Array) -> Problem:
+        """The problem at other parameter values (q,)."""
+        column = np.asarray(parameters)[:, None]
+        return replace(self.problem, evaluate=lambda x: self.evaluate(x, column))
+
+
+@dataclass(frozen=True)
+class Space:
+    """The solver's coordinates of a problem: its free variables, logarithmic where positive."""
+
+    problem: Problem
+    free: npt.NDArray[np.intp] = field(init=False)
+    logarithmic: npt.NDArray[np.bool_] = field(init=False)
+    scale: Vector = field(init=False)
+    lower: Vector = field(init=False)
+    upper: Vector = field(init=False)
+
+    def __post_init__(self) -> None:
+        low, high = self.problem.lower, self.problem.upper
+        free = np.flatnonzero(high > low)
+        kept = np.array([name in self.problem.linear for name in self.problem.names], dtype=bool)
+        logarithmic = ((low > 0) & ~kept)[free]
+        low, high = low[free], high[free]
+        scale = np.where(logarithmic, 1.0, (high - low) / 2)
+        for name, value in (
+            ("free", free),
+            ("logarithmic", logarithmic),
+            ("scale", scale),
+            ("lower", np.where(logarithmic, np.log(np.where(logarithmic, low, 1.0)), low / scale)),
+            ("upper", np.where(logarithmic, np.log(np.where(logarithmic, high, 1.0)), high / scale)),
+        ):
+            object.__setattr__(self, name, value)
+
+    @property
+    def size(self) -> int:
+        """Number of free variables."""
+        return len(self.free)
+
+    def to_z(self, x: Vector) -> Vector:
+        """Solver coordinates (nf,) of a point (n,) inside the box."""
+        inner = x[self.free]
+        log = self.logarithmic
+        z = np.where(log, np.log(np.where(log, inner, 1.0)), inner / self.scale)
+        return np.asarray(np.clip(z, self.lower, self.upper))
+
+    def to_x(self, z: Vector, *, inside: bool = True) -> Vector:
+        """Points (n, k) of coordinates (nf, k); exactly on a bound where z is.
+
+        `inside=False` lets a finite-difference step leave the box by its own width.
+        """
+        log, low, high = (
+            a[:, None]
+            for a in (
+                self.logarithmic,
+                self.problem.lower[self.free],
+                self.problem.upper[self.free],
+            )
+        )
+        inner = np.where(log, np.exp(np.where(log, z, 0.0)), z * self.scale[:, None])
+        if inside:
+            inner = np.where(z <= self.lower[:, None], low, np.maximum(inner, low))
+            inner = np.where(z >= self.upper[:, None], high, np.minimum(inner, high))
+        x = np.repeat(self.problem.lower[:, None], z.shape[1], axis=1)
+        x[self.free] = inner
+        return x
+
+    def slope(self, x: Vector) -> Vector:
+        """dx/dz of the free variables (nf, k) at points (n, k)."""
+        return np.where(self.logarithmic[:, None], x[self.free], self.scale[:, None])

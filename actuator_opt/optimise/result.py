@@ -1,0 +1,128 @@
+"""What an optimisation of an actuator returns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from ..design.model import Design
+from ..evaluate.evaluation import Evaluation
+
+
+@dataclass(frozen=True, slots=True)
+class VariableResult:
+    """A free dimension at the optimum (SI); `at_bound` is ``"lower"``, ``"upper"`` or None."""
+
+    path: str
+    quantity: str
+    value: float
+    start: float | None
+    lower: float
+    upper: float
+    at_bound: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Kkt:
+    """Quality of the optimum: ‖∇f + Σλ∇g‖/‖∇f‖ in log variables, active rows, their rank."""
+
+    residual: float
+    active: tuple[str, ...]
+    rank: int
+    curvature: str
+    """Sign of the reduced Hessian in words ("vertex", "positive definite", …)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sensitivity:
+    """The price of one requirement limit or one parameter, in SI of the objective per SI of it."""
+
+    parameter: str
+    label: str
+    unit: str
+    """Display unit of the parameter."""
+    scale: float
+    """Display value = SI value / scale."""
+    limit: float
+    price: float
+    percent_per_percent: float
+    predicted_10: float | None
+    resolved_10: float | None
+    predicted_minus10: float | None
+    resolved_minus10: float | None
+    holds_until: float | None
+    next_active: str | None
+    active: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Infeasibility:
+    """Why nothing fits: joint relaxation, sole repairs, binding bounds."""
+
+    joint: tuple[Mapping[str, Any], ...]
+    sole: tuple[Mapping[str, Any], ...]
+    bounds: tuple[Mapping[str, Any], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Optimisation:
+    """The best design found, how good it is, and what each requirement costs."""
+
+    status: str
+    sentence: str
+    remedy: str
+    objective_metric: str
+    objective_value: float
+    design: Design
+    evaluation: Evaluation
+    start: Evaluation
+    variables: tuple[VariableResult, ...]
+    kkt: Kkt | None
+    sensitivities: tuple[Sensitivity, ...]
+    infeasibility: Infeasibility | None
+    evaluations: int
+    starts: tuple[float, ...]
+    """Objective of the local optimum reached from each start."""
+    trace: tuple[tuple[int, float, float], ...]
+    """(evaluation, objective, worst margin) of each improvement."""
+    algorithm: str
+    seed: int
+    seconds: float
+    certificate: None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """The `optimise --json` object (SI): the evaluation's keys and the optimiser's."""
+        return self.evaluation.to_dict() | {
+            "status": self.status,
+            "outcome": self.sentence,
+            "remedy": self.remedy,
+            "objective": {"metric": self.objective_metric, "value": self.objective_value},
+            "variables": {
+                v.path: {
+                    "value": v.value,
+                    "lower": v.lower,
+                    "upper": v.upper,
+                    "at_bound": v.at_bound,
+                }
+                for v in self.variables
+            },
+            "kkt": None if self.kkt is None else asdict(self.kkt),
+            "sensitivities": [
+                {
+                    key: value
+                    for key, value in asdict(row).items()
+                    if key not in ("label", "unit", "scale")
+                }
+                for row in self.sensitivities
+            ],
+            "certificate": self.certificate,
+            "evaluations": self.evaluations,
+            "algorithm": self.algorithm,
+            "seed": self.seed,
+            "seconds": self.seconds,
+        } | (
+            {}
+            if self.infeasibility is None
+            else {"infeasibility": asdict(self.infeasibility)}
+        )

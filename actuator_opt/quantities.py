@@ -1,0 +1,232 @@
+"""Every quantity of the project, declared once: name, symbol, dimension, display unit, label, range.
+
+The parser, the help, tables, JSON, reports and the JSON Schema all read this table. `INPUTS` are
+what a person writes in a design or a materials file; `METRICS` are what an evaluation computes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from . import units
+
+INFINITY = float("inf")
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A named physical quantity; limits in SI, `lower` and `upper` included."""
+
+    name: str
+    symbol: str
+    dimension: str
+    unit: str
+    label: str
+    lower: float = -INFINITY
+    upper: float = INFINITY
+
+    @property
+    def si_unit(self) -> str:
+        return units.BASE[self.dimension]
+
+    def to_display(self, value: float) -> float:
+        """SI value in the unit people read."""
+        return units.unit(self.unit, self.dimension).from_si(value) if self.unit else value
+
+    def text(self, value: float, digits: int = 4) -> str:
+        """SI value as text with its display unit, ``"25 mm"``."""
+        return f"{self.to_display(value):.{digits}g} {self.unit}".rstrip()
+
+    def range_text(self) -> str:
+        """The valid range as text with units, ``"0.5 mm to 2000 mm"``."""
+        return f"{self.text(self.lower, 7)} to {self.text(self.upper, 7)}"
+
+
+def _table(rows: str) -> dict[str, Quantity]:
+    table = {}
+    for line in rows.strip().splitlines():
+        name, symbol, dimension, unit, lower, upper, label = (c.strip() for c in line.split("|"))
+        unit = "" if unit == "-" else unit
+        limits = [
+            units.parse(f"{text} {unit}" if unit else text, dimension) if text else sign * INFINITY
+            for text, sign in ((lower, -1), (upper, 1))
+        ]
+        table[name] = Quantity(name, symbol, dimension, unit, label, *limits)
+    return table
+
+
+INPUTS = _table("""
+ bore                 | D      | length      | mm   | 2     | 1000  | bore diameter
+ stroke               | s      | length      | mm   | 1     | 10000 | stroke
+ wall_thickness       | t      | length      | mm   | 0.01  | 200   | thickness
+ winding_angle        | theta  | angle       | deg  | 0     | 90    | winding angle from the tube axis
+ rod_diameter         | d      | length      | mm   | 1     | 900   | rod outer diameter
+ rod_inner_diameter   | d_i    | length      | mm   | 0     | 890   | rod inner diameter
+ length               | L      | length      | mm   | 0     | 20000 | length
+ part_length          | L      | length      | mm   | 0.1   | 20000 | length of a part
+ radial_clearance     | c      | length      | mm   | 0.001 | 2     | radial clearance
+ tolerance            | tol    | length      | mm   | 0     | 2     | tolerance
+ cross_section        | W      | length      | mm   | 0.5   | 30    | free seal cross-section
+ squeeze              | C      | ratio       | %    | 0     | 45    | seal squeeze of the free section
+ stretch              | e      | ratio       | %    | 0     | 25    | seal stretch
+ groove_width         | g      | length      | mm   | 0.5   | 60    | groove width
+ seal_count           | n      | count       | -    | 0     | 8     | number of seals
+ bolt_count           | n      | count       | -    | 2     | 48    | number of bolts or tie rods
+ thread_diameter      | d_t    | length      | mm   | 1     | 500   | nominal thread diameter
+ thread_pitch         | P      | length      | mm   | 0.2   | 12    | thread pitch
+ diameter             | d      | length      | mm   | 0.5   | 1000  | diameter
+ volume               | V      | volume      | ml   | 0     | 100000| volume
+ pressure             | p      | pressure    | bar  | 0     | 1500  | gauge pressure
+ working_pressure     | p_s    | pressure    | bar  | 1     | 1500  | supply gauge pressure
+ temperature          | T      | temperature | degC | -100  | 300   | temperature
+ temperature_rise     | dT     | temperature_difference | K | 0 | 300   | temperature rise
+ air_content          | alpha  | ratio       | %    | 0     | 20    | entrained air at atmospheric pressure, by volume
+ force                | F      | force       | kN   | 0     | 20000 | force
+ torque               | M      | torque      | N*m  | 0     | 1e7   | joint torque
+ lever_arm            | a      | length      | mm   | 1     | 10000 | lever arm
+ speed                | v      | speed       | m/s  | 0     | 20    | piston speed
+ load_mass            | m      | mass        | kg   | 0     | 1e6   | load mass reflected to the rod
+ position             | x      | length      | mm   | 0     | 10000 | piston position from the cap end
+ fraction             | x/s    | ratio       | %    | 0     | 100   | position as a fraction of the stroke
+ friction_coefficient | mu     | ratio       | -    | 0.001 | 2     | dry friction coefficient seal on counterface
+ breakaway_ratio      | F_S/F_C| ratio       | -    | 1     | 5     | breakaway over running friction
+ stribeck_speed       | v_s    | speed       | mm/s | 0.01  | 500   | Stribeck speed
+ viscous_friction     | sigma_2| damping     | N*s/m| 0     | 1e7   | viscous friction coefficient of the seals
+ safety_factor        | S      | ratio       | -    | 0.1   | 100   | safety factor
+ cycles               | N      | ratio       | -    | 0     | 1e10  | pressure cycles
+ stiffness            | k      | stiffness   | kN/mm| 0.0001| 1e6   | stiffness
+ coefficient          | c      | ratio       | -    | 0     | 10    | coefficient
+ surface_roughness    | Ra     | length      | um   | 0.01  | 20    | surface roughness Ra
+""")
+
+MATERIAL_PROPERTIES = _table("""
+ density              | rho    | density     | kg/m^3 | 100   | 25000 | density
+ youngs_modulus       | E      | pressure    | GPa    | 0.001 | 1200  | Young's modulus
+ youngs_modulus_1     | E_1    | pressure    | GPa    | 0.1   | 1200  | modulus along the fibre (warp)
+ youngs_modulus_2     | E_2    | pressure    | GPa    | 0.1   | 1200  | modulus across the fibre (weft)
+ youngs_modulus_3     | E_3    | pressure    | GPa    | 0.1   | 1200  | modulus through the ply
+ shear_modulus        | G      | pressure    | GPa    | 0.0005| 500   | shear modulus
+ shear_modulus_12     | G_12   | pressure    | GPa    | 0.05  | 500   | in-plane shear modulus
+ shear_modulus_13     | G_13   | pressure    | GPa    | 0.05  | 500   | shear modulus 13
+ shear_modulus_23     | G_23   | pressure    | GPa    | 0.05  | 500   | shear modulus 23
+ poissons_ratio       | nu     | ratio       | -      | 0     | 0.4999| Poisson's ratio
+ poissons_ratio_12    | nu_12  | ratio       | -      | 0     | 0.7   | Poisson's ratio 12
+ poissons_ratio_13    | nu_13  | ratio       | -      | 0     | 0.7   | Poisson's ratio 13
+ poissons_ratio_23    | nu_23  | ratio       | -      | 0     | 0.9   | Poisson's ratio 23
+ yield_strength       | R_p02  | pressure    | MPa    | 1     | 4000  | yield strength
+ ultimate_strength    | R_m    | pressure    | MPa    | 1     | 6000  | ultimate tensile strength
+ fatigue_strength     | sigma_w| pressure    | MPa    | 0.5   | 3000  | fatigue strength (amplitude, basis stated)
+ strength_1_tension   | X_t    | pressure    | MPa    | 1     | 8000  | fibre tension strength
+ strength_1_compression| X_c   | pressure    | MPa    | 1     | 8000  | fibre compression strength
+ strength_2_tension   | Y_t    | pressure    | MPa    | 1     | 3000  | transverse tension strength
+ strength_2_compression| Y_c   | pressure    | MPa    | 1     | 3000  | transverse compression strength
+ strength_12          | S      | pressure    | MPa    | 1     | 1000  | in-plane shear strength
+ strength_23          | S_23   | pressure    | MPa    | 1     | 1000  | transverse shear strength
+ thermal_expansion    | alpha  | per_temperature | ppm/K | -20 | 500  | thermal expansion
+ thermal_expansion_1  | alpha_1| per_temperature | ppm/K | -20 | 500  | thermal expansion along the fibre
+ thermal_expansion_2  | alpha_2| per_temperature | ppm/K | -20 | 500  | thermal expansion across the fibre
+ minimum_thickness    | t_min  | length      | mm     | 0     | 50    | minimum thickness that can be made
+ minimum_angle        | theta_min | angle    | deg    | 0     | 90    | smallest winding angle that can be made
+ temperature_knockdown| k_T    | ratio       | -      | 0.05  | 1     | strength left at the stated temperature
+ moisture_knockdown   | k_w    | ratio       | -      | 0.05  | 1     | strength left after moisture saturation
+ basis_knockdown      | k_b    | ratio       | -      | 0.05  | 1     | allowable over the stated value
+ temperature_min      | T_min  | temperature | degC   | -200  | 300   | lowest service temperature
+ temperature_max      | T_max  | temperature | degC   | -100  | 1000  | highest service temperature
+ bulk_modulus         | K      | pressure    | MPa    | 100   | 5000  | isothermal tangent bulk modulus
+ bulk_modulus_slope   | K'     | ratio       | -      | 0     | 20    | pressure slope of the bulk modulus
+ kinematic_viscosity  | nu     | kinematic_viscosity | mm^2/s | 0.2 | 100000 | kinematic viscosity
+ pressure_viscosity   | alpha  | per_pressure| 1/GPa  | 0     | 60    | pressure-viscosity coefficient
+ volume_expansion     | alpha_V| per_temperature | 1/K | 0     | 0.005 | volumetric thermal expansion
+ vapour_pressure      | p_v    | pressure    | Pa     | 0     | 1e6   | vapour pressure, absolute
+ hardness             | S      | hardness    | ShoreA | 20    | 99    | Shore A hardness
+ friction_coefficient | mu     | ratio       | -      | 0.001 | 2     | dry friction coefficient on the stated counterface
+ breakaway_ratio      | F_S/F_C| ratio       | -      | 1     | 5     | breakaway over running friction
+ stribeck_speed       | v_s    | speed       | mm/s   | 0.01  | 500   | Stribeck speed
+ extrusion_gap_max    | g_max  | length      | mm     | 0.001 | 2     | largest extrusion gap at the stated pressure
+ pressure_max         | p_max  | pressure    | bar    | 1     | 2000  | highest pressure without back-up ring
+ bond_strength        | tau    | pressure    | MPa    | 0.5   | 200   | adhesive shear strength
+ bearing_strength     | p_b    | pressure    | MPa    | 0.5   | 500   | allowable bearing pressure
+ fatigue_cycles       | N_w    | ratio       | -      | 1      | 1e12 | cycles of the fatigue strength
+ fatigue_stress_ratio | R      | ratio       | -      | -1     | 0.99 | stress ratio (lowest over highest) of the fatigue strength
+ shear_strength       | tau_m  | pressure    | MPa    | 0.5    | 3000 | ultimate shear strength
+ matrix_temperature_knockdown | k_Tm | ratio | -      | 0.05   | 1    | matrix strength left at the knock-down temperature
+ matrix_moisture_knockdown | k_wm | ratio    | -      | 0.05   | 1    | matrix strength left after moisture saturation
+ process_knockdown    | k_p    | ratio       | -      | 0.05   | 1    | fibre tension strength of the made part over the coupon
+ knockdown_temperature| T_k    | temperature | degC   | 30     | 1000 | temperature of the temperature knock-downs
+ fibre_volume_fraction| V_f    | ratio       | -      | 0.1    | 0.8  | fibre volume fraction
+ density_temperature  | T_rho  | temperature | degC   | -60    | 100  | temperature of the density
+ bulk_modulus_temperature | T_K | temperature | degC  | -60    | 200  | temperature of the bulk modulus
+ bulk_modulus_pressure| p_K    | pressure    | bar    | 0      | 1000 | gauge pressure of the bulk modulus
+ bulk_modulus_decay   | b_K    | per_temperature | 1/K | 0     | 0.02 | relative fall of the bulk modulus per kelvin
+ bond_thickness       | t_a    | length      | mm     | 0.005  | 5    | bond line thickness
+ speed_max            | v_max  | speed       | m/s    | 0.001  | 50   | highest sliding speed
+""")
+
+METRICS = _table("""
+ mass                 | m      | mass        | g    | | | mass of the dry actuator
+ mass_oil             | m_oil  | mass        | g    | | | oil inside, piston at the cap end
+ push_force           | F_+    | force       | kN   | | | push force, net of friction and back-pressure
+ pull_force           | F_-    | force       | kN   | | | pull force, net of friction and back-pressure
+ stiffness_min        | k_min  | stiffness   | kN/mm| | | axial stiffness at the weakest stroke position
+ stiffness_oil        | k_oil  | stiffness   | kN/mm| | | stiffness of oil alone at the weakest position
+ stiffness_rod        | k_rod  | stiffness   | kN/mm| | | axial stiffness of the rod
+ stiffness_barrel     | k_bar  | stiffness   | kN/mm| | | stiffness of barrel swelling at the weakest position
+ bore_growth          | u_i    | length      | um   | | | radial bore growth at supply pressure
+ seal_gap             | g      | length      | um   | | | radial extrusion gap at the piston seal
+ seal_squeeze         | C_min  | ratio       | %    | | | smallest seal squeeze after growth and tolerance
+ seal_squeeze_max     | C_max  | ratio       | %    | | | largest seal squeeze at assembly
+ seal_fill            | phi    | ratio       | %    | | | largest groove fill
+ seal_stretch         | e      | ratio       | %    | | | seal stretch
+ seal_section         | W      | length      | mm   | | | seal cross-section
+ contact_width        | b      | length      | mm   | | | seal contact width
+ contact_pressure     | p_0    | pressure    | MPa  | | | peak seal contact pressure
+ friction_running     | F_C    | force       | N    | | | running friction of all seals
+ friction_breakaway   | F_S    | force       | N    | | | breakaway friction of all seals
+ damping_pipe         | c      | damping     | N*s/m| | | viscous damping of the oil by pipe flow
+ damping_annular      | c_a    | damping     | N*s/m| | | viscous damping of the annular gaps
+ damping_seal         | B      | damping     | kN*s/m| | | secant damping of the seals at the stated speed
+ damping_ratio        | zeta   | ratio       | -    | | | damping ratio of the load on the actuator
+ natural_frequency    | f_0    | frequency   | Hz   | | | lowest natural frequency at the load mass over the stroke
+ efficiency           | eta    | ratio       | %    | | | force efficiency
+ proof_factor         | S_p    | ratio       | -    | | | yield or first-ply pressure over proof pressure
+ burst_factor         | S_b    | ratio       | -    | | | burst pressure over working pressure
+ first_ply_factor     | S_fpf  | ratio       | -    | | | first-ply pressure over working pressure
+ yield_factor         | S_y    | ratio       | -    | | | yield over working stress of metal parts
+ fatigue_factor       | S_f    | ratio       | -    | | | fatigue strength over stress amplitude
+ cycle_life           | N      | ratio       | -    | | | pressure cycles to failure
+ buckling_factor      | S_k    | ratio       | -    | | | buckling load over largest push load
+ thread_factor        | S_t    | ratio       | -    | | | yield over stress at the rod thread root
+ retention_factor     | S_r    | ratio       | -    | | | strength of cap retention over its load
+ cap_factor           | S_c    | ratio       | -    | | | yield over bending stress of the end caps
+ pin_factor           | S_pin  | ratio       | -    | | | shear yield over shear stress of the clevis pins
+ bearing_overlap      | L/d    | ratio       | -    | | | bearing span at full extension over rod diameter
+ bearing_pressure     | p_g    | pressure    | MPa  | | | largest guide pressure under side load
+ bearing_factor       | S_g    | ratio       | -    | | | allowable over largest guide pressure
+ port_velocity        | v_p    | speed       | m/s  | | | oil speed in the port
+ line_velocity        | v_l    | speed       | m/s  | | | oil speed in the line
+ line_pressure_drop   | dp     | pressure    | bar  | | | pressure drop of the lines
+ flow                 | q      | flow        | l/min| | | largest flow
+ piston_speed         | v      | speed       | m/s  | | | piston speed
+ power                | P      | power       | W    | | | mechanical output power
+ end_stop_energy      | E_end  | energy      | J    | | | energy to absorb at the end of stroke
+ end_stop_pressure    | p_end  | pressure    | bar  | | | peak pressure at the end stop
+ trapped_pressure     | p_tr   | pressure    | bar  | | | pressure rise of trapped oil over the temperature range
+ liner_mismatch_factor| S_th   | ratio       | -    | | | liner yield over thermal mismatch stress
+ temperature_margin   | dT     | temperature_difference | K | | | distance to the service limits of every material
+ oil_viscosity        | nu     | kinematic_viscosity | mm^2/s | | | oil viscosity at the case temperature
+ extrusion_factor     | g_max/g| ratio       | -    | | | allowed over present extrusion gap
+ end_stop_factor      | S_end  | ratio       | -    | | | proof pressure over peak end-stop pressure
+ trapped_factor       | S_tr   | ratio       | -    | | | proof pressure over trapped-oil pressure
+ line_drop_ratio      | dp/p   | ratio       | %    | | | line pressure drop over supply pressure
+ liner_yield_factor   | S_l    | ratio       | -    | | | liner yield pressure over working pressure
+ leakage              | q_l    | flow        | ml/min | | | leakage across the piston
+ barrel_length        | L_b    | length      | mm   | | | barrel length
+ closed_length        | L_0    | length      | mm   | | | length pin to pin, retracted
+ geometry_rod_in_bore | -      | length      | mm   | | | radial room between rod and bore
+ geometry_rod_wall    | -      | length      | mm   | | | rod wall thickness
+ geometry_piston_groove | -    | length      | mm   | | | wall left beside the grooves of the piston
+ geometry_piston_core | -      | length      | mm   | | | wall left under the piston groove
+ geometry_head_groove | -      | length      | mm   | | | wall left beside the grooves of the head
+ geometry_head_wall   | -      | length      | mm   | | | wall left over the rod seal groove
+""")
+

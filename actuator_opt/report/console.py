@@ -1,0 +1,139 @@
+"""Columns of text for a terminal: measured, cut and coloured by rule, in Unicode or plain ASCII."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .blocks import clean
+from .text import plain
+
+_CODES = {"bold": "1", "dim": "2", "red": "31", "green": "32", "yellow": "33", "cyan": "36"}
+_BREAK = re.compile(r"[\t\n\r\v\f\u2028\u2029]+")
+
+
+def visible(text: str) -> int:
+    """Columns a text takes on a terminal (wide East Asian letters take two).
+
+    >>> visible("25 mm"), visible("膝")
+    (5, 2)
+    """
+    wide = sum(unicodedata.east_asian_width(letter) in "WF" for letter in text)
+    return len(text) + wide - sum(unicodedata.combining(letter) > 0 for letter in text)
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column: a `flexible` one shrinks on a narrow terminal; the highest `drop` goes first."""
+
+    head: str
+    align: str = "left"
+    flexible: bool = False
+    drop: int = 0
+    least: int = 14
+
+
+@dataclass(frozen=True, slots=True)
+class Console:
+    """What the terminal can show."""
+
+    colour: bool = False
+    unicode: bool = True
+    width: int = 100
+
+    def say(self, text: str) -> str:
+        """User text and our own symbols in what the terminal can show; never a control code."""
+        text = clean(_BREAK.sub(" ", text))
+        return text if self.unicode else plain(text)
+
+    def paint(self, text: str, *styles: str) -> str:
+        """Text in colour, where there is any."""
+        codes = [_CODES[style] for style in styles if style]
+        if not self.colour or not codes or not text:
+            return text
+        return f"\x1b[{';'.join(codes)}m{text}\x1b[0m"
+
+    def cut(self, text: str, width: int) -> str:
+        """A text cut to `width` columns with an ellipsis."""
+        if visible(text) <= width:
+            return text
+        mark = "…" if self.unicode else "~"
+        while text and visible(text) > width - 1:
+            text = text[:-1]
+        return text + mark if width > 0 else ""
+
+    def wrap(self, text: str, *styles: str) -> str:
+        """A paragraph, broken at the width of the terminal."""
+        lines = textwrap.wrap(self.say(text), self.width, break_on_hyphens=False) or [""]
+        return "\n".join(self.paint(line, *styles) for line in lines)
+
+    def heading(self, text: str) -> str:
+        """A section title."""
+        return self.paint(self.cut(self.say(text), self.width), "bold")
+
+    def table(
+        self,
+        columns: Sequence[Column],
+        rows: Sequence[Sequence[str]],
+        styles: Sequence[Sequence[str]] = (),
+    ) -> list[str]:
+        """Lines of a table; `styles` gives a style per cell."""
+        cells = [[self.say(cell) for cell in row] for row in rows]
+        heads = [self.say(column.head) for column in columns]
+        keep = list(range(len(columns)))
+        while True:
+            sizes = {k: max([visible(heads[k]), *(visible(row[k]) for row in cells)]) for k in keep}
+            spare = self.width - sum(sizes.values()) - 2 * (len(keep) - 1)
+            flexible = [k for k in keep if columns[k].flexible]
+            floor = sum(min(sizes[k], columns[k].least) for k in flexible)
+            dropped = sorted((columns[k].drop, k) for k in keep if columns[k].drop)
+            if spare >= 0 or not dropped or sum(sizes[k] for k in flexible) + spare >= floor:
+                break
+            keep.remove(dropped[-1][1])
+        while spare < 0 and flexible:
+            widest = max(flexible, key=lambda k: sizes[k])
+            if sizes[widest] <= 6:
+                break
+            sizes[widest] -= 1
+            spare += 1
+        lines = [self._line(columns, keep, sizes, heads, ["dim"] * len(columns))]
+        for index, row in enumerate(cells):
+            style = styles[index] if index < len(styles) else [""] * len(columns)
+            lines.append(self._line(columns, keep, sizes, row, style))
+        return lines
+
+    def _line(
+        self,
+        columns: Sequence[Column],
+        keep: Sequence[int],
+        sizes: dict[int, int],
+        cells: Sequence[str],
+        styles: Sequence[str],
+    ) -> str:
+        parts = []
+        for k in keep:
+            text = self.cut(cells[k], sizes[k])
+            gap = " " * (sizes[k] - visible(text))
+            painted = self.paint(text, *styles[k].split())
+            parts.append(gap + painted if columns[k].align == "right" else painted + gap)
+        return "  ".join(parts).rstrip()
+
+    def margin_bar(self, margin: float | None, half: int = 5) -> str:
+        """Room to the right of the mark, what is missing to its left; full at 100 %."""
+        if margin is None:
+            return ""
+        size = min(abs(margin), 1.0) * half
+        axis, full = ("│", "█") if self.unicode else ("|", "#")
+        if margin < 0:
+            whole = int(size)
+            part = "▐" if self.unicode and size - whole >= 0.25 else ""
+            if not whole and not part:
+                part = "▕" if self.unicode else "#"
+            return f"{(part + full * whole):>{half}}{axis}{'':{half}}"
+        eighths = round(size * 8)
+        tail = "" if eighths % 8 == 0 else "▏▎▍▌▋▊▉"[eighths % 8 - 1]
+        body = full * (eighths // 8) + tail if self.unicode else full * round(size)
+        return f"{'':{half}}{axis}{body:<{half}}"

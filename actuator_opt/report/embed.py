@@ -1,0 +1,73 @@
+"""Attach files to a finished PDF by an incremental update, and read them back."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from collections.abc import Sequence
+from datetime import UTC, datetime
+
+from ..errors import InputError
+
+_EMBEDDED = re.compile(rb"<<([^<>]*/EmbeddedFile(?:[^<>]|<<[^<>]*>>)*)>>\s*stream\r?\n")
+
+
+def embed(pdf: bytes, files: Sequence[tuple[str, str, bytes]], timestamp: int = 0) -> bytes:
+    """The PDF with (name, media type, content) files attached; ISO 32000-1, 7.5.6 and 7.11.4.
+
+    Serves PDFs with a plain cross-reference table, such as matplotlib's.
+    """
+    start = int(pdf.rsplit(b"startxref", 1)[1].split()[0])
+    trailer = pdf.rsplit(b"trailer", 1)[1]
+    size = int(re.search(rb"/Size (\d+)", trailer)[1])  # type: ignore[index]
+    root = int(re.search(rb"/Root (\d+) 0 R", trailer)[1])  # type: ignore[index]
+    found = re.search(rb"(?:^|\n)%d 0 obj\s*<<(.*?)>>\s*endobj" % root, pdf, re.DOTALL)
+    if found is None:
+        raise InputError("cannot attach the input: the PDF has no catalogue")
+    day = datetime.fromtimestamp(timestamp, UTC).strftime("D:%Y%m%d%H%M%SZ").encode()
+    objects: dict[int, bytes] = {}
+    names = []
+    for index, (name, kind, content) in enumerate(files):
+        stream, record = size + 2 * index, size + 2 * index + 1
+        packed = zlib.compress(content, 9)
+        subtype = kind.replace("/", "#2F").encode()
+        objects[stream] = (
+            b"<</Length %d/Type/EmbeddedFile/Filter/FlateDecode/Subtype/%s"
+            b"/Params<</Size %d/ModDate(%s)>>>>\nstream\n%s\nendstream"
+            % (len(packed), subtype, len(content), day, packed)
+        )
+        written = b"<FEFF" + name.encode("utf-16-be").hex().upper().encode() + b">"
+        objects[record] = (
+            b"<</Type/Filespec/F%s/UF%s/EF<</F %d 0 R/UF %d 0 R>>/AFRelationship/Source>>"
+            % (written, written, stream, stream)
+        )
+        names.append((written, record))
+    listed = b" ".join(b"%s %d 0 R" % entry for entry in sorted(names))
+    refs = b" ".join(b"%d 0 R" % record for _, record in names)
+    extra = b"/Names<</EmbeddedFiles<</Names[%s]>>>>/AF[%s]" % (listed, refs)
+    objects[root] = b"<<" + found[1].strip() + extra + b">>"
+    return pdf + _update(objects, len(pdf), size + 2 * len(files), root, start)
+
+
+def _update(objects: dict[int, bytes], offset: int, size: int, root: int, previous: int) -> bytes:
+    """Objects, cross-reference section and trailer of an incremental update."""
+    body, table = b"\n", b"xref\n"
+    for number in sorted(objects):
+        table += b"%d 1\n%010d 00000 n \n" % (number, offset + len(body))
+        body += b"%d 0 obj\n%s\nendobj\n" % (number, objects[number])
+    trailer = b"trailer\n<</Size %d/Root %d 0 R/Prev %d>>\nstartxref\n%d\n%%%%EOF\n"
+    return body + table + trailer % (size, root, previous, offset + len(body))
+
+
+def extract(pdf: bytes) -> dict[str, bytes]:
+    """Attached files by media type; reads what `embed` and the Typst report write."""
+    found: dict[str, bytes] = {}
+    for match in _EMBEDDED.finditer(pdf):
+        kind = re.search(rb"/Subtype\s*/([\w#.+-]+)", match[1])
+        length = re.search(rb"/Length (\d+)", match[1])
+        if kind is None or length is None:
+            continue
+        stream = pdf[match.end() : match.end() + int(length[1])]
+        content = zlib.decompress(stream) if b"FlateDecode" in match[1] else stream
+        found[kind[1].replace(b"#2F", b"/").decode()] = content
+    return found

@@ -1,0 +1,207 @@
+"""The tables of an optimisation: variables, prices with their quality, how it went, why not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ..evaluate.evaluation import Evaluation
+from ..optimise.result import Infeasibility, Optimisation, Sensitivity
+from . import text
+from .blocks import Block, Cell, clean, column, soft, table
+from .text import DASH
+
+
+def variables(optimisation: Optimisation) -> Block:
+    """Bounds, start and optimum of every free dimension."""
+    rows: list[list[Cell]] = []
+    for row in optimisation.variables:
+        quantity = text.input_quantity(row.quantity)
+        lower, upper, value = (quantity.to_display(v) for v in (row.lower, row.upper, row.value))
+        start = None if row.start is None else quantity.to_display(row.start)
+        place = (value - lower) / (upper - lower) if upper > lower else 0.0
+        bound = "" if row.at_bound is None else f"at {row.at_bound} bound"
+        rows.append(
+            [
+                soft(row.path),
+                clean(quantity.label),
+                text.trimmed(lower),
+                text.number(start),
+                text.number(value),
+                text.trimmed(upper),
+                text.unit_text(quantity.unit),
+                {"slot": round(min(max(place, 0.0), 1.0), 4), "at": row.at_bound or ""},
+                bound,
+            ]
+        )
+    columns = [
+        column("variable", "left", 1.3, mono=True),
+        column("dimension", "left", 1.1),
+        column("lower", "right"),
+        column("start", "right"),
+        column("optimum", "right", strong=True),
+        column("upper", "right"),
+        column("unit"),
+        column("between bounds", "left", "26mm"),
+        column(""),
+    ]
+    held = [row.path for row in optimisation.variables if row.at_bound]
+    note = f"{len(held)} of {len(rows)} variables are at a bound." if held else ""
+    return table("Design variables", columns, rows, note=note)
+
+
+def _parameter(row: Sensitivity, value: float | None) -> float | None:
+    """A parameter in its display unit; temperatures have an offset."""
+    if value is None:
+        return None
+    offset = 273.15 if row.unit in ("degC", "°C") else 0.0
+    return value / row.scale - offset
+
+
+def sensitivities(optimisation: Optimisation) -> Block:
+    """Price of every limit and parameter, checked by solving again at ±10 %."""
+    objective = text.metric(optimisation.objective_metric)
+    rows_by_path = {row.path: row for row in optimisation.evaluation.requirements}
+    per_display = objective.to_display(1.0) - objective.to_display(0.0)
+    rows: list[list[Cell]] = []
+    for row in optimisation.sensitivities:
+        found = rows_by_path.get(row.parameter)
+        unit = text.unit_text(row.unit)
+        value = None if found is None else found.value
+        pairs = (
+            (row.predicted_10, row.resolved_10),
+            (row.predicted_minus10, row.resolved_minus10),
+        )
+        until = text.with_unit(text.trimmed(_parameter(row, row.holds_until)), unit)
+        rows.append(
+            [
+                soft(row.parameter.removeprefix("requirements.")),
+                text.with_unit(text.trimmed(_parameter(row, row.limit)), unit),
+                DASH if found is None else text.number(_parameter(row, value)),
+                DASH if found is None else text.margin_text(found.margin, met=found.met),
+                "●" if row.active else "",
+                text.number(row.price * row.scale * per_display, 3, signed=True),
+                text.number(row.percent_per_percent, 3, signed=True),
+                *(text.number(text.display(objective, v)) for pair in pairs for v in pair),
+                soft(until if row.next_active is None else f"{until}: {row.next_active}"),
+            ]
+        )
+    unit = text.unit_text(objective.unit) or objective.name
+    columns = [
+        column("requirement or parameter", "left", 1.25, mono=True),
+        column("limit", "right"),
+        column("value", "right"),
+        column("margin", "right"),
+        column("active", "center"),
+        column(f"price,\n{unit}/unit", "right"),
+        column("% per\n+1 %", "right"),
+        column("+10 %\npredicted", "right"),
+        column("+10 %\nsolved", "right", strong=True),
+        column("−10 %\npredicted", "right"),
+        column("−10 %\nsolved", "right", strong=True),
+        column("holds until: next active", "left", 1.05),
+    ]
+    return table(
+        f"What each requirement costs ({objective.label}, {unit})",
+        columns,
+        rows,
+        note=quality(optimisation),
+    )
+
+
+def quality(optimisation: Optimisation) -> str:
+    """The quality line under the prices."""
+    kkt = optimisation.kkt
+    if kkt is None:
+        return "Quality: no multipliers (the design is not an optimum); prices are not exact."
+    return (
+        f"Quality: KKT residual {text.number(kkt.residual, 2)}, {len(kkt.active)} active rows of"
+        f" rank {kkt.rank}, {kkt.curvature}. Prices are per unit shown in the limit column;"
+        f" {DASH} under solved: infeasible there."
+    )
+
+
+def sentence(words: str) -> str:
+    """Words with a capital letter and a full stop.
+
+    >>> sentence("optimum found")
+    'Optimum found.'
+    """
+    words = words.strip()
+    return words and words[0].upper() + words[1:] + ("" if words[-1] in ".!?" else ".")
+
+
+def convergence(optimisation: Optimisation) -> list[str]:
+    """Algorithm, effort, starts and trace, in sentences. Wall time is left out: same bytes."""
+    objective = text.metric(optimisation.objective_metric)
+    lines = [
+        f"{optimisation.algorithm}, seed {optimisation.seed},"
+        f" {optimisation.evaluations} evaluations."
+    ]
+    if optimisation.starts:
+        best = min(optimisation.starts, key=lambda v: abs(v - optimisation.objective_value))
+        same = sum(abs(v - best) <= 1e-3 * abs(best) for v in optimisation.starts)
+        found = ", ".join(text.value_text(objective, v) for v in optimisation.starts[:8])
+        more = ", …" if len(optimisation.starts) > 8 else ""
+        lines.append(
+            f"{same} of {len(optimisation.starts)} starts reached the same optimum within 0.1 %:"
+            f" {found}{more}."
+        )
+    if optimisation.trace:
+        steps = optimisation.trace
+        picked = [
+            steps[k] for k in sorted({0, len(steps) // 3, 2 * len(steps) // 3, -1 % len(steps)})
+        ]
+        path = " → ".join(
+            f"{text.value_text(objective, value)} ({text.margin_text(worst)} at {count})"
+            for count, value, worst in picked
+        )
+        lines.append(f"Improvements (worst margin at evaluation): {path}.")
+    if optimisation.kkt is not None and optimisation.kkt.active:
+        lines.append(f"Active at the optimum: {', '.join(optimisation.kkt.active)}.")
+    return lines
+
+
+_HEADS = {
+    "joint": ("Smallest joint relaxation", "Relax all of these together and a design exists."),
+    "sole": ("One requirement alone", f"{DASH}: relaxing only this one does not help."),
+    "bounds": ("Bounds in the way", "Dimensions that stand at a bound of theirs."),
+}
+
+
+def infeasibility(card: Infeasibility, evaluation: Evaluation) -> list[Block]:
+    """The card of an infeasible design: what conflicts, by how much, what would repair it."""
+    blocks = []
+    for name, (title, note) in _HEADS.items():
+        records = [_completed(record, evaluation) for record in getattr(card, name)]
+        if not records:
+            continue
+        keys = list(dict.fromkeys(key for record in records for key in record))
+        keys = [key for key in keys if key not in ("metric", "quantity", "index")]
+        rows: list[list[Cell]] = [
+            [soft(text.record_text(key, record.get(key), record)) for key in keys]
+            for record in records
+        ]
+        heads = [
+            column(key.replace("_", " "), "left", 1.0, mono=index == 0)
+            for index, key in enumerate(keys)
+        ]
+        blocks.append(table(title, heads, rows, note=note))
+    return blocks
+
+
+def _completed(record: Mapping[str, Any], evaluation: Evaluation) -> dict[str, Any]:
+    """A relaxation with the metric, the limit and the limit needed, where they follow."""
+    found = dict(record)
+    named = found.get("requirement", found.get("constraint"))
+    row = next((r for r in evaluation.requirements if named in (r.name, r.path)), None)
+    if row is None:
+        return found
+    found.setdefault("metric", row.metric)
+    amount = found.get("relaxation", found.get("amount"))
+    if "needed" not in found and "amount" in found:
+        found.setdefault("limit", row.limit)
+        away = None if amount is None else amount * (abs(row.limit) or 1.0)
+        sign = -1.0 if row.sense == "min" else 1.0
+        found["needed"] = None if away is None else row.limit + sign * away
+    return found

@@ -1,0 +1,194 @@
+"""What stands on the report: an Evaluation or an Optimisation as plain data for the renderers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from ..evaluate.evaluation import Evaluation
+from ..optimise.result import Optimisation
+from . import optimum, tables, text
+from .blocks import Block, ExtraTable, clean, figure, listing, notes, short, soft
+from .drawing import section
+from .figures import stiffness_figure, wall_figure
+
+KEY_FIGURES = (
+    "mass",
+    "stiffness_min",
+    "push_force",
+    "friction_running",
+    "natural_frequency",
+    "burst_factor",
+    "buckling_factor",
+    "pull_force",
+    "closed_length",
+)
+"""Five of these, in this order, after the objective; one without a value is passed over."""
+
+_SHORT = {
+    "mass": "mass, dry",
+    "stiffness_min": "stiffness, weakest position",
+    "push_force": "push force, net",
+    "pull_force": "pull force, net",
+    "friction_running": "running friction",
+    "natural_frequency": "natural frequency, loaded",
+    "burst_factor": "burst over working pressure",
+    "buckling_factor": "buckling over push load",
+    "closed_length": "closed length, pin to pin",
+}
+
+
+def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisation | None]:
+    """The evaluation to show and, if there is one, the optimisation it came from."""
+    if isinstance(subject, Optimisation):
+        return subject.evaluation, subject
+    return subject, None
+
+
+def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
+    """The badge: state, words, and how many rows and checks stand behind it."""
+    evaluation, optimisation = parts_of(subject)
+    missed = sum(not row.met for row in evaluation.requirements)
+    total = len(evaluation.requirements)
+    if optimisation is not None and optimisation.infeasibility is not None:
+        state, words = "infeasible", "INFEASIBLE"
+    elif missed:
+        state, words = "missed", "REQUIREMENTS MISSED"
+    else:
+        state, words = "met", "REQUIREMENTS MET"
+    counts = {
+        name: sum(check.status == name for check in evaluation.checks)
+        for name in ("met", "missed", "not_checked")
+    }
+    return {
+        "state": state,
+        "text": words,
+        "lines": [
+            f"{total - missed} of {total} requirements met",
+            f"checks: {counts['met']} met · {counts['missed']} missed"
+            f" · {counts['not_checked']} not checked",
+        ],
+    }
+
+
+def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
+    """Five numbers to remember, the objective first, each with its limit or where it came from."""
+    evaluation, optimisation = parts_of(subject)
+    first = () if optimisation is None else (optimisation.objective_metric,)
+    names = [n for n in dict.fromkeys((*first, *KEY_FIGURES)) if n in evaluation.metrics]
+    names = [n for n in names if evaluation.metrics[n].value is not None][:5]
+    tiles = []
+    for name in names:
+        metric, quantity = evaluation.metrics[name], text.metric(name)
+        row = next((r for r in evaluation.requirements if r.metric == name), None)
+        state, note = "none", "" if metric.case is None else f"case {metric.case}"
+        start = None if optimisation is None else optimisation.start.metrics.get(name)
+        if name in first and start is not None and start.value and metric.value is not None:
+            change = text.number(100 * (metric.value / start.value - 1), 3, signed=True)
+            note = f"start {text.value_text(quantity, start.value)}, {change} %"
+        elif row is not None:
+            state = "met" if row.met else "missed"
+            limit = text.limit_text(quantity, row.sense, row.limit)
+            note = f"{limit}, margin {text.margin_text(row.margin, met=row.met)}"
+        elif name == "mass" and metric.value is not None:
+            oil = evaluation.metrics.get("mass_oil")
+            if oil is not None and oil.value is not None:
+                note = f"with oil {text.value_text(quantity, metric.value + oil.value)}"
+        tiles.append(
+            {
+                "label": short(_SHORT.get(name, quantity.label), 30),
+                "symbol": quantity.symbol,
+                "value": text.number(text.display(quantity, metric.value)),
+                "unit": text.unit_text(quantity.unit),
+                "note": short(note, 44),
+                "state": state,
+            }
+        )
+    return tiles
+
+
+def page(
+    subject: Evaluation | Optimisation,
+    *,
+    source_text: str,
+    source_name: str,
+    command: str,
+    date: str | None,
+    extra_tables: Sequence[ExtraTable] = (),
+) -> dict[str, Any]:
+    """The whole report as plain data; equal input gives equal data."""
+    evaluation, optimisation = parts_of(subject)
+    drawing = section(evaluation)
+    kind = "Optimisation report" if optimisation is not None else "Evaluation report"
+    blocks: list[Block] = []
+    if optimisation is not None and optimisation.infeasibility is not None:
+        blocks += optimum.infeasibility(optimisation.infeasibility, evaluation)
+    blocks.append(tables.requirements(evaluation))
+    if optimisation is not None and optimisation.variables:
+        blocks.append(optimum.variables(optimisation))
+    else:
+        blocks.append(tables.masses(evaluation))
+    blocks += [_curve(evaluation), _wall(evaluation)]
+    if optimisation is not None and optimisation.sensitivities:
+        blocks.append(optimum.sensitivities(optimisation))
+    if optimisation is not None and optimisation.variables:
+        blocks.append(tables.masses(evaluation))
+    blocks += [tables.checks(evaluation), tables.models(evaluation)]
+    blocks += _remarks(evaluation, optimisation)
+    blocks += [tables.extra(table) for table in extra_tables]
+    blocks.append(listing(f"Input: {source_name}", source_text))
+    sentence = "" if optimisation is None else optimisation.sentence
+    remedy = "" if optimisation is None else optimisation.remedy
+    return {
+        "name": soft(evaluation.name),
+        "title": clean(evaluation.name),
+        "short": short(evaluation.name, 32),
+        "kind": kind,
+        "version": clean(evaluation.version),
+        "hash": clean(evaluation.spec_hash[:16]),
+        "date": "" if date is None else clean(date),
+        "source_name": soft(source_name),
+        "command": soft(short(command, 260), 30),
+        "verdict": verdict(subject),
+        "sentence": soft(" ".join(optimum.sentence(part) for part in (sentence, remedy) if part)),
+        "tiles": key_figures(subject),
+        "section": drawing.ink.data(),
+        "scale": drawing.scale,
+        "items": [
+            {"number": item.number, "part": clean(item.part), "material": clean(item.material)}
+            for item in drawing.items
+        ],
+        "blocks": blocks,
+    }
+
+
+def _curve(evaluation: Evaluation) -> Block:
+    rows = evaluation.requirements
+    required = next((r for r in rows if r.metric == "stiffness_min" and r.sense == "min"), None)
+    note = f"Case {evaluation.curve.case}, ports closed; the contributions add up to 1/k."
+    return figure("Stiffness over the stroke", stiffness_figure(evaluation.curve, required), note)
+
+
+def _wall(evaluation: Evaluation) -> Block:
+    kinds = {o.material: o.kind for o in evaluation.outlines}
+    layers = []
+    for index, ply in enumerate(evaluation.design.barrel.layup, 1):
+        kind = kinds.get(ply.material, "metal")
+        angle = text.trimmed(math.degrees(ply.angle))
+        turn = f", ±{angle}° from the tube axis" if kind == "composite" else ""
+        layers.append((clean(f"{index}  {ply.material}{turn}"), ply.thickness, kind))
+    return figure("Barrel wall, from the bore outwards", wall_figure(layers))
+
+
+def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> list[Block]:
+    blocks = []
+    if evaluation.warnings:
+        blocks.append(notes("Warnings", [text.pretty(line) for line in evaluation.warnings]))
+    blocks.append(tables.assumptions(evaluation))
+    if evaluation.design.notes:
+        lines = [line for line in evaluation.design.notes.splitlines() if line.strip()]
+        blocks.append(notes("Notes of the author", lines))
+    if optimisation is not None:
+        blocks.append(notes("How the optimum was found", optimum.convergence(optimisation)))
+    return blocks

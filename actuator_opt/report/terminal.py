@@ -1,0 +1,382 @@
+"""Results as text for the terminal. Pure functions: they return text and print nothing.
+
+Every function takes `colour`, `unicode` and `width`; without `unicode` the text is plain ASCII.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypedDict
+
+from ..evaluate.evaluation import Evaluation, Requirement, StrokeCurve
+from ..optimise.result import Infeasibility, Optimisation
+from . import optimum, page, plot, text
+from .console import Column, Console
+from .text import DASH
+
+_STATE_STYLE = {
+    "met": "green",
+    "missed": "red bold",
+    "not_checked": "dim",
+    "infeasible": "red bold",
+}
+_MARKS = {"met": "✔", "missed": "✘", "not_checked": "○", "infeasible": "✘"}
+_PLAIN_MARKS = {"met": "ok", "missed": "MISSED", "not_checked": "-", "infeasible": "INFEASIBLE"}
+
+
+class _Style(TypedDict):
+    colour: bool
+    unicode: bool
+    width: int
+
+
+def _mark(console: Console, state: str) -> str:
+    return (_MARKS if console.unicode else _PLAIN_MARKS)[state]
+
+
+def verdict(
+    subject: Evaluation | Optimisation,
+    *,
+    colour: bool = False,
+    unicode: bool = True,
+    width: int = 100,
+) -> str:
+    """One line: name, verdict, how many requirements and checks stand behind it."""
+    console = Console(colour, unicode, width)
+    evaluation, optimisation = page.parts_of(subject)
+    found = page.verdict(subject)
+    state = found["state"]
+    mark = f"{_mark(console, state)} " if unicode else ""
+    lines = [
+        console.paint(console.say(evaluation.name), "bold")
+        + "  "
+        + console.paint(mark + found["text"].lower(), *_STATE_STYLE[state].split())
+    ]
+    lines.append(console.wrap("; ".join(found["lines"]), "dim"))
+    missed = [row.name for row in evaluation.requirements if not row.met]
+    if missed:
+        lines.append(console.wrap("missed: " + ", ".join(missed), "red"))
+    if optimisation is not None:
+        said = (optimisation.sentence, optimisation.remedy)
+        lines += [console.wrap(optimum.sentence(part)) for part in said if part]
+    return "\n".join(lines)
+
+
+def evaluation_table(
+    evaluation: Evaluation, *, colour: bool = False, unicode: bool = True, width: int = 100
+) -> str:
+    """Every computed quantity: value, unit, limit, margin bar, governing case."""
+    console = Console(colour, unicode, width)
+    columns = [
+        Column("quantity"),
+        Column("value", "right"),
+        Column("unit"),
+        Column("limit", "right"),
+        Column("margin", "right"),
+        Column("", drop=2),
+        Column("case", flexible=True, drop=1),
+        Column("what", flexible=True, drop=3, least=45),
+    ]
+    limits: dict[str, list[Requirement]] = {}
+    for required in evaluation.requirements:
+        limits.setdefault(required.metric, []).append(required)
+    rows, styles, missing = [], [], []
+    for metric in evaluation.metrics.values():
+        quantity = metric.quantity
+        if metric.value is None:
+            missing.append(f"{metric.name}: {metric.why or 'not computed'}")
+            continue
+        entries: Sequence[Requirement | None] = limits.get(metric.name) or [None]
+        for index, row in enumerate(entries):
+            case = ", ".join(p for p in (metric.case, metric.place) if p)
+            flag = "" if metric.in_range else " (!)"
+            limit = "" if row is None else text.limit_text(quantity, row.sense, row.limit)
+            margin = None if row is None else row.margin
+            met = row is None or row.met
+            rows.append(
+                [
+                    metric.name + flag if index == 0 else "",
+                    text.number(quantity.to_display(metric.value)) if index == 0 else "",
+                    text.unit_text(quantity.unit) if index == 0 else "",
+                    limit,
+                    text.margin_text(margin, met=met) if row is not None else "",
+                    console.margin_bar(margin),
+                    case if row is None else row.case or case,
+                    quantity.label if index == 0 else "",
+                ]
+            )
+            paint = "" if row is None else "green" if met else "red"
+            styles.append(["", "bold", "dim", "", paint, paint, "dim", "dim"])
+    lines = console.table(columns, rows, styles)
+    if any(not metric.in_range for metric in evaluation.metrics.values()):
+        lines.append(console.paint("(!) a model was used outside its valid range", "yellow"))
+    if missing:
+        lines += ["", console.paint("not computed", "dim")]
+        lines += ["  " + console.cut(console.say(line), width - 2) for line in missing]
+    return "\n".join(lines)
+
+
+def requirements_table(
+    evaluation: Evaluation, *, colour: bool = False, unicode: bool = True, width: int = 100
+) -> str:
+    """Requirements: limit, result, margin with its bar, governing case and place."""
+    console = Console(colour, unicode, width)
+    if not evaluation.requirements:
+        return console.paint("no requirements", "dim")
+    columns = [
+        Column(""),
+        Column("requirement", flexible=True),
+        Column("limit", "right"),
+        Column("result", "right"),
+        Column("margin", "right"),
+        Column("", drop=1),
+        Column("governing case", flexible=True, drop=2),
+    ]
+    rows, styles = [], []
+    for row in evaluation.requirements:
+        quantity = text.metric(row.metric)
+        metric = evaluation.metrics.get(row.metric)
+        why = metric.why if metric is not None and row.value is None else None
+        state = "met" if row.met else "missed"
+        rows.append(
+            [
+                _mark(console, state),
+                row.name,
+                text.limit_text(quantity, row.sense, row.limit),
+                why or text.value_text(quantity, row.value),
+                text.margin_text(row.margin, met=row.met),
+                console.margin_bar(row.margin),
+                ", ".join(p for p in (row.case, row.place) if p),
+            ]
+        )
+        paint = _STATE_STYLE[state]
+        styles.append([paint, "" if row.met else "bold", "", "bold", paint, paint, "dim"])
+    return "\n".join(console.table(columns, rows, styles))
+
+
+def checks_table(
+    evaluation: Evaluation,
+    *,
+    all_rows: bool = False,
+    colour: bool = False,
+    unicode: bool = True,
+    width: int = 100,
+) -> str:
+    """The check list: missed and unchecked lines, or all; the count of met lines always."""
+    console = Console(colour, unicode, width)
+    order = {"missed": 0, "not_checked": 1, "met": 2}
+    shown = [row for row in evaluation.checks if all_rows or row.status != "met"]
+    shown.sort(key=lambda row: order[row.status])
+    met = sum(row.status == "met" for row in evaluation.checks)
+    title = f"checks: {met} of {len(evaluation.checks)} met"
+    columns = [
+        Column(""),
+        Column("check", flexible=True),
+        Column("limit", "right"),
+        Column("result", "right"),
+        Column("why", flexible=True),
+    ]
+    rows, styles = [], []
+    for row in shown:
+        quantity = text.metric(row.metric or "")
+        rows.append(
+            [
+                _mark(console, row.status),
+                row.name,
+                text.limit_text(quantity, row.sense, row.limit),
+                DASH if row.value is None else text.value_text(quantity, row.value),
+                row.reason or row.source,
+            ]
+        )
+        paint = _STATE_STYLE[row.status]
+        styles.append([paint, "", "", "bold" if row.status == "missed" else "", "dim"])
+    lines = [console.paint(title, "bold")]
+    return "\n".join(lines + (console.table(columns, rows, styles) if rows else []))
+
+
+def variables_table(
+    optimisation: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
+) -> str:
+    """Free dimensions: bounds, start, optimum, and where between its bounds each one is."""
+    console = Console(colour, unicode, width)
+    columns = [
+        Column("variable", flexible=True),
+        Column("lower", "right"),
+        Column("start", "right", drop=2),
+        Column("optimum", "right"),
+        Column("upper", "right"),
+        Column("unit"),
+        Column("", drop=1),
+        Column(""),
+    ]
+    rows, styles = [], []
+    for row in optimisation.variables:
+        quantity = text.input_quantity(row.quantity)
+        rows.append(
+            [
+                row.path,
+                text.trimmed(quantity.to_display(row.lower)),
+                text.number(text.display(quantity, row.start)),
+                text.number(quantity.to_display(row.value)),
+                text.trimmed(quantity.to_display(row.upper)),
+                text.unit_text(quantity.unit),
+                _slot(console, row.value, row.lower, row.upper),
+                "" if row.at_bound is None else f"at {row.at_bound} bound",
+            ]
+        )
+        styles.append(["", "dim", "dim", "bold", "dim", "dim", "cyan", "yellow"])
+    return "\n".join(console.table(columns, rows, styles))
+
+
+def _slot(console: Console, value: float, lower: float, upper: float, size: int = 13) -> str:
+    share = (value - lower) / (upper - lower) if upper > lower else 0.0
+    place = round(min(max(share, 0.0), 1.0) * (size - 1))
+    line, dot = ("─", "●") if console.unicode else ("-", "o")
+    return line * place + dot + line * (size - 1 - place)
+
+
+def sensitivity_table(
+    optimisation: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
+) -> str:
+    """Prices of limits and parameters, predicted against re-solved, with the quality line."""
+    console = Console(colour, unicode, width)
+    block = optimum.sensitivities(optimisation)
+    unit = text.unit_text(text.metric(optimisation.objective_metric).unit)
+    columns = [
+        Column("parameter", flexible=True, least=34),
+        Column("limit", "right"),
+        Column("value", "right", drop=4),
+        Column("margin", "right", drop=3),
+        Column("active" if unicode else "act"),
+        Column(f"{unit}/unit", "right"),
+        Column("%/%", "right"),
+        Column("+10 %", "right", drop=1),
+        Column("solved", "right"),
+        Column("-10 %", "right", drop=1),
+        Column("solved", "right"),
+        Column("holds until: next active", flexible=True, drop=2),
+    ]
+    rows, styles = [], []
+    for cells in block["rows"]:
+        row = [cell if isinstance(cell, str) else "".join(cell) for cell in cells]
+        active = row[4] != ""
+        row[4] = "" if not active else "●" if unicode else "*"
+        rows.append(row)
+        strong = "bold" if active else ""
+        styles.append(
+            [
+                strong,
+                "",
+                "dim",
+                "dim",
+                "yellow",
+                strong,
+                strong,
+                "dim",
+                strong,
+                "dim",
+                strong,
+                "dim",
+            ]
+        )
+    lines = [console.heading(block["title"]), *console.table(columns, rows, styles)]
+    lines.append(console.wrap(block["note"], "dim"))
+    return "\n".join(lines)
+
+
+def infeasibility_card(
+    subject: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
+) -> str:
+    """Why nothing fits: what to relax together, what alone would do, which bounds bind."""
+    console = Console(colour, unicode, width)
+    card: Infeasibility | None = subject.infeasibility
+    if card is None:
+        return ""
+    lines = []
+    for block in optimum.infeasibility(card, subject.evaluation):
+        columns = [Column(c["head"], c["align"], flexible=True) for c in block["columns"]]
+        rows = [["".join(cell) for cell in row] for row in block["rows"]]
+        lines += ["", console.heading(block["title"]), *console.table(columns, rows)]
+        lines.append(console.wrap(block["note"], "dim"))
+    return "\n".join(lines[1:])
+
+
+def stiffness_curve(
+    curve: StrokeCurve,
+    requirement: Requirement | None = None,
+    *,
+    colour: bool = False,
+    unicode: bool = True,
+    width: int = 100,
+    height: int = 7,
+) -> str:
+    """A small curve of stiffness over the stroke with the required value."""
+    console = Console(colour, unicode, width)
+    points = [
+        (1000.0 * float(x), float(k) / 1e6)
+        for x, k in zip(curve.position, curve.stiffness, strict=True)
+    ]
+    limit = None if requirement is None else requirement.limit / 1e6
+    title = f"stiffness over the stroke, kN/mm (case {curve.case})"
+    lines = plot.curve(points, limit, console, min(width, 76), height)
+    if not lines:
+        return ""
+    place, weakest = min(points, key=lambda point: point[1])
+    ending = f"minimum {text.number(weakest)} at {text.trimmed(place, 3)} mm"
+    if limit is not None:
+        ending += f", required {text.trimmed(limit)}"
+    return "\n".join([console.heading(title), *lines, console.paint(console.say(ending), "dim")])
+
+
+def notes(
+    evaluation: Evaluation, *, colour: bool = False, unicode: bool = True, width: int = 100
+) -> str:
+    """Warnings in full, unverified data counted; empty when there is nothing to say."""
+    console = Console(colour, unicode, width)
+    lines = [console.wrap(f"warning: {w}", "yellow") for w in evaluation.warnings]
+    if evaluation.unverified:
+        counts: dict[str, int] = {}
+        for value in evaluation.unverified:
+            counts[value.material] = counts.get(value.material, 0) + 1
+        listed = ", ".join(f"{material} {count}" for material, count in counts.items())
+        total = len(evaluation.unverified)
+        lines.append(console.wrap(f"unverified library values used: {total} ({listed})", "yellow"))
+    return "\n".join(lines)
+
+
+def evaluation_text(
+    evaluation: Evaluation, *, colour: bool = False, unicode: bool = True, width: int = 100
+) -> str:
+    """What `evaluate` shows."""
+    required = next(
+        (r for r in evaluation.requirements if (r.metric, r.sense) == ("stiffness_min", "min")),
+        None,
+    )
+    style: _Style = {"colour": colour, "unicode": unicode, "width": width}
+    parts = [
+        verdict(evaluation, **style),
+        evaluation_table(evaluation, **style),
+        stiffness_curve(evaluation.curve, required, **style),
+        checks_table(evaluation, **style),
+        notes(evaluation, **style),
+    ]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def optimisation_text(
+    optimisation: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
+) -> str:
+    """What `optimise` shows."""
+    style: _Style = {"colour": colour, "unicode": unicode, "width": width}
+    console = Console(**style)
+    parts: Sequence[str] = [
+        verdict(optimisation, **style),
+        infeasibility_card(optimisation, **style),
+        requirements_table(optimisation.evaluation, **style),
+        variables_table(optimisation, **style) if optimisation.variables else "",
+        sensitivity_table(optimisation, **style) if optimisation.sensitivities else "",
+        checks_table(optimisation.evaluation, **style),
+        notes(optimisation.evaluation, **style),
+        "\n".join(console.wrap(s, "dim") for s in optimum.convergence(optimisation)),
+    ]
+    return "\n\n".join(part for part in parts if part) + "\n"

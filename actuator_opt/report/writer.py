@@ -1,0 +1,211 @@
+"""Write a report: PDF and PNG pages, whole or not at all.
+
+Everything is made in memory, written beside its place, then renamed. The PDF carries the input
+file and the command inside itself (PDF/A-3), so that a report can be run again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import json
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from ..errors import Diagnostic, InputError
+from ..evaluate.evaluation import Evaluation
+from ..optimise.result import Optimisation
+from .blocks import ExtraTable, printable
+from .embed import extract
+from .page import page, parts_of
+
+PIXELS_PER_INCH = 150.0
+TEMPLATE = Path(__file__).with_name("template.typ")
+
+
+@dataclass(frozen=True, slots=True)
+class ReportFile:
+    """A file of a report, with its hash and how many sheets it holds."""
+
+    path: Path
+    sha256: str
+    pages: int
+
+    def to_dict(self) -> dict[str, object]:
+        """The JSON form."""
+        return {"path": str(self.path), "sha256": self.sha256, "pages": self.pages}
+
+
+@dataclass(frozen=True, slots=True)
+class Attachment:
+    """What a report carries inside: the design's text and how the report was made."""
+
+    source: str
+    run: Mapping[str, Any]
+
+
+def write_report(
+    subject: Evaluation | Optimisation,
+    *,
+    folder: Path,
+    stem: str,
+    source_text: str,
+    source_name: str,
+    command: str,
+    date: str | None = None,
+    extra_tables: Sequence[ExtraTable] = (),
+) -> list[ReportFile]:
+    """Write ``STEM.pdf``, ``STEM.png`` (first sheet) and ``STEM-page-N.png`` into `folder`.
+
+    Parameters
+    ----------
+    subject : what to report
+    folder, stem : where to; the folder is made if missing
+    source_text, source_name : the design file as read: listed, and attached to the PDF
+    command : the command line that made this report, printed and attached
+    date : ISO date to print, or None for none
+    extra_tables : further tables, before the input listing
+
+    Returns
+    -------
+    the files, PDF first
+
+    Raises
+    ------
+    InputError : when the folder cannot be written; no partial file is left
+    """
+    evaluation, _ = parts_of(subject)
+    data = page(
+        subject,
+        source_text=source_text,
+        source_name=source_name,
+        command=command,
+        date=date,
+        extra_tables=extra_tables,
+    )
+    run = {
+        "actuator_opt": evaluation.version,
+        "command": command,
+        "source_name": source_name,
+        "spec_hash": evaluation.spec_hash,
+    }
+    data = printable(data) | {
+        "title": evaluation.name,
+        "source": source_text,
+        "source_file": _attachment_name(source_name),
+        "run": json.dumps(run, ensure_ascii=False, sort_keys=True),
+    }
+    pdf, images = _render(data, _timestamp(date))
+    contents = {f"{stem}.pdf": pdf, f"{stem}.png": images[0]}
+    for index, image in enumerate(images[1:], 2):
+        contents[f"{stem}-page-{index}.png"] = image
+    _write(folder, contents)
+    _remove_later_pages(folder, stem, len(images))
+    return [
+        ReportFile(
+            folder / name,
+            hashlib.sha256(content).hexdigest(),
+            len(images) if name.endswith(".pdf") else 1,
+        )
+        for name, content in contents.items()
+    ]
+
+
+def read_attachment(path: Path) -> Attachment:
+    """The input and the command that a report of ours carries; raises `InputError` if none."""
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(Diagnostic(f"cannot read: {error.strerror}", file=str(path))) from None
+    found = extract(content)
+    try:
+        source = found["application/yaml"].decode("utf-8")
+        return Attachment(source, json.loads(found["application/json"]))
+    except KeyError:
+        remedy = "give a PDF that actuator-opt wrote"
+        fault = Diagnostic("carries no input to run again", remedy, file=str(path))
+        raise InputError(fault) from None
+
+
+def _attachment_name(source_name: str) -> str:
+    name = re.split(r"[/\\]", source_name)[-1]
+    return re.sub(r"[\x00-\x1f\x7f]", "_", name) or "input.yaml"
+
+
+def _timestamp(date: str | None) -> int:
+    """Seconds since 1970 of an ISO date, for the PDF's own metadata; 0 without one."""
+    try:
+        moment = datetime.fromisoformat(date or "1970-01-01")
+    except ValueError:
+        return 0
+    if moment.tzinfo is None:
+        moment = moment.replace(tzinfo=UTC)
+    return max(int(moment.timestamp()), 0)
+
+
+def _render(data: Mapping[str, Any], timestamp: int) -> tuple[bytes, list[bytes]]:
+    if importlib.util.find_spec("typst") is None:
+        from .fallback import render
+
+        return render(data, timestamp)
+    import typst
+
+    compiler = typst.Compiler(
+        TEMPLATE.read_bytes(),
+        font_paths=typst.Fonts(
+            include_system_fonts=False, include_embedded_fonts=True, font_paths=_font_folders()
+        ),
+        sys_inputs={"data": json.dumps(data, ensure_ascii=False, sort_keys=True)},
+    )
+    source = TEMPLATE.read_bytes()
+    pdf: Any = compiler.compile(
+        input=source, format="pdf", pdf_standards="a-3b", timestamp=timestamp
+    )
+    images: Any = compiler.compile(
+        input=source, format="png", ppi=PIXELS_PER_INCH, timestamp=timestamp
+    )
+    return bytes(pdf), [images] if isinstance(images, bytes) else list(images)
+
+
+def _font_folders() -> list[str]:
+    """Matplotlib's fonts, found without importing it."""
+    found = importlib.util.find_spec("matplotlib")
+    if found is None or found.origin is None:
+        return []
+    return [str(Path(found.origin).parent / "mpl-data" / "fonts" / "ttf")]
+
+
+def _write(folder: Path, contents: Mapping[str, bytes]) -> None:
+    aside: list[tuple[Path, Path]] = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in contents.items():
+            path = folder / f".{name}.{os.getpid()}.part"
+            aside.append((path, folder / name))
+            path.write_bytes(content)
+        for path, target in aside:
+            path.replace(target)
+    except OSError as error:
+        for path, _ in aside:
+            path.unlink(missing_ok=True)
+        reason = error.strerror or type(error).__name__
+        raise InputError(
+            Diagnostic(
+                f"cannot write the report: {reason}",
+                "choose a folder with --out",
+                file=str(error.filename or folder),
+            )
+        ) from None
+
+
+def _remove_later_pages(folder: Path, stem: str, count: int) -> None:
+    """Remove sheets of an earlier, longer report under the same name."""
+    index = max(count + 1, 2)
+    while (path := folder / f"{stem}-page-{index}.png").is_file():
+        path.unlink()
+        index += 1

@@ -1,0 +1,291 @@
+"""Whatever the file: a design, or faults with places; never a traceback, never a hang."""
+
+from __future__ import annotations
+
+import re
+import time
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from actuator_opt.design import read_design
+from actuator_opt.design.template import init_text
+from actuator_opt.design.yaml_source import parse
+from actuator_opt.errors import InputError
+
+
+class Names(dict):
+    """Any material is known, of no kind that fits."""
+
+    names = dict.keys
+    kind = dict.get
+
+
+GOOD = init_text("test")
+LINES = GOOD.splitlines(keepends=True)
+BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
+"""Line breaks of YAML 1.1."""
+CODE = [index for index, line in enumerate(LINES) if line.split("#")[0].strip()]
+ODD = [
+    "",
+    "~",
+    "no",
+    "{}",
+    "[]",
+    "[1, 2]",
+    "{a: b}",
+    "&x 1",
+    "*x",
+    "!!int 3",
+    "!x y",
+    "-1 mm",
+    "0",
+    "0 mm",
+    "1e300 mm",
+    "-1e300",
+    "1e-300 mm",
+    ".nan",
+    ".inf mm",
+    "nan mm",
+    "1e999 mm",
+    "12:30",
+    "017 mm",
+    "25 mm # c",
+    '"unclosed',
+    "'",
+    "|",
+    ">-",
+    "? a",
+    "- a",
+    ": b",
+    "a: b",
+    "25 mm mm",
+    "25 µm",
+    "²5 mm",
+    "٢٥ mm",
+    "1" * 200,
+    "1" * 90 + " mm",
+    "%",
+    "@",
+    "`",
+    "\t25 mm",
+    "worst",
+    "50 %",
+    "t700_epoxy",
+    "iso_vg_32",
+    '"\\x1b[2J"',
+    '"\\ud800"',
+    '"\\U0001F600"',
+    "x" * 300,
+    "1 degF",
+    "-400 degC",
+    "steel_42crmo4",
+    "b",
+]
+
+
+def outcome(text, **options):
+    """A design or its faults; the faults have the file, and print as one line each."""
+    faults = []
+    try:
+        read_design(text + "\n", materials=Names(), **options)
+    except InputError as error:
+        faults = error.diagnostics
+        refused = True
+    else:
+        refused = False
+    assert bool(faults) == refused
+    lines = BREAK.split(text + "\n")
+    for fault in faults:
+        assert fault.file is not None
+        assert str(fault).splitlines()[0].isprintable()
+        assert fault.to_dict()["message"]
+        if fault.line is not None and fault.source is not None:
+            assert lines[fault.line - 1].replace("\t", " ") == fault.source
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(st.tuples(st.sampled_from(CODE), st.sampled_from(ODD)), min_size=1, max_size=4))
+def test_odd_values(changes):
+    """Any value replaced by any odd one."""
+    lines = list(LINES)
+    for index, odd in changes:
+        key = lines[index].split(":")[0] if ":" in lines[index] else lines[index].rstrip()
+        lines[index] = f"{key}: {odd}\n"
+    outcome("".join(lines))
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from(["drop", "double", "swap", "indent", "dedent", "cut"]),
+            st.sampled_from(CODE),
+            st.sampled_from(CODE),
+        ),
+        min_size=1,
+        max_size=3,
+    )
+)
+def test_shuffled_lines(changes):
+    """Lines dropped, doubled, swapped, moved in or out, cut in the middle."""
+    lines = list(LINES)
+    for what, first, second in changes:
+        if what == "drop":
+            lines[first] = ""
+        elif what == "double":
+            lines[first] *= 2
+        elif what == "swap":
+            lines[first], lines[second] = lines[second], lines[first]
+        elif what == "indent":
+            lines[first] = "  " + lines[first]
+        elif what == "dedent":
+            lines[first] = lines[first].removeprefix("  ")
+        else:
+            lines[first] = lines[first][: len(lines[first]) // 2] + "\n"
+    outcome("".join(lines))
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.integers(0, len(GOOD)), st.text(max_size=5), st.integers(0, 20))
+def test_random_characters(position, inserted, removed):
+    """Any characters typed anywhere over the file."""
+    outcome(GOOD[:position] + inserted + GOOD[position + removed :])
+
+
+TREES = st.recursive(
+    st.sampled_from(ODD),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(
+            st.sampled_from(
+                [
+                    "name",
+                    "cylinder",
+                    "bore",
+                    "barrel",
+                    "layup",
+                    "variables",
+                    "min",
+                    "requirements",
+                    "mass",
+                    "objective",
+                    "minimise",
+                    "load_cases",
+                    "seals",
+                    "rod",
+                    "cylinder.bore",
+                    "lower",
+                    "position",
+                    "lines",
+                    "materials",
+                    "x",
+                ]
+            ),
+            inner,
+            max_size=4,
+        )
+    ),
+    max_leaves=12,
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    st.dictionaries(
+        st.sampled_from(
+            [
+                "name",
+                "cylinder",
+                "barrel",
+                "variables",
+                "seals",
+                "lines",
+                "requirements",
+                "objective",
+                "load_cases",
+                "materials",
+                "waivers",
+                "retention",
+                "y",
+            ]
+        ),
+        TREES,
+        max_size=5,
+    )
+)
+def test_any_tree(tree):
+    """Blocks, lists and texts where others belong, in flow style."""
+
+    def flow(node):
+        if isinstance(node, dict):
+            return "{" + ", ".join(f"'{key}': {flow(value)}" for key, value in node.items()) + "}"
+        if isinstance(node, list):
+            return "[" + ", ".join(map(flow, node)) + "]"
+        return "'" + node.replace("'", "''").replace("\t", " ") + "'"
+
+    outcome("\n".join(f"{key}: {flow(value)}" for key, value in tree.items()))
+
+
+PATHS = [
+    "cylinder.bore",
+    "barrel.layup[1].angle",
+    "load_cases[0].position",
+    "requirements.mass.max",
+    "variables.rod.extension.lower",
+    "objective.minimise",
+    "materials.a.density",
+    "waivers.mass",
+    "lines[0].chamber",
+    "retention.thread.pitch",
+    "environment.temperature_min",
+    "name",
+    "x",
+    "barrel.layup",
+    "load_cases[9].force",
+    "cylinder..bore",
+    "objective.minimise.mass",
+]
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(st.tuples(st.sampled_from(PATHS), st.sampled_from(ODD)), max_size=3), st.booleans())
+def test_odd_overrides(overrides, whole):
+    """Any --set over a whole file, or over one that lacks what it names."""
+    outcome(GOOD if whole else "cylinder: 3\nbarrel: [x]\nlines: y\n", overrides=overrides)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a: " + "[" * 50_000,
+        "{" * 50_000,
+        "a: '" + "1" * 500_000 + "\n x'",
+        "\n".join(f"k{i}: 1" for i in range(20_000)),
+        "variables:\n" + "\n".join(f"  cylinder.bor{i}: {{lower: 1 mm}}" for i in range(4_000)),
+        "load_cases:\n" + "\n".join(f"  - name: c{i}" for i in range(4_000)),
+        "- " * 60_000,
+        "a: " + "&a " * 1000,
+        "x" * 900_000,
+        "? " * 60_000,
+    ],
+    ids=range(10),
+)
+def test_large_nonsense_is_refused_quickly(text):
+    """Files made to be slow are refused in about a second."""
+    start = time.perf_counter()
+    outcome(text)
+    assert time.perf_counter() - start < 5
+
+
+def test_parse_is_total_on_bytes_of_control_characters():
+    """Every character below 256 in a value is read or refused with its place."""
+    placed = []
+    for code in range(256):
+        try:
+            parse(f"a: b{chr(code)}c\n", "f")
+        except InputError as error:
+            placed.append(error.diagnostics[0].line)
+    assert len(placed) >= 60  # the control characters, C0 and C1
+    assert None not in placed

@@ -1,0 +1,89 @@
+"""Claims about viscous damping coefficients and gap leakage."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from actuator_opt.models import damping
+
+
+def test_check_values():
+    """Pipe 0.201062, annulus 0.0629493, piston gap 4.48146e6 N s/m, leakage 1.76715e-6 m3/s."""
+    assert damping.pipe_flow(dynamic_viscosity=0.04, length=0.2) == pytest.approx(
+        0.201062, abs=6e-7
+    )
+    annulus = damping.annular_couette(
+        dynamic_viscosity=0.04, length=0.2, inner_radius=9e-3, outer_radius=20e-3
+    )
+    assert annulus == pytest.approx(0.0629493, abs=6e-8)
+    piston = damping.piston_gap_damper(dynamic_viscosity=0.04, length=0.02, radius=0.02, gap=30e-6)
+    assert piston == pytest.approx(4.48146e6, rel=2e-6)
+    leak = damping.gap_leakage(
+        diameter=0.04, gap=30e-6, dynamic_viscosity=0.04, length=0.02, pressure_difference=5e6
+    )
+    assert leak == pytest.approx(1.76715e-6, rel=3e-6)
+
+
+def test_piston_gap_damper_leading_term():
+    """6 pi eta L (R/h)^3 = 4.46804e6 N s/m is the limit h << R (0.3 % here)."""
+    leading = 6 * math.pi * 0.04 * 0.02 * (0.02 / 30e-6) ** 3
+    assert leading == pytest.approx(4.46804e6, rel=2e-6)
+    narrow = damping.piston_gap_damper(dynamic_viscosity=0.04, length=0.02, radius=0.02, gap=1e-8)
+    assert narrow == pytest.approx(6 * math.pi * 0.04 * 0.02 * (0.02 / 1e-8) ** 3, rel=2e-6)
+
+
+def test_full_eccentricity_leaks_two_and_a_half_times():
+    """1 + 1.5 e^2 is 2.5 at e = 1."""
+    gap = {
+        "diameter": 0.04,
+        "gap": 30e-6,
+        "dynamic_viscosity": 0.04,
+        "length": 0.02,
+        "pressure_difference": 5e6,
+    }
+    ratio = damping.gap_leakage(eccentricity=1.0, **gap) / damping.gap_leakage(**gap)
+    assert ratio == pytest.approx(2.5)
+
+
+@given(st.floats(1e-5, 1e-3))
+def test_thin_annulus_is_a_flat_gap(share):
+    """Couette between cylinders tends to the flat gap at the mean diameter."""
+    radius, gap = 0.01, 0.01 * share
+    annulus = damping.annular_couette(
+        dynamic_viscosity=0.03, length=0.1, inner_radius=radius, outer_radius=radius + gap
+    )
+    flat = damping.flat_gap(dynamic_viscosity=0.03, diameter=2 * radius + gap, length=0.1, gap=gap)
+    assert annulus == pytest.approx(flat, rel=1e-6)
+
+
+def test_secant_has_no_value_at_rest():
+    """F/v at v = 0 is NaN, elsewhere F/v with both signs."""
+    b = damping.secant(friction=np.array([5.0, 5.0, -5.0]), speed=np.array([0.0, 0.1, -0.1]))
+    np.testing.assert_array_equal(b, [np.nan, 50.0, 50.0])
+
+
+def test_annulus_without_gap_is_nan():
+    """A rod as thick as its tube has no annular flow."""
+    c = damping.annular_couette(
+        dynamic_viscosity=0.03,
+        length=0.1,
+        inner_radius=np.array([0.01, 0.02, 0.0]),
+        outer_radius=0.01,
+    )
+    assert np.isnan(c).all()
+
+
+def test_fits_pass_through_constructed_points():
+    """B = a v^b through (1 mm/s, 1e6), (10 mm/s, 1e5): a = 1000, b = -1; B(0) = a1 + a2."""
+    speeds = np.array([1e-3, 1e-2, 0.0])
+    b = damping.power_law(speed=speeds, coefficient=1e3, exponent=-1.0)
+    np.testing.assert_allclose(b, [1e6, 1e5, np.nan])
+    pair = {"coefficient_1": 2e5, "rate_1": -400.0, "coefficient_2": 5e4, "rate_2": -20.0}
+    assert damping.double_exponential(speed=0.0, **pair) == pytest.approx(2.5e5)
+    falling = damping.double_exponential(speed=np.linspace(0, 0.02, 30), **pair)
+    assert np.all(np.diff(falling) < 0)

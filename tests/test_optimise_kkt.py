@@ -1,0 +1,148 @@
+"""Multipliers, quadratic programmes and the exact finish, each against independent results."""
+
+import numpy as np
+import problems
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import nnls as reference_nnls
+
+from actuator_opt.optimise import kkt, newton
+from actuator_opt.optimise.evaluator import Evaluator
+from actuator_opt.optimise.problem import Problem, Values
+
+
+@given(st.integers(0, 10**6), st.integers(1, 8), st.integers(1, 14), st.booleans())
+@settings(max_examples=150, deadline=None)
+def test_nnls_matches_scipy(seed, height, width, dependent):
+    """Our non-negative least squares reaches SciPy's residual, copies of columns included."""
+    generator = np.random.default_rng(seed)
+    matrix = generator.normal(size=(height, width))
+    if dependent and width > 1:
+        matrix[:, -1] = 2 * matrix[:, 0]
+    vector = generator.normal(size=height)
+    ours = kkt.nnls(matrix, vector)
+    _, residual = reference_nnls(matrix, vector)
+    assert (ours >= 0).all()
+    assert np.linalg.norm(matrix @ ours - vector) == pytest.approx(residual, abs=1e-9)
+
+
+def test_nnls_ignores_zero_columns():
+    """A column of zeros takes no multiplier."""
+    matrix = np.array([[1.0, 0.0], [0.0, 0.0]])
+    np.testing.assert_array_equal(kkt.nnls(matrix, np.array([2.0, 0.0])), [2, 0])
+    np.testing.assert_array_equal(kkt.nnls(np.zeros((2, 2)), np.ones(2)), [0, 0])
+
+
+@given(st.integers(0, 10**6), st.integers(1, 6), st.integers(0, 12))
+@settings(max_examples=100, deadline=None)
+def test_quadratic_programme_is_optimal(seed, n, rows):
+    """Solutions of feasible quadratic programmes meet their optimality conditions."""
+    generator = np.random.default_rng(seed)
+    root = generator.normal(size=(n, n))
+    hessian = root @ root.T + 0.1 * np.eye(n)
+    slope, matrix = generator.normal(size=n), generator.normal(size=(rows, n))
+    margins = generator.uniform(0, 1, rows) - matrix @ generator.normal(size=n) * 0
+    step, prices = newton.quadratic_programme(hessian, slope, matrix, margins)
+    left = margins + matrix @ step
+    assert (left >= -1e-8).all()
+    assert (prices >= 0).all()
+    np.testing.assert_allclose(hessian @ step + slope, matrix.T @ prices, atol=1e-7)
+    np.testing.assert_allclose(prices * left, 0, atol=1e-7)
+
+
+def test_contradicting_rows_give_the_least_violation():
+    """Where linearised rows exclude each other, the step halves the contradiction."""
+    step, _ = newton.quadratic_programme(
+        np.eye(1), np.zeros(1), np.array([[1.0], [-1.0]]), np.array([-1.0, -3.0])
+    )
+    assert step[0] == pytest.approx(-1.0)  # least squares of d = 1 and d = -3
+
+
+@pytest.mark.parametrize("offset", [1e-2, 1e-4, 1e-6])
+def test_polish_converges_from_nearby(offset):
+    """From points off by 1e-2 to 1e-6 the finish reaches a residual of 1e-12."""
+    evaluator = Evaluator(problems.thrust_bearing())
+    x = np.array([5.95578050, 5.38901305, 5.35869727e-6, 2.26965596])
+    z = evaluator.space.to_z(x) + offset * np.array([1, -1, 1, 1])
+    found = newton.polish(evaluator, evaluator.point(z))
+    assert kkt.check(evaluator, found).residual <= 1e-12
+    assert found.objective == pytest.approx(1625.442759, abs=5e-6)
+
+
+def test_polish_adds_and_drops_active_rows():
+    """The finish changes the active set where the start suggests a wrong one."""
+    evaluator = Evaluator(problems.rosen_suzuki())
+    near = evaluator.space.to_z(np.array([0.02, 1.0, 1.97, -1.02]))
+    found = newton.polish(evaluator, evaluator.point(near))
+    assert kkt.check(evaluator, found).active == ("g1", "g3")
+    np.testing.assert_allclose(found.x, [0, 1, 2, -1], atol=1e-7)
+
+
+def test_polish_never_worsens():
+    """From anywhere in the box the finish is never less feasible, nor costlier if feasible."""
+    for problem in (problems.pressure_vessel().problem, problems.piston_lever()):
+        evaluator = Evaluator(problem)
+        generator = np.random.default_rng(1)
+        for _ in range(10):
+            share = generator.random(4)
+            z = evaluator.space.lower + share * (evaluator.space.upper - evaluator.space.lower)
+            start = evaluator.point(z)
+            found = newton.polish(evaluator, start)
+            assert found.violation <= max(start.violation, 1e-9)
+            if start.violation == 0:
+                assert found.objective <= start.objective * (1 + 1e-8)
+
+
+def test_polish_does_not_settle_on_a_maximum():
+    """Near a constrained maximum of the objective the finish moves away instead of onto it."""
+
+    def evaluate(x):
+        logs = np.log(x)
+        return Values(3 - logs[0] ** 2 + 0.1 * logs[1] ** 2)
+
+    evaluator = Evaluator(Problem(("a", "b"), [0.1, 0.1], [10, 10], evaluate))
+    start = evaluator.point(np.array([0.01, 0.3]))
+    found = newton.polish(evaluator, start, iterations=40)
+    assert found.objective < start.objective
+    assert abs(found.z[0]) > 1.0
+
+
+def test_curvature_names_the_second_order_condition():
+    """Vertex, strict minimum, flat direction and saddle are told apart."""
+
+    def evaluate(x):
+        a, b = np.log(x)
+        return Values(10 + a**2 - b**2 + 0 * a, None)
+
+    saddle = Evaluator(Problem(("a", "b"), [0.1, 0.1], [10, 10], evaluate))
+    quality = kkt.check(saddle, saddle.point(np.zeros(2)), curvature=True)
+    assert quality.residual <= 1e-12
+    assert quality.curvature is kkt.Curvature.NEGATIVE
+
+
+def test_residual_definition():
+    """The residual is |grad f - sum(multiplier grad g)| / |grad f| in logarithmic variables.
+
+    By hand, f = x + 2 y at (1, 1): grad = (1, 2). One active row x y >= 1 with gradient (1, 1):
+    least squares 1.5, remainder (-0.5, 0.5), so the residual is sqrt(0.5/5).
+    """
+
+    def evaluate(x):
+        return Values(x[0] + 2 * x[1], (x[0] * x[1] - 1)[None])
+
+    evaluator = Evaluator(Problem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, ("product",)))
+    quality = kkt.check(evaluator, evaluator.point(np.zeros(2)))
+    assert quality.residual == pytest.approx(np.sqrt(0.1))
+    assert quality.multipliers[0] == pytest.approx(1.5)
+
+
+def test_rows_beyond_tolerance_are_not_active():
+    """A margin of 2e-6 is not active, one of 5e-7 is (contract: within 1e-6)."""
+
+    def evaluate(x):
+        one = np.ones_like(x[0])
+        return Values(x[0], np.stack([5e-7 * one, 2e-6 * one]))
+
+    evaluator = Evaluator(Problem(("a",), [0.1], [10], evaluate, ("near", "far")))
+    assert kkt.check(evaluator, evaluator.point(np.zeros(1))).active == ("near",)
