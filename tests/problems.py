@@ -38,7 +38,12 @@ def hs71() -> Problem:
 
     names = ("x1", "x2", "x3", "x4")
     return Problem(
-        names, np.ones(4), 5 * np.ones(4), evaluate, ("product",), ("sphere",),
+        names,
+        np.ones(4),
+        5 * np.ones(4),
+        evaluate,
+        ("product",),
+        ("sphere",),
         start=np.array([1.0, 5, 5, 1]),
     )
 
@@ -56,8 +61,11 @@ def stepped_cantilever() -> ParametricProblem:
     p = np.array([1.0, 0.0624])
     n = 5
     problem = Problem(
-        tuple(f"x{i + 1}" for i in range(n)), np.full(n, 0.1), np.full(n, 100.0),
-        lambda x: evaluate(x, p[:, None]), ("deflection",),
+        tuple(f"x{i + 1}" for i in range(n)),
+        np.full(n, 0.1),
+        np.full(n, 100.0),
+        lambda x: evaluate(x, p[:, None]),
+        ("deflection",),
     )
     return ParametricProblem(problem, ("limit", "density"), p, evaluate)
 
@@ -68,8 +76,10 @@ def pressure_vessel() -> ParametricProblem:
     def evaluate(x, p):
         shell, head, radius, length = x
         f = (
-            0.6224 * shell * radius * length + 1.7781 * head * radius**2
-            + 3.1661 * shell**2 * length + 19.84 * shell**2 * radius
+            0.6224 * shell * radius * length
+            + 1.7781 * head * radius**2
+            + 3.1661 * shell**2 * length
+            + 19.84 * shell**2 * radius
         )
         volume = np.pi * radius**2 * length + 4 / 3 * np.pi * radius**3
         g = [
@@ -83,7 +93,8 @@ def pressure_vessel() -> ParametricProblem:
     p = np.array([0.0193, 0.00954, 1296000.0])
     problem = Problem(
         ("shell", "head", "radius", "length"),
-        np.array([0.0625, 0.0625, 10, 10]), np.array([6.1875, 6.1875, 200, 200]),
+        np.array([0.0625, 0.0625, 10, 10]),
+        np.array([6.1875, 6.1875, 200, 200]),
         lambda x: evaluate(x, p[:, None]),
         ("shell stress", "head stress", "volume", "length limit"),
     )
@@ -116,7 +127,10 @@ def piston_lever() -> Problem:
         return Values(np.pi * d**2 * travel / 4, np.stack(g))
 
     return Problem(
-        ("H", "B", "D", "X"), np.full(4, 0.05), np.array([500.0, 500, 500, 120]), evaluate,
+        ("H", "B", "D", "X"),
+        np.full(4, 0.05),
+        np.array([500.0, 500, 500, 120]),
+        evaluate,
         ("force", "moment", "travel", "room"),
     )
 
@@ -148,14 +162,16 @@ def thrust_bearing() -> Problem:
         return Values((q * pressure / 0.7 + loss) / 12, np.stack(g))
 
     return Problem(
-        ("R", "R0", "mu", "Q"), np.array([1, 1, 1e-6, 1.0]), np.array([16, 16, 16e-6, 16.0]),
+        ("R", "R0", "mu", "Q"),
+        np.array([1, 1, 1e-6, 1.0]),
+        np.array([16, 16, 16e-6, 16.0]),
         evaluate,
         ("load", "inlet", "temperature", "film", "radii", "inertia", "contact"),
     )
 
 
 def geometric_programme(seed: int, n: int = 12, m: int = 24, q: int = 15) -> ParametricProblem:
-    """A random posynomial programme in n variables with q limits of m constraints."""
+    """Return a random posynomial programme in n variables with q limits of m constraints."""
     generator = np.random.default_rng(seed)
     cost = generator.uniform(0.5, 2, n)
     powers = np.where(generator.random((n, n)) < 0.3, generator.normal(size=(n, n)), 0.0)
@@ -174,7 +190,10 @@ def geometric_programme(seed: int, n: int = 12, m: int = 24, q: int = 15) -> Par
         return Values(f, 1 - used / limits)
 
     problem = Problem(
-        tuple(f"x{i}" for i in range(n)), np.full(n, 0.05), np.full(n, 20.0),
-        lambda x: evaluate(x, p[:, None]), tuple(f"g{i}" for i in range(m)),
+        tuple(f"x{i}" for i in range(n)),
+        np.full(n, 0.05),
+        np.full(n, 20.0),
+        lambda x: evaluate(x, p[:, None]),
+        tuple(f"g{i}" for i in range(m)),
     )
     return ParametricProblem(problem, tuple(f"limit {k}" for k in rows), p, evaluate)

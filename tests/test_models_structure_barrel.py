@@ -240,7 +240,7 @@ def test_axial_load_path():
 
 
 def test_tie_rod_check_value_and_balance():
-    """N 12 kN, F0 9 kN, 300/90 N/um, 3 um: the joint opens at +438.5 N, the rods carry 11 561.5 N."""
+    """N 12 kN, F0 9 kN, 300/90 N/um, 3 um: opens at +438.5 N, the rods carry 11 561.5 N."""
     forces = barrel.tie_rod_forces(
         axial_force=12e3,
         preload=9e3,
@@ -254,7 +254,7 @@ def test_tie_rod_check_value_and_balance():
 
 
 def test_pressure_shortens_the_barrel():
-    """The free shortening is nu times the mean of radial and hoop stress over E, over the length."""
+    """The free shortening is nu (sigma_r + sigma_theta)/E over the length."""
     value = barrel.pressure_shortening(pressure=28e6, length=0.18, **TUBE, **ALUMINIUM)
     hoop, radial, _ = barrel.bore_stresses(pressure=28e6, **TUBE)
     assert value == pytest.approx(0.33 * (hoop + radial) / 71.7e9 * 0.18, rel=1e-13)

@@ -50,7 +50,7 @@ STOP = {"driving_force": 6000.0, "stiffness": 3e7, "mass": 40.0, "velocity": 0.3
 
 
 def _ply(function, **fixed):
-    """A criterion as a function of stresses and of every strength."""
+    """Turn a criterion into a function of stresses and of every strength."""
 
     def call(**values):
         limits = {key: values.pop(key) for key in list(values) if key in PLY and key != "shear_12"}
@@ -377,7 +377,7 @@ def _flat(result):
 
 
 def _array(value):
-    """A value of any namespace as a NumPy array."""
+    """Convert a value of any namespace to a NumPy array."""
     return np.asarray(value.tolist() if hasattr(value, "tolist") else value)
 
 

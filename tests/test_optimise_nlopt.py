@@ -41,7 +41,7 @@ def easy(n=2, constrained=True):
 
 
 def impossible():
-    """x y >= 12 with x <= 2 and y <= 4: infeasible, 1/3 of the product is missing."""
+    """With x y >= 12 with x <= 2 and y <= 4: infeasible, 1/3 of the product is missing."""
 
     def evaluate(x):
         a, b = x
@@ -67,7 +67,9 @@ def test_every_unconstrained_algorithm(algorithm):
     np.testing.assert_allclose(found.x, [1, 1], rtol=1e-5)
 
 
-@pytest.mark.parametrize("algorithm", [*LOCAL[:6], "GN_ISRES", "GN_ORIG_DIRECT_L", "GN_AGS", "auto"])
+@pytest.mark.parametrize(
+    "algorithm", [*LOCAL[:6], "GN_ISRES", "GN_ORIG_DIRECT_L", "GN_AGS", "auto"]
+)
 def test_infeasible_is_never_success(algorithm):
     """MMA, CCSAQ and COBYLA report success on infeasible problems; the guard does not."""
     found = solve(impossible(), algorithm=algorithm, samples=256, starts=2)
@@ -81,8 +83,9 @@ def test_nan_in_the_box_is_screened(algorithm):
     """A NaN objective (which crashes AGS) counts as a bad point and is not returned."""
 
     def evaluate(x):
-        return Values(np.where(x[1].real > 3 * x[0].real, np.nan, x[0] + x[1]),
-                      (x[0] * x[1] - 1)[None])
+        return Values(
+            np.where(x[1].real > 3 * x[0].real, np.nan, x[0] + x[1]), (x[0] * x[1] - 1)[None]
+        )
 
     problem = Problem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, ("product",))
     found = solve(problem, algorithm=algorithm, samples=256, starts=2)

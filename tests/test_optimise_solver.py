@@ -17,7 +17,7 @@ from actuator_opt.optimise.solver import solve
 
 
 def box(evaluate, n=2, constraints=(), low=0.1, high=10.0, **others):
-    """A problem in n variables with the same bounds."""
+    """Return a problem in n variables with the same bounds."""
     names = tuple(f"x{i + 1}" for i in range(n))
     return Problem(names, np.full(n, low), np.full(n, high), evaluate, constraints, **others)
 
@@ -254,9 +254,7 @@ def test_functions_without_complex_step_fall_back(style):
             raise TypeError("no complex numbers, please")
         return Values(x[0] + x[1], (x[0] * x[1] - 1)[None])
 
-    found = solve(
-        box(evaluate, constraints=("product",), has_complex_step=style != "declared")
-    )
+    found = solve(box(evaluate, constraints=("product",), has_complex_step=style != "declared"))
     assert found.outcome is Outcome.OPTIMUM
     np.testing.assert_allclose(found.x, [1, 1], rtol=1e-6)
     assert found.kkt.residual <= 1e-6

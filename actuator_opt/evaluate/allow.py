@@ -2,44 +2,68 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ..design.material import Material, allowable_factor
 from ..design.model import Design
 from ..numeric import Array
 from .values import Values
 
 
+def hottest(design: Design, numbers: Mapping[str, float]) -> float:
+    """Highest temperature of oil, load cases and environment, K."""
+    temperatures = [numbers["fluid.temperature"]]
+    temperatures += [c.temperature for c in design.load_cases if c.temperature is not None]
+    if design.environment is not None:
+        temperatures.append(design.environment.temperature_max)
+    return max(temperatures)
+
+
+def allowances(
+    materials: Mapping[str, Material], temperature: float
+) -> dict[tuple[str, str], float]:
+    """What temperature, basis and process leave of every strength, by (material, property)."""
+    return {
+        (name, key): float(
+            allowable_factor(
+                material.numbers, key, basis=entry.basis, temperature=temperature
+            )
+        )
+        for name, material in materials.items()
+        for key, entry in material.properties.items()
+        if "strength" in key
+    }
+
+
 class Stock:
     """The materials of a design: their numbers (possibly varied) and their allowables."""
 
-    def __init__(self, v: Values, design: Design, materials: dict[str, Material]) -> None:
+    def __init__(
+        self,
+        v: Values,
+        materials: Mapping[str, Material],
+        factors: Mapping[tuple[str, str], float],
+    ) -> None:
         self._v = v
-        self._materials = materials
-        hottest = [v["fluid.temperature"]]
-        hottest += [
-            v[f"load_cases[{case.name}].temperature"]
-            for case in design.load_cases
-            if case.temperature is not None
-        ]
-        if design.environment is not None:
-            hottest.append(v["environment.temperature_max"])
-        self.temperature = max(float(value.real) for value in hottest)
+        self.materials = materials
+        self._factors = factors
 
     def material(self, name: str) -> Material:
         """What the library knows of `name`."""
-        return self._materials[name]
+        return self.materials[name]
 
     def names(self) -> list[str]:
         """Every material of the design."""
-        return list(self._materials)
+        return list(self.materials)
 
     def numbers(self, name: str) -> dict[str, Array]:
         """Every stated property of a material, SI."""
-        return {key: self._v[f"materials.{name}.{key}"] for key in self._materials[name].numbers}
+        return {key: self._v[f"materials.{name}.{key}"] for key in self.materials[name].numbers}
 
     def get(self, name: str, *properties: str, default: Array = None) -> Array:
         """The first stated of some properties; `default` where none is."""
         for key in properties:
-            if key in self._materials[name].numbers:
+            if key in self.materials[name].numbers:
                 return self._v[f"materials.{name}.{key}"]
         return default
 
@@ -49,13 +73,6 @@ class Stock:
         Temperature is the highest of oil, load cases and environment.
         """
         for key in properties:
-            if key in self._materials[name].numbers:
-                material = self._materials[name]
-                factor = allowable_factor(
-                    material.numbers,
-                    key,
-                    basis=material.properties[key].basis,
-                    temperature=self.temperature,
-                )
-                return self._v[f"materials.{name}.{key}"] * factor
+            if key in self.materials[name].numbers:
+                return self._v[f"materials.{name}.{key}"] * self._factors[name, key]
         return None

@@ -17,6 +17,7 @@ from ..design.model import Design
 from ..models import laminate, seals
 from ..version import VERSION
 from . import outline
+from .allow import allowances, hottest
 from .evaluation import (
     Check,
     Evaluation,
@@ -70,7 +71,8 @@ def prepare(
     for name, material in materials.items():
         for key, value in material.numbers.items():
             numbers[f"materials.{name}.{key}"] = value
-    return Subject(design, materials, numbers, plugins)
+    factors = allowances(materials, hottest(design, numbers))
+    return Subject(design, materials, numbers, factors, plugins)
 
 
 def spec_hash(subject: Subject) -> str:
@@ -159,9 +161,7 @@ def _metric(
 
 def kind_of(subject: Subject) -> str:
     """The wall model a design uses."""
-    from .allow import Stock
-
-    return kind(subject.design, Stock(subject.values(), subject.design, subject.materials))
+    return kind(subject.design, subject.materials)
 
 
 def _worst(rows: Iterable[Row]) -> Row | None:

@@ -30,6 +30,8 @@ class Subject:
     design: Design
     materials: dict[str, Material]
     numbers: Mapping[str, float]
+    factors: Mapping[tuple[str, str], float]
+    """Knock-downs of every strength, by (material, property)."""
     plugins: tuple[Plugin, ...] = ()
 
     @property
@@ -64,7 +66,7 @@ def compute(subject: Subject, v: Values) -> Pass:
     design = subject.design
     with np.errstate(all="ignore"):
         out = Computed()
-        stock = Stock(v, design, subject.materials)
+        stock = Stock(v, subject.materials, subject.factors)
         g = geometry_module.derive(v, design)
         case_state = state.derive(v, design, stock, g)
         barrel = wall.compute(v, design, stock, g, case_state)

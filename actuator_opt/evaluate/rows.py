@@ -49,6 +49,8 @@ class Row:
     value: Array
     limit: Array
     margin: Array
+    case_index: int | None = None
+    """Row of the computed array, where it has one row per load case."""
 
     @property
     def label(self) -> str:
@@ -79,4 +81,12 @@ def rows_of(limit: Limit, computed: Computed, v: Values) -> Iterator[Row]:
                 continue
             unlimited = real(value) == np.inf
             finite = where(unlimited, UNLIMITED, value)
-            yield Row(limit, case, place, value, bound, margin(finite, bound, limit.sense))
+            yield Row(
+                limit_of=limit,
+                case=case,
+                place=place,
+                value=value,
+                limit=bound,
+                margin=margin(finite, bound, limit.sense),
+                case_index=None if case == ALL_CASES else v.cases.index(case),
+            )

@@ -24,17 +24,17 @@ class Values:
         varied: Mapping[str, Array] | None = None,
     ) -> None:
         self._numbers = numbers
-        self._varied = varied or {}
+        self.varied = varied or {}
         self.cases = tuple(cases)
         self.read: set[str] = set()
         self._case_cache: dict[str, Array] = {}
 
     def __contains__(self, path: str) -> bool:
-        return path in self._varied or path in self._numbers
+        return path in self.varied or path in self._numbers
 
     def __getitem__(self, path: str) -> Array:
         self.read.add(path)
-        found = self._varied.get(path)
+        found = self.varied.get(path)
         return self._numbers[path] if found is None else found
 
     def get(self, path: str, default: Array) -> Array:

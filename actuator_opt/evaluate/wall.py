@@ -6,10 +6,13 @@ it works with a `Wall`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import pi
 
-from ..design.material import ply_constants
+import numpy as np
+
+from ..design.material import Material, ply_constants
 from ..design.model import Design
 from ..models import barrel, laminate, ply, ply_discount, rod, strength_modes
 from ..models.strength_modes import PlyStrength
@@ -53,14 +56,14 @@ class Wall:
     missing: list[str] = field(default_factory=list)
 
 
-def kind(design: Design, stock: Stock) -> str:
+def kind(design: Design, materials: Mapping[str, Material]) -> str:
     """Which wall model a design uses: isotropic, as_published or thin_laminate."""
     if design.barrel.model != "auto":
         return design.barrel.model
     single = len(design.barrel.layup) == 1
     return (
         "isotropic"
-        if single and stock.material(design.barrel.layup[0].material).isotropic
+        if single and materials[design.barrel.layup[0].material].isotropic
         else "thin_laminate"
     )
 
@@ -87,16 +90,17 @@ def _load_paths(
     """Axial force per pressure the wall must survive, by name: none, and the largest it can see.
 
     With an internal end stop the piston at the head under supply pressure pulls p A_A through the
-    wall; otherwise the largest of the cases.
+    wall; otherwise the largest of the cases. Arrays are (designs,).
     """
-    paths: dict[str, Array] = {"no axial load": 0.0}
+    none = 0.0 * np.atleast_1d(np.asarray(geometry.area_a))
+    paths: dict[str, Array] = {"no axial load": none}
     if design.retention is not None and design.retention.type == "tie_rods":
         return paths
     if design.cylinder.end_stop == "internal":
-        paths["piston at the end stop"] = geometry.area_a
+        paths["piston at the end stop"] = none + geometry.area_a
         return paths
-    worst: Array = 0.0
-    for row in axial_forces(design, state, geometry) + 0.0 * geometry.area_a:
+    worst: Array = none
+    for row in axial_forces(design, state, geometry) + none:
         worst = maximum(worst, row)
     paths["largest axial load"] = worst / v["supply.pressure"]
     return paths
@@ -106,7 +110,7 @@ def compute(
     v: Values, design: Design, stock: Stock, geometry: Geometry, state: State
 ) -> Wall:
     """The wall of a design under its supply pressure."""
-    model = kind(design, stock)
+    model = kind(design, stock.materials)
     if model == "thin_laminate":
         return _laminate(v, design, stock, geometry, state)
     return _isotropic(v, design, stock, geometry, state, as_published=model == "as_published")
@@ -244,16 +248,24 @@ def _laminate(v: Values, design: Design, stock: Stock, g: Geometry, state: State
     )
     _thermal(v, design, layers, stack, thicknesses, wall)
     middle = (g.inner_radius + g.outer_radius) / 2
-    for path, axial in _load_paths(v, design, state, g).items():
-        _strengths(layers, stack, middle, path, axial, wall)
+    paths = _load_paths(v, design, state, g)
+    _strengths(layers, stack, middle, tuple(paths), np.stack(list(paths.values())), wall)
     return wall
 
 
 def _strengths(
-    layers: list[_Layer], stack: laminate.Membrane, middle: Array, path: str, axial: Array,
-    wall: Wall,
+    layers: list[_Layer], stack: laminate.Membrane, middle: Array, paths: tuple[str, ...],
+    axial: Array, wall: Wall,
 ) -> None:
-    """Yield, first-ply and burst pressures for one load path, thin laminate at mid-radius."""
+    """Yield, first-ply and burst pressures of every load path, thin laminate at mid-radius.
+
+    `axial` is the axial force per pressure, (paths, designs).
+    """
+
+    def put(table: dict[str, Array], label: str, pressures: Array) -> None:
+        for path, pressure in zip(paths, pressures, strict=True):
+            table[f"{label}{path}"] = pressure
+
     along, around = laminate.strains(
         membrane=stack, axial_line_force=axial / (2 * pi * middle), hoop_line_force=middle
     )
@@ -263,15 +275,17 @@ def _strengths(
         )
         if layer.yield_strength is not None:
             mises = barrel.von_mises(hoop=stress_1, radial=0.0, axial=stress_2)
-            wall.yield_pressure[f"{layer.label}, {path}"] = layer.yield_strength / mises
-            wall.yields[f"{layer.label}, {path}"] = layer.name
+            put(wall.yield_pressure, f"{layer.label}, ", layer.yield_strength / mises)
+            wall.yields |= {f"{layer.label}, {path}": layer.name for path in paths}
         if layer.strength is not None:
             modes = strength_modes.max_stress_modes(
                 stress_1=stress_1, stress_2=stress_2, shear_12=shear, strength=layer.strength
             )
             for mode, inverse in modes.items():
-                wall.first_ply_pressure[f"{layer.label} {mode}, {path}"] = (
-                    strength_modes.load_multiplier(inverse)
+                put(
+                    wall.first_ply_pressure,
+                    f"{layer.label} {mode}, ",
+                    strength_modes.load_multiplier(inverse),
                 )
     if wall.missing:
         return
@@ -296,7 +310,7 @@ def _strengths(
         radius=middle,
         axial_force_per_pressure=axial,
     )
-    wall.burst_pressure[path] = ladder.burst_pressure
+    put(wall.burst_pressure, "", ladder.burst_pressure)
 
 
 def _thermal(

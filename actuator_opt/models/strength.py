@@ -268,10 +268,11 @@ def inverse_puck(
     mode_a = root(slip * slip + lift * lift) + up * stress_2 / shear
     press = down * stress_2 / shear
     mode_b = root(slip * slip + press * press) + press
-    crush = where(pulled, 0 * stress_2 + 1, -stress_2 / s.compression_2)
-    wedge = slip / (2 * (1 + steep))
-    mode_c = wedge * wedge / crush + crush
     sheared = real(absolute(stress_2) * limit) <= real(plane * absolute(shear_12))
+    crush = -stress_2 / s.compression_2
+    idle = sheared | (real(crush) < 1e-300)
+    wedge = slip / (2 * (1 + steep))
+    mode_c = wedge * wedge / where(idle, 0 * crush + 1, crush) + crush
     between = where(pulled, mode_a, where(sheared, mode_b, mode_c))
     fibre = maximum(stress_1 / s.tension_1, -stress_1 / s.compression_1)
     return maximum(fibre, between)

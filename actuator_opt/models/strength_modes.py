@@ -15,6 +15,9 @@ import numpy as np
 
 from ..numeric import Array, absolute, maximum, namespace, real, where
 
+_IDLE = 1e-300
+"""Utilisations up to this count as no load: their inverse is infinite, without overflow."""
+
 
 @dataclass(frozen=True, slots=True)
 class PlyStrength:
@@ -44,7 +47,7 @@ def load_multiplier(inverse: Array) -> Array:
     >>> load_multiplier(0.5), load_multiplier(0.0)
     (2.0, inf)
     """
-    held = real(inverse) <= 0
+    held = real(inverse) <= _IDLE
     return where(held, 0 * inverse + np.inf, 1 / where(held, 0 * inverse + 1, inverse))
 
 

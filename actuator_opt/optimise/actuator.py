@@ -9,8 +9,8 @@ import numpy as np
 
 from ..errors import Diagnostic, InputError
 from ..evaluate import Subject, compute
-from ..evaluate.limits import Limit, all_limits
-from ..evaluate.rows import Computed, Row, by_case, rows_of
+from ..evaluate.limits import all_limits, margin
+from ..evaluate.rows import UNLIMITED, Computed, Row, by_case, rows_of
 from ..evaluate.values import Values as Numbers
 from ..numeric import Array, maximum, minimum, real, where
 from .problem import ParametricProblem, Problem, Values
@@ -91,7 +91,6 @@ class ActuatorProblem:
     fixed: tuple[Row, ...]
     """Rows no variable changes: met or missed for good."""
     problem: Problem
-    _wanted: tuple[tuple[Limit, str, str], ...]
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
         """The same problem with prices asked for the numbers at `parameters`."""
@@ -110,7 +109,7 @@ class ActuatorProblem:
         done = compute(self.subject, numbers)
         return Values(
             self.goal.value(done.computed, self.subject.cases),
-            _margins(self._wanted, done.computed, numbers, points.shape[1]),
+            _margins(self.rows, done.computed, numbers, points.shape[1]),
         )
 
 
@@ -126,15 +125,23 @@ def _bounded(margin: Array) -> Array:
 
 
 def _margins(
-    wanted: tuple[tuple[Limit, str, str], ...], computed: Computed, numbers: Numbers, count: int
+    wanted: tuple[Row, ...], computed: Computed, numbers: Numbers, count: int
 ) -> Array:
-    found: dict[tuple[int, str, str], Array] = {}
-    for limit in {id(item[0]): item[0] for item in wanted}.values():
-        for row in rows_of(limit, computed, numbers):
-            found[id(limit), row.case, row.place] = row.margin
-    keys = [(id(limit), case, place) for limit, case, place in wanted]
-    rows = [np.broadcast_to(found[key], (count,)) for key in keys]
-    return _bounded(np.array(rows)) if rows else np.empty((0, count))
+    """Margins of the wanted rows (rows, designs), all in one go."""
+    if not wanted:
+        return np.empty((0, count))
+    complex_ = any(np.iscomplexobj(value) for value in numbers.varied.values())
+    value = np.empty((len(wanted), count), dtype=complex if complex_ else float)
+    bound = np.empty_like(value)
+    for i, row in enumerate(wanted):
+        array = computed.metrics[row.limit_of.metric][row.place]
+        if row.case_index is not None:
+            array = array[row.case_index]
+        value[i] = array
+        bound[i] = row.limit_of.value(numbers)
+    value = where(real(value) == np.inf, UNLIMITED, value)
+    sign = np.array([[1.0 if row.limit_of.sense == "min" else -1.0] for row in wanted])
+    return _bounded(sign * margin(value, bound, "min"))
 
 
 def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
@@ -178,9 +185,7 @@ def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
     _check_read(numbers, paths, fault)
     rows = tuple(row for row in everything if np.size(row.margin) > 1)
     fixed = tuple(row for row in everything if np.size(row.margin) == 1)
-    wanted = tuple((row.limit_of, row.case, row.place) for row in rows)
     missed = [row for row in fixed if not float(row.margin[0]) >= -1e-6]
-    wanted += tuple((row.limit_of, row.case, row.place) for row in missed)
     rows += tuple(missed)
     holder: list[ActuatorProblem] = []
     problem = Problem(
@@ -192,7 +197,7 @@ def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
         start=start,
         relaxable=tuple(row.limit_of.origin != "geometry" for row in rows),
     )
-    holder.append(ActuatorProblem(subject, goal, paths, rows, fixed, problem, wanted))
+    holder.append(ActuatorProblem(subject, goal, paths, rows, fixed, problem))
     return holder[0]
 
 

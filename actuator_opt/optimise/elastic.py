@@ -35,9 +35,7 @@ def common(problem: Problem, room: float) -> Problem:
     return _extended(problem, evaluate, ["slack"], room, names, ())
 
 
-def separate(
-    problem: Problem, relaxed: npt.NDArray[np.intp], room: Sequence[float]
-) -> Problem:
+def separate(problem: Problem, relaxed: npt.NDArray[np.intp], room: Sequence[float]) -> Problem:
     """Minimise the sum of the slacks of the constraints `relaxed`; the others hold."""
     n, m = len(problem.names), len(problem.constraint_names)
 
@@ -93,7 +91,7 @@ def _extended(
 
 
 def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
-    """A feasible point near `point`, by minimising one common slack; None where none is near."""
+    """Return a feasible point near `point`, by minimising one common slack; None where none is near."""
     if point.violation <= FEASIBLE:
         return point
     found, used = descend(

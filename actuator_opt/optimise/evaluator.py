@@ -95,7 +95,7 @@ class Evaluator:
             raise LimitReached
 
     def point(self, z: Vector) -> Point:
-        """The evaluated point at z (nf,); evaluated once."""
+        """Return the evaluated point at z (nf,); evaluated once."""
         key = z.tobytes()
         found = self._cache.get(key)
         if found is not None:

@@ -89,8 +89,7 @@ def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
         found, evaluator = _smallest(problem, np.arange(m), points)
         amounts = found.x[len(problem.names) :]
         laws = tuple(
-            problem.constraint_names[i]
-            for i in range(m) if not mask[i] and amounts[i] > NOTHING
+            problem.constraint_names[i] for i in range(m) if not mask[i] and amounts[i] > NOTHING
         )
         wishes = np.arange(m)
     n = len(problem.names)
@@ -107,15 +106,20 @@ def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
         part = quality.multipliers > 1e-7 if quality.unique else mask
         sole = tuple(_alone(problem, mask, int(i), x) for i in np.flatnonzero(part & mask))
     return Infeasibility(
-        tuple(joint), sole, _bounds(problem, evaluator, quality), laws, x,
-        float(found.objective), quality.residual,
+        tuple(joint),
+        sole,
+        _bounds(problem, evaluator, quality),
+        laws,
+        x,
+        float(found.objective),
+        quality.residual,
     )
 
 
 def _smallest(
     problem: Problem, relaxed: np.ndarray, points: Sequence[Vector]
 ) -> tuple[Point, Evaluator]:
-    """The smallest sum of slacks over `relaxed`, from the best of several points."""
+    """Return the smallest sum of slacks over `relaxed`, from the best of several points."""
     best: Point | None = None
     judge = Evaluator(problem)
     room, starts = 1.0, []
@@ -135,7 +139,7 @@ def _smallest(
 
 
 def _alone(problem: Problem, mask: np.ndarray, index: int, x: Vector) -> Relaxation:
-    """What constraint `index` alone must give up; None where that is not enough."""
+    """Return what constraint `index` alone must give up; None where that is not enough."""
     name = problem.constraint_names[index]
     others = _without(problem, index)
     relaxed = np.flatnonzero(np.delete(mask, index))
@@ -161,9 +165,7 @@ def _without(problem: Problem, index: int) -> Problem:
     return replace(problem, evaluate=evaluate, constraint_names=names, relaxable=None)
 
 
-def _bounds(
-    problem: Problem, evaluator: Evaluator, quality: kkt.Kkt
-) -> tuple[BindingBound, ...]:
+def _bounds(problem: Problem, evaluator: Evaluator, quality: kkt.Kkt) -> tuple[BindingBound, ...]:
     found = []
     space = evaluator.space
     for k, j in enumerate(space.free):

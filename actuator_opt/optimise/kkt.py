@@ -191,7 +191,7 @@ def multipliers(
 
 
 def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0) -> float:
-    """The divisor of the residual: |grad f|.
+    """Return the divisor of the residual: |grad f|.
 
     At a stationary objective (no constraint holds it) |grad f| itself vanishes; a thousandth of
     the objective's magnitude then takes its place.

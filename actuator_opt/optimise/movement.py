@@ -103,7 +103,7 @@ def lagrangian_slopes(found: Optimum, given: Responses) -> Vector:
 
 
 def movement(found: Optimum, given: Responses) -> tuple[Vector, Vector]:
-    """Derivatives by the parameters of the optimum (nf, q) and of the margins' multipliers (M, q).
+    """Return derivatives by the parameters of the optimum (nf, q) and of the margins' multipliers (M, q).
 
     Directions that change nothing to second order do not move.
     """

@@ -115,7 +115,7 @@ def _advance(evaluator: Evaluator, state: _State) -> _State | None:
 
 
 def _merit(evaluator: Evaluator, point: Point, scale: float, price: float) -> float:
-    """The l1 merit: objective plus violations at more than their price."""
+    """Return the l1 merit: objective plus violations at more than their price."""
     m = evaluator.constraint_count
     missed = np.maximum(-point.rows[1 : 1 + m], 0.0).sum() + np.abs(point.rows[1 + m :]).sum()
     return point.objective / scale + price * float(missed)

@@ -12,7 +12,7 @@ import difflib
 from dataclasses import dataclass
 from typing import Any
 
-import nlopt  # type: ignore[import-untyped]
+import nlopt
 import numpy as np
 
 from ..errors import Diagnostic, UsageError
@@ -61,35 +61,35 @@ def _table(text: str) -> dict[str, Algorithm]:
 
 
 ALGORITHMS = _table("""
- LD_SLSQP                   | local   | ie | 1000 |  2000 | sequential quadratic programming, Kraft
- LD_MMA                     | local   | i  | 1000 |  2000 | method of moving asymptotes, Svanberg
- LD_CCSAQ                   | local   | i  | 1000 |  2000 | conservative convex separable quadratic approximation
- LN_COBYLA                  | local   | ie | 1000 |  2000 | linear approximations without gradients, Powell
- LD_LBFGS                   | local   | -  | 1000 |  2000 | limited-memory BFGS
- LD_TNEWTON                 | local   | -  | 1000 |  2000 | truncated Newton
- LD_TNEWTON_RESTART         | local   | -  | 1000 |  2000 | truncated Newton with restarts
- LD_TNEWTON_PRECOND         | local   | -  | 1000 |  2000 | preconditioned truncated Newton
- LD_TNEWTON_PRECOND_RESTART | local   | -  | 1000 |  2000 | preconditioned truncated Newton with restarts
- LD_VAR1                    | local   | -  | 1000 |  2000 | shifted limited-memory variable metric, rank 1
- LD_VAR2                    | local   | -  | 1000 |  2000 | shifted limited-memory variable metric, rank 2
- LN_BOBYQA                  | local   | -  | 200  |  2000 | quadratic models without gradients, Powell
- LN_NEWUOA_BOUND            | local   | -  | 200  |  2000 | quadratic models without gradients, older
- LN_NELDERMEAD              | local   | -  | 100  |  2000 | simplex, Nelder and Mead
- LN_SBPLX                   | local   | -  | 200  |  2000 | simplex in subspaces, Rowan
- LN_PRAXIS                  | local   | -  | 100  |  2000 | principal axes, Brent
- GN_ISRES                   | global  | ie | 200  | 20000 | evolution strategy with stochastic ranking
- GN_ORIG_DIRECT             | global  | i  | 30   |  1500 | dividing rectangles, original code
- GN_ORIG_DIRECT_L           | global  | i  | 30   |  1500 | dividing rectangles, locally biased, original code
- GN_AGS                     | global  | i  | 10   |  5000 | Peano curves with Lipschitz bounds
- GN_DIRECT                  | global  | -  | 30   | 20000 | dividing rectangles
- GN_DIRECT_L                | global  | -  | 30   | 20000 | dividing rectangles, locally biased
- GN_DIRECT_L_RAND           | global  | -  | 30   | 20000 | dividing rectangles, locally biased, randomised
- GN_CRS2_LM                 | global  | -  | 200  | 20000 | controlled random search
- GN_ESCH                    | global  | -  | 200  | 20000 | evolutionary algorithm
- GD_STOGO                   | global  | -  | 10   | 20000 | branch and bound with gradients
- AUGLAG                     | wrapper | ie | 1000 | 20000 | augmented Lagrangian around an algorithm inside
- AUGLAG_EQ                  | wrapper | ie | 1000 | 20000 | augmented Lagrangian for the equalities only
- G_MLSL_LDS                 | wrapper | -  | 200  | 20000 | multi-level single linkage around a local algorithm
+ LD_SLSQP                   |local  |ie|1000| 2000| sequential quadratic programming, Kraft
+ LD_MMA                     |local  |i |1000| 2000| method of moving asymptotes, Svanberg
+ LD_CCSAQ                   |local  |i |1000| 2000| conservative quadratic approximation
+ LN_COBYLA                  |local  |ie|1000| 2000| linear approximations without gradients, Powell
+ LD_LBFGS                   |local  |- |1000| 2000| limited-memory BFGS
+ LD_TNEWTON                 |local  |- |1000| 2000| truncated Newton
+ LD_TNEWTON_RESTART         |local  |- |1000| 2000| truncated Newton with restarts
+ LD_TNEWTON_PRECOND         |local  |- |1000| 2000| preconditioned truncated Newton
+ LD_TNEWTON_PRECOND_RESTART |local  |- |1000| 2000| preconditioned truncated Newton with restarts
+ LD_VAR1                    |local  |- |1000| 2000| shifted limited-memory variable metric, rank 1
+ LD_VAR2                    |local  |- |1000| 2000| shifted limited-memory variable metric, rank 2
+ LN_BOBYQA                  |local  |- | 200| 2000| quadratic models without gradients, Powell
+ LN_NEWUOA_BOUND            |local  |- | 200| 2000| quadratic models without gradients, older
+ LN_NELDERMEAD              |local  |- | 100| 2000| simplex, Nelder and Mead
+ LN_SBPLX                   |local  |- | 200| 2000| simplex in subspaces, Rowan
+ LN_PRAXIS                  |local  |- | 100| 2000| principal axes, Brent
+ GN_ISRES                   |global |ie| 200| 8000| evolution strategy with stochastic ranking
+ GN_ORIG_DIRECT             |global |i |  30| 1000| dividing rectangles, original code
+ GN_ORIG_DIRECT_L           |global |i |  30| 1000| dividing rectangles, biased, original code
+ GN_AGS                     |global |i |  10| 5000| Peano curves with Lipschitz bounds
+ GN_DIRECT                  |global |- |  30| 5000| dividing rectangles
+ GN_DIRECT_L                |global |- |  30| 5000| dividing rectangles, locally biased
+ GN_DIRECT_L_RAND           |global |- |  30| 5000| dividing rectangles, biased, randomised
+ GN_CRS2_LM                 |global |- | 200|10000| controlled random search
+ GN_ESCH                    |global |- | 200|10000| evolutionary algorithm
+ GD_STOGO                   |global |- |  10| 1500| branch and bound with gradients
+ AUGLAG                     |wrapper|ie|1000| 4000| augmented Lagrangian around an algorithm inside
+ AUGLAG_EQ                  |wrapper|ie|1000| 4000| augmented Lagrangian for the equalities only
+ G_MLSL_LDS                 |wrapper|- | 200| 1500| multi-level single linkage around another
 """)
 
 OLDER = {
@@ -110,7 +110,7 @@ INSIDE = {"AUGLAG": "LD_LBFGS", "AUGLAG_EQ": "LD_MMA", "G_MLSL_LDS": "LD_LBFGS"}
 
 
 def find(text: str) -> tuple[Algorithm, Algorithm | None]:
-    """The algorithm called `text`, and the one inside it ("AUGLAG+LD_LBFGS").
+    """Return the algorithm called `text`, and the one inside it ("AUGLAG+LD_LBFGS").
 
     Case does not matter, and the prefix may be left out where the rest is unique ("slsqp").
 
@@ -149,7 +149,7 @@ def _refusal(message: str, remedy: str) -> UsageError:
 
 
 def suit(text: str, problem: Problem) -> str:
-    """The full name of an algorithm that suits the problem.
+    """Return the full name of an algorithm that suits the problem.
 
     Raises
     ------
@@ -159,7 +159,7 @@ def suit(text: str, problem: Problem) -> str:
     outer, inner = find(text)
     inequalities, equalities = bool(problem.constraint_names), bool(problem.equality_names)
     free = int(np.count_nonzero(problem.upper > problem.lower))
-    if inequalities and not outer.inequalities or equalities and not outer.equalities:
+    if (inequalities and not outer.inequalities) or (equalities and not outer.equalities):
         kind = "constraints" if not outer.inequalities else "equality constraints"
         remedy = "write LD_SLSQP or LN_COBYLA"
         if outer.scope == "local" or inner is not None:
@@ -171,8 +171,10 @@ def suit(text: str, problem: Problem) -> str:
         message = f"AUGLAG_EQ leaves the inequalities to {inner.name}, which takes none"
         raise _refusal(message, f"write AUGLAG+{inner.name} or AUGLAG_EQ+LD_MMA")
     if outer.name == "G_MLSL_LDS" and inner is not None and inner.scope != "local":
-        raise _refusal(f"G_MLSL_LDS needs a local algorithm inside, not {inner.name}",
-                       "write G_MLSL_LDS+LD_LBFGS")
+        raise _refusal(
+            f"G_MLSL_LDS needs a local algorithm inside, not {inner.name}",
+            "write G_MLSL_LDS+LD_LBFGS",
+        )
     for part in (outer, inner):
         if part is not None and free > part.most_variables:
             message = f"{part.name} is for at most {part.most_variables} variables, not {free}"
@@ -228,7 +230,7 @@ class _Guard:
         return np.asarray(jacobian * (self.width / slope))
 
     def _visit(self, u: Vector) -> Point | None:
-        """The point, or None where the run must stop."""
+        """Return the point, or None where the run must stop."""
         if self.error is not None:
             return None
         try:
@@ -278,7 +280,7 @@ class _Guard:
         self._rows(result, u, slopes, slice(1, 1 + self.evaluator.constraint_count), 1.0)
 
     def worst_margin(self, u: Vector, slope: Vector) -> float:
-        """The constraint missed most, as one number (for AGS)."""
+        """Return the constraint missed most, as one number (for AGS)."""
         result = np.zeros(self.evaluator.constraint_count)
         self.inequalities(result, u, slope)
         return float(result.max())
@@ -309,7 +311,9 @@ def run(
     handle = _handle(outer, size, tolerance, most)
     guard = _Guard(evaluator, start, linear=linear, handle=handle)
     bounds = (
-        (np.zeros(size), np.ones(size)) if linear else (evaluator.space.lower, evaluator.space.upper)
+        (np.zeros(size), np.ones(size))
+        if linear
+        else (evaluator.space.lower, evaluator.space.upper)
     )
     handle.set_lower_bounds(bounds[0])
     handle.set_upper_bounds(bounds[1])
@@ -345,7 +349,7 @@ def _handle(algorithm: Algorithm, size: int, tolerance: float, most: int) -> Any
 
 
 def _pick(evaluator: Evaluator, guard: _Guard, found: Vector | None, start: Point) -> Point:
-    """The best of NLopt's point, the best feasible iterate, the last iterate and the start."""
+    """Return the best of NLopt's point, the best feasible iterate, the last iterate and the start."""
     candidates = [guard.best, guard.last, start]
     if found is not None and guard.error is None and np.isfinite(found).all():
         limited, evaluator.limited = evaluator.limited, False

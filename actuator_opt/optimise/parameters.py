@@ -47,19 +47,23 @@ class Responses:
 def responses(
     parametric: ParametricProblem, evaluator: Evaluator, point: Point, weights: Vector
 ) -> Responses:
-    """Derivatives by the parameters; `weights` (rows,) make the Lagrangian of the rows."""
+    """Return derivatives by the parameters; `weights` (rows,) make the Lagrangian of the rows."""
     count, nf = len(parametric.parameters), evaluator.space.size
     steps = RELATIVE_STEP * np.where(parametric.parameters == 0, 1.0, parametric.parameters)
     rows, fallen = _row_slopes(parametric, point, steps)
     mixed = _mixed(parametric, evaluator, point, weights, steps)
     return Responses(
-        tuple(parametric.parameter_names), parametric.parameters, rows, mixed,
-        np.zeros((2 * nf, count)), fallen,
+        tuple(parametric.parameter_names),
+        parametric.parameters,
+        rows,
+        mixed,
+        np.zeros((2 * nf, count)),
+        fallen,
     )
 
 
 def with_bounds(found: Responses, evaluator: Evaluator, multipliers: Vector) -> Responses:
-    """The same with a parameter "NAME lower" or "NAME upper" for each bound that costs.
+    """Return the same with a parameter "NAME lower" or "NAME upper" for each bound that costs.
 
     `multipliers` (2 nf,) are those of the lower, then the upper bounds.
     """
@@ -86,7 +90,7 @@ def with_bounds(found: Responses, evaluator: Evaluator, multipliers: Vector) -> 
 
 
 def perturbed(parametric: ParametricProblem, name: str, k: int, value: float) -> Problem | None:
-    """The problem with parameter k (a bound beyond the parameters) at `value`.
+    """Return the problem with parameter k (a bound beyond the parameters) at `value`.
 
     None where the bounds would cross.
     """
@@ -115,7 +119,7 @@ def _rows(parametric: ParametricProblem, points: Vector, parameters: Vector) -> 
 def _row_slopes(
     parametric: ParametricProblem, point: Point, steps: Vector
 ) -> tuple[Vector, tuple[str, ...]]:
-    """Derivative of the rows (rows, q), and the parameters that fell back to differences."""
+    """Return derivative of the rows (rows, q), and the parameters that fell back to differences."""
     count = len(steps)
     if count == 0:
         return np.zeros((len(point.rows), 0)), ()
@@ -150,7 +154,7 @@ def _mixed(
     weights: Vector,
     steps: Vector,
 ) -> Vector:
-    """Derivative of the Lagrangian's gradient (nf, q): all gradients in one call where exact."""
+    """Return derivative of the Lagrangian's gradient (nf, q): all gradients in one call where exact."""
     count, nf = len(steps), evaluator.space.size
     if count == 0 or nf == 0:
         return np.zeros((nf, count))

@@ -197,7 +197,7 @@ def resolved(problem: Problem, evaluator: Evaluator, guess: Vector, point: Point
 
 
 def _refined(near: Evaluator, start: Point) -> Point | None:
-    """An optimum near the start, or the best feasible point; None where nothing is feasible."""
+    """Return an optimum near the start, or the best feasible point; None where nothing is feasible."""
     if not start.valid:
         return None
     found = polish(near, start, iterations=8, tolerance=1e-10)

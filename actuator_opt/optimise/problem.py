@@ -145,7 +145,7 @@ class ParametricProblem:
         object.__setattr__(self, "parameters", values)
 
     def at(self, parameters: Array) -> Problem:
-        """The problem at other parameter values (q,)."""
+        """Return the problem at other parameter values (q,)."""
         column = np.asarray(parameters)[:, None]
         return replace(self.problem, evaluate=lambda x: self.evaluate(x, column))
 
@@ -173,7 +173,10 @@ class Space:
             ("logarithmic", logarithmic),
             ("scale", scale),
             ("lower", np.where(logarithmic, np.log(np.where(logarithmic, low, 1.0)), low / scale)),
-            ("upper", np.where(logarithmic, np.log(np.where(logarithmic, high, 1.0)), high / scale)),
+            (
+                "upper",
+                np.where(logarithmic, np.log(np.where(logarithmic, high, 1.0)), high / scale),
+            ),
         ):
             object.__setattr__(self, name, value)
 

@@ -19,7 +19,7 @@ KEEP = 256
 
 
 def primes(count: int) -> list[int]:
-    """The first `count` primes."""
+    """Return the first `count` primes."""
     found: list[int] = []
     candidate = 2
     while len(found) < count:
@@ -107,7 +107,9 @@ def sweep(evaluator: Evaluator, samples: int, seed: int) -> Sweep:
         z, violation, objective = z[:, good], violation[good], rows[0, good]
         low = min(low, objective.min(initial=np.inf))
         high = max(high, objective.max(initial=-np.inf))
-        merged = [np.concatenate(p, axis=-1) for p in zip(kept, (z, violation, objective), strict=True)]
+        merged = [
+            np.concatenate(p, axis=-1) for p in zip(kept, (z, violation, objective), strict=True)
+        ]
         order = np.lexsort((merged[2], merged[1]))[:KEEP]
         kept = (merged[0][:, order], merged[1][order], merged[2][order])
     largest = max(abs(low), abs(high)) if valid else 0.0

@@ -56,15 +56,21 @@ class _Search:
         self.warnings: list[str] = []
         self.objective_scale = 0.0
 
+    @property
+    def succeeded(self) -> bool:
+        return any(optimum.good for optimum in self.optima)
+
+    @property
+    def feasible(self) -> bool:
+        return any(optimum.point.violation <= FEASIBLE for optimum in self.optima)
+
     def residual(self, point: Point) -> float:
         if not point.valid:
             return np.inf
-        return kkt.check(
-            self.evaluator, point, objective_scale=self.objective_scale
-        ).residual
+        return kkt.check(self.evaluator, point, objective_scale=self.objective_scale).residual
 
     def same(self, point: Point) -> _Optimum | None:
-        """The optimum already found that a point has run into."""
+        """Return the optimum already found that a point has run into."""
         for optimum in self.optima:
             known = optimum.point
             size = max(abs(known.objective), 1e-3 * self.objective_scale, 1e-300)
@@ -168,10 +174,8 @@ def solve(
     return _conclude(search, swept)
 
 
-def _starts(
-    search: _Search, swept: Sweep, wanted: int, more: Sequence[Vector]
-) -> list[Point]:
-    """Valid starts: the user's, then further ones given, then the best of the sweep."""
+def _starts(search: _Search, swept: Sweep, wanted: int, more: Sequence[Vector]) -> list[Point]:
+    """Return valid starts: the user's, then further ones given, then the best of the sweep."""
     evaluator = search.evaluator
     given = [x for x in (evaluator.problem.start, *more) if x is not None]
     coordinates = [evaluator.space.to_z(np.asarray(x, dtype=float)) for x in given]
@@ -183,31 +187,30 @@ def _starts(
 
 
 def _default_path(search: _Search, points: list[Point]) -> None:
+    """SLSQP in logarithmic variables; what failed again, by other means."""
     failed = [
-        p for p in points
-        if not search.descend(p, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+        point
+        for point in points
+        if not search.descend(point, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
     ]
-    if any(o.good for o in search.optima) and len(failed) < len(points):
-        failed = failed[:2]
+    if not search.succeeded:
+        restored = _restore(search)
+        if restored is not None:
+            search.descend(restored, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
     failed = [
-        p for p in failed
-        if not search.descend(p, "LD_SLSQP", linear=True, most=LOCAL_EVALUATIONS)
+        point
+        for point in failed[:2]
+        if not search.descend(point, "LD_SLSQP", linear=True, most=LOCAL_EVALUATIONS)
     ]
-    if any(o.good for o in search.optima):
+    if search.succeeded or not search.feasible:
         return
-    restored = _restore(search)
-    if restored is not None:
-        if search.descend(restored, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS):
-            return
-    elif search.best() is not None and search.best().point.violation > FEASIBLE:
-        return
-    for point in failed[:2]:
-        if search.descend(point, "AUGLAG+LD_LBFGS", linear=False, most=10 * LOCAL_EVALUATIONS):
+    for point in failed:
+        if search.descend(point, "AUGLAG+LD_LBFGS", linear=False):
             return
 
 
 def _restore(search: _Search) -> Point | None:
-    """A feasible point from the least infeasible ones, by minimising one common slack."""
+    """Return a feasible point from the least infeasible ones, by minimising one common slack."""
     for optimum in sorted(search.optima, key=lambda o: o.point.violation)[:3]:
         if optimum.point.valid:
             found = elastic.feasible_point(search.evaluator, optimum.point)
@@ -246,9 +249,7 @@ def _conclude(search: _Search, swept: Sweep) -> Solution:
     point, idle = _settle(search, best)
     found = None
     if point.valid and evaluator.space.size:
-        found = kkt.check(
-            evaluator, point, curvature=True, objective_scale=search.objective_scale
-        )
+        found = kkt.check(evaluator, point, curvature=True, objective_scale=search.objective_scale)
     outcome = _outcome(search, swept, point, found)
     if swept.count and swept.valid < swept.count:
         share = 100 * (1 - swept.valid / swept.count)
@@ -283,7 +284,7 @@ def _conclude(search: _Search, swept: Sweep) -> Solution:
 
 
 def _fallback(search: _Search, swept: Sweep) -> _Optimum:
-    """The best point of the sweep, or the middle of the box, where no local run ended."""
+    """Return the best point of the sweep, or the middle of the box, where no local run ended."""
     evaluator = search.evaluator
     z = (evaluator.space.lower + evaluator.space.upper) / 2
     if swept.z.shape[1]:
@@ -313,9 +314,7 @@ def _settle(search: _Search, best: _Optimum) -> tuple[Point, tuple[str, ...]]:
     return (moved if same else best.point), names
 
 
-def _outcome(
-    search: _Search, swept: Sweep, point: Point, found: kkt.Kkt | None
-) -> Outcome:
+def _outcome(search: _Search, swept: Sweep, point: Point, found: kkt.Kkt | None) -> Outcome:
     evaluator = search.evaluator
     if not point.valid:
         return Outcome.UNDEFINED

@@ -13,7 +13,7 @@ from ..evaluate.evaluation import Requirement, StrokeCurve
 from .ink import BLACK, BLUE, GREY, PALE, RED, Ink, Point, hatch, spread_within, text_width
 from .text import number, trimmed
 
-AREAS = ("#0b3c5d", "#4f86a8", "#a9c9d8", "#e0c98a", "#f3ece0", "#8a939b", "#cfd4d8")
+AREAS = ("#0b3c5d", "#9ec3da", "#4f86a8", "#f0e2b6", "#b98b3e", "#e3e6e8", "#7d868e")
 """Fills of stacked areas: distinct in hue for colour-blind eyes, in lightness on a grey print."""
 
 

@@ -139,8 +139,8 @@ def models(evaluation: Evaluation) -> Block:
         [
             soft(row.name),
             soft(text.pretty(row.equation)),
-            soft(row.reference),
-            soft(text.pretty(row.valid_range)),
+            soft(row.reference or "not stated"),
+            soft(text.pretty(row.valid_range) or "not stated"),
             soft(text.pretty(row.used_at)),
             {"flag": not row.in_range, "text": "inside" if row.in_range else "EXTRAPOLATED"},
         ]

@@ -6,6 +6,7 @@ file and the command inside itself (PDF/A-3), so that a report can be run again.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import importlib.util
 import json
@@ -192,15 +193,11 @@ def _write(folder: Path, contents: Mapping[str, bytes]) -> None:
             path.replace(target)
     except OSError as error:
         for path, _ in aside:
-            path.unlink(missing_ok=True)
-        reason = error.strerror or type(error).__name__
-        raise InputError(
-            Diagnostic(
-                f"cannot write the report: {reason}",
-                "choose a folder with --out",
-                file=str(error.filename or folder),
-            )
-        ) from None
+            with contextlib.suppress(OSError):
+                path.unlink(missing_ok=True)
+        reason = f"cannot write the report: {error.strerror or type(error).__name__}"
+        fault = Diagnostic(reason, "choose a folder with --out", file=str(folder))
+        raise InputError(fault) from None
 
 
 def _remove_later_pages(folder: Path, stem: str, count: int) -> None:
