@@ -101,8 +101,9 @@ def test_thrust_bearing(seed):
 
 
 def test_random_geometric_programmes():
-    """Random posynomial programmes, convex in logarithms, end on points that meet the KKT
-    conditions to 1e-9, which for convex problems proves the global optimum; all starts agree.
+    """Random posynomial programmes end on their one global optimum from all starts.
+
+    They are convex in logarithms, where the optimality conditions (met to 1e-9) prove it.
     """
     for seed in range(4):
         found = solve(problems.geometric_programme(seed).problem, seed=seed)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from .. import quantities
 from ..design import paths, standards
-from ..design.material import compatible
+from ..design.material import Material, compatible
 from ..design.materials import Library, load_library
 from ..design.model import Design
 from ..models import laminate, seals
@@ -62,15 +62,26 @@ def names_of_materials(design: Design) -> list[str]:
 
 
 def prepare(
-    design: Design, library: Library | None = None, plugins: tuple[Plugin, ...] = ()
+    design: Design,
+    materials: Library | Mapping[str, Material] | None = None,
+    plugins: tuple[Plugin, ...] = (),
 ) -> Subject:
-    """A design with the materials it names and all its numbers, ready to evaluate."""
-    library = load_library() if library is None else library
-    materials = {name: library.get(name) for name in names_of_materials(design)}
-    numbers = default_limits() | paths.numbers(design)
+    """A design with the materials it names and all its numbers, ready to evaluate.
+
+    Parameters
+    ----------
+    design : the design
+    materials : a library, or the materials by name; default: the project's library
+    plugins : the user's own metrics and constraints
+    """
+    if materials is None:
+        materials = load_library()
+    get = materials.get if isinstance(materials, Library) else materials.__getitem__
+    materials = {name: get(name) for name in names_of_materials(design)}
+    numbers = default_limits()
     for name, material in materials.items():
-        for key, value in material.numbers.items():
-            numbers[f"materials.{name}.{key}"] = value
+        numbers |= {f"materials.{name}.{key}": value for key, value in material.numbers.items()}
+    numbers |= paths.numbers(design)
     factors = allowances(materials, hottest(design, numbers))
     return Subject(design, materials, numbers, factors, plugins)
 

@@ -49,6 +49,11 @@ class Subject:
         return Values(self.numbers, self.cases, varied)
 
 
+    def touch(self, values: Values) -> None:
+        """Run the models once, so that `values.read` tells what they read."""
+        compute(self, values)
+
+
 @dataclass(frozen=True, slots=True)
 class Pass:
     """One pass over the models, with the intermediate results the Evaluation draws on."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -70,7 +70,7 @@ def maximise_margin(problem: Problem, index: int) -> Problem:
 
 def _extended(
     problem: Problem,
-    evaluate: object,
+    evaluate: Callable[[Array], Values],
     names: Sequence[str],
     room: float | Sequence[float],
     constraint_names: Sequence[str],
@@ -91,7 +91,7 @@ def _extended(
 
 
 def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
-    """Return a feasible point near `point`, by minimising one common slack; None where none is near."""
+    """Return a feasible point near `point`, by minimising one common slack, or None."""
     if point.violation <= FEASIBLE:
         return point
     found, used = descend(

@@ -46,6 +46,7 @@ class Point:
 
     @property
     def objective(self) -> float:
+        """Value to be minimised."""
         return float(self.rows[0])
 
 

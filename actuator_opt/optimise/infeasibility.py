@@ -96,7 +96,7 @@ def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
     x, amounts = found.x[:n], found.x[n:]
     quality = kkt.check(evaluator, found, objective_scale=1.0)
     joint = [
-        Relaxation(problem.constraint_names[i], int(i), float(a))
+        Relaxation(problem.constraint_names[int(i)], int(i), float(a))
         for i, a in zip(wishes, amounts, strict=True)
         if a > NOTHING and mask[i]
     ]

@@ -48,6 +48,7 @@ class Active:
 
     @property
     def count(self) -> int:
+        """Number of active rows."""
         return len(self.margins)
 
 
@@ -186,7 +187,7 @@ def multipliers(
     free = np.zeros(len(equalities))
     if len(equalities):
         rest = slope - active.gradients.T @ inequality
-        free = np.linalg.lstsq(equalities.T, rest, rcond=1e-12)[0]
+        free = np.asarray(np.linalg.lstsq(equalities.T, rest, rcond=1e-12)[0], dtype=float)
     return inequality, free
 
 
@@ -218,11 +219,11 @@ def check(
     if len(stacked) == 0:
         rank = 0
     a, b = len(active.constraint), len(active.constraint) + len(active.lower)
-    full = [np.zeros(m), np.zeros(len(problem.names)), np.zeros(len(problem.names))]
+    held, low, high = np.zeros(m), np.zeros(len(problem.names)), np.zeros(len(problem.names))
     free_variables = evaluator.space.free
-    full[0][active.constraint] = inequality[:a]
-    full[1][free_variables[active.lower]] = inequality[a:b]
-    full[2][free_variables[active.upper]] = inequality[b:]
+    held[active.constraint] = inequality[:a]
+    low[free_variables[active.lower]] = inequality[a:b]
+    high[free_variables[active.upper]] = inequality[b:]
     labels = [problem.constraint_names[i] for i in active.constraint]
     labels += list(problem.equality_names)
     labels += [f"{problem.names[free_variables[j]]} lower" for j in active.lower]
@@ -230,8 +231,8 @@ def check(
     found = None
     if curvature:
         strong = active.gradients[inequality * np.sqrt((active.gradients**2).sum(axis=1)) > 0]
-        found = _curvature(evaluator, point, full[0], free, np.concatenate([strong, equalities]))
-    return Kkt(residual, tuple(labels), len(stacked), rank, full[0], free, *full[1:], found)
+        found = _curvature(evaluator, point, held, free, np.concatenate([strong, equalities]))
+    return Kkt(residual, tuple(labels), len(stacked), rank, held, free, low, high, found)
 
 
 def lagrangian_weights(constraints: Vector, equalities: Vector) -> Vector:

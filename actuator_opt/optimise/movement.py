@@ -103,7 +103,7 @@ def lagrangian_slopes(found: Optimum, given: Responses) -> Vector:
 
 
 def movement(found: Optimum, given: Responses) -> tuple[Vector, Vector]:
-    """Return derivatives by the parameters of the optimum (nf, q) and of the margins' multipliers (M, q).
+    """Return derivatives by the parameters of the optimum (nf, q) and its multipliers (M, q).
 
     Directions that change nothing to second order do not move.
     """
@@ -167,7 +167,7 @@ def one_sided(found: Optimum, given: Responses, active: npt.NDArray[np.intp]) ->
     if rank == count:
         return np.stack([single, single])
     target = rows.T @ np.concatenate([found.multipliers[keep], found.equality_multipliers])
-    if math.comb(count - e, rank - e) <= BASES if rank >= e else False:
+    if rank >= e and math.comb(count - e, rank - e) <= BASES:
         vertices = _vertices(rows / size[:, None], target, rank, e) / size
         vertices = np.concatenate(
             [vertices, [np.concatenate([found.multipliers[keep], found.equality_multipliers])]]
@@ -223,6 +223,6 @@ def _by_linear_programming(
         for side, sign in ((0, 1.0), (1, -1.0)):
             answer = linprog(-sign * slopes[:, k], A_eq=rows.T, b_eq=target, bounds=limits)
             # an unbounded price means that this direction leaves no feasible point
-            value = answer.fun if answer.status == 0 else -np.inf
+            value = -np.inf if answer.fun is None else float(answer.fun)
             result[side, k] = objective[k] + sign * value
     return result

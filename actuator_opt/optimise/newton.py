@@ -168,7 +168,7 @@ def _convex_hessian(evaluator: Evaluator, state: _State) -> Vector:
     for weight in (0.0, 10.0, 1e3):
         convex = hessian + weight * size * (held.T @ held)
         if np.linalg.eigvalsh(convex)[0] > floor:
-            return convex
+            return np.asarray(convex)
     values, vectors = np.linalg.eigh(hessian)
     return np.asarray((vectors * np.maximum(np.abs(values), floor)) @ vectors.T)
 
@@ -198,7 +198,8 @@ def quadratic_programme(
     if -residual[-1] <= 1e-12:  # the rows contradict each other
         missed = -margins
         worst = missed > 0
-        return np.linalg.lstsq(rows[worst], missed[worst], rcond=1e-8)[0], prices
+        step = np.linalg.lstsq(rows[worst], missed[worst], rcond=1e-8)[0]
+        return np.asarray(step, dtype=float), prices
     nearest = -residual[:-1] / residual[-1]
     prices[useful] = weights / -residual[-1] / length[useful]
     return np.linalg.solve(factor.T, nearest - moved), prices

@@ -47,6 +47,7 @@ class Algorithm:
 
     @property
     def uses_gradients(self) -> bool:
+        """Whether it asks for gradients itself."""
         return self.name.startswith(("LD_", "GD_"))
 
 
@@ -236,7 +237,8 @@ class _Guard:
         try:
             point = self.point(np.array(u, dtype=float))
         except BaseException as error:  # re-raised after NLopt has returned
-            return self._stop(error)
+            self._stop(error)
+            return None
         self.last = point
         if point.valid:
             self.worst = max(self.worst, abs(point.objective) / self.scale)
@@ -349,7 +351,7 @@ def _handle(algorithm: Algorithm, size: int, tolerance: float, most: int) -> Any
 
 
 def _pick(evaluator: Evaluator, guard: _Guard, found: Vector | None, start: Point) -> Point:
-    """Return the best of NLopt's point, the best feasible iterate, the last iterate and the start."""
+    """Return the best of NLopt's point, the best feasible, the last iterate and the start."""
     candidates = [guard.best, guard.last, start]
     if found is not None and guard.error is None and np.isfinite(found).all():
         limited, evaluator.limited = evaluator.limited, False

@@ -143,7 +143,7 @@ def _row_slopes(
     room = 1e-4 * np.abs(crude).max(axis=0) + 1e-6 * (1 + np.abs(point.rows).max()) / np.abs(steps)
     room = np.minimum(room, 1e-4 * np.abs(crude).max(axis=0) + 1e-9 / np.abs(steps))
     wrong = ~(np.abs(fine - crude) <= room).all(axis=0)
-    names = tuple(parametric.parameter_names[k] for k in np.flatnonzero(wrong))
+    names = tuple(parametric.parameter_names[int(k)] for k in np.flatnonzero(wrong))
     return np.where(wrong, crude, fine), names
 
 
@@ -154,7 +154,7 @@ def _mixed(
     weights: Vector,
     steps: Vector,
 ) -> Vector:
-    """Return derivative of the Lagrangian's gradient (nf, q): all gradients in one call where exact."""
+    """Return the derivative of the Lagrangian's gradient (nf, q), in one call where exact."""
     count, nf = len(steps), evaluator.space.size
     if count == 0 or nf == 0:
         return np.zeros((nf, count))

@@ -197,7 +197,7 @@ def resolved(problem: Problem, evaluator: Evaluator, guess: Vector, point: Point
 
 
 def _refined(near: Evaluator, start: Point) -> Point | None:
-    """Return an optimum near the start, or the best feasible point; None where nothing is feasible."""
+    """Return an optimum near the start, else a feasible point; None where there is none."""
     if not start.valid:
         return None
     found = polish(near, start, iterations=8, tolerance=1e-10)

@@ -86,7 +86,9 @@ class Problem:
         if start.shape != self.lower.shape:
             raise InputError(f"the start needs {len(self.names)} values")
         room = 1e-9 * (np.abs(self.lower) + np.abs(self.upper))
-        for j in np.flatnonzero(~((start >= self.lower - room) & (start <= self.upper + room))):
+        for j in map(
+            int, np.flatnonzero(~((start >= self.lower - room) & (start <= self.upper + room)))
+        ):
             raise InputError(
                 f"{self.names[j]}: the start {start[j]:g} is outside its bounds "
                 f"{self.lower[j]:g} to {self.upper[j]:g}"

@@ -58,11 +58,17 @@ class Sensitivity:
 
 @dataclass(frozen=True, slots=True)
 class Infeasibility:
-    """Why nothing fits: joint relaxation, sole repairs, binding bounds."""
+    """Why nothing fits: joint relaxation, sole repairs, binding bounds.
+
+    `joint` and `sole` entries hold requirement, parameter (PATH), metric, sense, limit, needed
+    (the limit that would do; None where this one alone cannot help) and relax (fraction);
+    `bounds` entries hold path, side, value and gain; `laws` names geometry that conflicts.
+    """
 
     joint: tuple[Mapping[str, Any], ...]
     sole: tuple[Mapping[str, Any], ...]
     bounds: tuple[Mapping[str, Any], ...]
+    laws: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,11 +88,13 @@ class Optimisation:
     sensitivities: tuple[Sensitivity, ...]
     infeasibility: Infeasibility | None
     evaluations: int
+    samples: int
     starts: tuple[float, ...]
     """Objective of the local optimum reached from each start."""
     trace: tuple[tuple[int, float, float], ...]
     """(evaluation, objective, worst margin) of each improvement."""
     algorithm: str
+    warnings: tuple[str, ...]
     seed: int
     seconds: float
     certificate: None = None

@@ -1,0 +1,238 @@
+"""Optimise an actuator: problem, solution, prices and, where nothing fits, why."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from .. import quantities
+from ..design import quantity_of, with_values
+from ..evaluate import Subject, evaluate, prepare
+from ..evaluate.rows import Row
+from ..numeric import STEP
+from ..quantities import Quantity
+from ..units import unit
+from . import prices as pricing
+from .actuator import ActuatorProblem, Fault, build
+from .infeasibility import explain
+from .outcome import Outcome, Solution
+from .result import Infeasibility, Kkt, Optimisation, Sensitivity, VariableResult
+from .solver import solve
+
+MOST_PARAMETERS = 12
+"""Parameters (not limits) priced in the sensitivity table: those that matter most."""
+
+LEAST_EFFECT = 1e-3
+"""Smallest elasticity (% per %) that earns a parameter its row."""
+
+_NO_PERCENT = ("temperature", "temperature_difference", "angle", "count")
+
+
+def optimise(
+    subject: Subject,
+    *,
+    fault: Fault | None = None,
+    algorithm: str = "auto",
+    starts: int = 6,
+    seed: int = 0,
+    prices: bool = True,
+    max_seconds: float | None = None,
+) -> Optimisation:
+    """The best design of a subject.
+
+    Parameters
+    ----------
+    subject : the prepared design
+    fault : places faults of variables in the file
+    algorithm : "auto" or an NLopt name such as ``LD_SLSQP``
+    starts : starts taken from the global sweep
+    seed : of sweep and stochastic algorithms; the same seed gives the same result
+    prices : whether to price requirements and parameters (and re-solve at ±10 %)
+    max_seconds : time limit of the search; the best design so far is kept
+    """
+    began = time.perf_counter()
+    actuator = build(subject, fault)
+    solution = solve(
+        actuator.problem, algorithm=algorithm, starts=starts, seed=seed, max_seconds=max_seconds
+    )
+    design = with_values(
+        subject.design, dict(zip(actuator.paths, solution.x.tolist(), strict=True))
+    )
+    best = prepare(design, subject.materials, subject.plugins)
+    rows: tuple[Sensitivity, ...] = ()
+    if prices and solution.outcome is Outcome.OPTIMUM:
+        rows = sensitivities(actuator, solution)
+    return Optimisation(
+        status=solution.outcome.status,
+        sentence=solution.outcome.sentence,
+        remedy=solution.outcome.remedy,
+        objective_metric=actuator.goal.single or "weighted",
+        objective_value=actuator.goal.shown(solution.objective),
+        design=design,
+        evaluation=evaluate(best),
+        start=evaluate(subject),
+        variables=_variables(actuator, solution),
+        kkt=_kkt(solution),
+        sensitivities=rows,
+        infeasibility=_why_not(actuator, solution),
+        evaluations=solution.evaluations,
+        samples=solution.samples,
+        starts=tuple(actuator.goal.shown(record.objective) for record in solution.starts),
+        trace=solution.trace,
+        algorithm=solution.algorithm,
+        warnings=solution.warnings
+        + tuple(f"variable without effect: {name}" for name in solution.without_effect),
+        seed=seed,
+        seconds=time.perf_counter() - began,
+    )
+
+
+def _variables(actuator: ActuatorProblem, solution: Solution) -> tuple[VariableResult, ...]:
+    problem, design = actuator.problem, actuator.subject.design
+    return tuple(
+        VariableResult(
+            path=path,
+            quantity=quantity_of(path, design).name,
+            value=float(solution.x[i]),
+            start=None if problem.start is None else float(problem.start[i]),
+            lower=float(problem.lower[i]),
+            upper=float(problem.upper[i]),
+            at_bound=solution.at_bound(i),
+        )
+        for i, path in enumerate(actuator.paths)
+    )
+
+
+def _kkt(solution: Solution) -> Kkt | None:
+    found = solution.kkt
+    if found is None:
+        return None
+    curvature = "" if found.curvature is None else found.curvature.value
+    return Kkt(float(found.residual), found.active, int(found.rank), curvature)
+
+
+def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensitivity, ...]:
+    """Price every limit that could bind and the parameters that matter most."""
+    limits = list(
+        dict.fromkeys(row.limit_of.path for row in actuator.rows if row.limit_of.path is not None)
+    )
+    chosen = (*limits, *_strongest(actuator, solution, set(limits)))
+    chosen = tuple(path for path in chosen if actuator.subject.numbers.get(path))
+    found = pricing.prices(actuator.parametric(chosen), solution, bounds=False)
+    active = _active_limits(actuator, solution)
+    shown = actuator.goal.shown
+    rows = []
+    for price in found:
+        quantity = _quantity(actuator, price.parameter)
+        rows.append(
+            Sensitivity(
+                parameter=price.parameter,
+                label=quantity.label,
+                unit=quantity.unit,
+                scale=unit(quantity.unit, quantity.dimension).scale if quantity.unit else 1.0,
+                limit=price.value,
+                price=shown(price.price),
+                percent_per_percent=price.percent_per_percent or 0.0,
+                predicted_10=_shown(shown, price.predicted_up),
+                resolved_10=_shown(shown, price.resolved_up),
+                predicted_minus10=_shown(shown, price.predicted_down),
+                resolved_minus10=_shown(shown, price.resolved_down),
+                holds_until=price.holds_until,
+                next_active=price.change,
+                active=price.parameter in active,
+            )
+        )
+    rows.sort(key=lambda row: -abs(row.percent_per_percent))
+    return tuple(rows)
+
+
+def _shown(shown: Callable[[float], float], value: float | None) -> float | None:
+    return None if value is None else shown(value)
+
+
+def _active_limits(actuator: ActuatorProblem, solution: Solution) -> set[str]:
+    labels = set(solution.kkt.active) if solution.kkt is not None else set()
+    return {
+        row.limit_of.path
+        for row in actuator.rows
+        if row.label in labels and row.limit_of.path is not None
+    }
+
+
+def _quantity(actuator: ActuatorProblem, path: str) -> Quantity:
+    if path.startswith("requirements."):
+        return actuator.subject.quantities[path.split(".")[1]]
+    if path.startswith("materials."):
+        return quantities.MATERIAL_PROPERTIES[path.rpartition(".")[2]]
+    return quantity_of(path, actuator.subject.design)
+
+
+def _strongest(actuator: ActuatorProblem, solution: Solution, known: set[str]) -> tuple[str, ...]:
+    """The parameters with the largest elasticity of the objective, by the Lagrangian."""
+    if solution.kkt is None:
+        return ()
+    numbers = actuator.subject.values(
+        {path: np.array([x]) for path, x in zip(actuator.paths, solution.x, strict=True)}
+    )
+    actuator.subject.touch(numbers)
+    candidates = [
+        path
+        for path in sorted(numbers.read)
+        if path not in known
+        and path not in actuator.paths
+        and actuator.subject.numbers.get(path, 0.0) > 0
+        and not path.startswith("requirements.")
+        and _quantity(actuator, path).dimension not in _NO_PERCENT
+    ]
+    if not candidates:
+        return ()
+    present = np.array([actuator.subject.numbers[path] for path in candidates])
+    varied = np.repeat(present[:, None].astype(complex), len(candidates), axis=1)
+    varied += np.diag(1j * STEP * present)
+    points = np.repeat(solution.x[:, None], len(candidates), axis=1)
+    values = actuator.evaluate(points, dict(zip(candidates, varied, strict=True)))
+    slope = np.imag(values.objective) - solution.kkt.multipliers @ np.imag(values.constraints)
+    elasticity = np.nan_to_num(slope / STEP / abs(solution.objective or 1.0))
+    order = np.argsort(-np.abs(elasticity), kind="stable")
+    return tuple(
+        candidates[i] for i in order[:MOST_PARAMETERS] if abs(elasticity[i]) >= LEAST_EFFECT
+    )
+
+
+def _why_not(actuator: ActuatorProblem, solution: Solution) -> Infeasibility | None:
+    if solution.feasible or solution.kkt is None:
+        return None
+    points = [found.x for found in solution.optima] or [solution.x]
+    found = explain(actuator.problem, points)
+
+    def entry(index: int, amount: float | None) -> dict[str, object]:
+        row = actuator.rows[index]
+        limit = float(np.ravel(row.limit)[0])
+        needed = None if amount is None else _relaxed(row, limit, amount)
+        return {
+            "requirement": row.label,
+            "parameter": row.limit_of.path,
+            "metric": row.limit_of.metric,
+            "sense": row.limit_of.sense,
+            "limit": limit,
+            "needed": needed,
+            "relax": amount,
+        }
+
+    return Infeasibility(
+        joint=tuple(entry(r.index, r.amount) for r in found.joint),
+        sole=tuple(entry(r.index, r.amount) for r in found.sole),
+        bounds=tuple(
+            {"path": b.variable, "side": b.side, "value": b.value, "gain": b.gain}
+            for b in found.bounds
+        ),
+        laws=found.laws,
+    )
+
+
+def _relaxed(row: Row, limit: float, amount: float) -> float:
+    """The limit that would do after giving up a margin `amount`."""
+    step = amount * (abs(limit) or 1.0)
+    return limit - step if row.limit_of.sense == "min" else limit + step
