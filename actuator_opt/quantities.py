@@ -229,4 +229,3 @@ METRICS = _table("""
  geometry_head_groove | -      | length      | mm   | | | wall left beside the grooves of the head
  geometry_head_wall   | -      | length      | mm   | | | wall left over the rod seal groove
 """)
-

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 from pathlib import Path
 
 from .errors import Diagnostic, InputError
@@ -36,3 +38,17 @@ def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
         return checkout / name
     message = f'the data folder "{name}" is missing from this installation'
     raise InputError(Diagnostic(message, "install the package again", str(packaged)))
+
+
+def write_text(path: Path, text: str) -> Path:
+    """Write a text file whole: aside first, then renamed; no partial file on failure."""
+    aside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        aside.write_text(text, encoding="utf-8")
+        aside.replace(path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            aside.unlink(missing_ok=True)
+        reason = f"cannot write: {error.strerror or type(error).__name__}"
+        raise InputError(Diagnostic(reason, "choose another file or folder", str(path))) from None
+    return path

@@ -50,7 +50,7 @@ MATERIAL_EXAMPLES = {
 """One library entry that can stand in each role."""
 
 
-class ValueFault(ValueError):  # noqa: N818
+class ValueFault(ValueError):
     """A value that cannot be used: `message` says what, `remedy` what to do about it."""
 
     def __init__(self, message: str, remedy: str) -> None:

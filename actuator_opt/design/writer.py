@@ -95,7 +95,7 @@ def to_yaml(
     return "\n".join(_lines(_stated(to_tree(design), Design, design), (), writer, "")) + "\n"
 
 
-class _CannotEdit(Exception):  # noqa: N818
+class _CannotEdit(Exception):
     """The text does not have the shape of the design (flow style, removed blocks)."""
 
 

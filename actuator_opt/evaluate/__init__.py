@@ -6,4 +6,13 @@ from .build import evaluate, prepare
 from .evaluation import Check, Evaluation, Metric, Requirement
 from .kernel import Subject, compute
 
-__all__ = ["Check", "Evaluation", "Metric", "Requirement", "Subject", "compute", "evaluate", "prepare"]
+__all__ = [
+    "Check",
+    "Evaluation",
+    "Metric",
+    "Requirement",
+    "Subject",
+    "compute",
+    "evaluate",
+    "prepare",
+]

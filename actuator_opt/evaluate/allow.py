@@ -25,9 +25,7 @@ def allowances(
     """What temperature, basis and process leave of every strength, by (material, property)."""
     return {
         (name, key): float(
-            allowable_factor(
-                material.numbers, key, basis=entry.basis, temperature=temperature
-            )
+            allowable_factor(material.numbers, key, basis=entry.basis, temperature=temperature)
         )
         for name, material in materials.items()
         for key, entry in material.properties.items()

@@ -107,9 +107,7 @@ def evaluate(subject: Subject) -> Evaluation:
     requirements = tuple(_requirement(limit, computed, v) for limit in own)
     warnings = list(_warnings(subject, v, done))
     outside = {metric for metric, _ in warnings}
-    metrics = {
-        name: _metric(name, computed, v, subject, outside) for name in subject.quantities
-    }
+    metrics = {name: _metric(name, computed, v, subject, outside) for name in subject.quantities}
     checks = tuple(_checks(design, computed, v, requirements))
     warnings += [
         ("", f"check missed: {c.name}: {_against(c)}") for c in checks if c.status == "missed"
@@ -190,8 +188,15 @@ def _requirement(limit: Limit, computed: Computed, v: Values) -> Requirement:
     if row is None or not _finite(float(row.value[0])):
         unlimited = row is not None and float(row.value[0]) == math.inf
         return Requirement(
-            limit.name, limit.metric, limit.sense, bound, None, None, unlimited,
-            limit.case, path=limit.path or "",
+            limit.name,
+            limit.metric,
+            limit.sense,
+            bound,
+            None,
+            None,
+            unlimited,
+            limit.case,
+            path=limit.path or "",
         )
     margin = float(row.margin[0])
     return Requirement(
@@ -294,8 +299,10 @@ def _warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, st
         )
         for metric in ("bore_growth", "first_ply_factor", "burst_factor"):
             yield metric, text
-    for name, pressure in (("piston", done.state.moving_a - done.state.moving_b),
-                           ("rod", done.state.moving_b)):
+    for name, pressure in (
+        ("piston", done.state.moving_a - done.state.moving_b),
+        ("rod", done.state.moving_b),
+    ):
         section = getattr(design.seals, name)
         law = seals.LAWS[section.law]
         modulus = seals.MODULUS_LAWS[section.hardness_model].modulus(
@@ -304,35 +311,42 @@ def _warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, st
         ratio = float(np.max(np.abs(pressure))) / modulus
         low, high = law.squeeze_range
         if not low <= section.squeeze <= high:
-            yield "friction_running", (
-                f"{name} seal: squeeze {100 * section.squeeze:.3g} % outside the "
-                f"{100 * low:.0f}-{100 * high:.0f} % the {law.name} law was compared with data on"
+            yield (
+                "friction_running",
+                (
+                    f"{name} seal: squeeze {100 * section.squeeze:.3g} % outside the "
+                    f"{100 * low:.0f}-{100 * high:.0f} % the {law.name} law was compared with data on"
+                ),
             )
         if ratio > law.pressure_range[1]:
-            yield "friction_running", (
-                f"{name} seal: pressure is {ratio:.1f} times Young's modulus, the {law.name} law "
-                f"was compared with data up to {law.pressure_range[1]:g}"
+            yield (
+                "friction_running",
+                (
+                    f"{name} seal: pressure is {ratio:.1f} times Young's modulus, the {law.name} law "
+                    f"was compared with data up to {law.pressure_range[1]:g}"
+                ),
             )
         verdict = compatible(
             subject.materials[design.fluid.material], subject.materials[section.compound]
         )
         if verdict is False:
             yield "", f"{name} seal: {section.compound} does not withstand {design.fluid.material}"
-    for name, reason in done.wall.missing and [("burst_factor", done.wall.missing[0])] or []:
+    for name, reason in (done.wall.missing and [("burst_factor", done.wall.missing[0])]) or []:
         yield name, f"barrel: {reason}"
     for material in subject.materials.values():
         if material.warning:
             yield "", f"{material.name}: {material.warning}"
     if float(np.max(np.abs(v.case("side_load")))) > 0:
-        yield "", (
-            "side load pushes the piston over: on one side the extrusion gap is the clearance "
-            f"larger, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
+        yield (
+            "",
+            (
+                "side load pushes the piston over: on one side the extrusion gap is the clearance "
+                f"larger, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
+            ),
         )
 
 
-def _models(
-    metrics: dict[str, Metric], subject: Subject, outside: set[str]
-) -> Iterable[ModelUse]:
+def _models(metrics: dict[str, Metric], subject: Subject, outside: set[str]) -> Iterable[ModelUse]:
     laminated = kind_of(subject) == "thin_laminate"
     seen: dict[str, ModelUse] = {}
     for name, metric in metrics.items():
@@ -345,7 +359,11 @@ def _models(
             old = seen[model.name]
             at = f"{old.used_at}; {at}"
         seen[model.name] = ModelUse(
-            model.name, model.summary, model.reference, model.valid, at,
+            model.name,
+            model.summary,
+            model.reference,
+            model.valid,
+            at,
             name not in outside and (model.name not in seen or seen[model.name].in_range),
         )
     return seen.values()
@@ -374,5 +392,3 @@ def _curve(done: Pass, v: Values, case: str | None) -> StrokeCurve:
         stiffness=1 / sum(parts.values()),
         contributions=parts,
     )
-
-

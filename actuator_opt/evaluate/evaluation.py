@@ -211,9 +211,7 @@ class Evaluation:
         rows = list(self.metrics.values())
         return {
             "name": [m.name for m in rows],
-            "value": [
-                None if m.value is None else m.quantity.to_display(m.value) for m in rows
-            ],
+            "value": [None if m.value is None else m.quantity.to_display(m.value) for m in rows],
             "unit": [m.quantity.unit for m in rows],
             "case": [m.case for m in rows],
         }

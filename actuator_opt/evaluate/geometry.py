@@ -81,7 +81,7 @@ def derive(v: Values, design: Design) -> Geometry:
     outer_radius = inner_radius + sum(thicknesses)
     piston_length, head_length = v["piston.length"], v["head.length"]
     needed = piston_length + stroke + head_length
-    barrel_length = v["barrel.length"] if "barrel.length" in v else needed
+    barrel_length = v.get("barrel.length", needed)
     plate = v["caps.thickness"]
     extension = v["rod.extension"]
     retention = design.retention

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-from ..design.model import Design
 from math import pi
 
+from ..design.model import Design
 from ..models import damping, dynamics, forces, lines, rod, stiffness
 from ..numeric import Array
 from .geometry import Geometry
@@ -70,9 +69,7 @@ class Springs:
         return parts
 
 
-def springs(
-    v: Values, design: Design, geometry: Geometry, state: State, wall: Wall
-) -> Springs:
+def springs(v: Values, design: Design, geometry: Geometry, state: State, wall: Wall) -> Springs:
     """Compliance of chambers, lines, rod and mount."""
     g = geometry
     volume = {"a": v["cylinder.dead_volume_a"], "b": v["cylinder.dead_volume_b"]}
@@ -110,7 +107,7 @@ def springs(
             inner_diameter=g.rod_inner_diameter,
             length=g.rod_length,
         ),
-        mount=v["cylinder.mount_stiffness"] if "cylinder.mount_stiffness" in v else None,
+        mount=v.get("cylinder.mount_stiffness", None),
         geometry=g,
     )
 
@@ -143,8 +140,13 @@ def compute_stiffness(s: Springs, moving_mass: Array, out: Computed) -> Array:
 
 
 def compute_damping(
-    v: Values, geometry: Geometry, state: State, friction: Friction, stiffness_min: Array,
-    moving_mass: Array, out: Computed,
+    v: Values,
+    geometry: Geometry,
+    state: State,
+    friction: Friction,
+    stiffness_min: Array,
+    moving_mass: Array,
+    out: Computed,
 ) -> None:
     """Oil damping (pipe form and annular gaps) and the damping ratio of the load."""
     g, viscosity = geometry, state.dynamic_viscosity
@@ -173,7 +175,9 @@ def compute_damping(
     )
 
 
-def compute_flow(v: Values, design: Design, geometry: Geometry, state: State, out: Computed) -> None:
+def compute_flow(
+    v: Values, design: Design, geometry: Geometry, state: State, out: Computed
+) -> None:
     """Flow, port and line velocities and pressure drop."""
     flow = {
         "a": forces.chamber_flow(area=geometry.area_a, speed=state.speed),

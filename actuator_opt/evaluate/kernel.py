@@ -48,7 +48,6 @@ class Subject:
         """The numbers to evaluate, some of them replaced by arrays."""
         return Values(self.numbers, self.cases, varied)
 
-
     def touch(self, values: Values) -> None:
         """Run the models once, so that `values.read` tells what they read."""
         compute(self, values)

@@ -43,7 +43,8 @@ def _eye(centre: float, pin: float, side: int) -> list[tuple[tuple[float, float]
     angles = [pi * k / 24 for k in range(25)]
     rim = [(centre + pin * cos(a), pin * sin(a)) for a in angles]
     hole = [(centre + pin / 2 * cos(a), pin / 2 * sin(a)) for a in reversed(angles)]
-    neck = sorted((centre + side * pin, centre + side * 2 * pin))
+    foot = 0.75**0.5 * pin  # where a neck of this diameter meets the rim
+    neck = sorted((centre + side * foot, centre + side * 2 * pin))
     return [(*rim, *hole), _rectangle(neck[0], neck[1], 0.0, pin / 2)]
 
 
@@ -51,9 +52,7 @@ def _kind(material: Material) -> str:
     return {"ply": "composite", "polymer": "polymer", "seal": "seal"}.get(material.kind, "metal")
 
 
-def outlines(
-    design: Design, materials: dict[str, Material], g: Geometry
-) -> tuple[Outline, ...]:
+def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tuple[Outline, ...]:
     """Every part as closed polygons of (axial position from the cap pin, radius) in m."""
     parts: list[tuple[str, str, list[tuple[tuple[float, float], ...]]]] = []
     face = float(g.eye_offset)
@@ -67,13 +66,9 @@ def outlines(
     skirt, outer, plate = float(g.skirt_length), float(g.outer_radius), float(g.plate_radius)
 
     radius = bore
-    for i, (ply, thickness) in enumerate(
-        zip(design.barrel.layup, g.thicknesses, strict=True)
-    ):
+    for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
         next_radius = radius + float(thickness)
-        parts.append(
-            (f"barrel layer {i}", ply.material, [_rectangle(start, end, radius, next_radius)])
-        )
+        parts.append((f"layup[{i}]", ply.material, [_rectangle(start, end, radius, next_radius)]))
         radius = next_radius
     caps = [
         _rectangle(face, start, 0.0, plate),
@@ -91,8 +86,17 @@ def outlines(
         (
             "piston",
             design.piston.material,
-            [_grooved(start, piston_end, 0.0, piston_radius, g.piston_groove, piston_floor,
-                      outside=True)],
+            [
+                _grooved(
+                    start,
+                    piston_end,
+                    0.0,
+                    piston_radius,
+                    g.piston_groove,
+                    piston_floor,
+                    outside=True,
+                )
+            ],
         )
     )
     head_floor = rod + float(g.rod_groove.gland_depth)
@@ -110,27 +114,36 @@ def outlines(
             [_rectangle(piston_end, tip, float(g.rod_inner_diameter) / 2, rod)],
         )
     )
-    for compound, groove, x0, length, low, high in (
-        (design.seals.piston.compound, g.piston_groove, start, g.piston_length, piston_floor, bore),
-        (design.seals.rod.compound, g.rod_groove, head, g.head_length, rod, head_floor),
+    for name, compound, groove, x0, length, low, high in (
+        (
+            "piston seal",
+            design.seals.piston.compound,
+            g.piston_groove,
+            start,
+            g.piston_length,
+            piston_floor,
+            bore,
+        ),
+        ("rod seal", design.seals.rod.compound, g.rod_groove, head, g.head_length, rod, head_floor),
     ):
         rings = []
         for left, right in _grooves(x0, float(length), groove):
             middle, half = (left + right) / 2, min(float(groove.section), right - left) / 2
             rings.append(_rectangle(middle - half, middle + half, low, high))
-        parts.append(("seals", compound, rings))
+        parts.append((name, compound, rings))
     if design.clevis is not None:
         pin = float(g.pin_diameter)
         parts.append(("cap eye", design.clevis.material, _eye(0.0, pin, 1)))
         parts.append(("rod eye", design.clevis.material, _eye(tip + float(g.eye_offset), pin, -1)))
-    oil = Outline(
-        "oil", design.fluid.material, (_rectangle(piston_end, head, rod, bore),), "oil"
+    oil = Outline("oil", design.fluid.material, (_rectangle(piston_end, head, rod, bore),), "oil")
+    return (
+        oil,
+        *(
+            Outline(part, name, tuple(polygons), _kind(materials[name]))  # type: ignore[arg-type]
+            for part, name, polygons in parts
+            if polygons
+        ),
     )
-    return (oil, *(
-        Outline(part, name, tuple(polygons), _kind(materials[name]))  # type: ignore[arg-type]
-        for part, name, polygons in parts
-        if polygons
-    ))
 
 
 def lengths(design: Design, g: Geometry) -> dict[str, float]:

@@ -157,8 +157,16 @@ def load(path: str | Path) -> tuple[Plugin, ...]:
         ) from None
     except InputError:
         raise
-    except (ImportError, ArithmeticError, LookupError, TypeError, ValueError, AttributeError,
-            NameError, OSError) as error:
+    except (
+        ImportError,
+        ArithmeticError,
+        LookupError,
+        TypeError,
+        ValueError,
+        AttributeError,
+        NameError,
+        OSError,
+    ) as error:
         line = traceback.extract_tb(error.__traceback__)[-1].lineno
         raise InputError(
             Diagnostic(f"{type(error).__name__}: {error}", "", str(path), line)

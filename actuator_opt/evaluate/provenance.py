@@ -14,6 +14,7 @@ from ..models import (
     dynamics,
     end_plate,
     endurance,
+    fluid,
     forces,
     friction,
     gland,
@@ -29,7 +30,6 @@ from ..models import (
     strength_modes,
 )
 from ..models import density as oil_density
-from ..models import fluid
 
 
 @dataclass(frozen=True, slots=True)

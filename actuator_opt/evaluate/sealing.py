@@ -40,7 +40,12 @@ class _SealState:
 
 
 def _seal_state(
-    v: Values, design: Design, name: str, diameter: Array, groove: Groove, pressure: Array,
+    v: Values,
+    design: Design,
+    name: str,
+    diameter: Array,
+    groove: Groove,
+    pressure: Array,
     growth: Array,
 ) -> _SealState:
     section = getattr(design.seals, name)
@@ -50,9 +55,7 @@ def _seal_state(
     def own(field: str) -> Array:
         return v[at + field] if at + field in v else v[compound + field]
 
-    modulus = seals.MODULUS_LAWS[section.hardness_model].modulus(
-        hardness=v[compound + "hardness"]
-    )
+    modulus = seals.MODULUS_LAWS[section.hardness_model].modulus(hardness=v[compound + "hardness"])
     return _SealState(
         squeeze=v[at + "squeeze"],
         youngs_modulus=modulus,
@@ -66,9 +69,7 @@ def _seal_state(
     )
 
 
-def _gland_metrics(
-    v: Values, name: str, state: _SealState, full_growth: Array
-) -> dict[str, Array]:
+def _gland_metrics(v: Values, name: str, state: _SealState, full_growth: Array) -> dict[str, Array]:
     at = f"seals.{name}."
     section, tolerance = state.groove.section, v[at + "tolerance"]
     thin = gland.stretched_section(section=section, stretch=v[at + "stretch"])
@@ -116,12 +117,22 @@ def compute(
     case_growth = full_growth * (state.driven_pressure / supply)
     parts = {
         "piston seal": _seal_state(
-            v, design, "piston", geometry.bore, geometry.piston_groove,
-            absolute(state.moving_a - state.moving_b), case_growth,
+            v,
+            design,
+            "piston",
+            geometry.bore,
+            geometry.piston_groove,
+            absolute(state.moving_a - state.moving_b),
+            case_growth,
         ),
         "rod seal": _seal_state(
-            v, design, "rod", geometry.rod_diameter, geometry.rod_groove,
-            maximum(state.moving_b, 0.0), 0.0,
+            v,
+            design,
+            "rod",
+            geometry.rod_diameter,
+            geometry.rod_groove,
+            maximum(state.moving_b, 0.0),
+            0.0,
         ),
     }
     places: dict[str, dict[str, Array]] = {}
@@ -162,9 +173,9 @@ def compute(
         out.put(metric, by_place)
     if "extrusion_factor" not in places:
         out.skip("extrusion_factor", "the seal compounds state no extrusion_gap_max")
-    out.put("seal_gap", gland.extrusion_gap(
-        clearance=geometry.piston_clearance, growth=full_growth
-    ))
+    out.put(
+        "seal_gap", gland.extrusion_gap(clearance=geometry.piston_clearance, growth=full_growth)
+    )
     out.put("friction_running", running)
     out.put("friction_breakaway", breakaway)
     moving = real(state.speed)[:, 0] > 0
@@ -175,7 +186,12 @@ def compute(
 
 
 def _extrusion(
-    v: Values, design: Design, name: str, place: str, geometry: Geometry, growth: Array,
+    v: Values,
+    design: Design,
+    name: str,
+    place: str,
+    geometry: Geometry,
+    growth: Array,
     places: dict[str, dict[str, Array]],
 ) -> None:
     path = f"materials.{getattr(design.seals, name).compound}.extrusion_gap_max"

@@ -52,7 +52,9 @@ def case_force(v: Values, design: Design) -> Array:
     return np.stack(np.broadcast_arrays(*[np.atleast_1d(np.asarray(row)) for row in rows]))
 
 
-def oil_bulk_modulus(v: Values, stock: Stock, name: str, temperature: Array, pressure: Array) -> Array:
+def oil_bulk_modulus(
+    v: Values, stock: Stock, name: str, temperature: Array, pressure: Array
+) -> Array:
     """Tangent bulk modulus of the oil with its air at a temperature and a pressure."""
     modulus = stock.get(name, "bulk_modulus")
     decay = stock.get(name, "bulk_modulus_decay")

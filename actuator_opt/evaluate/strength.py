@@ -62,8 +62,15 @@ def max_axial(design: Design, g: Geometry, supply: Array) -> Array:
 
 
 def _pressure_factors(
-    v: Values, stock: Stock, design: Design, g: Geometry, wall: Wall, supply: Array,
-    through: Array, state: State, out: Computed,
+    v: Values,
+    stock: Stock,
+    design: Design,
+    g: Geometry,
+    wall: Wall,
+    supply: Array,
+    through: Array,
+    state: State,
+    out: Computed,
 ) -> None:
     proof = v["supply.proof_ratio"] * supply
     yields = {place: p / supply for place, p in wall.yield_pressure.items()}
@@ -186,7 +193,9 @@ def _retention(
     name = held.material if held.type == "tie_rods" else design.caps.material
     strength = None if name is None else stock.allowable(name, "yield_strength")
     if strength is None or held.thread is None:
-        out.skip("retention_factor", "retention needs a thread and a material with a yield strength")
+        out.skip(
+            "retention_factor", "retention needs a thread and a material with a yield strength"
+        )
     elif held.type == "tie_rods":
         stress = retention.tie_rod_stress(
             force=load,
@@ -206,16 +215,24 @@ def _retention(
 
 
 def _caps(stock: Stock, design: Design, g: Geometry, supply: Array, out: Computed) -> None:
+    """Bending of the end plates; the head's plate and plug bend as one turned part."""
     name = design.caps.material
     strength = stock.allowable(name, "yield_strength")
     ratio = stock.get(name, "poissons_ratio")
     if strength is None or ratio is None:
         out.skip("cap_factor", f"{name} states no yield strength or Poisson's ratio")
         return
-    stress = end_plate.end_plate_stress(
+    cap = end_plate.end_plate_stress(
         pressure=supply, radius=g.inner_radius, thickness=g.plate, poissons_ratio=ratio
     )
-    out.put("cap_factor", strength / stress)
+    head = end_plate.annular_plate_stress(
+        pressure=supply,
+        radius=g.inner_radius,
+        hole_radius=g.rod_diameter / 2 + g.head_clearance,
+        thickness=g.plate + g.head_length,
+        poissons_ratio=ratio,
+    )
+    out.put("cap_factor", {"cap": strength / cap, "head": strength / head})
 
 
 def _pins(v: Values, stock: Stock, design: Design, push: Array, out: Computed) -> None:
@@ -260,8 +277,15 @@ def _guides(stock: Stock, design: Design, g: Geometry, state: State, out: Comput
 
 
 def _endurance(
-    v: Values, stock: Stock, design: Design, g: Geometry, wall: Wall, supply: Array,
-    push: Array, pull: Array, out: Computed,
+    v: Values,
+    stock: Stock,
+    design: Design,
+    g: Geometry,
+    wall: Wall,
+    supply: Array,
+    push: Array,
+    pull: Array,
+    out: Computed,
 ) -> None:
     """Pressure-cycle life of metal parts: wall layers, rod (push/pull) and thread root."""
     area = rod.section_area(outer_diameter=g.rod_diameter, inner_diameter=g.rod_inner_diameter)
@@ -304,7 +328,13 @@ def _endurance(
 
 
 def _end_stop(
-    v: Values, design: Design, g: Geometry, state: State, supply: Array, moving: Array, net: Array,
+    v: Values,
+    design: Design,
+    g: Geometry,
+    state: State,
+    supply: Array,
+    moving: Array,
+    net: Array,
     out: Computed,
 ) -> None:
     """Energy and peak pressure where the piston runs into its stop at the case's speed.
@@ -333,8 +363,14 @@ def _end_stop(
 
 
 def _thermal(
-    v: Values, stock: Stock, design: Design, g: Geometry, state: State, wall: Wall,
-    supply: Array, out: Computed,
+    v: Values,
+    stock: Stock,
+    design: Design,
+    g: Geometry,
+    state: State,
+    wall: Wall,
+    supply: Array,
+    out: Computed,
 ) -> None:
     environment = design.environment
     rise = None if environment is None else environment.trapped_rise

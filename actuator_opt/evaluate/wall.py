@@ -84,9 +84,7 @@ def axial_forces(design: Design, state: State, geometry: Geometry) -> Array:
     )
 
 
-def _load_paths(
-    v: Values, design: Design, state: State, geometry: Geometry
-) -> dict[str, Array]:
+def _load_paths(v: Values, design: Design, state: State, geometry: Geometry) -> dict[str, Array]:
     """Axial force per pressure the wall must survive, by name: none, and the largest it can see.
 
     With an internal end stop the piston at the head under supply pressure pulls p A_A through the
@@ -106,9 +104,7 @@ def _load_paths(
     return paths
 
 
-def compute(
-    v: Values, design: Design, stock: Stock, geometry: Geometry, state: State
-) -> Wall:
+def compute(v: Values, design: Design, stock: Stock, geometry: Geometry, state: State) -> Wall:
     """The wall of a design under its supply pressure."""
     model = kind(design, stock.materials)
     if model == "thin_laminate":
@@ -203,7 +199,7 @@ def _layers(v: Values, design: Design, stock: Stock, g: Geometry, wall: list[str
                 wall.append(f"{name} lacks ply strengths")
         layers.append(
             _Layer(
-                label=f"layer {i} {name}",
+                label=f"layup[{i}] {name}",
                 name=name,
                 isotropic=isotropic,
                 constants=constants,
@@ -254,8 +250,12 @@ def _laminate(v: Values, design: Design, stock: Stock, g: Geometry, state: State
 
 
 def _strengths(
-    layers: list[_Layer], stack: laminate.Membrane, middle: Array, paths: tuple[str, ...],
-    axial: Array, wall: Wall,
+    layers: list[_Layer],
+    stack: laminate.Membrane,
+    middle: Array,
+    paths: tuple[str, ...],
+    axial: Array,
+    wall: Wall,
 ) -> None:
     """Yield, first-ply and burst pressures of every load path, thin laminate at mid-radius.
 
@@ -311,11 +311,21 @@ def _strengths(
         axial_force_per_pressure=axial,
     )
     put(wall.burst_pressure, "", ladder.burst_pressure)
+    if any(layer.isotropic for layer in layers):
+        put(
+            wall.first_ply_pressure,
+            "first ply with the liner yielding, ",
+            ladder.first_ply_pressure,
+        )
 
 
 def _thermal(
-    v: Values, design: Design, layers: list[_Layer], stack: laminate.Membrane,
-    thicknesses: list[Array], wall: Wall,
+    v: Values,
+    design: Design,
+    layers: list[_Layer],
+    stack: laminate.Membrane,
+    thicknesses: list[Array],
+    wall: Wall,
 ) -> None:
     """Free thermal strain of the wall per kelvin, and liner yield over its mismatch stress."""
     expansions = []
@@ -357,5 +367,3 @@ def _thermal(
     change = v["environment.cure_temperature"] - v["environment.temperature_min"]
     mises = barrel.von_mises(hoop=stress_1, radial=0.0, axial=stress_2) * change
     wall.mismatch = layers[i].yield_strength / mises
-
-

@@ -124,9 +124,7 @@ def _bounded(margin: Array) -> Array:
     return where(large, 1.0, inside)
 
 
-def _margins(
-    wanted: tuple[Row, ...], computed: Computed, numbers: Numbers, count: int
-) -> Array:
+def _margins(wanted: tuple[Row, ...], computed: Computed, numbers: Numbers, count: int) -> Array:
     """Margins of the wanted rows (rows, designs), all in one go."""
     if not wanted:
         return np.empty((0, count))

@@ -29,7 +29,7 @@ CEILING = 1e9
 """A margin of plus infinity (nothing loads the part) counts as this much, with no slope."""
 
 
-class LimitReached(Exception):  # noqa: N818 - not an error: the solver keeps its best point
+class LimitReached(Exception):
     """The evaluation or time limit of a run is used up."""
 
 

@@ -101,36 +101,36 @@ class Optimisation:
 
     def to_dict(self) -> dict[str, Any]:
         """The `optimise --json` object (SI): the evaluation's keys and the optimiser's."""
-        return self.evaluation.to_dict() | {
-            "status": self.status,
-            "outcome": self.sentence,
-            "remedy": self.remedy,
-            "objective": {"metric": self.objective_metric, "value": self.objective_value},
-            "variables": {
-                v.path: {
-                    "value": v.value,
-                    "lower": v.lower,
-                    "upper": v.upper,
-                    "at_bound": v.at_bound,
-                }
-                for v in self.variables
-            },
-            "kkt": None if self.kkt is None else asdict(self.kkt),
-            "sensitivities": [
-                {
-                    key: value
-                    for key, value in asdict(row).items()
-                    if key not in ("label", "unit", "scale")
-                }
-                for row in self.sensitivities
-            ],
-            "certificate": self.certificate,
-            "evaluations": self.evaluations,
-            "algorithm": self.algorithm,
-            "seed": self.seed,
-            "seconds": self.seconds,
-        } | (
-            {}
-            if self.infeasibility is None
-            else {"infeasibility": asdict(self.infeasibility)}
+        return (
+            self.evaluation.to_dict()
+            | {
+                "status": self.status,
+                "outcome": self.sentence,
+                "remedy": self.remedy,
+                "objective": {"metric": self.objective_metric, "value": self.objective_value},
+                "variables": {
+                    v.path: {
+                        "value": v.value,
+                        "lower": v.lower,
+                        "upper": v.upper,
+                        "at_bound": v.at_bound,
+                    }
+                    for v in self.variables
+                },
+                "kkt": None if self.kkt is None else asdict(self.kkt),
+                "sensitivities": [
+                    {
+                        key: value
+                        for key, value in asdict(row).items()
+                        if key not in ("label", "unit", "scale")
+                    }
+                    for row in self.sensitivities
+                ],
+                "certificate": self.certificate,
+                "evaluations": self.evaluations,
+                "algorithm": self.algorithm,
+                "seed": self.seed,
+                "seconds": self.seconds,
+            }
+            | ({} if self.infeasibility is None else {"infeasibility": asdict(self.infeasibility)})
         )

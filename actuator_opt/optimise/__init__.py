@@ -1,0 +1,1 @@
+"""The way to the optimum: a generic solver, and the actuator as its problem."""

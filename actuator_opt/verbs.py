@@ -1,0 +1,205 @@
+"""The verbs of the library: read, check, evaluate, optimise, sensitivity, report, save."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .design import Design, LoadedDesign, Source, read_design, with_values
+from .errors import Diagnostic, InputError
+from .evaluate import Evaluation, Subject, prepare
+from .evaluate import evaluate as evaluate_subject
+from .evaluate.plugin import Plugin, View, collect, load
+from .quantities import METRICS
+
+if TYPE_CHECKING:
+    from .optimise.result import Optimisation, Sensitivity
+    from .report import ExtraTable, ReportFile
+
+Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
+
+
+@dataclass(frozen=True, slots=True)
+class Actuator:
+    """A design as read: the design, where its values stand, and the user's own metrics."""
+
+    design: Design
+    source: Source | None = None
+    plugins: tuple[Plugin, ...] = ()
+
+    def subject(self) -> Subject:
+        """The design with its materials and numbers, ready for the models."""
+        return prepare(self.design, plugins=self.plugins)
+
+    def changed(self, values: Mapping[str, float | str]) -> Actuator:
+        """The same actuator with other numbers by PATH (SI, or text with a unit)."""
+        return Actuator(with_values(self.design, dict(values)), self.source, self.plugins)
+
+
+def _plugins(given: Plugins) -> tuple[Plugin, ...]:
+    found: list[Plugin] = []
+    for item in given:
+        if isinstance(item, Plugin):
+            found.append(item)
+        elif isinstance(item, (str, Path)):
+            found += load(item)
+        else:
+            found += collect(item)
+    return tuple(found)
+
+
+def read(
+    source: str | Path,
+    *,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    plugins: Plugins = (),
+) -> Actuator:
+    """Read a design file (a path, ``"-"`` for standard input, or the text itself).
+
+    Parameters
+    ----------
+    source : path or text
+    set : values to replace, by PATH; a bare number is SI
+    plugins : the user's metrics and constraints: decorated functions or Python files
+
+    Raises
+    ------
+    InputError
+        with every fault of the file, each with its place and remedy
+    """
+    own = _plugins(plugins)
+    pairs = set.items() if isinstance(set, Mapping) else set
+    loaded: LoadedDesign = read_design(
+        source,
+        overrides=[(path, str(value)) for path, value in pairs],
+        metrics=METRICS | {plugin.name: plugin.quantity for plugin in own},
+    )
+    return Actuator(loaded.design, loaded.source, own)
+
+
+def _actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -> Actuator:
+    if isinstance(design, Actuator):
+        return design
+    if isinstance(design, Design):
+        return Actuator(design, None, _plugins(plugins))
+    return read(design, plugins=plugins)
+
+
+def check(source: str | Path, *, plugins: Plugins = ()) -> list[Diagnostic]:
+    """All faults of a design file; an empty list for a good one.
+
+    Faults of the variables (no model reads it) are found too.
+    """
+    try:
+        actuator = read(source, plugins=plugins)
+        if actuator.design.variables:
+            from .optimise.actuator import build
+
+            build(actuator.subject(), _fault(actuator))
+    except InputError as error:
+        return error.diagnostics
+    return []
+
+
+def _fault(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
+    return None if actuator.source is None else actuator.source.of_variable
+
+
+def evaluate(design: Actuator | Design | str | Path, *, plugins: Plugins = ()) -> Evaluation:
+    """Every metric, requirement and check of a design as it stands."""
+    return evaluate_subject(_actuator(design, plugins).subject())
+
+
+def optimise(
+    design: Actuator | Design | str | Path,
+    *,
+    algorithm: str = "auto",
+    starts: int = 6,
+    seed: int = 0,
+    plugins: Plugins = (),
+    prices: bool = True,
+    max_seconds: float | None = None,
+) -> Optimisation:
+    """The best design; parameters as `optimise.run.optimise`."""
+    from .optimise.run import optimise as run
+
+    actuator = _actuator(design, plugins)
+    return run(
+        actuator.subject(),
+        fault=_fault(actuator),
+        algorithm=algorithm,
+        starts=starts,
+        seed=seed,
+        prices=prices,
+        max_seconds=max_seconds,
+    )
+
+
+def sensitivity(
+    design: Actuator | Design | str | Path, *, seed: int = 0, plugins: Plugins = ()
+) -> tuple[Sensitivity, ...]:
+    """What each requirement and parameter costs at the design's optimum."""
+    return optimise(design, seed=seed, plugins=plugins).sensitivities
+
+
+def report(
+    subject: Evaluation | Optimisation,
+    *,
+    folder: str | Path = "reports",
+    stem: str | None = None,
+    actuator: Actuator | None = None,
+    command: str = "",
+    date: str | None = None,
+    extra_tables: Sequence[ExtraTable] = (),
+) -> list[ReportFile]:
+    """Write the PDF and PNG report of an evaluation or an optimisation.
+
+    Parameters
+    ----------
+    subject : what to report
+    folder, stem : where to; default: the design's name in ``reports/``
+    actuator : the design as read, for the input listing and attachment
+    command : what made the report, printed on it
+    date : ISO date; default: SOURCE_DATE_EPOCH, else none
+    extra_tables : further tables
+    """
+    from .design.writer import to_yaml
+    from .report import write_report
+    from .report.published import published_tables
+
+    source = None if actuator is None else actuator.source
+    text = source.text if source is not None else to_yaml(subject.design)
+    name = Path(source.file).name if source is not None else f"{subject.design.name}.yaml"
+    return write_report(
+        subject,
+        folder=Path(folder),
+        stem=stem or Path(name).stem,
+        source_text=text,
+        source_name=name,
+        command=command,
+        date=date or date_from_environment(),
+        extra_tables=[*published_tables(subject), *extra_tables],
+    )
+
+
+def date_from_environment() -> str | None:
+    """The date of SOURCE_DATE_EPOCH (UTC), or None."""
+    stamp = os.environ.get("SOURCE_DATE_EPOCH")
+    if stamp is None or not stamp.strip().isdigit():
+        return None
+    from datetime import UTC, datetime
+
+    return datetime.fromtimestamp(int(stamp), UTC).date().isoformat()
+
+
+def save(design: Actuator | Design, path: str | Path, *, source: Source | None = None) -> Path:
+    """Write a design file that keeps full precision, comments and order where it can."""
+    from .design.writer import to_yaml
+    from .store import write_text
+
+    if isinstance(design, Actuator):
+        design, source = design.design, source or design.source
+    return write_text(Path(path), to_yaml(design, source))
