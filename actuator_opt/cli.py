@@ -6,6 +6,7 @@ modules are imported inside the commands that need them.
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from pathlib import Path
@@ -372,9 +373,9 @@ def compare_materials(
 
 def main() -> None:
     """Run the command line; every fault leaves as a line and an exit code, never a traceback."""
-    if hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(errors="replace")
-        sys.stderr.reconfigure(errors="replace")
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     try:
         app()
     except ActuatorError as error:

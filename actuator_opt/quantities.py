@@ -27,6 +27,7 @@ class Quantity:
 
     @property
     def si_unit(self) -> str:
+        """Name of the SI unit."""
         return units.BASE[self.dimension]
 
     def to_display(self, value: float) -> float:

@@ -173,10 +173,12 @@ class Unit:
     offset: float = 0.0
 
     def to_si(self, value: float) -> float:
+        """SI value of a value in this unit."""
         inverse = _INVERSES.get(self.scale)  # 18 mm is 18/1000, not 18·0.001: exact to the last bit
         return (value * self.scale if inverse is None else value / inverse) + self.offset
 
     def from_si(self, value: float) -> float:
+        """A value in this unit of an SI value."""
         inverse = _INVERSES.get(self.scale)
         value -= self.offset
         return value / self.scale if inverse is None else value * inverse

@@ -201,5 +201,6 @@ def save(design: Actuator | Design, path: str | Path, *, source: Source | None =
     from .store import write_text
 
     if isinstance(design, Actuator):
-        design, source = design.design, source or design.source
+        source = source or design.source
+        design = design.design
     return write_text(Path(path), to_yaml(design, source))

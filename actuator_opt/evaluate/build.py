@@ -6,36 +6,33 @@ import hashlib
 import json
 import math
 from collections.abc import Iterable, Mapping
+from typing import Literal
 
 import numpy as np
 
 from .. import quantities
 from ..design import paths, standards
-from ..design.material import Material, compatible
+from ..design.material import Material
 from ..design.materials import Library, load_library
 from ..design.model import Design
-from ..models import laminate, seals
 from ..version import VERSION
-from . import outline
+from . import doubts, outline
 from .allow import allowances, hottest
 from .evaluation import (
     Check,
     Evaluation,
     Metric,
-    ModelUse,
     Requirement,
     StrokeCurve,
-    Unverified,
 )
 from .kernel import Pass, Subject, compute
-from .limits import CHECK_LIST, CheckLine, Limit, all_limits, check_limits, default_limits
+from .limits import CHECK_LIST, CheckLine, Limit, Sense, all_limits, check_limits, default_limits
 from .plugin import Plugin
 from .provenance import model_of
 from .rows import ALL_CASES, Computed, Row, by_case, rows_of
 from .values import Values
-from .wall import kind
 
-SENSES: dict[str, str] = {line.metric: line.sense for line in CHECK_LIST if line.metric} | {
+SENSES: dict[str, Sense] = {line.metric: line.sense for line in CHECK_LIST if line.metric} | {
     "stiffness_oil": "min",
     "stiffness_rod": "min",
     "stiffness_barrel": "min",
@@ -105,7 +102,7 @@ def evaluate(subject: Subject) -> Evaluation:
     design = subject.design
     own = [x for x in all_limits(design, subject.plugins) if x.origin in ("requirement", "case")]
     requirements = tuple(_requirement(limit, computed, v) for limit in own)
-    warnings = list(_warnings(subject, v, done))
+    warnings = list(doubts.warnings(subject, v, done))
     outside = {metric for metric, _ in warnings}
     metrics = {name: _metric(name, computed, v, subject, outside) for name in subject.quantities}
     checks = tuple(_checks(design, computed, v, requirements))
@@ -121,8 +118,8 @@ def evaluate(subject: Subject) -> Evaluation:
         requirements=requirements,
         checks=checks,
         warnings=tuple(dict.fromkeys(text for _, text in warnings)),
-        unverified=tuple(_unverified(subject, v)),
-        models=tuple(_models(metrics, subject, outside)),
+        unverified=tuple(doubts.unverified(subject, v)),
+        models=tuple(doubts.models(metrics, subject, outside)),
         mass_parts={name: float(np.squeeze(m)) for name, m in done.mass_parts.items()},
         curve=_curve(done, v, metrics["stiffness_min"].case),
         outlines=outline.outlines(design, subject.materials, done.geometry),
@@ -137,7 +134,7 @@ def _finite(value: float) -> bool:
 def _metric(
     name: str, computed: Computed, v: Values, subject: Subject, outside: set[str]
 ) -> Metric:
-    laminated = kind_of(subject) == "thin_laminate"
+    laminated = doubts.kind_of(subject) == "thin_laminate"
     model = model_of(name, laminated=laminated)
     rows: list[tuple[float, str, str]] = []
     for place, array in computed.metrics.get(name, {}).items():
@@ -166,11 +163,6 @@ def _metric(
         in_range=name not in outside,
         definition=None if name in quantities.METRICS else subject.quantities[name],
     )
-
-
-def kind_of(subject: Subject) -> str:
-    """The wall model a design uses."""
-    return kind(subject.design, subject.materials)
 
 
 def _worst(rows: Iterable[Row]) -> Row | None:
@@ -251,8 +243,10 @@ def _check(
         reason = computed.why.get(
             line.metric or "", "the models have no finite answer for these dimensions"
         )
-        status = "not_checked" if line.metric in computed.why else "missed"
-        return Check(line.name, status, reason, line.metric, line.sense, result.limit)
+        known: Literal["missed", "not_checked"] = (
+            "not_checked" if line.metric in computed.why else "missed"
+        )
+        return Check(line.name, known, reason, line.metric, line.sense, result.limit)
     return Check(
         name=line.name,
         status="met" if result.met else "missed",
@@ -270,10 +264,14 @@ def _check(
 def _standard_sizes(line: CheckLine, design: Design) -> Check:
     """Whether bore and rod are ISO 3320 sizes; says the nearest larger ones where not."""
     odd = []
-    for kind_name, value in (("bore", design.cylinder.bore), ("rod", design.rod.outer_diameter)):
-        near = standards.nearest_standard(kind_name, value, "nearest")
+    sizes: tuple[tuple[Literal["bore", "rod"], float], ...] = (
+        ("bore", design.cylinder.bore),
+        ("rod", design.rod.outer_diameter),
+    )
+    for what, value in sizes:
+        near = standards.nearest_standard(what, value, "nearest")
         if abs(near - value) > 1e-9:
-            odd.append(f"{kind_name} {1e3 * value:.4g} mm (nearest {1e3 * near:g} mm)")
+            odd.append(f"{what} {1e3 * value:.4g} mm (nearest {1e3 * near:g} mm)")
     if odd:
         reason = "free sizes: " + ", ".join(odd)
         return Check(line.name, "not_checked", reason, source=line.source)
@@ -286,95 +284,6 @@ def _against(check: Check) -> str:
     quantity = quantities.METRICS[check.metric]
     word = "at least" if check.sense == "min" else "at most"
     return f"{quantity.text(check.value)}, should be {word} {quantity.text(check.limit)}"
-
-
-def _warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for everything used outside its range or doubtful."""
-    design, g = subject.design, done.geometry
-    thin = float(np.max(done.wall.thin_ratio))
-    if kind_of(subject) == "thin_laminate" and thin > laminate.THIN_WALL_LIMIT:
-        text = (
-            f"thin-laminate barrel used at t/r = {thin:.3f}, above {laminate.THIN_WALL_LIMIT}: "
-            "bore strain and first ply may be 10 % or more from the exact tube"
-        )
-        for metric in ("bore_growth", "first_ply_factor", "burst_factor"):
-            yield metric, text
-    for name, pressure in (
-        ("piston", done.state.moving_a - done.state.moving_b),
-        ("rod", done.state.moving_b),
-    ):
-        section = getattr(design.seals, name)
-        law = seals.LAWS[section.law]
-        modulus = seals.MODULUS_LAWS[section.hardness_model].modulus(
-            hardness=v[f"materials.{section.compound}.hardness"]
-        )
-        ratio = float(np.max(np.abs(pressure))) / modulus
-        low, high = law.squeeze_range
-        if not low <= section.squeeze <= high:
-            yield (
-                "friction_running",
-                (
-                    f"{name} seal: squeeze {100 * section.squeeze:.3g} % outside the "
-                    f"{100 * low:.0f}-{100 * high:.0f} % the {law.name} law was compared with data on"
-                ),
-            )
-        if ratio > law.pressure_range[1]:
-            yield (
-                "friction_running",
-                (
-                    f"{name} seal: pressure is {ratio:.1f} times Young's modulus, the {law.name} law "
-                    f"was compared with data up to {law.pressure_range[1]:g}"
-                ),
-            )
-        verdict = compatible(
-            subject.materials[design.fluid.material], subject.materials[section.compound]
-        )
-        if verdict is False:
-            yield "", f"{name} seal: {section.compound} does not withstand {design.fluid.material}"
-    for name, reason in (done.wall.missing and [("burst_factor", done.wall.missing[0])]) or []:
-        yield name, f"barrel: {reason}"
-    for material in subject.materials.values():
-        if material.warning:
-            yield "", f"{material.name}: {material.warning}"
-    if float(np.max(np.abs(v.case("side_load")))) > 0:
-        yield (
-            "",
-            (
-                "side load pushes the piston over: on one side the extrusion gap is the clearance "
-                f"larger, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
-            ),
-        )
-
-
-def _models(metrics: dict[str, Metric], subject: Subject, outside: set[str]) -> Iterable[ModelUse]:
-    laminated = kind_of(subject) == "thin_laminate"
-    seen: dict[str, ModelUse] = {}
-    for name, metric in metrics.items():
-        model = model_of(name, laminated=laminated)
-        if model is None or metric.value is None:
-            continue
-        used = metric.quantity.text(metric.value)
-        at = f"{name} = {used}" + (f" ({metric.case})" if metric.case else "")
-        if model.name in seen:
-            old = seen[model.name]
-            at = f"{old.used_at}; {at}"
-        seen[model.name] = ModelUse(
-            model.name,
-            model.summary,
-            model.reference,
-            model.valid,
-            at,
-            name not in outside and (model.name not in seen or seen[model.name].in_range),
-        )
-    return seen.values()
-
-
-def _unverified(subject: Subject, v: Values) -> Iterable[Unverified]:
-    for name, material in subject.materials.items():
-        for key in material.unverified:
-            if f"materials.{name}.{key}" in v.read or key == "kinematic_viscosity":
-                entry = material.properties[key]
-                yield Unverified(name, key, entry.text, entry.source, entry.note)
 
 
 def _curve(done: Pass, v: Values, case: str | None) -> StrokeCurve:

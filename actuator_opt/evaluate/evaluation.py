@@ -32,6 +32,7 @@ class Metric:
 
     @property
     def quantity(self) -> quantities.Quantity:
+        """Symbol, unit and label."""
         return self.definition or quantities.METRICS[self.name]
 
 

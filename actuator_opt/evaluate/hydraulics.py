@@ -27,6 +27,7 @@ class Chambers:
     b: dict[str, tuple[Array, Array]]
 
     def total(self, side: str) -> tuple[Array, Array]:
+        """Compliance of one chamber (fixed, per length) of all causes."""
         entries = list((self.a if side == "a" else self.b).values())
         return sum(e[0] for e in entries), sum(e[1] for e in entries)
 

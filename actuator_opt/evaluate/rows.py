@@ -54,6 +54,7 @@ class Row:
 
     @property
     def label(self) -> str:
+        """Name with case and place, unique among the rows of a design."""
         where = ", ".join(p for p in (self.case if self.case != ALL_CASES else "", self.place) if p)
         return f"{self.limit_of.name} ({where})" if where else self.limit_of.name
 

@@ -39,7 +39,7 @@ class Values:
 
     def get(self, path: str, default: Array) -> Array:
         """The number at `path`, or `default` where the design does not state it."""
-        return self[path] if path in self else default
+        return self[path] if path in self else default  # noqa: SIM401 (self[path] records the read)
 
     def case(self, field: str, default: Array = None) -> Array:
         """One field of every load case, (cases, 1) or (cases, designs)."""

@@ -1,0 +1,109 @@
+"""What a reader should doubt: ranges left, libraries unverified, and the model behind each number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ..design.material import compatible
+from ..models import laminate, seals
+from .evaluation import Metric, ModelUse, Unverified
+from .kernel import Pass, Subject
+from .provenance import model_of
+from .values import Values
+from .wall import kind
+
+
+def kind_of(subject: Subject) -> str:
+    """The wall model a design uses."""
+    return kind(subject.design, subject.materials)
+
+
+def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
+    """(metric, sentence) for everything used outside its range or doubtful."""
+    design, g = subject.design, done.geometry
+    thin = float(np.max(done.wall.thin_ratio))
+    if kind_of(subject) == "thin_laminate" and thin > laminate.THIN_WALL_LIMIT:
+        text = (
+            f"thin-laminate barrel used at t/r = {thin:.3f}, above {laminate.THIN_WALL_LIMIT}: "
+            "bore strain and first ply may be 10 % or more from the exact tube"
+        )
+        for metric in ("bore_growth", "first_ply_factor", "burst_factor"):
+            yield metric, text
+    yield from _seal_warnings(subject, v, done)
+    if done.wall.missing:
+        yield "burst_factor", f"barrel: {done.wall.missing[0]}"
+    for material in subject.materials.values():
+        if material.warning:
+            yield "", f"{material.name}: {material.warning}"
+    if float(np.max(np.abs(v.case("side_load")))) > 0:
+        yield (
+            "",
+            (
+                "side load pushes the piston over: on one side the extrusion gap is the clearance "
+                f"larger, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
+            ),
+        )
+
+
+def _seal_warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
+    design = subject.design
+    pressures = {
+        "piston": done.state.moving_a - done.state.moving_b,
+        "rod": done.state.moving_b,
+    }
+    for name, pressure in pressures.items():
+        section = getattr(design.seals, name)
+        law = seals.LAWS[section.law]
+        modulus = seals.MODULUS_LAWS[section.hardness_model].modulus(
+            hardness=v[f"materials.{section.compound}.hardness"]
+        )
+        ratio = float(np.max(np.abs(pressure))) / modulus
+        low, high = law.squeeze_range
+        if not low <= section.squeeze <= high:
+            yield (
+                "friction_running",
+                f"{name} seal: squeeze {100 * section.squeeze:.3g} % outside the "
+                f"{100 * low:.0f}-{100 * high:.0f} % the {law.name} law was compared with data on",
+            )
+        if ratio > law.pressure_range[1]:
+            yield (
+                "friction_running",
+                f"{name} seal: pressure is {ratio:.1f} times Young's modulus, the {law.name} law "
+                f"was compared with data up to {law.pressure_range[1]:g}",
+            )
+        oil, compound = design.fluid.material, section.compound
+        if compatible(subject.materials[oil], subject.materials[compound]) is False:
+            yield "", f"{name} seal: {compound} does not withstand {oil}"
+
+
+def models(metrics: dict[str, Metric], subject: Subject, outside: set[str]) -> Iterable[ModelUse]:
+    laminated = kind_of(subject) == "thin_laminate"
+    seen: dict[str, ModelUse] = {}
+    for name, metric in metrics.items():
+        model = model_of(name, laminated=laminated)
+        if model is None or metric.value is None:
+            continue
+        used = metric.quantity.text(metric.value)
+        at = f"{name} = {used}" + (f" ({metric.case})" if metric.case else "")
+        if model.name in seen:
+            old = seen[model.name]
+            at = f"{old.used_at}; {at}"
+        seen[model.name] = ModelUse(
+            model.name,
+            model.summary,
+            model.reference,
+            model.valid,
+            at,
+            name not in outside and (model.name not in seen or seen[model.name].in_range),
+        )
+    return seen.values()
+
+
+def unverified(subject: Subject, v: Values) -> Iterable[Unverified]:
+    for name, material in subject.materials.items():
+        for key in material.unverified:
+            if f"materials.{name}.{key}" in v.read or key == "kinematic_viscosity":
+                entry = material.properties[key]
+                yield Unverified(name, key, entry.text, entry.source, entry.note)
