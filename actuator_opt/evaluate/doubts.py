@@ -1,4 +1,4 @@
-"""What a reader should doubt: ranges left, libraries unverified, and the model behind each number."""
+"""What a reader should doubt: ranges left, data unverified, and the model behind each number."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def kind_of(subject: Subject) -> str:
 
 def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
     """(metric, sentence) for everything used outside its range or doubtful."""
-    design, g = subject.design, done.geometry
+    g = done.geometry
     thin = float(np.max(done.wall.thin_ratio))
     if kind_of(subject) == "thin_laminate" and thin > laminate.THIN_WALL_LIMIT:
         text = (
@@ -79,6 +79,7 @@ def _seal_warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[st
 
 
 def models(metrics: dict[str, Metric], subject: Subject, outside: set[str]) -> Iterable[ModelUse]:
+    """Every model behind a computed metric, with the values it gave."""
     laminated = kind_of(subject) == "thin_laminate"
     seen: dict[str, ModelUse] = {}
     for name, metric in metrics.items():
@@ -102,6 +103,7 @@ def models(metrics: dict[str, Metric], subject: Subject, outside: set[str]) -> I
 
 
 def unverified(subject: Subject, v: Values) -> Iterable[Unverified]:
+    """Library values this design uses that nobody checked against their source."""
     for name, material in subject.materials.items():
         for key in material.unverified:
             if f"materials.{name}.{key}" in v.read or key == "kinematic_viscosity":
