@@ -23,16 +23,14 @@ STEP = 1e-30
 def namespace(*values: Array) -> Any:
     """The array-API namespace of the arguments: NumPy unless an array brings its own."""
     for value in values:
-        if not isinstance(value, (float, int, complex, np.ndarray, np.generic)):
+        if not isinstance(value, (np.ndarray, float, int, complex, np.generic)):
             return value.__array_namespace__()
     return np
 
 
 def real(value: Array) -> Array:
     """The real part of a real or complex value."""
-    if isinstance(value, (float, int, complex)):
-        return value.real
-    if isinstance(value, np.ndarray):
+    if isinstance(value, (np.ndarray, float, int, complex)):
         return value.real
     xp = namespace(value)
     return xp.real(value) if xp.isdtype(value.dtype, "complex floating") else value
@@ -40,6 +38,8 @@ def real(value: Array) -> Array:
 
 def where(condition: Array, yes: Array, no: Array) -> Array:
     """Elementwise choice; `condition` must come from real parts."""
+    if type(condition) is np.ndarray:  # the common case, kept short: models call this most
+        return np.where(condition, yes, no)
     if isinstance(condition, (bool, np.bool_)):
         return yes if condition else no
     return namespace(condition, yes, no).where(condition, yes, no)

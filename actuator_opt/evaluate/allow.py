@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..design.material import Material, allowable_factor
+from ..design.material import Material, allowable_factor, ply_constants
 from ..design.model import Design
 from ..numeric import Array
 from .values import Values
@@ -41,10 +41,12 @@ class Stock:
         v: Values,
         materials: Mapping[str, Material],
         factors: Mapping[tuple[str, str], float],
+        constants: dict[str, dict[str, Array]],
     ) -> None:
         self._v = v
         self.materials = materials
         self._factors = factors
+        self._constants = constants
 
     def material(self, name: str) -> Material:
         """What the library knows of `name`."""
@@ -57,6 +59,16 @@ class Stock:
     def numbers(self, name: str) -> dict[str, Array]:
         """Every stated property of a material, SI."""
         return {key: self._v[f"materials.{name}.{key}"] for key in self.materials[name].numbers}
+
+    def ply_constants(self, name: str) -> dict[str, Array]:
+        """Elastic constants and expansions of a material as a ply; remembered while fixed."""
+        prefix = f"materials.{name}."
+        if any(path.startswith(prefix) for path in self._v.varied):
+            return ply_constants(self.numbers(name))
+        if name not in self._constants:
+            self._constants[name] = ply_constants(self.numbers(name))
+        self._v.read.update(prefix + key for key in self.materials[name].numbers)
+        return self._constants[name]
 
     def get(self, name: str, *properties: str, default: Array = None) -> Array:
         """The first stated of some properties; `default` where none is."""

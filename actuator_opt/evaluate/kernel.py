@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -33,6 +33,8 @@ class Subject:
     factors: Mapping[tuple[str, str], float]
     """Knock-downs of every strength, by (material, property)."""
     plugins: tuple[Plugin, ...] = ()
+    constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
+    """Ply constants by material, filled when first needed."""
 
     @property
     def quantities(self) -> Mapping[str, Quantity]:
@@ -70,7 +72,7 @@ def compute(subject: Subject, v: Values) -> Pass:
     design = subject.design
     with np.errstate(all="ignore"):
         out = Computed()
-        stock = Stock(v, subject.materials, subject.factors)
+        stock = Stock(v, subject.materials, subject.factors, subject.constants)
         g = geometry_module.derive(v, design)
         case_state = state.derive(v, design, stock, g)
         barrel = wall.compute(v, design, stock, g, case_state)

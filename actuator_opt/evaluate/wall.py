@@ -12,11 +12,11 @@ from math import pi
 
 import numpy as np
 
-from ..design.material import Material, ply_constants
+from ..design.material import Material
 from ..design.model import Design
 from ..models import barrel, laminate, ply, ply_discount, rod, strength_modes
 from ..models.strength_modes import PlyStrength
-from ..numeric import Array, maximum
+from ..numeric import Array, maximum, minimum
 from .allow import Stock
 from .geometry import Geometry
 from .state import State
@@ -173,12 +173,26 @@ class _Layer:
     strength: PlyStrength | None
     yield_strength: Array | None
 
+    def as_wall(self) -> ply_discount.WallLayer:
+        """The layer as the burst model takes it."""
+        return ply_discount.WallLayer(
+            youngs_modulus_1=self.constants["youngs_modulus_1"],
+            youngs_modulus_2=self.constants["youngs_modulus_2"],
+            poissons_ratio_12=self.constants["poissons_ratio_12"],
+            shear_modulus_12=self.constants["shear_modulus_12"],
+            thickness=self.thickness,
+            angle=self.angle,
+            strength=self.strength,
+            yield_strength=self.yield_strength,
+            material=self.name,
+        )
+
 
 def _layers(v: Values, design: Design, stock: Stock, g: Geometry, wall: list[str]) -> list[_Layer]:
     layers = []
     for i, entry in enumerate(design.barrel.layup):
         name = entry.material
-        constants = ply_constants(stock.numbers(name))
+        constants = stock.ply_constants(name)
         stiffness = ply.ply_stiffness(
             youngs_modulus_1=constants["youngs_modulus_1"],
             youngs_modulus_2=constants["youngs_modulus_2"],
@@ -245,13 +259,12 @@ def _laminate(v: Values, design: Design, stock: Stock, g: Geometry, state: State
     _thermal(v, design, layers, stack, thicknesses, wall)
     middle = (g.inner_radius + g.outer_radius) / 2
     paths = _load_paths(v, design, state, g)
-    _strengths(layers, stack, middle, tuple(paths), np.stack(list(paths.values())), wall)
+    _strengths(layers, middle, tuple(paths), np.stack(list(paths.values())), wall)
     return wall
 
 
 def _strengths(
     layers: list[_Layer],
-    stack: laminate.Membrane,
     middle: Array,
     paths: tuple[str, ...],
     axial: Array,
@@ -266,57 +279,33 @@ def _strengths(
         for path, pressure in zip(paths, pressures, strict=True):
             table[f"{label}{path}"] = pressure
 
-    along, around = laminate.strains(
-        membrane=stack, axial_line_force=axial / (2 * pi * middle), hoop_line_force=middle
+    ladder = ply_discount.burst_by_ply_discount(
+        layers=[layer.as_wall() for layer in layers],
+        radius=middle,
+        axial_force_per_pressure=axial,
     )
-    for layer in layers:
-        stress_1, stress_2, shear = ply.ply_stresses(
-            stiffness=layer.stiffness, angle=layer.angle, axial_strain=along, hoop_strain=around
-        )
-        if layer.yield_strength is not None:
-            mises = barrel.von_mises(hoop=stress_1, radial=0.0, axial=stress_2)
-            put(wall.yield_pressure, f"{layer.label}, ", layer.yield_strength / mises)
+    pressures = strength_modes.load_multiplier(ladder.intact)
+    for (index, mode), pressure in zip(ladder.modes(), pressures, strict=True):
+        layer = layers[index]
+        if mode == "yield":
+            put(wall.yield_pressure, f"{layer.label}, ", pressure)
             wall.yields |= {f"{layer.label}, {path}": layer.name for path in paths}
-        if layer.strength is not None:
-            modes = strength_modes.max_stress_modes(
-                stress_1=stress_1, stress_2=stress_2, shear_12=shear, strength=layer.strength
-            )
-            for mode, inverse in modes.items():
-                put(
-                    wall.first_ply_pressure,
-                    f"{layer.label} {mode}, ",
-                    strength_modes.load_multiplier(inverse),
-                )
+        elif layer.strength is not None:
+            label = f"{layer.label} {mode}, "
+            known = wall.first_ply_pressure.get(label + paths[0])
+            if known is not None:  # shear of either sign
+                earlier = [wall.first_ply_pressure[label + path] for path in paths]
+                pressure = [minimum(a, b) for a, b in zip(earlier, pressure, strict=True)]
+            put(wall.first_ply_pressure, label, pressure)
     if wall.missing:
         return
     if all(layer.isotropic for layer in layers):
         wall.missing.append("burst of a wall of several metals needs the exact tube")
         return
-    ladder = ply_discount.burst_by_ply_discount(
-        layers=[
-            ply_discount.WallLayer(
-                youngs_modulus_1=layer.constants["youngs_modulus_1"],
-                youngs_modulus_2=layer.constants["youngs_modulus_2"],
-                poissons_ratio_12=layer.constants["poissons_ratio_12"],
-                shear_modulus_12=layer.constants["shear_modulus_12"],
-                thickness=layer.thickness,
-                angle=layer.angle,
-                strength=layer.strength,
-                yield_strength=layer.yield_strength,
-                material=layer.name,
-            )
-            for layer in layers
-        ],
-        radius=middle,
-        axial_force_per_pressure=axial,
-    )
     put(wall.burst_pressure, "", ladder.burst_pressure)
     if any(layer.isotropic for layer in layers):
-        put(
-            wall.first_ply_pressure,
-            "first ply with the liner yielding, ",
-            ladder.first_ply_pressure,
-        )
+        label = "first ply with the liner yielding, "
+        put(wall.first_ply_pressure, label, ladder.first_ply_pressure)
 
 
 def _thermal(

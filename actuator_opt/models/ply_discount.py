@@ -82,6 +82,7 @@ class BurstLadder:
     liner_yield_pressure : first yield of a metal layer in the intact wall; infinite without one
     record : per step the code mode * layers + layer, its load, whether the design still climbed
     order : index from the bore of each internal layer
+    intact : 1/p of every mode in the intact wall, rows mode * layers + layer, then metals' yield
     """
 
     first_ply_pressure: Array
@@ -89,6 +90,13 @@ class BurstLadder:
     liner_yield_pressure: Array
     record: tuple[tuple[Array, Array, Array], ...]
     order: tuple[int, ...]
+    intact: Array
+
+    def modes(self) -> list[tuple[int, str]]:
+        """Layer (from the bore) and mode of every row of `intact`."""
+        layers, metals = len(self.order), self.intact.shape[0] - 6 * len(self.order)
+        plies = [(self.order[i % layers], MODES[i // layers]) for i in range(6 * layers)]
+        return plies + [(self.order[i], MODES[_YIELD]) for i in range(metals)]
 
     def steps(self, index: tuple[int, ...] = ()) -> tuple[LadderStep, ...]:
         """List the ladder of one design of the arrays; of a single design without an index."""
@@ -343,7 +351,7 @@ def burst_by_ply_discount(
     infinite = shape + inf
     highest, first, liner_yield = shape, infinite, infinite
     climbing = untouched = real(shape) == 0
-    table, base, held, soft = wall.intact, None, None, None
+    table, base, held, soft, intact = wall.intact, None, None, None, None
     kept = wall.thickness[:metals, ...] * ((1 - residual) * liner_share)
     record = []
     for _ in range(count + 1):
@@ -351,6 +359,8 @@ def burst_by_ply_discount(
         if held is not None:
             base = -_stress(xp, table, held[0, ...], held[1, ...])
         values = _utilisations(xp, metals, table, rate, base)
+        if intact is None:
+            intact = values
         if metals and soft is None:
             liner_yield = load_multiplier(
                 reduce(maximum, [values[i - metals, ...] for i in range(metals)])
@@ -377,4 +387,4 @@ def burst_by_ply_discount(
             break
         soft = fresh if soft is None else soft | fresh
         table = where(soft, wall.softened, wall.intact)
-    return BurstLadder(first, highest, liner_yield, tuple(record), wall.order)
+    return BurstLadder(first, highest, liner_yield, tuple(record), wall.order, intact)

@@ -79,6 +79,8 @@ class Evaluator:
         self.invalid = 0
         self.bad_slopes = 0
         self.complex_works = problem.has_complex_step
+        self.eager = False
+        """Take the gradient with every value: cheaper for solvers that ask for both."""
         self.difference_rows = np.zeros(problem.row_count, dtype=bool)
         self.influence = np.zeros((2, self.space.size))
         self.trace: list[tuple[int, float, float]] = []
@@ -103,13 +105,20 @@ class Evaluator:
             return found
         self.check_limits()
         x = self.space.to_x(z[:, None])
-        rows = self._screen(self.problem.rows(x))
+        slopes = None
+        if self.eager and self.complex_works and not self.difference_rows.any():
+            rows, slopes = self._value_and_slopes(z[:, None])
+        else:
+            rows = self.screen(self.problem.rows(x))
         valid = bool(np.isfinite(rows).all())
         self.evaluations += 1
         self.invalid += not valid
         point = Point(
             z.copy(), x[:, 0], rows[:, 0], valid, float(self.violations(rows, "worst")[0])
         )
+        if slopes is not None and valid:
+            self.gradients += 1
+            self._keep(point, slopes)
         if len(self._cache) >= 256:
             self._cache.clear()
         self._cache[key] = point
@@ -128,10 +137,11 @@ class Evaluator:
 
     def batch(self, z: Vector) -> Vector:
         """Rows (rows, k) of coordinates (nf, k), in one call; NaN where the model is undefined."""
-        return self._screen(self.problem.rows(self.space.to_x(z)))
+        return self.screen(self.problem.rows(self.space.to_x(z)))
 
     @staticmethod
-    def _screen(rows: npt.NDArray[np.generic]) -> Vector:
+    def screen(rows: npt.NDArray[np.generic]) -> Vector:
+        """Rows with infinite margins at their ceiling and everything else infinite as NaN."""
         values = np.array(rows.real, dtype=float)
         margins = values[1:]
         margins[margins == np.inf] = CEILING
@@ -155,16 +165,33 @@ class Evaluator:
     def jacobian(self, point: Point) -> Vector:
         """Gradients (rows, nf) at a point, in solver coordinates; a missing slope counts as 0."""
         if point.jacobian is None:
-            slopes = self.jacobians(point.z[:, None])[:, 0]
-            broken = ~np.isfinite(slopes)
-            if broken.any():
-                self.bad_slopes += 1
-                slopes = np.where(broken, 0.0, slopes)
-            point.jacobian = slopes
-            row = np.abs(point.jacobian)
-            self.influence[0] = np.maximum(self.influence[0], row[0])
-            self.influence[1] = np.maximum(self.influence[1], row.max(axis=0))
+            self._keep(point, self.jacobians(point.z[:, None])[:, 0])
         return point.jacobian
+
+    def _keep(self, point: Point, slopes: Vector) -> None:
+        broken = ~np.isfinite(slopes)
+        if broken.any():
+            self.bad_slopes += 1
+            slopes = np.where(broken, 0.0, slopes)
+        point.jacobian = slopes
+        row = np.abs(slopes)
+        self.influence[0] = np.maximum(self.influence[0], row[0])
+        self.influence[1] = np.maximum(self.influence[1], row.max(axis=0))
+
+    def _value_and_slopes(self, z: Vector) -> tuple[Vector, Vector]:
+        """Rows (rows, 1) and gradients (rows, nf) of one point from one complex evaluation.
+
+        An imaginary part that is not tiny betrays a root or logarithm outside its domain, which
+        complex arithmetic would otherwise hide: such rows become NaN.
+        """
+        x = self.space.to_x(z)
+        batch = np.repeat(x.astype(complex), z.shape[0], axis=1)
+        columns = np.arange(z.shape[0])
+        batch[self.space.free, columns] += 1j * STEP * self.space.slope(x)[:, 0]
+        rows = self.problem.rows(batch)
+        hidden = (np.abs(rows.imag) > 1e-9 * (1.0 + np.abs(rows.real))).any(axis=1)
+        values = self.screen(np.where(hidden, np.nan, rows.real[:, 0])[:, None])
+        return values, np.asarray(rows.imag / STEP, dtype=float)
 
     def jacobians(self, z: Vector, *, inside: bool = True) -> Vector:
         """Gradients (rows, k, nf) at coordinates (nf, k); NaN where a slope does not exist."""
@@ -200,7 +227,7 @@ class Evaluator:
         step = DIFFERENCE_STEP * np.eye(n)[:, None, :]
         both = [(z[:, :, None] + sign * step).reshape(n, count * n) for sign in (1, -1)]
         above, below = (
-            self._screen(self.problem.rows(self.space.to_x(side, inside=False))) for side in both
+            self.screen(self.problem.rows(self.space.to_x(side, inside=False))) for side in both
         )
         slopes = (above - below) / (2 * DIFFERENCE_STEP)
         broken = np.isnan(slopes)
@@ -267,7 +294,7 @@ class Evaluator:
             moves = step * np.eye(n)
             z = point.z[:, None]
             sides = np.concatenate([z + moves, z - moves], axis=1)
-            rows = self._screen(self.problem.rows(self.space.to_x(sides, inside=False)))
+            rows = self.screen(self.problem.rows(self.space.to_x(sides, inside=False)))
             slopes = (rows[:, :n] - rows[:, n:]) / (2 * step)
             known = np.isfinite(slopes) & np.isfinite(exact)
             size = np.abs(np.where(known, slopes, 0.0)).max(axis=1, initial=0.0)

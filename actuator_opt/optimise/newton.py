@@ -28,7 +28,9 @@ RADIUS = 0.5
 
 
 @dataclass(frozen=True)
-class _State:
+class State:
+    """A point on the way, with what the next step needs."""
+
     point: Point
     near: kkt.Active
     multipliers: Vector
@@ -37,7 +39,8 @@ class _State:
     scale: float
 
 
-def _state(evaluator: Evaluator, point: Point) -> _State:
+def state_at(evaluator: Evaluator, point: Point) -> State:
+    """A point with its multipliers and how far it is from optimal."""
     m = evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
     near = kkt.active_set(evaluator, point, width=0.1)
@@ -47,7 +50,7 @@ def _state(evaluator: Evaluator, point: Point) -> _State:
     rest = jacobian[0] - near.gradients.T @ held - equalities.T @ free
     slack = float(held @ np.maximum(near.margins, 0.0))
     measure = (float(np.linalg.norm(rest)) + slack) / scale + point.violation
-    return _State(point, near, held, free, measure, scale)
+    return State(point, near, held, free, measure, scale)
 
 
 def polish(
@@ -59,7 +62,7 @@ def polish(
     """
     if not start.valid or evaluator.space.size == 0:
         return start
-    first = state = _state(evaluator, start)
+    first = state = state_at(evaluator, start)
     visited = [state]
     try:
         for _ in range(iterations):
@@ -79,7 +82,7 @@ def polish(
     return start
 
 
-def _acceptable(evaluator: Evaluator, first: _State, found: _State) -> bool:
+def _acceptable(evaluator: Evaluator, first: State, found: State) -> bool:
     """No less feasible, and no costlier than the start plus the price of what it violated."""
     if found.point.violation > max(FEASIBLE, first.point.violation):
         return False
@@ -92,10 +95,16 @@ def _acceptable(evaluator: Evaluator, first: _State, found: _State) -> bool:
     return found.point.objective <= first.point.objective + 2 * owed + room
 
 
-def _advance(evaluator: Evaluator, state: _State) -> _State | None:
+def _advance(evaluator: Evaluator, state: State) -> State | None:
     """One accepted step, or None where no step helps."""
     point, space = state.point, evaluator.space
-    step, price = _quadratic_step(evaluator, state)
+    step, price = quadratic_step(
+        evaluator,
+        point,
+        state.scale,
+        convex_hessian(evaluator, state),
+        state.equality_multipliers,
+    )
     longest = float(np.abs(step).max(initial=0.0))
     if not np.isfinite(longest) or longest < 1e-16:
         return None
@@ -108,7 +117,7 @@ def _advance(evaluator: Evaluator, state: _State) -> _State | None:
             continue
         better = _merit(evaluator, trial, state.scale, price) < merit - 1e-9 * (1 + abs(merit))
         if better or share == 1.0:
-            following = _state(evaluator, trial)
+            following = state_at(evaluator, trial)
             if better or following.measure < 0.9 * state.measure:
                 return following
     return None
@@ -121,13 +130,21 @@ def _merit(evaluator: Evaluator, point: Point, scale: float, price: float) -> fl
     return point.objective / scale + price * float(missed)
 
 
-def _quadratic_step(evaluator: Evaluator, state: _State) -> tuple[Vector, float]:
-    """Step (nf,) of the quadratic programme, and a price above every scaled multiplier."""
-    point, m = state.point, evaluator.constraint_count
+def quadratic_step(
+    evaluator: Evaluator,
+    point: Point,
+    scale: float,
+    hessian: Vector,
+    equality_multipliers: Vector,
+) -> tuple[Vector, float]:
+    """Step (nf,) of the quadratic programme, and a price above every scaled multiplier.
+
+    `hessian` (nf, nf) is that of the Lagrangian over `scale`, positive definite.
+    """
+    m = evaluator.constraint_count
     rows = kkt.active_set(evaluator, point, width=1.0)
     jacobian = evaluator.jacobian(point)
-    slope, equalities = jacobian[0] / state.scale, jacobian[1 + m :]
-    hessian = _convex_hessian(evaluator, state)
+    slope, equalities = jacobian[0] / scale, jacobian[1 + m :]
     shift = np.zeros_like(slope)
     basis = np.eye(len(slope))
     if len(equalities):
@@ -140,11 +157,11 @@ def _quadratic_step(evaluator: Evaluator, state: _State) -> tuple[Vector, float]
         rows.margins + rows.gradients @ shift,
     )
     held = prices[: len(rows.constraint)]
-    free = np.abs(state.equality_multipliers) / state.scale
+    free = np.abs(equality_multipliers) / scale
     return shift + basis @ inner, 2 * max(held.max(initial=0.0), free.max(initial=0.0)) + 1.0
 
 
-def _convex_hessian(evaluator: Evaluator, state: _State) -> Vector:
+def convex_hessian(evaluator: Evaluator, state: State) -> Vector:
     """Scaled Hessian of the Lagrangian, made positive definite without changing the step.
 
     Adding multiples of the active rows' outer products leaves the solution on those rows as it

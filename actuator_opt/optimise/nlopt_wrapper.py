@@ -183,6 +183,11 @@ def suit(text: str, problem: Problem) -> str:
     return outer.name if inner is None else f"{outer.name}+{inner.name}"
 
 
+ARRIVAL = (0.1, 1e-3, 1e-3)
+"""Largest distance in solver coordinates, relative difference of the objective and violation at
+which a run counts as having arrived at a known optimum: what is left is only its slow finish."""
+
+
 @dataclass(frozen=True)
 class Run:
     """What one call of NLopt led to: the point to go on from, and NLopt's own word for it."""
@@ -190,6 +195,12 @@ class Run:
     point: Point
     code: int
     algorithm: str
+    arrived: int | None = None
+    """Index of the known optimum the run came near, and was stopped at."""
+
+
+class _Arrived(Exception):
+    """The run came near an optimum already known."""
 
 
 class _Guard:
@@ -202,6 +213,8 @@ class _Guard:
         self.width = problem.upper[space.free] - self.low
         self.scale = abs(start.objective) if start.valid and start.objective != 0 else 1.0
         self.worst = 1.0
+        self.known: Sequence[Point] = ()
+        self.arrived: int | None = None
         self.error: BaseException | None = None
         self.best: Point | None = None
         self.last: Point | None = None
@@ -245,7 +258,19 @@ class _Guard:
             best = self.best
             if point.violation <= FEASIBLE and (best is None or point.objective < best.objective):
                 self.best = point
+            self._look_around(point)
         return point
+
+    def _look_around(self, point: Point) -> None:
+        """Stop near a known optimum: going on would only reach it once more."""
+        reach, share, missed = ARRIVAL
+        if point.violation > missed:
+            return
+        for index, known in enumerate(self.known):
+            near = abs(point.objective - known.objective) <= share * abs(known.objective)
+            if near and np.abs(point.z - known.z).max(initial=0.0) <= reach:
+                self.arrived = index
+                self._stop(_Arrived())
 
     def _stop(self, error: BaseException) -> None:
         self.error = error
@@ -300,18 +325,22 @@ def run(
     tolerance: float = 1e-9,
     most: int | None = None,
     seed: int = 0,
+    known: Sequence[Point] = (),
 ) -> Run:
     """Run one algorithm from one point, at most `most` evaluations (default: its own).
 
-    Returns the better of NLopt's point and the best feasible iterate. Exceptions of the model,
+    A run that arrives at one of the `known` optima (see `ARRIVAL`) stops there. Returns the
+    better of NLopt's point and the best feasible iterate. Exceptions of the model,
     interrupts included, surface here as they were raised; a used-up limit ends the run quietly.
     """
     if evaluator.space.size == 0:
         return Run(start, 1, algorithm)
     outer, inner = find(algorithm)
     size, most = evaluator.space.size, most or outer.most_evaluations
+    evaluator.eager = (inner or outer).name.startswith("LD_")
     handle = _handle(outer, size, tolerance, most)
     guard = _Guard(evaluator, start, linear=linear, handle=handle)
+    guard.known = known
     bounds = (
         (np.zeros(size), np.ones(size))
         if linear
@@ -336,9 +365,9 @@ def run(
     except (RuntimeError, ValueError, SystemError, MemoryError):  # NLopt's own complaints
         found = None
     code = int(handle.last_optimize_result())
-    if guard.error is not None and not isinstance(guard.error, LimitReached):
+    if guard.error is not None and not isinstance(guard.error, (LimitReached, _Arrived)):
         raise guard.error
-    return Run(_pick(evaluator, guard, found, start), code, algorithm)
+    return Run(_pick(evaluator, guard, found, start), code, algorithm, guard.arrived)
 
 
 def _handle(algorithm: Algorithm, size: int, tolerance: float, most: int) -> Any:

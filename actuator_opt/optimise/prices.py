@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import elastic, kkt, movement, nlopt_wrapper
+from . import elastic, kkt, lockstep, movement, nlopt_wrapper
 from .evaluator import Evaluator, Point
 from .newton import polish
 from .outcome import Solution
@@ -161,20 +161,54 @@ def _resolved_ends(
     change: float,
 ) -> list[tuple[float | None, float | None]]:
     """Re-optimised objectives at +change and -change of every parameter."""
-    result: list[tuple[float | None, float | None]] = []
-    for k, (name, value) in enumerate(zip(given.names, given.values.tolist(), strict=True)):
-        ends: list[float | None] = []
-        for step in (change * value, -change * value):
-            if change == 0:
-                ends.append(None)
-            elif not given.matters(k) or step == 0:
-                ends.append(point.objective)
-            else:
-                problem = perturbed(parametric, name, k, value + step)
-                guess = point.z + moves[:, k] * step
-                ends.append(None if problem is None else resolved(problem, evaluator, guess, point))
-        result.append((ends[0], ends[1]))
-    return result
+    values = given.values.tolist()
+    ends = {
+        (k, sign): None if change == 0 else point.objective
+        for k in range(len(values))
+        for sign in (1, -1)
+    }
+    wanted = [
+        (k, sign)
+        for k, sign in ends
+        if change != 0 and given.matters(k) and values[k] != 0
+    ]
+    known = _together(parametric, evaluator, point, values, moves, change, wanted)
+    for (k, sign), objective in zip(wanted, known, strict=True):
+        step = sign * change * values[k]
+        if objective is None:
+            problem = perturbed(parametric, given.names[k], k, values[k] + step)
+            guess = point.z + moves[:, k] * step
+            objective = None if problem is None else resolved(problem, evaluator, guess, point)
+        ends[k, sign] = objective
+    return [(ends[k, 1], ends[k, -1]) for k in range(len(values))]
+
+
+def _together(
+    parametric: ParametricProblem,
+    evaluator: Evaluator,
+    point: Point,
+    values: list[float],
+    moves: Vector,
+    change: float,
+    wanted: list[tuple[int, int]],
+) -> list[float | None]:
+    """What re-solving all at once gives; None where it does not apply or does not converge."""
+    count = len(parametric.parameters)
+    known: list[float | None] = [None] * len(wanted)
+    chosen = [i for i, (k, _) in enumerate(wanted) if k < count]
+    if not chosen or not lockstep.applicable(parametric, evaluator):
+        return known
+    parameters = np.repeat(parametric.parameters[:, None], len(chosen), axis=1)
+    starts = np.repeat(point.z[:, None], len(chosen), axis=1)
+    for column, i in enumerate(chosen):
+        k, sign = wanted[i]
+        step = sign * change * values[k]
+        parameters[k, column] += step
+        starts[:, column] += moves[:, k] * step
+    found = lockstep.resolve_together(parametric, evaluator, point, starts, parameters)
+    for i, objective in zip(chosen, found, strict=True):
+        known[i] = objective
+    return known
 
 
 def resolved(problem: Problem, evaluator: Evaluator, guess: Vector, point: Point) -> float | None:

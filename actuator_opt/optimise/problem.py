@@ -148,8 +148,11 @@ class ParametricProblem:
 
     def at(self, parameters: Array) -> Problem:
         """Return the problem at other parameter values (q,)."""
-        column = np.asarray(parameters)[:, None]
-        return replace(self.problem, evaluate=lambda x: self.evaluate(x, column))
+        return self.with_columns(np.asarray(parameters)[:, None])
+
+    def with_columns(self, parameters: Array) -> Problem:
+        """The problem with parameter values (q, k) of their own for each of k points."""
+        return replace(self.problem, evaluate=lambda x: self.evaluate(x, parameters))
 
 
 @dataclass(frozen=True)

@@ -115,13 +115,16 @@ def _kkt(solution: Solution) -> Kkt | None:
 
 def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensitivity, ...]:
     """Price every limit that could bind and the parameters that matter most."""
-    limits = list(
-        dict.fromkeys(row.limit_of.path for row in actuator.rows if row.limit_of.path is not None)
+    active = _active_limits(actuator, solution)
+    limits = dict.fromkeys(
+        row.limit_of.path
+        for row in actuator.rows
+        if row.limit_of.path is not None
+        and (row.limit_of.origin in ("requirement", "case") or row.limit_of.path in active)
     )
     chosen = (*limits, *_strongest(actuator, solution, set(limits)))
     chosen = tuple(path for path in chosen if actuator.subject.numbers.get(path))
     found = pricing.prices(actuator.parametric(chosen), solution, bounds=False)
-    active = _active_limits(actuator, solution)
     shown = actuator.goal.shown
     rows = []
     for price in found:

@@ -84,11 +84,20 @@ class _Search:
     ) -> bool:
         """One local run with its finish; True where it ended on an optimum."""
         before = self.evaluator.evaluations
+        good = [o for o in self.optima if o.good]
         run = nlopt_wrapper.run(
-            self.evaluator, start, algorithm, linear=linear, most=most, seed=self.seed
+            self.evaluator,
+            start,
+            algorithm,
+            linear=linear,
+            most=most,
+            seed=self.seed,
+            known=[o.point for o in good],
         )
         point, name = run.point, run.algorithm + (" (linear variables)" if linear else "")
         found = self.same(point) if point.valid and point.violation <= FEASIBLE else None
+        if run.arrived is not None:
+            found = good[run.arrived]
         if found is not None:
             found.hits += 1
             point = found.point
@@ -131,7 +140,7 @@ def solve(
     *,
     algorithm: str = "auto",
     starts: int = 6,
-    samples: int = 16384,
+    samples: int = 8192,
     seed: int = 0,
     max_evaluations: int | None = None,
     max_seconds: float | None = None,
