@@ -24,8 +24,11 @@ RENEWALS = (4, 7, 10, 13)
 SETTLED = 1e-3
 """Length of the last step below which the optimality conditions are worth checking."""
 
-FEASIBLE = 1e-6
+FEASIBLE = 1e-11
+"""Violation left: the objective is first order in it."""
+
 RESIDUAL = 1e-6
+"""Residual of the optimality conditions left: the objective is second order in it."""
 
 
 def applicable(parametric: ParametricProblem, evaluator: Evaluator) -> bool:
@@ -76,6 +79,7 @@ def resolve_together(
                 own = Evaluator(parametric.at(parameters[:, k]))
                 there = newton.state_at(own, trial)
                 hessians[k] = newton.convex_hessian(own, there) * (there.scale / state.scale)
+                last[k] = np.inf
             step, _ = newton.quadratic_step(
                 evaluator, trial, state.scale, hessians[k], state.equality_multipliers
             )
