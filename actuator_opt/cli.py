@@ -101,9 +101,20 @@ def _status(evaluation: Evaluation) -> None:
 
 
 def _command() -> str:
+    """The command line without what does not change the result: same input, same bytes."""
     import shlex
 
-    return shlex.join(["actuator-opt", *sys.argv[1:]])
+    words, kept, skip = sys.argv[1:], [], False
+    for word in words:
+        if skip:
+            skip = False
+        elif word in ("--out", "--write"):
+            skip = True
+        elif word not in ("--json", "--report", "--quiet", "-q") and not word.startswith(
+            ("--out=", "--write=")
+        ):
+            kept.append(word)
+    return shlex.join(["actuator-opt", *kept])
 
 
 def _write_report(

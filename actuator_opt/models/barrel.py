@@ -1,8 +1,7 @@
 """Isotropic barrel: bore growth, wall stress, burst, chamber compliance.
 
-Lamé's thick cylinder under internal gauge pressure with any axial force, and the forms printed in
-the source under `*_as_published`. The axial load path and the growth beside a pressure step live
-in `barrel_ends` and are offered here too.
+Lamé's thick cylinder under internal gauge pressure with any axial force; the published growth under
+`*_as_published`. The axial load path and the growth beside a pressure step live in `barrel_ends`.
 """
 
 from __future__ import annotations
@@ -12,34 +11,8 @@ from math import pi
 import numpy as np
 
 from ..numeric import Array, namespace, positive, real, sqrt
-from .barrel_ends import (
-    axial_force_cap_mounted,
-    axial_force_head_mounted,
-    decay_length,
-    pressure_shortening,
-    pressure_step_factor,
-    shell_decay_length,
-    tie_rod_forces,
-)
-
-__all__ = [
-    "axial_force_cap_mounted",
-    "axial_force_head_mounted",
-    "barrel_stiffness",
-    "barrel_stiffness_as_published",
-    "bore_growth",
-    "bore_growth_as_published",
-    "bore_stresses",
-    "burst_pressure_thick",
-    "chamber_compliance",
-    "decay_length",
-    "pressure_shortening",
-    "pressure_step_factor",
-    "shell_decay_length",
-    "tie_rod_forces",
-    "von_mises",
-    "wall_ratio_for_strain",
-]
+from .barrel_ends import axial_force_cap_mounted as axial_force_cap_mounted
+from .barrel_ends import axial_force_head_mounted as axial_force_head_mounted
 
 
 def bore_growth(
@@ -309,43 +282,6 @@ def barrel_stiffness(*, area: Array, compliance: Array) -> Array:
     32.78 kN/mm
     """
     return area * area / compliance
-
-
-def barrel_stiffness_as_published(
-    *, pressure: Array, bore: Array, growth: Array, stroke: Array
-) -> Array:
-    """Barrel stiffness as the source prints it; it is no stiffness, it grows with pressure.
-
-    k = p A/L_p, A = pi (D + 2 u)^2/4.
-
-    Parameters
-    ----------
-    pressure : pressure difference [Pa]
-    bore : bore diameter at zero pressure [m]
-    growth : radial bore growth [m]
-    stroke : piston stroke [m]
-
-    Returns
-    -------
-    stiffness as published [N/m]
-
-    Notes
-    -----
-    Valid: to reproduce the source only. Eq. 11 as extracted lost its /4; the area of a circle is
-    meant and used here.
-
-    References
-    ----------
-    [ElAsswad2018] eq. 10 and 11
-
-    Examples
-    --------
-    >>> k = barrel_stiffness_as_published(pressure=1e6, bore=25e-3, growth=0.0, stroke=0.11)
-    >>> print(f"{k / 1e3:.2f} N/mm")
-    4.46 N/mm
-    """
-    diameter = bore + 2 * growth
-    return pressure * pi * diameter * diameter / (4 * stroke)
 
 
 def wall_ratio_for_strain(

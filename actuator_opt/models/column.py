@@ -1,7 +1,7 @@
-"""Buckling: Euler, Johnson, shear correction, local shell, and the stepped column rod + barrel.
+"""Buckling of uniform columns: Euler, Johnson, shear correction, local shell.
 
 The stepped column lives in `stepped` (two segments, elementwise) and `stepped_segments` (any
-number of segments, scalar); both are offered here too.
+number of segments, scalar).
 """
 
 from __future__ import annotations
@@ -9,21 +9,6 @@ from __future__ import annotations
 from math import pi
 
 from ..numeric import Array, namespace, real, sqrt, where
-from .stepped import End, Ends, stepped_column_load
-from .stepped_segments import stepped_column_load_segments
-
-__all__ = [
-    "End",
-    "Ends",
-    "cowper_tube",
-    "engesser_load",
-    "euler_load",
-    "johnson_load",
-    "local_shell_knockdown",
-    "local_shell_stress",
-    "stepped_column_load",
-    "stepped_column_load_segments",
-]
 
 
 def euler_load(*, bending_stiffness: Array, effective_length: Array) -> Array:

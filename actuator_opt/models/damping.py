@@ -18,23 +18,25 @@ def pipe_flow(*, dynamic_viscosity: Array, length: Array) -> Array:
 
     Parameters
     ----------
-    dynamic_viscosity : Pa s
-    length : stroke, m
+    dynamic_viscosity : [Pa s]
+    length : stroke [m]
 
     Returns
     -------
-    N s/m
+    VDC [N s/m]
 
+    Notes
+    -----
     Valid: developed laminar flow at the piston speed.
+
+    References
+    ----------
+    [ElAsswad2018] eq. 2, 3, 4, 5, 6
 
     Examples
     --------
     >>> print(f"{pipe_flow(dynamic_viscosity=0.04, length=0.2):.6f}")
     0.201062
-
-    References
-    ----------
-    [ElAsswad2018] eq. 2, 3, 4, 5, 6
     """
     return (8 * math.pi) * dynamic_viscosity * length
 
@@ -46,15 +48,21 @@ def annular_couette(
 
     Parameters
     ----------
-    dynamic_viscosity : Pa s
-    length : m
-    inner_radius, outer_radius : m
+    dynamic_viscosity : [Pa s]
+    length : [m]
+    inner_radius, outer_radius : [m]
 
     Returns
     -------
-    N s/m; NaN where r_o <= r_i
+    VDC [N s/m]; NaN where r_o <= r_i
 
+    Notes
+    -----
     Valid: no axial pressure gradient.
+
+    References
+    ----------
+    [derived] axial Couette flow between cylinders
 
     Examples
     --------
@@ -62,10 +70,6 @@ def annular_couette(
     ...                     outer_radius=20e-3)
     >>> print(f"{c:.7f}")
     0.0629493
-
-    References
-    ----------
-    [derived] axial Couette flow between cylinders
     """
     valid = (real(outer_radius) > real(inner_radius)) & (real(inner_radius) > 0)
     ratio = where(valid, outer_radius, math.e) / where(valid, inner_radius, 1.0)
@@ -78,25 +82,27 @@ def flat_gap(*, dynamic_viscosity: Array, diameter: Array, length: Array, gap: A
 
     Parameters
     ----------
-    dynamic_viscosity : Pa s
-    diameter : of the rod or piston, m
-    length : m
-    gap : film or radial clearance h, m
+    dynamic_viscosity : [Pa s]
+    diameter : of the rod or piston [m]
+    length : [m]
+    gap : film or radial clearance h [m]
 
     Returns
     -------
-    N s/m
+    VDC [N s/m]
 
+    Notes
+    -----
     Valid: gap much smaller than the diameter.
+
+    References
+    ----------
+    [Huang2017] eq. 24 per speed
 
     Examples
     --------
     >>> print(f"{flat_gap(dynamic_viscosity=0.04, diameter=18e-3, length=0.02, gap=30e-6):.4f}")
     1.5080
-
-    References
-    ----------
-    [Huang2017] eq. 24 per speed
     """
     return math.pi * dynamic_viscosity * diameter * length / gap
 
@@ -111,26 +117,28 @@ def piston_gap_damper(
 
     Parameters
     ----------
-    dynamic_viscosity : Pa s
-    length : of the gap, m
-    radius : of the piston, m
-    gap : radial clearance h, m
+    dynamic_viscosity : [Pa s]
+    length : of the gap [m]
+    radius : of the piston [m]
+    gap : radial clearance h [m]
 
     Returns
     -------
-    N s/m
+    VDC [N s/m]
 
+    Notes
+    -----
     Valid: concentric piston without seals, equal areas, gap much smaller than the radius.
+
+    References
+    ----------
+    [derived] plane Poiseuille and Couette flow in the unrolled gap
 
     Examples
     --------
     >>> c = piston_gap_damper(dynamic_viscosity=0.04, length=0.02, radius=0.02, gap=30e-6)
     >>> print(f"{c:.5e}")
     4.48146e+06
-
-    References
-    ----------
-    [derived] plane Poiseuille and Couette flow in the unrolled gap
     """
     base = (2 * math.pi) * dynamic_viscosity * length * radius / gap
     squeeze = (radius + gap) / gap
@@ -150,18 +158,24 @@ def gap_leakage(
 
     Parameters
     ----------
-    diameter : m
-    gap : mean radial clearance h, m
-    dynamic_viscosity : Pa s
-    length : m
-    pressure_difference : Pa
-    eccentricity : offset over h, 0 to 1
+    diameter : [m]
+    gap : mean radial clearance h [m]
+    dynamic_viscosity : [Pa s]
+    length : [m]
+    pressure_difference : [Pa]
+    eccentricity : offset over h [-], 0 to 1
 
     Returns
     -------
-    m^3/s
+    flow [m^3/s]
 
+    Notes
+    -----
     Valid: laminar, gap much smaller than the diameter.
+
+    References
+    ----------
+    [Merritt1967] annular leakage with eccentricity
 
     Examples
     --------
@@ -169,10 +183,6 @@ def gap_leakage(
     ...                 pressure_difference=5e6)
     >>> print(f"{q:.5e}")
     1.76715e-06
-
-    References
-    ----------
-    [Merritt1967] annular leakage with eccentricity
     """
     concentric = (math.pi / 12) * diameter * gap * gap * gap / (dynamic_viscosity * length)
     return concentric * pressure_difference * (1 + 1.5 * eccentricity * eccentricity)
@@ -183,23 +193,25 @@ def secant(*, friction: Array, speed: Array) -> Array:
 
     Parameters
     ----------
-    friction : total friction at the speed, with its sign, N
-    speed : m/s
+    friction : total friction at the speed, with its sign [N]
+    speed : [m/s]
 
     Returns
     -------
-    N s/m; NaN at speed 0, where it has no value
+    VDC [N s/m]; NaN at speed 0, where it has no value
 
+    Notes
+    -----
     Valid: steady sliding. Not the damping of a vibration (that is dF/dv).
+
+    References
+    ----------
+    [Huang2017] eq. 31
 
     Examples
     --------
     >>> secant(friction=550.0, speed=0.05)
     11000.0
-
-    References
-    ----------
-    [Huang2017] eq. 31
     """
     moving = real(speed) != 0
     return where(moving, friction / where(moving, speed, 1.0), math.nan)
@@ -212,24 +224,26 @@ def power_law(*, speed: Array, coefficient: Array, exponent: Array) -> Array:
 
     Parameters
     ----------
-    speed : > 0, m/s
-    coefficient : a, N s/m at 1 m/s
-    exponent : b, -
+    speed : > 0 [m/s]
+    coefficient : a, its value at 1 m/s [N s/m]
+    exponent : b [-]
 
     Returns
     -------
-    N s/m; NaN at speed <= 0
+    VDC [N s/m]; NaN at speed <= 0
 
+    Notes
+    -----
     Valid: the speeds of the fit.
+
+    References
+    ----------
+    [Huang2017] section 2, test B
 
     Examples
     --------
     >>> print(f"{power_law(speed=0.01, coefficient=1000.0, exponent=-1.0):.0f}")
     100000
-
-    References
-    ----------
-    [Huang2017] section 2, test B
     """
     valid = real(speed) > 0
     return where(valid, coefficient * where(valid, speed, 1.0) ** exponent, math.nan)
@@ -247,15 +261,21 @@ def double_exponential(
 
     Parameters
     ----------
-    speed : m/s
-    coefficient_1, coefficient_2 : a1, a2, N s/m
-    rate_1, rate_2 : b1, b2, s/m
+    speed : [m/s]
+    coefficient_1, coefficient_2 : a1, a2 [N s/m]
+    rate_1, rate_2 : b1, b2 [s/m]
 
     Returns
     -------
-    N s/m
+    VDC [N s/m]
 
+    Notes
+    -----
     Valid: the speeds of the fit.
+
+    References
+    ----------
+    [Huang2017] section 2, test B
 
     Examples
     --------
@@ -263,10 +283,6 @@ def double_exponential(
     ...                        rate_2=-20.0)
     >>> print(f"{b:.0f}")
     250000
-
-    References
-    ----------
-    [Huang2017] section 2, test B
     """
     xp = namespace(speed, rate_1, rate_2)
     first = coefficient_1 * xp.exp(rate_1 * speed)

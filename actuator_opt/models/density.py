@@ -1,11 +1,11 @@
 """Density of the oil over temperature and pressure, and the pressure of trapped warming oil.
 
-Pressures are gauge, temperatures in kelvin. `fluid` re-exports these functions.
+Pressures are gauge, temperatures in kelvin. The Tait equation lives in `tait`.
 """
 
 from __future__ import annotations
 
-from ..numeric import Array, namespace
+from ..numeric import Array
 
 
 def density_dowson_higginson(
@@ -19,25 +19,27 @@ def density_dowson_higginson(
 
     Parameters
     ----------
-    reference_density : at zero gauge pressure, kg/m^3
-    pressure : gauge, Pa
-    coefficient_a, coefficient_b : 1/Pa; the defaults are the usual mineral-oil constants
-        (the source paper prints none: unverified)
+    reference_density : at zero gauge pressure [kg/m^3]
+    pressure : gauge [Pa]
+    coefficient_a, coefficient_b : [1/Pa]; the defaults are the usual mineral-oil constants (the
+        source paper prints none: unverified)
 
     Returns
     -------
-    kg/m^3
+    density [kg/m^3]
 
+    Notes
+    -----
     Valid: 0 to 1 GPa, mineral oils.
+
+    References
+    ----------
+    [Huang2017] eq. 3, [DowsonHigginson1966]
 
     Examples
     --------
     >>> print(f"{density_dowson_higginson(reference_density=870.0, pressure=20e6):.2f}")
     880.10
-
-    References
-    ----------
-    [Huang2017] eq. 3, [DowsonHigginson1966]
     """
     return reference_density * (1 + coefficient_a * pressure / (1 + coefficient_b * pressure))
 
@@ -53,73 +55,29 @@ def density_thermal(
 
     Parameters
     ----------
-    reference_density : at `reference_temperature`, kg/m^3
-    volume_expansion : volumetric expansion coefficient, 1/K
-    temperature, reference_temperature : K; oil data sheets state 15 degC
+    reference_density : at `reference_temperature` [kg/m^3]
+    volume_expansion : volumetric expansion coefficient [1/K]
+    temperature, reference_temperature : [K]; oil data sheets state 15 degC
 
     Returns
     -------
-    kg/m^3
+    density [kg/m^3]
 
+    Notes
+    -----
     Valid: within about 150 K of the reference temperature.
+
+    References
+    ----------
+    [derived] definition of alpha_V, taken on the reference volume
 
     Examples
     --------
     >>> round(density_thermal(reference_density=870.0, volume_expansion=7e-4,
     ...                       temperature=313.15), 2)
     855.04
-
-    References
-    ----------
-    [derived] definition of alpha_V, taken on the reference volume
     """
     return reference_density / (1 + volume_expansion * (temperature - reference_temperature))
-
-
-def density_tait(
-    *,
-    temperature: Array,
-    pressure: Array,
-    reference_density: Array = 870.0,
-    volume_expansion: Array = 7.7e-4,
-    reference_temperature: Array = 273.15,
-    zero_modulus: Array = 8.4e9,
-    temperature_coefficient: Array = 0.0058,
-    pressure_coefficient: Array = 11.9,
-) -> Array:
-    """Density of a mineral oil by the Tait equation.
-
-    V/V0 = [1 + alpha_V (T - T0)] [1 - ln(1 + B p/K0)/B], K0 = zero_modulus exp(-c T);
-    rho = rho0/(V/V0).
-
-    Parameters
-    ----------
-    temperature, reference_temperature : K
-    pressure : gauge, Pa
-    reference_density : at T0 and zero gauge pressure, kg/m^3
-    volume_expansion : 1/K
-    zero_modulus : Pa; temperature_coefficient : 1/K; pressure_coefficient : B = 1 + K0', -
-
-    Returns
-    -------
-    kg/m^3
-
-    Valid: 0 to 150 degC, up to 350 bar for the default constants.
-
-    Examples
-    --------
-    >>> print(f"{density_tait(temperature=313.15, pressure=200e5):.1f}")
-    855.6
-
-    References
-    ----------
-    [Dymond1988] Tait equation; constants of a generic mineral oil [OpenHydraulics]
-    """
-    xp = namespace(temperature, pressure, zero_modulus)
-    modulus = zero_modulus * xp.exp(-temperature_coefficient * temperature)
-    shrink = xp.log1p(pressure_coefficient * pressure / modulus) / pressure_coefficient
-    expand = 1 + volume_expansion * (temperature - reference_temperature)
-    return reference_density / (expand * (1 - shrink))
 
 
 def thermal_pressure_slope(
@@ -136,16 +94,22 @@ def thermal_pressure_slope(
 
     Parameters
     ----------
-    volume_expansion : of the oil, 1/K
-    wall_expansion_axial, wall_expansion_hoop : linear expansions of the wall, 1/K
-    bulk_modulus : tangent value with air, Pa
-    wall_compliance_per_volume : (dV/dp)/V of the wall, 1/Pa
+    volume_expansion : of the oil [1/K]
+    wall_expansion_axial, wall_expansion_hoop : linear expansions of the wall [1/K]
+    bulk_modulus : tangent value with air [Pa]
+    wall_compliance_per_volume : (dV/dp)/V of the wall [1/Pa]
 
     Returns
     -------
-    Pa/K
+    pressure rise [Pa/K]
 
+    Notes
+    -----
     Valid: no leakage, no relief valve, chamber full.
+
+    References
+    ----------
+    [derived] oil volume = chamber volume, both functions of p and T
 
     Examples
     --------
@@ -153,10 +117,6 @@ def thermal_pressure_slope(
     ...     wall_expansion_hoop=12e-6, bulk_modulus=1.4e9, wall_compliance_per_volume=1.3627e-10)
     >>> print(f"{slope / 1e5:.2f} bar/K")
     7.81 bar/K
-
-    References
-    ----------
-    [derived] oil volume = chamber volume, both functions of p and T
     """
     wall = wall_expansion_axial + 2 * wall_expansion_hoop
     return (volume_expansion - wall) / (1 / bulk_modulus + wall_compliance_per_volume)

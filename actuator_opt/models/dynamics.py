@@ -13,23 +13,25 @@ def natural_frequency(*, stiffness: Array, mass: Array) -> Array:
 
     Parameters
     ----------
-    stiffness : axial stiffness with rod and mounting, N/m
-    mass : load, rod and piston, reflected to the rod, kg
+    stiffness : axial stiffness with rod and mounting [N/m]
+    mass : load, rod and piston, reflected to the rod [kg]
 
     Returns
     -------
-    Hz; NaN at mass <= 0 or stiffness < 0.
+    frequency [Hz]; NaN at mass <= 0 or stiffness < 0
 
+    Notes
+    -----
     Valid: one degree of freedom, ports closed.
+
+    References
+    ----------
+    [Merritt1967] hydraulic natural frequency
 
     Examples
     --------
     >>> print(f"{natural_frequency(stiffness=20.6583e6, mass=30.0):.3f}")
     132.071
-
-    References
-    ----------
-    [Merritt1967] hydraulic natural frequency
     """
     valid = (real(mass) > 0) & (real(stiffness) >= 0)
     square = where(valid, stiffness, 1.0) / where(valid, mass, 1.0)
@@ -41,26 +43,28 @@ def friction_damping_ratio(*, incremental_damping: Array, stiffness: Array, mass
 
     Parameters
     ----------
-    incremental_damping : dF_fr/dv at the stated speed, N s/m; negative on the falling Stribeck
+    incremental_damping : dF_fr/dv at the stated speed [N s/m]; negative on the falling Stribeck
         branch (stick-slip). Never the secant F/v.
-    stiffness : N/m
-    mass : kg
+    stiffness : [N/m]
+    mass : [kg]
 
     Returns
     -------
-    -; NaN where k m <= 0.
+    damping ratio [-]; NaN where k m <= 0
 
+    Notes
+    -----
     Valid: small vibration about a steady sliding speed.
+
+    References
+    ----------
+    [derived] linear oscillator
 
     Examples
     --------
     >>> zeta = friction_damping_ratio(incremental_damping=400.0, stiffness=20.6583e6, mass=30.0)
     >>> print(f"{zeta:.6f}")
     0.008034
-
-    References
-    ----------
-    [derived] linear oscillator
     """
     product = stiffness * mass
     valid = real(product) > 0
@@ -85,17 +89,23 @@ def conductance_damping_ratio(
 
     Parameters
     ----------
-    stiffness : N/m, of omega; k_h unless rod and mounting matter
-    mass : kg
-    area_a, area_b : m^2
-    compliance_a, compliance_b : m^3/Pa
-    conductance_a, conductance_b : G = dq/dp out of each chamber, m^3/s/Pa
+    stiffness : [N/m], of omega; k_h unless rod and mounting matter
+    mass : [kg]
+    area_a, area_b : [m^2]
+    compliance_a, compliance_b : [m^3/Pa]
+    conductance_a, conductance_b : G = dq/dp out of each chamber [m^3/s/Pa]
 
     Returns
     -------
-    -; NaN where k m <= 0.
+    damping ratio [-]; NaN where k m <= 0
 
+    Notes
+    -----
     Valid: G/(omega C) much smaller than one.
+
+    References
+    ----------
+    [derived] first-order perturbation of m s^2 + sum A_i^2 s/(C_i s + G_i) = 0
 
     Examples
     --------
@@ -103,10 +113,6 @@ def conductance_damping_ratio(
     ...     compliance_a=5e-14, compliance_b=5e-14, conductance_a=1e-12, conductance_b=1e-12)
     >>> print(f"{zeta:.4f}")
     0.0100
-
-    References
-    ----------
-    [derived] first-order perturbation of m s^2 + sum A_i^2 s/(C_i s + G_i) = 0
     """
     valid = (real(stiffness) > 0) & (real(mass) > 0)
     square = where(valid, stiffness, 1.0) / where(valid, mass, 1.0)
@@ -135,18 +141,25 @@ def damping_ratio(
 
     Parameters
     ----------
-    incremental_damping : dF_fr/dv at the stated speed, N s/m (never the secant F/v)
-    stiffness : N/m
-    mass : kg
-    area_a, area_b : m^2
-    compliance_a, compliance_b : m^3/Pa
-    conductance_a, conductance_b : leakage and valve dq/dp, m^3/s/Pa
+    incremental_damping : dF_fr/dv at the stated speed [N s/m] (never the secant F/v)
+    stiffness : [N/m]
+    mass : [kg]
+    area_a, area_b : [m^2]
+    compliance_a, compliance_b : [m^3/Pa]
+    conductance_a, conductance_b : leakage and valve dq/dp [m^3/s/Pa]
 
     Returns
     -------
-    -; NaN where k or m <= 0; negative where falling friction out-weighs the leakage (stick-slip).
+    damping ratio [-]; NaN where k or m <= 0; negative where falling friction outweighs the leakage
+    (stick-slip)
 
+    Notes
+    -----
     Valid: lightly damped, one degree of freedom.
+
+    References
+    ----------
+    [derived] sum of `friction_damping_ratio` and `conductance_damping_ratio`
 
     Examples
     --------
@@ -154,10 +167,6 @@ def damping_ratio(
     ...     compliance_a=5e-14, area_b=5e-4, compliance_b=5e-14)
     >>> print(f"{zeta:.4f}")
     0.0200
-
-    References
-    ----------
-    [derived] sum of `friction_damping_ratio` and `conductance_damping_ratio`
     """
     valid = (real(stiffness) > 0) & (real(mass) > 0)
     square = where(valid, stiffness, 1.0) / where(valid, mass, 1.0)
@@ -195,18 +204,24 @@ def dynamic_stiffness(
 
     Parameters
     ----------
-    frequency : Hz, > 0
-    mass : kg
-    damping : incremental, N s/m
-    area_a, area_b : m^2
-    compliance_a, compliance_b : m^3/Pa
-    admittance_a, admittance_b : real line-end admittance Y, m^3/s/Pa (0 closed)
+    frequency : [Hz], > 0
+    mass : [kg]
+    damping : incremental [N s/m]
+    area_a, area_b : [m^2]
+    compliance_a, compliance_b : [m^3/Pa]
+    admittance_a, admittance_b : real line-end admittance Y [m^3/s/Pa] (0 closed)
 
     Returns
     -------
-    storage, loss : N/m
+    storage and loss stiffness [N/m]
 
+    Notes
+    -----
     Valid: lumped chambers; resistive line ends.
+
+    References
+    ----------
+    [derived] force balance and continuity at omega
 
     Examples
     --------
@@ -214,10 +229,6 @@ def dynamic_stiffness(
     ...     compliance_a=5e-14, area_b=5e-4, compliance_b=5e-14)
     >>> print(f"{k.storage:.0f} {k.loss:.0f}")
     10000000 6283
-
-    References
-    ----------
-    [derived] force balance and continuity at omega
     """
     omega = (2 * math.pi) * frequency
     leak_a, leak_b = admittance_a / omega, admittance_b / omega

@@ -15,23 +15,25 @@ def resistance(*, inner_diameter: Array, length: Array, dynamic_viscosity: Array
 
     Parameters
     ----------
-    inner_diameter, length : m
-    dynamic_viscosity : Pa s
+    inner_diameter, length : [m]
+    dynamic_viscosity : [Pa s]
 
     Returns
     -------
-    Pa s/m^3
+    resistance [Pa s/m^3]
 
+    Notes
+    -----
     Valid: Re below 2300.
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
 
     Examples
     --------
     >>> print(f"{resistance(inner_diameter=8e-3, length=1.2, dynamic_viscosity=0.04):.5e}")
     4.77465e+08
-
-    References
-    ----------
-    [AaltoThesis] section 2.1.3
     """
     square = inner_diameter * inner_diameter
     return (128 / math.pi) * dynamic_viscosity * length / (square * square)
@@ -42,23 +44,25 @@ def inertance(*, inner_diameter: Array, length: Array, density: Array) -> Array:
 
     Parameters
     ----------
-    inner_diameter, length : m
-    density : kg/m^3
+    inner_diameter, length : [m]
+    density : [kg/m^3]
 
     Returns
     -------
-    kg/m^4
+    inertance [kg/m^4]
 
+    Notes
+    -----
     Valid: uniform velocity over the section.
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
 
     Examples
     --------
     >>> print(f"{inertance(inner_diameter=8e-3, length=1.2, density=865.0):.5e}")
     2.06504e+07
-
-    References
-    ----------
-    [AaltoThesis] section 2.1.3
     """
     return (4 / math.pi) * density * length / (inner_diameter * inner_diameter)
 
@@ -68,23 +72,25 @@ def capacitance(*, volume: Array, bulk_modulus: Array) -> Array:
 
     Parameters
     ----------
-    volume : m^3
-    bulk_modulus : effective tangent value, Pa
+    volume : [m^3]
+    bulk_modulus : effective tangent value [Pa]
 
     Returns
     -------
-    m^3/Pa
+    capacitance [m^3/Pa]
 
+    Notes
+    -----
     Valid: rigid walls (add their compliance).
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
 
     Examples
     --------
     >>> print(f"{capacitance(volume=6.031858e-5, bulk_modulus=1.4e9):.5e}")
     4.30847e-14
-
-    References
-    ----------
-    [AaltoThesis] section 2.1.3
     """
     return volume / bulk_modulus
 
@@ -94,23 +100,25 @@ def sound_speed(*, bulk_modulus: Array, density: Array) -> Array:
 
     Parameters
     ----------
-    bulk_modulus : effective tangent value, Pa
-    density : kg/m^3
+    bulk_modulus : effective tangent value [Pa]
+    density : [kg/m^3]
 
     Returns
     -------
-    m/s
+    speed of sound [m/s]
 
+    Notes
+    -----
     Valid: rigid walls; about 1300 m/s in practice.
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
 
     Examples
     --------
     >>> print(f"{sound_speed(bulk_modulus=1.4e9, density=865.0):.2f}")
     1272.20
-
-    References
-    ----------
-    [AaltoThesis] section 2.1.3
     """
     return sqrt(bulk_modulus / density)
 
@@ -122,23 +130,25 @@ def quarter_wave_frequency(*, length: Array, sound_speed: Array) -> Array:
 
     Parameters
     ----------
-    length : m
-    sound_speed : m/s
+    length : [m]
+    sound_speed : [m/s]
 
     Returns
     -------
-    Hz
+    frequency [Hz]
 
+    Notes
+    -----
     Valid: one end closed, one open.
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
 
     Examples
     --------
     >>> print(f"{quarter_wave_frequency(length=1.2, sound_speed=1272.2):.2f}")
     265.04
-
-    References
-    ----------
-    [AaltoThesis] section 2.1.3
     """
     return 0.25 * sound_speed / length
 
@@ -150,23 +160,25 @@ def resonance_frequency(*, inertance: Array, capacitance: Array) -> Array:
 
     Parameters
     ----------
-    inertance : kg/m^4
-    capacitance : m^3/Pa
+    inertance : [kg/m^4]
+    capacitance : [m^3/Pa]
 
     Returns
     -------
-    Hz
+    frequency [Hz]
 
+    Notes
+    -----
     Valid: wavelength much longer than the line.
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3
 
     Examples
     --------
     >>> print(f"{resonance_frequency(inertance=2.06504e7, capacitance=4.30847e-14):.3f}")
     168.731
-
-    References
-    ----------
-    [AaltoThesis] section 2.1.3
     """
     return (0.5 / math.pi) / sqrt(inertance * capacitance)
 
@@ -185,27 +197,29 @@ def orifice_flow(
 
     Parameters
     ----------
-    area : m^2
-    pressure_difference : Pa, either sign
-    density : kg/m^3
-    discharge_coefficient : 0.611 in turbulent flow, falling with Re
-    smoothing_pressure : delta, Pa
+    area : [m^2]
+    pressure_difference : [Pa], either sign
+    density : [kg/m^3]
+    discharge_coefficient : C_q [-]: 0.611 in turbulent flow, falling with Re
+    smoothing_pressure : delta [Pa]
 
     Returns
     -------
-    m^3/s, with the sign of the pressure difference
+    flow [m^3/s], with the sign of the pressure difference
 
+    Notes
+    -----
     Valid: |dp| much larger than delta for the plain square root.
+
+    References
+    ----------
+    [AaltoThesis] eq. 9
 
     Examples
     --------
     >>> q = orifice_flow(area=0.3e-4, pressure_difference=5e5, density=870.0)
     >>> print(f"{q * 60000:.3f} l/min")
     37.287 l/min
-
-    References
-    ----------
-    [AaltoThesis] eq. 9
     """
     square = pressure_difference * pressure_difference + smoothing_pressure * smoothing_pressure
     root = pressure_difference / sqrt(sqrt(square))

@@ -1,4 +1,6 @@
-"""Hydraulic fluid: viscosity, density, bulk modulus, entrained and trapped air.
+"""Hydraulic fluid: viscosity, bulk modulus, entrained and trapped air.
+
+Density lives in `density`, the Tait equation in `tait`.
 
 Pressures are gauge unless a name says ``absolute``; temperatures are in kelvin. A bulk modulus
 without a qualifier is the isothermal *tangent* value K = -V dp/dV; secant values say so.
@@ -9,26 +11,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..numeric import Array, expm1_quotient, maximum, namespace, real, where
-from .density import density_dowson_higginson, density_tait, density_thermal, thermal_pressure_slope
-
-__all__ = [
-    "ATMOSPHERIC_PRESSURE",
-    "barus",
-    "bulk_modulus_linear",
-    "bulk_modulus_tait",
-    "bulk_modulus_warm",
-    "density_dowson_higginson",
-    "density_tait",
-    "density_thermal",
-    "dynamic_viscosity",
-    "effective_bulk_modulus",
-    "roelands",
-    "secant_bulk_modulus_tait",
-    "thermal_pressure_slope",
-    "trapped_bubble_volume_change",
-    "viscosity_astm_d341",
-]
+from ..numeric import Array, maximum, namespace, real, where
+from .density import density_thermal as density_thermal
 
 ATMOSPHERIC_PRESSURE = 101325.0
 """Standard atmosphere, Pa absolute."""
@@ -44,30 +28,34 @@ def viscosity_astm_d341(
 
     Parameters
     ----------
-    temperature : K
-    points_temperature : K, strictly ascending
-    points_viscosity : m^2/s, one per temperature
+    temperature : [K]
+    points_temperature : [K], strictly ascending
+    points_viscosity : [m^2/s], one per temperature
 
     Returns
     -------
-    Kinematic viscosity, m^2/s; NaN at temperature <= 0.
+    kinematic viscosity [m^2/s]; NaN at temperature <= 0
 
     Raises
     ------
-    ValueError : fewer than two points, or lists of unequal length
+    ValueError
+        Fewer than two points, or lists of unequal length.
 
-    Valid: 2 mm^2/s and above; two points cannot carry a fluid with viscosity improver to the
-    cold (give three or more).
+    Notes
+    -----
+    Valid: 2 mm^2/s and above, near the given points.
+
+    Two points cannot carry a fluid with viscosity improver to the cold: give three or more.
+
+    References
+    ----------
+    [ASTM-D341] double-logarithmic chart
 
     Examples
     --------
     >>> vg32 = dict(points_temperature=(313.15, 373.15), points_viscosity=(32e-6, 5.36e-6))
     >>> print(f"{viscosity_astm_d341(temperature=293.15, **vg32) * 1e6:.1f} mm2/s")
     86.8 mm2/s
-
-    References
-    ----------
-    [ASTM-D341]
     """
     if len(points_temperature) != len(points_viscosity) or len(points_temperature) < 2:
         raise ValueError("need two or more points, as many viscosities as temperatures")
@@ -88,23 +76,25 @@ def dynamic_viscosity(*, kinematic_viscosity: Array, density: Array) -> Array:
 
     Parameters
     ----------
-    kinematic_viscosity : m^2/s
-    density : kg/m^3
+    kinematic_viscosity : [m^2/s]
+    density : [kg/m^3]
 
     Returns
     -------
-    Pa s
+    dynamic viscosity [Pa s]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [derived] definition of the kinematic viscosity
 
     Examples
     --------
     >>> round(dynamic_viscosity(kinematic_viscosity=46e-6, density=870.0), 5)
     0.04002
-
-    References
-    ----------
-    [derived] definition of the kinematic viscosity
     """
     return density * kinematic_viscosity
 
@@ -114,24 +104,26 @@ def barus(*, viscosity: Array, pressure: Array, coefficient: Array) -> Array:
 
     Parameters
     ----------
-    viscosity : dynamic viscosity at zero gauge pressure, Pa s
-    pressure : gauge, Pa
-    coefficient : pressure-viscosity coefficient alpha, 1/Pa
+    viscosity : dynamic viscosity at zero gauge pressure [Pa s]
+    pressure : gauge [Pa]
+    coefficient : pressure-viscosity coefficient alpha [1/Pa]
 
     Returns
     -------
-    Pa s
+    dynamic viscosity [Pa s]
 
+    Notes
+    -----
     Valid: up to about 0.1 GPa; Roelands beyond.
+
+    References
+    ----------
+    [Barus1893] exponential law
 
     Examples
     --------
     >>> print(f"{barus(viscosity=0.0186, pressure=30e6, coefficient=20e-9):.6f}")
     0.033891
-
-    References
-    ----------
-    [Barus1893]
     """
     product = coefficient * pressure
     return viscosity * namespace(product).exp(product)
@@ -145,24 +137,26 @@ def roelands(*, viscosity: Array, pressure: Array, coefficient: Array) -> Array:
 
     Parameters
     ----------
-    viscosity : dynamic viscosity at zero gauge pressure, Pa s
-    pressure : gauge, Pa
-    coefficient : Barus coefficient alpha at zero pressure, 1/Pa
+    viscosity : dynamic viscosity at zero gauge pressure [Pa s]
+    pressure : gauge [Pa]
+    coefficient : Barus coefficient alpha at zero pressure [1/Pa]
 
     Returns
     -------
-    Pa s; NaN below eta0 = 6.3e-5 Pa s (L <= 0) or p <= -p0.
+    dynamic viscosity [Pa s]; NaN below eta0 = 6.3e-5 Pa s (L <= 0) or p <= -p0
 
+    Notes
+    -----
     Valid: 0 to 1 GPa.
+
+    References
+    ----------
+    [Huang2017] eq. 2 (minus signs lost in the text copy), [Roelands1966]
 
     Examples
     --------
     >>> print(f"{roelands(viscosity=0.0186, pressure=30e6, coefficient=20e-9):.6f}")
     0.033449
-
-    References
-    ----------
-    [Huang2017] eq. 2 (minus signs lost in the text copy), [Roelands1966]
     """
     xp = namespace(viscosity, pressure, coefficient)
     valid = (real(viscosity) > 6.32e-5) & (real(pressure) > -1.96e8)
@@ -178,24 +172,26 @@ def bulk_modulus_linear(*, bulk_modulus: Array, slope: Array, pressure: Array) -
 
     Parameters
     ----------
-    bulk_modulus : tangent value at zero gauge pressure, Pa
-    slope : m = dK/dp, - (0 for a constant, about 6 to 11 for mineral oils)
-    pressure : gauge, Pa
+    bulk_modulus : tangent value at zero gauge pressure [Pa]
+    slope : m = dK/dp [-] (0 for a constant, about 6 to 11 for mineral oils)
+    pressure : gauge [Pa]
 
     Returns
     -------
-    Tangent bulk modulus, Pa
+    tangent bulk modulus [Pa]
 
+    Notes
+    -----
     Valid: 0 to 500 bar, pure liquid.
+
+    References
+    ----------
+    [derived] first-order expansion of K(p)
 
     Examples
     --------
     >>> round(bulk_modulus_linear(bulk_modulus=1.4e9, slope=6.0, pressure=200e5) / 1e6)
     1520
-
-    References
-    ----------
-    [derived] first-order expansion of K(p)
     """
     return bulk_modulus + slope * pressure
 
@@ -207,15 +203,21 @@ def bulk_modulus_warm(
 
     Parameters
     ----------
-    bulk_modulus : K_ref at the reference temperature, Pa
-    decay : b, relative fall per kelvin, 1/K (0.0058 for mineral oil)
-    temperature, reference_temperature : K
+    bulk_modulus : K_ref at the reference temperature [Pa]
+    decay : b, relative fall per kelvin [1/K] (0.0058 for mineral oil)
+    temperature, reference_temperature : [K]
 
     Returns
     -------
-    Pa
+    tangent bulk modulus [Pa]
 
+    Notes
+    -----
     Valid: within some 60 K of the reference.
+
+    References
+    ----------
+    [derived] the exponential factor of K0 in `tait.bulk_modulus_tait`
 
     Examples
     --------
@@ -223,90 +225,9 @@ def bulk_modulus_warm(
     ...                       reference_temperature=313.15)
     >>> print(f"{k / 1e6:.0f} MPa")
     1217 MPa
-
-    References
-    ----------
-    [derived] the exponential factor of `bulk_modulus_tait`'s K0
     """
     change = decay * (reference_temperature - temperature)
     return bulk_modulus * namespace(change).exp(change)
-
-
-def bulk_modulus_tait(
-    *,
-    temperature: Array,
-    pressure: Array,
-    zero_modulus: Array = 8.4e9,
-    temperature_coefficient: Array = 0.0058,
-    pressure_coefficient: Array = 11.9,
-) -> Array:
-    """Isothermal tangent bulk modulus of a mineral oil by the Tait equation.
-
-    K = (K0 + B p) [1 - ln(1 + B p/K0)/B], K0 = zero_modulus exp(-c T), B = 1 + K0'.
-
-    Parameters
-    ----------
-    temperature : K
-    pressure : gauge, Pa
-    zero_modulus : Pa; temperature_coefficient : 1/K; pressure_coefficient : B, -
-
-    Returns
-    -------
-    Tangent bulk modulus, Pa
-
-    Valid: 0 to 150 degC, up to 350 bar for the default constants.
-
-    Examples
-    --------
-    >>> print(f"{bulk_modulus_tait(temperature=313.15, pressure=280e5) / 1e6:.1f}")
-    1668.1
-
-    References
-    ----------
-    [Dymond1988] Tait equation; constants of a generic mineral oil [OpenHydraulics]
-    """
-    xp = namespace(temperature, pressure, zero_modulus)
-    modulus = zero_modulus * xp.exp(-temperature_coefficient * temperature)
-    load = pressure_coefficient * pressure
-    return (modulus + load) * (1 - xp.log1p(load / modulus) / pressure_coefficient)
-
-
-def secant_bulk_modulus_tait(
-    *,
-    temperature: Array,
-    pressure: Array,
-    zero_modulus: Array = 8.4e9,
-    temperature_coefficient: Array = 0.0058,
-    pressure_coefficient: Array = 11.9,
-) -> Array:
-    """Isothermal secant bulk modulus from zero gauge pressure, p V0/(V0 - V), by Tait.
-
-    K_s = B p/ln(1 + B p/K0), the tangent K0 at p = 0.
-
-    Parameters
-    ----------
-    temperature : K
-    pressure : gauge, Pa
-    zero_modulus : Pa; temperature_coefficient : 1/K; pressure_coefficient : B, -
-
-    Returns
-    -------
-    Secant bulk modulus, Pa
-
-    Valid: 0 to 150 degC, up to 350 bar for the default constants.
-
-    Examples
-    --------
-    >>> print(f"{secant_bulk_modulus_tait(temperature=313.15, pressure=280e5) / 1e6:.1f}")
-    1526.6
-
-    References
-    ----------
-    [Dymond1988] Tait equation; [derived] from V/V0 = 1 - ln(1 + B p/K0)/B
-    """
-    xp = namespace(temperature, pressure, zero_modulus)
-    modulus = zero_modulus * xp.exp(-temperature_coefficient * temperature)
-    return modulus * expm1_quotient(xp.log1p(pressure_coefficient * pressure / modulus))
 
 
 def effective_bulk_modulus(
@@ -323,27 +244,29 @@ def effective_bulk_modulus(
 
     Parameters
     ----------
-    bulk_modulus : tangent value of the pure oil at this pressure, Pa
-    pressure : gauge, Pa; below -0.9 p_a the value at -0.9 p_a (cavitation)
-    air_content : free air over oil volume at atmospheric pressure, -
-    polytropic_index : n; 1.4 fast (adiabatic), 1.0 slow (isothermal)
-    atmospheric_pressure : Pa absolute
+    bulk_modulus : tangent value of the pure oil at this pressure [Pa]
+    pressure : gauge pressure [Pa]; below -0.9 p_a the value at -0.9 p_a (cavitation)
+    air_content : free air over oil volume at atmospheric pressure [-]
+    polytropic_index : n [-]: 1.4 fast (adiabatic), 1.0 slow (isothermal)
+    atmospheric_pressure : absolute [Pa]
 
     Returns
     -------
-    Tangent bulk modulus, Pa
+    tangent bulk modulus [Pa]
 
+    Notes
+    -----
     Valid: undissolved air only; air content up to about 0.2.
+
+    References
+    ----------
+    [AaltoThesis] eq. 5
 
     Examples
     --------
     >>> k = effective_bulk_modulus(bulk_modulus=1600e6, pressure=20e5, air_content=0.005)
     >>> print(f"{k / 1e6:.0f}")
     1220
-
-    References
-    ----------
-    [AaltoThesis] eq. 5
     """
     absolute_pressure = maximum(pressure, -0.9 * atmospheric_pressure) + atmospheric_pressure
     gas = air_content * (atmospheric_pressure / absolute_pressure) ** (1 / polytropic_index)
@@ -367,18 +290,24 @@ def trapped_bubble_volume_change(
 
     Parameters
     ----------
-    volume : chamber volume at the initial pressure, m^3
-    air_volume : air, stated at atmospheric pressure, m^3
-    bulk_modulus : secant value of the oil between both pressures, Pa
-    pressure, initial_pressure : gauge, Pa, above -p_a
-    polytropic_index : n, -
-    atmospheric_pressure : Pa absolute
+    volume : chamber volume at the initial pressure [m^3]
+    air_volume : air, stated at atmospheric pressure [m^3]
+    bulk_modulus : secant value of the oil between both pressures [Pa]
+    pressure, initial_pressure : gauge [Pa], above -p_a
+    polytropic_index : n [-]
+    atmospheric_pressure : absolute [Pa]
 
     Returns
     -------
-    m^3, negative when the pressure rises
+    volume change [m^3], negative when the pressure rises
 
+    Notes
+    -----
     Valid: air neither dissolves nor is released.
+
+    References
+    ----------
+    [derived] liquid at constant K beside a polytropic gas of constant mass
 
     Examples
     --------
@@ -386,10 +315,6 @@ def trapped_bubble_volume_change(
     ...                                   pressure=40e5, initial_pressure=20e5)
     >>> print(f"{dv * 1e9:.1f} mm3")
     -141.8 mm3
-
-    References
-    ----------
-    [derived] liquid at constant K beside a polytropic gas of constant mass
     """
     index = 1 / polytropic_index
     now = (atmospheric_pressure / (pressure + atmospheric_pressure)) ** index

@@ -17,22 +17,24 @@ def piston_area(*, bore: Array) -> Array:
 
     Parameters
     ----------
-    bore : m
+    bore : [m]
 
     Returns
     -------
-    m^2
+    area [m^2]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [derived] area of a circle
 
     Examples
     --------
     >>> print(f"{piston_area(bore=25e-3) * 1e6:.2f} mm2")
     490.87 mm2
-
-    References
-    ----------
-    [derived] circle
     """
     return (0.25 * math.pi) * bore * bore
 
@@ -42,22 +44,24 @@ def annulus_area(*, bore: Array, rod_diameter: Array) -> Array:
 
     Parameters
     ----------
-    bore, rod_diameter : m
+    bore, rod_diameter : [m]
 
     Returns
     -------
-    m^2; negative where the rod is thicker than the bore (a geometry fault, checked as such)
+    area [m^2]; negative where the rod is thicker than the bore (a geometry fault, checked as such)
 
+    Notes
+    -----
     Valid: d < D.
+
+    References
+    ----------
+    [derived] area of a ring
 
     Examples
     --------
     >>> print(f"{annulus_area(bore=25e-3, rod_diameter=12e-3) * 1e6:.2f} mm2")
     377.78 mm2
-
-    References
-    ----------
-    [derived] ring
     """
     return (0.25 * math.pi) * (bore * bore - rod_diameter * rod_diameter)
 
@@ -69,25 +73,27 @@ def push_force(
 
     Parameters
     ----------
-    pressure_a : driving pressure, Pa
-    pressure_b : back pressure, Pa
-    area_a, area_b : m^2
-    friction : magnitude, N
+    pressure_a : driving pressure [Pa]
+    pressure_b : back pressure [Pa]
+    area_a, area_b : [m^2]
+    friction : magnitude [N]
 
     Returns
     -------
-    N
+    net force [N]
 
+    Notes
+    -----
     Valid: steady speed.
+
+    References
+    ----------
+    [derived] force balance of the piston
 
     Examples
     --------
     >>> round(push_force(pressure_a=1e7, pressure_b=2e5, area_a=5e-4, area_b=4e-4, friction=120.0))
     4800
-
-    References
-    ----------
-    [derived] force balance of the piston
     """
     return pressure_a * area_a - pressure_b * area_b - friction
 
@@ -99,25 +105,27 @@ def pull_force(
 
     Parameters
     ----------
-    pressure_a : back pressure, Pa
-    pressure_b : driving pressure, Pa
-    area_a, area_b : m^2
-    friction : magnitude, N
+    pressure_a : back pressure [Pa]
+    pressure_b : driving pressure [Pa]
+    area_a, area_b : [m^2]
+    friction : magnitude [N]
 
     Returns
     -------
-    N
+    net force [N]
 
+    Notes
+    -----
     Valid: steady speed.
+
+    References
+    ----------
+    [derived] force balance of the piston
 
     Examples
     --------
     >>> round(pull_force(pressure_a=2e5, pressure_b=1e7, area_a=5e-4, area_b=4e-4, friction=100.0))
     3800
-
-    References
-    ----------
-    [derived] force balance of the piston
     """
     return pressure_b * area_b - pressure_a * area_a - friction
 
@@ -127,24 +135,26 @@ def efficiency(*, force: Array, pressure: Array, area: Array) -> Array:
 
     Parameters
     ----------
-    force : net force on the load, N
-    pressure : driving pressure, Pa
-    area : driven area, m^2
+    force : net force on the load [N]
+    pressure : driving pressure [Pa]
+    area : driven area [m^2]
 
     Returns
     -------
-    -; NaN where p A = 0
+    efficiency [-]; NaN where p A = 0
 
+    Notes
+    -----
     Valid: steady speed.
+
+    References
+    ----------
+    [derived] definition of the efficiency
 
     Examples
     --------
     >>> efficiency(force=4500.0, pressure=1e7, area=5e-4)
     0.9
-
-    References
-    ----------
-    [derived] definition
     """
     ideal = pressure * area
     valid = real(ideal) != 0
@@ -156,23 +166,25 @@ def pressure_loss(*, friction: Array, area: Array) -> Array:
 
     Parameters
     ----------
-    friction : N
-    area : driven area, m^2
+    friction : [N]
+    area : driven area [m^2]
 
     Returns
     -------
-    Pa
+    pressure [Pa]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [ElAsswad2018] section 4.1
 
     Examples
     --------
     >>> print(f"{pressure_loss(friction=166.0, area=4.9087e-4) / 1e6:.3f} MPa")
     0.338 MPa
-
-    References
-    ----------
-    [ElAsswad2018] section 4.1
     """
     return friction / area
 
@@ -182,23 +194,25 @@ def chamber_flow(*, area: Array, speed: Array) -> Array:
 
     Parameters
     ----------
-    area : m^2
-    speed : m/s
+    area : [m^2]
+    speed : [m/s]
 
     Returns
     -------
-    m^3/s
+    flow [m^3/s]
 
+    Notes
+    -----
     Valid: incompressible oil, no leakage.
+
+    References
+    ----------
+    [derived] continuity
 
     Examples
     --------
     >>> print(f"{chamber_flow(area=5e-4, speed=0.1) * 60000:.1f} l/min")
     3.0 l/min
-
-    References
-    ----------
-    [derived] continuity
     """
     return area * speed
 
@@ -208,23 +222,25 @@ def piston_speed(*, flow: Array, area: Array) -> Array:
 
     Parameters
     ----------
-    flow : m^3/s
-    area : m^2
+    flow : [m^3/s]
+    area : [m^2]
 
     Returns
     -------
-    m/s
+    speed [m/s]
 
+    Notes
+    -----
     Valid: incompressible oil, no leakage; standard seals up to 0.5 m/s.
+
+    References
+    ----------
+    [derived] continuity
 
     Examples
     --------
     >>> piston_speed(flow=5e-5, area=5e-4)
     0.1
-
-    References
-    ----------
-    [derived] continuity
     """
     return flow / area
 
@@ -234,23 +250,25 @@ def power(*, force: Array, speed: Array) -> Array:
 
     Parameters
     ----------
-    force : N
-    speed : m/s
+    force : [N]
+    speed : [m/s]
 
     Returns
     -------
-    W
+    power [W]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [derived] definition of power
 
     Examples
     --------
     >>> power(force=3000.0, speed=0.1)
     300.0
-
-    References
-    ----------
-    [derived] definition
     """
     return force * speed
 
@@ -260,23 +278,25 @@ def joint_force(*, torque: Array, lever_arm: Array) -> Array:
 
     Parameters
     ----------
-    torque : N m
-    lever_arm : distance of the actuator's line from the joint axis, m
+    torque : [N m]
+    lever_arm : distance of the actuator's line from the joint axis [m]
 
     Returns
     -------
-    N
+    force [N]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [derived] moment balance
 
     Examples
     --------
     >>> joint_force(torque=120.0, lever_arm=0.04)
     3000.0
-
-    References
-    ----------
-    [derived] moment balance
     """
     return torque / lever_arm
 
@@ -295,25 +315,27 @@ def crank(*, base_radius: Array, crank_radius: Array, joint_angle: Array) -> Cra
 
     Parameters
     ----------
-    base_radius : joint axis to the base pivot, a, m
-    crank_radius : joint axis to the crank pivot, c, m
-    joint_angle : phi between both radii, rad
+    base_radius : joint axis to the base pivot, a [m]
+    crank_radius : joint axis to the crank pivot, c [m]
+    joint_angle : phi between both radii [rad]
 
     Returns
     -------
-    length, lever_arm : m; NaN where both pivots coincide
+    length and lever arm [m]; NaN where both pivots coincide
 
+    Notes
+    -----
     Valid: 0 < phi < pi.
+
+    References
+    ----------
+    [derived] law of cosines and virtual work
 
     Examples
     --------
     >>> c = crank(base_radius=0.3, crank_radius=0.04, joint_angle=1.5707963267948966)
     >>> print(f"{c.length:.5f} {c.lever_arm:.5f}")
     0.30265 0.03965
-
-    References
-    ----------
-    [derived] law of cosines and virtual work
     """
     xp = namespace(joint_angle)
     product = base_radius * crank_radius

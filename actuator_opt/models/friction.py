@@ -1,6 +1,6 @@
-"""Seal friction: dry sum over the seals, Stribeck curve, LuGre, and published parameters.
+"""Seal friction: dry sum over the seals, Stribeck curve, and published parameters.
 
-Friction has the sign of the speed; the magnitudes here are positive.
+LuGre, the dynamic form, lives in `lugre`. Friction has the sign of the speed; the magnitudes here are positive.
 """
 
 from __future__ import annotations
@@ -9,34 +9,6 @@ import math
 from dataclasses import dataclass
 
 from ..numeric import Array, absolute, maximum, namespace, real, where
-from .lugre import (
-    LuGreStep,
-    lugre_bristle_damping,
-    lugre_bristle_stiffness,
-    lugre_passive_speed,
-    lugre_steady_deflection,
-    lugre_step,
-    lugre_tapered_damping,
-)
-
-__all__ = [
-    "HUANG_TABLE_2",
-    "LuGreStep",
-    "StribeckParameters",
-    "breakaway",
-    "coulomb_as_published",
-    "cylinder_friction",
-    "lugre_bristle_damping",
-    "lugre_bristle_stiffness",
-    "lugre_passive_speed",
-    "lugre_steady_deflection",
-    "lugre_step",
-    "lugre_tapered_damping",
-    "seal_friction",
-    "stribeck",
-    "stribeck_level",
-    "stribeck_slope",
-]
 
 
 def seal_friction(
@@ -46,26 +18,28 @@ def seal_friction(
 
     Parameters
     ----------
-    line_load : normal force per length of circumference, N/m
-    diameter : of the sliding surface (bore or rod), m
-    friction_coefficient : -
-    count : number of rings that carry this line load, - (back-to-back rings do not both carry
-        the pressure)
+    line_load : normal force per length of circumference [N/m]
+    diameter : of the sliding surface (bore or rod) [m]
+    friction_coefficient : [-]
+    count : number of rings that carry this line load [-] (back-to-back rings do not both carry the
+        pressure)
 
     Returns
     -------
-    N
+    friction [N]
 
-    Valid: dry or boundary lubrication; oil film carries part of the load above it.
+    Notes
+    -----
+    Valid: dry or boundary lubrication; above it an oil film carries part of the load.
+
+    References
+    ----------
+    [ElAsswad2018] eq. 15; [derived] squeeze preload inside the line load
 
     Examples
     --------
     >>> print(f"{seal_friction(line_load=2000.0, diameter=25e-3, friction_coefficient=0.1):.2f}")
     15.71
-
-    References
-    ----------
-    [ElAsswad2018] eq. 15, with the squeeze preload inside the line load [derived]
     """
     return math.pi * friction_coefficient * line_load * diameter * count
 
@@ -88,16 +62,22 @@ def cylinder_friction(
 
     Parameters
     ----------
-    piston_line_load, rod_line_load : N/m
-    bore, rod_diameter : m
-    piston_friction_coefficient, rod_friction_coefficient : -
-    piston_count, rod_count : -
+    piston_line_load, rod_line_load : [N/m]
+    bore, rod_diameter : [m]
+    piston_friction_coefficient, rod_friction_coefficient : [-]
+    piston_count, rod_count : [-]
 
     Returns
     -------
-    N
+    friction [N]
 
+    Notes
+    -----
     Valid: as `seal_friction`.
+
+    References
+    ----------
+    [ElAsswad2018] eq. 15; [derived] squeeze preload inside the line loads
 
     Examples
     --------
@@ -105,10 +85,6 @@ def cylinder_friction(
     ...     piston_friction_coefficient=0.1, rod_diameter=12e-3, rod_friction_coefficient=0.1)
     >>> print(f"{f:.2f}")
     21.36
-
-    References
-    ----------
-    [ElAsswad2018] eq. 15 with preload [derived]
     """
     piston = piston_friction_coefficient * piston_line_load * bore * piston_count
     return math.pi * (piston + rod_friction_coefficient * rod_line_load * rod_diameter * rod_count)
@@ -129,16 +105,22 @@ def coulomb_as_published(
 
     Parameters
     ----------
-    pressure : pressure difference, the same at both seals, Pa
-    friction_coefficient : -
-    piston_contact_width, rod_contact_width : `seals.width_as_published`, m
-    bore, rod_diameter : at pressure (D + 2 delta_r), m
+    pressure : pressure difference, the same at both seals [Pa]
+    friction_coefficient : [-]
+    piston_contact_width, rod_contact_width : `seals.width_as_published` [m]
+    bore, rod_diameter : at pressure (D + 2 delta_r) [m]
 
     Returns
     -------
-    N
+    friction as published [N]
 
-    Valid: reproduction only.
+    Notes
+    -----
+    Valid: to reproduce the source only.
+
+    References
+    ----------
+    [ElAsswad2018] eq. 15, 16, 17, 18, 20
 
     Examples
     --------
@@ -146,10 +128,6 @@ def coulomb_as_published(
     ...     piston_contact_width=1e-3, rod_contact_width=1e-3, rod_diameter=12e-3)
     >>> print(f"{f:.2f}")
     70.91
-
-    References
-    ----------
-    [ElAsswad2018] eq. 15, 16, 17, 18, 20
     """
     area = math.pi * (piston_contact_width * bore + rod_contact_width * rod_diameter)
     return friction_coefficient * pressure * area
@@ -160,23 +138,25 @@ def breakaway(*, running: Array, ratio: Array) -> Array:
 
     Parameters
     ----------
-    running : N
-    ratio : measured input, - (1.5 to 3 for elastomers)
+    running : [N]
+    ratio : measured input [-] (1.5 to 3 for elastomers)
 
     Returns
     -------
-    N
+    breakaway friction [N]
 
+    Notes
+    -----
     Valid: the dwell time the ratio was measured after.
+
+    References
+    ----------
+    [derived] definition of the ratio
 
     Examples
     --------
     >>> breakaway(running=100.0, ratio=2.0)
     200.0
-
-    References
-    ----------
-    [derived] definition of the ratio
     """
     return ratio * running
 
@@ -188,16 +168,22 @@ def stribeck_level(
 
     Parameters
     ----------
-    speed : m/s
-    coulomb, static : F_C, F_S, N
-    stribeck_speed : v_s, m/s
-    exponent : delta, -
+    speed : [m/s]
+    coulomb, static : F_C, F_S [N]
+    stribeck_speed : v_s [m/s]
+    exponent : delta [-]
 
     Returns
     -------
-    N
+    friction level [N]
 
+    Notes
+    -----
     Valid: F_S >= F_C > 0.
+
+    References
+    ----------
+    [AaltoThesis] eq. 30, [Huang2017] eq. 31
 
     Examples
     --------
@@ -205,10 +191,6 @@ def stribeck_level(
     ...                    exponent=2.0)
     >>> print(f"{g:.2f}")
     683.94
-
-    References
-    ----------
-    [AaltoThesis] eq. 30, [Huang2017] eq. 31
     """
     decay = (absolute(speed) / stribeck_speed) ** exponent
     return coulomb + (static - coulomb) * namespace(decay).exp(-decay)
@@ -228,19 +210,25 @@ def stribeck(
 
     Parameters
     ----------
-    speed : m/s, signed
-    coulomb, static : N
-    stribeck_speed : m/s (papers print mm/s)
-    exponent : delta, -
-    viscous : sigma2, N s/m
-    smoothing_speed : v_eps much smaller than v_s replaces sgn v by tanh(v/v_eps), m/s;
-        None keeps the step (0 at v = 0)
+    speed : [m/s], signed
+    coulomb, static : [N]
+    stribeck_speed : [m/s] (papers print mm/s)
+    exponent : delta [-]
+    viscous : sigma2 [N s/m]
+    smoothing_speed : v_eps much smaller than v_s replaces sgn v by tanh(v/v_eps) [m/s]; None keeps
+        the step (0 at v = 0)
 
     Returns
     -------
-    N, with the sign of the speed
+    friction [N], with the sign of the speed
 
+    Notes
+    -----
     Valid: steady sliding.
+
+    References
+    ----------
+    [Huang2017] eq. 31, [AaltoThesis] eq. 31, [MECE5005] Stribeck curve
 
     Examples
     --------
@@ -248,10 +236,6 @@ def stribeck(
     ...              exponent=2.0, viscous=1000.0)
     >>> print(f"{f:.3f}")
     549.158
-
-    References
-    ----------
-    [Huang2017] eq. 31, [AaltoThesis] eq. 31, [MECE5005] Stribeck curve
     """
     level = stribeck_level(
         speed=speed,
@@ -285,17 +269,23 @@ def stribeck_slope(
 
     Parameters
     ----------
-    speed : m/s
-    coulomb, static : N
-    stribeck_speed : m/s
-    exponent : delta, -
-    viscous : sigma2, N s/m
+    speed : [m/s]
+    coulomb, static : [N]
+    stribeck_speed : [m/s]
+    exponent : delta [-]
+    viscous : sigma2 [N s/m]
 
     Returns
     -------
-    N s/m
+    incremental damping [N s/m]
 
+    Notes
+    -----
     Valid: sliding; it says nothing about stiction.
+
+    References
+    ----------
+    [derived] derivative of [Huang2017] eq. 31 times v
 
     Examples
     --------
@@ -303,10 +293,6 @@ def stribeck_slope(
     ...                    exponent=2.0, viscous=1000.0)
     >>> print(f"{b:.1f}")
     -17394.0
-
-    References
-    ----------
-    [derived] derivative of [Huang2017] eq. 31 times v
     """
     y = maximum(absolute(speed) / stribeck_speed, 1e-9)
     decay = y**exponent

@@ -3,7 +3,7 @@
 Classical lamination theory of an axisymmetric tube without twist: every entry is an isotropic
 layer or a balanced +-angle pair. It is the fast stand-in for the exact layered tube; its error
 grows with t/r_i (`thin_wall_ratio`, warn above `THIN_WALL_LIMIT`), on the unsafe side at the bore.
-Plies live in `ply`, the burst in `ply_discount`, netting in `netting`; all are offered here too.
+Plies live in `ply`, the burst in `ply_discount`, netting in `netting`.
 """
 
 from __future__ import annotations
@@ -13,41 +13,6 @@ from math import pi
 from typing import Any, TypeAlias
 
 from ..numeric import Array
-from .netting import netting, netting_angle, netting_burst_pressure
-from .ply import (
-    Stiffness,
-    isotropic_ply_stiffness,
-    ply_stiffness,
-    ply_stresses,
-    rotated,
-    thermal_ply_load,
-)
-from .ply_discount import BurstLadder, LadderStep, WallLayer, burst_by_ply_discount
-
-__all__ = [
-    "THIN_WALL_LIMIT",
-    "BurstLadder",
-    "LadderStep",
-    "Membrane",
-    "Stiffness",
-    "WallLayer",
-    "bending_stiffness",
-    "bore_growth_thin",
-    "burst_by_ply_discount",
-    "effective_moduli",
-    "isotropic_ply_stiffness",
-    "membrane",
-    "netting",
-    "netting_angle",
-    "netting_burst_pressure",
-    "ply_stiffness",
-    "ply_stresses",
-    "rotated",
-    "strains",
-    "thermal_line_forces",
-    "thermal_ply_load",
-    "thin_wall_ratio",
-]
 
 THIN_WALL_LIMIT = 0.05
 """t/r_i above which the thin laminate should be replaced by the exact layered tube."""
@@ -80,8 +45,7 @@ def membrane(*, plies: Sequence[Sequence[Any]], thicknesses: Sequence[Array]) ->
 
     Examples
     --------
-    >>> q = rotated(stiffness=isotropic_ply_stiffness(youngs_modulus=91e9, poissons_ratio=0.3),
-    ...             angle=0.0)
+    >>> q = (100e9, 30e9, 100e9)
     >>> print(*(f"{a / 1e6:.1f}" for a in membrane(plies=[q, q], thicknesses=[1e-3, 2e-3])))
     300.0 90.0 300.0
     """
@@ -197,8 +161,9 @@ def bore_growth_thin(
 
     Notes
     -----
-    Valid: t/r_i < 0.05. Unsafe beyond: an all-hoop CFRP tube grows 1/0.89, 1/0.76, 1/0.53 times
-    as much at k = 1.1, 1.2, 1.4.
+    Valid: t/r_i < 0.05; on the unsafe side beyond.
+
+    An all-hoop CFRP tube grows 1/0.89, 1/0.76, 1/0.53 times as much at k = 1.1, 1.2, 1.4.
 
     References
     ----------

@@ -1,6 +1,6 @@
 """Pipes, hoses and ports: compliance, volume, flow and pressure drop.
 
-Lines are round and full; a positive flow gives a positive pressure drop.
+Their lumped elements live in `elements`. Lines are round and full; a positive flow gives a positive pressure drop.
 """
 
 from __future__ import annotations
@@ -8,33 +8,6 @@ from __future__ import annotations
 import math
 
 from ..numeric import Array, absolute, clip, maximum, real, where
-from .elements import (
-    capacitance,
-    inertance,
-    orifice_flow,
-    quarter_wave_frequency,
-    resistance,
-    resonance_frequency,
-    sound_speed,
-)
-
-__all__ = [
-    "LAMINAR_REYNOLDS",
-    "TURBULENT_REYNOLDS",
-    "capacitance",
-    "inertance",
-    "line_compliance",
-    "line_pressure_drop",
-    "line_velocity",
-    "line_volume",
-    "orifice_flow",
-    "port_velocity",
-    "quarter_wave_frequency",
-    "resistance",
-    "resonance_frequency",
-    "reynolds",
-    "sound_speed",
-]
 
 LAMINAR_REYNOLDS = 2300.0
 """Below: pure Hagen-Poiseuille."""
@@ -56,16 +29,22 @@ def line_compliance(
 
     Parameters
     ----------
-    inner_diameter, outer_diameter : m
-    length : m
-    youngs_modulus : Pa (a hose: 17.8 GPa is one measurement at 160 bar)
-    poissons_ratio : -
+    inner_diameter, outer_diameter : [m]
+    length : [m]
+    youngs_modulus : [Pa] (a hose: 17.8 GPa is one measurement at 160 bar)
+    poissons_ratio : [-]
 
     Returns
     -------
-    m^3/Pa; NaN where the outer diameter does not exceed the inner one.
+    dV/dp [m^3/Pa]; NaN where the outer diameter does not exceed the inner one
 
+    Notes
+    -----
     Valid: isotropic wall, free axial length (open ends).
+
+    References
+    ----------
+    [AaltoThesis] eq. 24, 25, 26 as a volume per pressure; [derived] open-ended Lamé cylinder
 
     Examples
     --------
@@ -73,10 +52,6 @@ def line_compliance(
     ...                     youngs_modulus=17.8e9, poissons_ratio=0.3)
     >>> print(f"{c * 1e15:.1f} mm3/MPa")
     22.3 mm3/MPa
-
-    References
-    ----------
-    [AaltoThesis] eq. 24, 25, 26 as a volume per pressure; [derived] open-ended Lame cylinder
     """
     inner = inner_diameter * inner_diameter
     outer = outer_diameter * outer_diameter
@@ -92,23 +67,25 @@ def line_volume(*, inner_diameter: Array, length: Array) -> Array:
 
     Parameters
     ----------
-    inner_diameter : m
-    length : m
+    inner_diameter : [m]
+    length : [m]
 
     Returns
     -------
-    m^3
+    volume [m^3]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [derived] volume of a cylinder
 
     Examples
     --------
     >>> print(f"{line_volume(inner_diameter=9.5e-3, length=0.1) * 1e6:.3f} ml")
     7.088 ml
-
-    References
-    ----------
-    [derived] cylinder
     """
     return (0.25 * math.pi) * inner_diameter * inner_diameter * length
 
@@ -118,23 +95,25 @@ def line_velocity(*, flow: Array, inner_diameter: Array) -> Array:
 
     Parameters
     ----------
-    flow : m^3/s
-    inner_diameter : m
+    flow : [m^3/s]
+    inner_diameter : [m]
 
     Returns
     -------
-    m/s
+    speed [m/s]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [derived] continuity
 
     Examples
     --------
     >>> print(f"{line_velocity(flow=10 / 60000, inner_diameter=8e-3):.3f}")
     3.316
-
-    References
-    ----------
-    [derived] continuity
     """
     return (4 / math.pi) * flow / (inner_diameter * inner_diameter)
 
@@ -144,23 +123,25 @@ def port_velocity(*, flow: Array, port_diameter: Array) -> Array:
 
     Parameters
     ----------
-    flow : m^3/s
-    port_diameter : m
+    flow : [m^3/s]
+    port_diameter : [m]
 
     Returns
     -------
-    m/s
+    speed [m/s]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [derived] continuity
 
     Examples
     --------
     >>> print(f"{port_velocity(flow=10 / 60000, port_diameter=6e-3):.3f}")
     5.895
-
-    References
-    ----------
-    [derived] continuity
     """
     return line_velocity(flow=flow, inner_diameter=port_diameter)
 
@@ -170,24 +151,26 @@ def reynolds(*, velocity: Array, diameter: Array, kinematic_viscosity: Array) ->
 
     Parameters
     ----------
-    velocity : m/s
-    diameter : m
-    kinematic_viscosity : m^2/s
+    velocity : [m/s]
+    diameter : [m]
+    kinematic_viscosity : [m^2/s]
 
     Returns
     -------
-    -
+    Reynolds number [-]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [derived] definition of the Reynolds number
 
     Examples
     --------
     >>> round(reynolds(velocity=4.0, diameter=8e-3, kinematic_viscosity=32e-6))
     1000
-
-    References
-    ----------
-    [derived] definition
     """
     return velocity * diameter / kinematic_viscosity
 
@@ -208,16 +191,22 @@ def line_pressure_drop(
 
     Parameters
     ----------
-    flow : m^3/s, either sign
-    inner_diameter, length : m
-    density : kg/m^3
-    dynamic_viscosity : Pa s
+    flow : [m^3/s], either sign
+    inner_diameter, length : [m]
+    density : [kg/m^3]
+    dynamic_viscosity : [Pa s]
 
     Returns
     -------
-    Pa, with the sign of the flow
+    pressure drop [Pa], with the sign of the flow
 
+    Notes
+    -----
     Valid: Re up to 1e5, hydraulically smooth, no bends or fittings.
+
+    References
+    ----------
+    [AaltoThesis] section 2.1.3 (laminar), [Blasius1913]
 
     Examples
     --------
@@ -225,10 +214,6 @@ def line_pressure_drop(
     ...                         dynamic_viscosity=0.04)
     >>> print(f"{dp / 1e5:.3f} bar")
     0.477 bar
-
-    References
-    ----------
-    [AaltoThesis] section 2.1.3 (laminar), [Blasius1913]
     """
     signed = (4 / math.pi) * density * flow / (inner_diameter * dynamic_viscosity)
     number = absolute(signed)

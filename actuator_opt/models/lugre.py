@@ -34,19 +34,25 @@ def lugre_step(
 
     Parameters
     ----------
-    deflection : z0, m
-    speed : m/s, constant over the step
-    time_step : s
-    level : g(v) of `stribeck_level`, N
-    bristle_stiffness : sigma0, N/m
-    bristle_damping : sigma1, N s/m
-    viscous : sigma2, N s/m
+    deflection : z0 [m]
+    speed : [m/s], constant over the step
+    time_step : [s]
+    level : g(v) of `stribeck_level` [N]
+    bristle_stiffness : sigma0 [N/m]
+    bristle_damping : sigma1 [N s/m]
+    viscous : sigma2 [N s/m]
 
     Returns
     -------
-    deflection (m) and force (N) at the end of the step
+    deflection [m] and force [N] at the end of the step
 
+    Notes
+    -----
     Valid: passive while |v| <= `lugre_passive_speed`.
+
+    References
+    ----------
+    [AaltoThesis] eq. 27, 28, 29; [derived] closed form at constant speed
 
     Examples
     --------
@@ -54,10 +60,6 @@ def lugre_step(
     ...     bristle_stiffness=1e7, bristle_damping=3e4, viscous=1000.0)
     >>> print(f"{step.deflection * 1e6:.4f} um {step.force:.3f} N")
     17.3411 um 641.283 N
-
-    References
-    ----------
-    [AaltoThesis] eq. 27, 28, 29; [derived] closed form at constant speed
     """
     rate = bristle_stiffness * absolute(speed) / level
     decay = rate * time_step
@@ -77,24 +79,26 @@ def lugre_steady_deflection(*, speed: Array, level: Array, bristle_stiffness: Ar
 
     Parameters
     ----------
-    speed : m/s
-    level : g(v) of `stribeck_level`, N
-    bristle_stiffness : sigma0, N/m
+    speed : [m/s]
+    level : g(v) of `stribeck_level` [N]
+    bristle_stiffness : sigma0 [N/m]
 
     Returns
     -------
-    m; 0 at rest
+    deflection [m]; 0 at rest
 
+    Notes
+    -----
     Valid: |z| <= F_S/sigma0.
+
+    References
+    ----------
+    [AaltoThesis] eq. 27 at dz/dt = 0
 
     Examples
     --------
     >>> lugre_steady_deflection(speed=-0.1, level=500.0, bristle_stiffness=1e7)
     -5e-05
-
-    References
-    ----------
-    [AaltoThesis] eq. 27 at dz/dt = 0
     """
     direction = where(real(speed) > 0, 1.0, where(real(speed) < 0, -1.0, 0.0 * real(speed)))
     return level / bristle_stiffness * direction
@@ -108,25 +112,27 @@ def lugre_passive_speed(*, level: Array, bristle_damping: Array, viscous: Array)
 
     Parameters
     ----------
-    level : g at that speed, N
-    bristle_damping : sigma1, N s/m
-    viscous : sigma2, N s/m
+    level : g at that speed [N]
+    bristle_damping : sigma1 [N s/m]
+    viscous : sigma2 [N s/m]
 
     Returns
     -------
-    m/s
+    speed [m/s]
 
+    Notes
+    -----
     Valid: sigma1 > 0.
+
+    References
+    ----------
+    [derived] discriminant of the power balance; sigma2 = 0 gives sigma1 |v| <= 4 g
 
     Examples
     --------
     >>> limit = lugre_passive_speed(level=500.0, bristle_damping=48373.5, viscous=1000.0)
     >>> print(f"{limit:.4f} m/s")
     0.0422 m/s
-
-    References
-    ----------
-    [derived] discriminant of the power balance; sigma2 = 0 gives sigma1 |v| <= 4 g
     """
     return 4 * level * (bristle_damping + viscous) / (bristle_damping * bristle_damping)
 
@@ -136,23 +142,25 @@ def lugre_tapered_damping(*, bristle_damping: Array, speed: Array, taper_speed: 
 
     Parameters
     ----------
-    bristle_damping : sigma1 at rest, N s/m
-    speed, taper_speed : v, v_d, m/s
+    bristle_damping : sigma1 at rest [N s/m]
+    speed, taper_speed : v, v_d [m/s]
 
     Returns
     -------
-    N s/m
+    sigma1 at that speed [N s/m]
 
+    Notes
+    -----
     Valid: v_d below about half of `lugre_passive_speed` at rest.
+
+    References
+    ----------
+    [derived] keeps sigma1 |v| <= 4 g at every speed
 
     Examples
     --------
     >>> print(f"{lugre_tapered_damping(bristle_damping=3e4, speed=0.02, taper_speed=0.02):.0f}")
     11036
-
-    References
-    ----------
-    [derived] keeps sigma1 |v| <= 4 g at every speed
     """
     ratio = speed / taper_speed
     return bristle_damping * namespace(ratio).exp(-ratio * ratio)
@@ -163,23 +171,25 @@ def lugre_bristle_stiffness(*, static: Array, largest_deflection: Array) -> Arra
 
     Parameters
     ----------
-    static : F_S, N
-    largest_deflection : z_max, m (0.1 mm in the source)
+    static : F_S [N]
+    largest_deflection : z_max [m] (0.1 mm in the source)
 
     Returns
     -------
-    N/m
+    sigma0 [N/m]
 
+    Notes
+    -----
     Valid: rule of thumb; fit it where records exist.
+
+    References
+    ----------
+    [MECE5005] LuGre model
 
     Examples
     --------
     >>> print(f"{lugre_bristle_stiffness(static=1000.0, largest_deflection=1e-4):.3g}")
     1e+07
-
-    References
-    ----------
-    [MECE5005] LuGre model
     """
     return static / largest_deflection
 
@@ -189,22 +199,24 @@ def lugre_bristle_damping(*, bristle_stiffness: Array, mass: Array) -> Array:
 
     Parameters
     ----------
-    bristle_stiffness : sigma0, N/m
-    mass : kg
+    bristle_stiffness : sigma0 [N/m]
+    mass : [kg]
 
     Returns
     -------
-    N s/m
+    sigma1 [N s/m]
 
+    Notes
+    -----
     Valid: rule of thumb.
+
+    References
+    ----------
+    [MECE5005] LuGre model
 
     Examples
     --------
     >>> print(f"{lugre_bristle_damping(bristle_stiffness=1e7, mass=234.0):.1f}")
     48373.5
-
-    References
-    ----------
-    [MECE5005] LuGre model
     """
     return namespace(bristle_stiffness * mass).sqrt(bristle_stiffness * mass)

@@ -17,24 +17,26 @@ def tube_mass(
 
     Parameters
     ----------
-    density : kg/m^3
-    inner_diameter, outer_diameter, length : m
+    density : [kg/m^3]
+    inner_diameter, outer_diameter, length : [m]
 
     Returns
     -------
-    kg
+    mass [kg]
 
+    Notes
+    -----
     Valid: Do >= Di.
+
+    References
+    ----------
+    [derived] volume of a hollow cylinder
 
     Examples
     --------
     >>> m = tube_mass(density=7850.0, inner_diameter=0.0, outer_diameter=12e-3, length=0.15)
     >>> print(f"{m * 1e3:.1f} g")
     133.2 g
-
-    References
-    ----------
-    [derived] hollow cylinder
     """
     ring = outer_diameter * outer_diameter - inner_diameter * inner_diameter
     return (0.25 * math.pi) * density * ring * length
@@ -45,23 +47,25 @@ def disc_mass(*, density: Array, diameter: Array, thickness: Array) -> Array:
 
     Parameters
     ----------
-    density : kg/m^3
-    diameter, thickness : m
+    density : [kg/m^3]
+    diameter, thickness : [m]
 
     Returns
     -------
-    kg
+    mass [kg]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [derived] volume of a cylinder
 
     Examples
     --------
     >>> print(f"{disc_mass(density=2700.0, diameter=30e-3, thickness=8e-3) * 1e3:.2f} g")
     15.27 g
-
-    References
-    ----------
-    [derived] cylinder
     """
     return (0.25 * math.pi) * density * diameter * diameter * thickness
 
@@ -71,25 +75,27 @@ def piston_groove_volume(*, diameter: Array, depth: Array, width: Array) -> Arra
 
     Parameters
     ----------
-    diameter : outer diameter the groove is cut into, m
-    depth : radial, m
-    width : axial, m
+    diameter : outer diameter the groove is cut into [m]
+    depth : radial [m]
+    width : axial [m]
 
     Returns
     -------
-    m^3
+    volume [m^3]
 
+    Notes
+    -----
     Valid: depth < diameter/2.
+
+    References
+    ----------
+    [derived] pi/4 (D^2 - (D - 2h)^2) w
 
     Examples
     --------
     >>> v = piston_groove_volume(diameter=25e-3, depth=1.7e-3, width=2.4e-3)
     >>> print(f"{v * 1e9:.1f} mm3")
     298.7 mm3
-
-    References
-    ----------
-    [derived] pi/4 (D^2 - (D - 2h)^2) w
     """
     return math.pi * width * depth * (diameter - depth)
 
@@ -99,25 +105,27 @@ def rod_groove_volume(*, diameter: Array, depth: Array, width: Array) -> Array:
 
     Parameters
     ----------
-    diameter : hole diameter the groove is cut into, m
-    depth : radial, m
-    width : axial, m
+    diameter : hole diameter the groove is cut into [m]
+    depth : radial [m]
+    width : axial [m]
 
     Returns
     -------
-    m^3
+    volume [m^3]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [derived] pi/4 ((d + 2h)^2 - d^2) w
 
     Examples
     --------
     >>> v = rod_groove_volume(diameter=12e-3, depth=1.7e-3, width=2.4e-3)
     >>> print(f"{v * 1e9:.1f} mm3")
     175.6 mm3
-
-    References
-    ----------
-    [derived] pi/4 ((d + 2h)^2 - d^2) w
     """
     return math.pi * width * depth * (diameter + depth)
 
@@ -127,23 +135,25 @@ def pitch_diameter(*, diameter: Array, pitch: Array) -> Array:
 
     Parameters
     ----------
-    diameter : nominal, m
-    pitch : m
+    diameter : nominal [m]
+    pitch : [m]
 
     Returns
     -------
-    m
+    pitch diameter [m]
 
+    Notes
+    -----
     Valid: ISO metric profile.
+
+    References
+    ----------
+    [ISO724] basic dimensions
 
     Examples
     --------
     >>> print(f"{pitch_diameter(diameter=10e-3, pitch=1.5e-3) * 1e3:.3f} mm")
     9.026 mm
-
-    References
-    ----------
-    [ISO724] basic dimensions
     """
     return diameter - (3 * math.sqrt(3) / 8) * pitch
 
@@ -156,24 +166,26 @@ def stud_mass(*, density: Array, diameter: Array, pitch: Array, length: Array) -
 
     Parameters
     ----------
-    density : kg/m^3
-    diameter, pitch, length : m
+    density : [kg/m^3]
+    diameter, pitch, length : [m]
 
     Returns
     -------
-    kg
+    mass [kg]
 
+    Notes
+    -----
     Valid: ISO metric profile, full thread.
+
+    References
+    ----------
+    [ISO724] pitch diameter; [derived] equal sections above and below the pitch line
 
     Examples
     --------
     >>> m = stud_mass(density=7850.0, diameter=10e-3, pitch=1.5e-3, length=20e-3)
     >>> print(f"{m * 1e3:.2f} g")
     10.05 g
-
-    References
-    ----------
-    [ISO724] pitch diameter; [derived]
     """
     return disc_mass(
         density=density, diameter=pitch_diameter(diameter=diameter, pitch=pitch), thickness=length
@@ -185,25 +197,27 @@ def tie_rod_mass(*, density: Array, diameter: Array, length: Array, count: Array
 
     Parameters
     ----------
-    density : kg/m^3
-    diameter, length : m
-    count : -
+    density : [kg/m^3]
+    diameter, length : [m]
+    count : [-]
 
     Returns
     -------
-    kg
+    mass [kg]
 
+    Notes
+    -----
     Valid: everywhere.
+
+    References
+    ----------
+    [derived] volume of cylinders
 
     Examples
     --------
     >>> m = tie_rod_mass(density=7850.0, diameter=6e-3, length=0.2, count=4.0)
     >>> print(f"{m * 1e3:.1f} g")
     177.6 g
-
-    References
-    ----------
-    [derived] cylinders
     """
     return count * disc_mass(density=density, diameter=diameter, thickness=length)
 
@@ -217,22 +231,24 @@ def eye_volume(*, pin_diameter: Array) -> Array:
 
     Parameters
     ----------
-    pin_diameter : m
+    pin_diameter : [m]
 
     Returns
     -------
-    m^3
+    volume [m^3]
 
+    Notes
+    -----
     Valid: these proportions.
+
+    References
+    ----------
+    [derived] disc minus hole plus cylinder
 
     Examples
     --------
     >>> print(f"{eye_volume(pin_diameter=8e-3) * 1e9:.1f} mm3")
     1608.5 mm3
-
-    References
-    ----------
-    [derived] disc minus hole plus cylinder
     """
     return math.pi * pin_diameter * pin_diameter * pin_diameter
 
@@ -242,22 +258,24 @@ def eye_length(*, pin_diameter: Array) -> Array:
 
     Parameters
     ----------
-    pin_diameter : m
+    pin_diameter : [m]
 
     Returns
     -------
-    m
+    length [m]
 
+    Notes
+    -----
     Valid: the proportions of `eye_volume`.
+
+    References
+    ----------
+    [derived] lug radius d and neck length d
 
     Examples
     --------
     >>> eye_length(pin_diameter=8e-3)
     0.016
-
-    References
-    ----------
-    [derived] lug radius d and neck length d
     """
     return 2 * pin_diameter
 
@@ -267,25 +285,27 @@ def ring_mass(*, density: Array, section: Array, centre_diameter: Array) -> Arra
 
     Parameters
     ----------
-    density : kg/m^3
-    section : free section W, m
-    centre_diameter : diameter of the free ring's centre line, m
+    density : [kg/m^3]
+    section : free section W [m]
+    centre_diameter : diameter of the free ring's centre line [m]
 
     Returns
     -------
-    kg
+    mass [kg]
 
+    Notes
+    -----
     Valid: W < D_m.
+
+    References
+    ----------
+    [derived] Pappus' theorem
 
     Examples
     --------
     >>> m = ring_mass(density=1300.0, section=2e-3, centre_diameter=23e-3)
     >>> print(f"{m * 1e3:.3f} g")
     0.295 g
-
-    References
-    ----------
-    [derived] Pappus' theorem
     """
     return (0.25 * math.pi**2) * density * section * section * centre_diameter
 
@@ -295,22 +315,24 @@ def oil_mass(*, density: Array, volume: Array) -> Array:
 
     Parameters
     ----------
-    density : kg/m^3
-    volume : m^3
+    density : [kg/m^3]
+    volume : [m^3]
 
     Returns
     -------
-    kg
+    mass [kg]
 
+    Notes
+    -----
     Valid: full of oil.
+
+    References
+    ----------
+    [derived] definition of the density
 
     Examples
     --------
     >>> round(oil_mass(density=870.0, volume=60e-6), 4)
     0.0522
-
-    References
-    ----------
-    [derived] definition of the density
     """
     return density * volume

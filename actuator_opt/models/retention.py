@@ -1,6 +1,6 @@
-"""What holds the ends on: bond, thread, tie rods, end plates, pins; and what guides the rod.
+"""What holds the ends on: bond, tie rods, pins; and what guides the rod.
 
-Plates live in `end_plate`, fatigue and the end of the stroke in `endurance`; all are offered here.
+Threads live in `rod`, plates in `end_plate`, fatigue and the end of the stroke in `endurance`.
 """
 
 from __future__ import annotations
@@ -8,41 +8,7 @@ from __future__ import annotations
 from math import pi
 
 from ..numeric import Array, maximum, minimum, namespace, positive, sqrt
-from .end_plate import annular_plate_stress, end_plate_stress
-from .endurance import (
-    cycles_to_failure,
-    end_stop_compression,
-    end_stop_energy,
-    end_stop_peak_force,
-    end_stop_peak_pressure,
-    fatigue_factor,
-    fatigue_strength,
-    trapped_pressure_rate,
-)
-from .rod import thread_shear_stress, thread_stress, thread_stress_area
-
-__all__ = [
-    "annular_plate_stress",
-    "bearing_pressure",
-    "bond_edge_shear",
-    "bond_peak_ratio",
-    "bond_shear_peak",
-    "cycles_to_failure",
-    "end_plate_stress",
-    "end_stop_compression",
-    "end_stop_energy",
-    "end_stop_peak_force",
-    "end_stop_peak_pressure",
-    "fatigue_factor",
-    "fatigue_strength",
-    "guide_forces",
-    "pin_shear_stress",
-    "thread_shear_stress",
-    "thread_stress",
-    "thread_stress_area",
-    "tie_rod_stress",
-    "trapped_pressure_rate",
-]
+from .rod import thread_stress
 
 
 def bond_peak_ratio(

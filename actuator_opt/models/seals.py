@@ -16,34 +16,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from ..numeric import Array, clip, namespace, real, sqrt, where
-from .gland import (
-    extrusion_gap,
-    gland_depth,
-    gland_fill,
-    limited_width,
-    squeeze_after,
-    squeeze_in_place,
-    stretched_section,
-)
-
-__all__ = [
-    "LAWS",
-    "MODULUS_LAWS",
-    "ContactFunction",
-    "ModulusFunction",
-    "ModulusLaw",
-    "SealLaw",
-    "extrusion_gap",
-    "gland_depth",
-    "gland_fill",
-    "limited_width",
-    "modulus_gent",
-    "modulus_ruess",
-    "squeeze_after",
-    "squeeze_in_place",
-    "stretched_section",
-    "width_as_published",
-]
 
 
 def width_as_published(*, section: Array, gland_height: Array) -> Array:
@@ -53,23 +25,25 @@ def width_as_published(*, section: Array, gland_height: Array) -> Array:
 
     Parameters
     ----------
-    section : free section 2 R, m
-    gland_height : h = bore radius + growth - gasket radius, m
+    section : free section 2 R [m]
+    gland_height : h = bore radius + growth - gasket radius [m]
 
     Returns
     -------
-    m; 0 where h >= 2 R: the ring no longer touches and the formula has no root
+    contact width [m]; 0 where h >= 2 R: the ring no longer touches and the formula has no root
 
-    Valid: reproduction; 0 < h < 2 R.
+    Notes
+    -----
+    Valid: to reproduce the source only; 0 < h < 2 R.
+
+    References
+    ----------
+    [ElAsswad2018] eq. 19
 
     Examples
     --------
     >>> print(f"{width_as_published(section=2e-3, gland_height=1.7e-3) * 1e3:.4f} mm")
     1.0536 mm
-
-    References
-    ----------
-    [ElAsswad2018] eq. 19
     """
     square = section * section - gland_height * gland_height
     touching = real(square) > 0
@@ -93,7 +67,7 @@ class SealLaw:
     ----------
     name : registry key, named in every result
     line_load : normal force per length of circumference, N/m
-    contact_width : m (limit it by `limited_width`)
+    contact_width : m (limit it by `gland.limited_width`)
     peak_pressure : highest contact pressure, Pa gauge
     squeeze_range : squeezes the law is compared with data on, -
     pressure_range : pressures over Young's modulus likewise, -
@@ -262,23 +236,26 @@ def modulus_gent(*, hardness: Array) -> Array:
 
     Parameters
     ----------
-    hardness : Shore A
+    hardness : [Shore A]
 
     Returns
     -------
-    Pa; NaN at hardness >= 100
+    Young's modulus [Pa]; NaN at hardness >= 100
 
-    Valid: 20 to 90 Shore A; Ruess gives 1.8 times as much at 70: carry the difference as
-    uncertainty.
+    Notes
+    -----
+    Valid: 20 to 90 Shore A.
+
+    Ruess gives 1.8 times as much at 70: carry the difference as uncertainty.
+
+    References
+    ----------
+    [Gent1958] Shore A indentation
 
     Examples
     --------
     >>> print(f"{modulus_gent(hardness=75.0) / 1e6:.4f} MPa")
     7.0529 MPa
-
-    References
-    ----------
-    [Gent1958]
     """
     valid = real(hardness) < 100
     safe = where(valid, hardness, 0.0)
@@ -291,22 +268,24 @@ def modulus_ruess(*, hardness: Array) -> Array:
 
     Parameters
     ----------
-    hardness : Shore A
+    hardness : [Shore A]
 
     Returns
     -------
-    Pa
+    Young's modulus [Pa]
 
+    Notes
+    -----
     Valid: 20 to 80 Shore A.
+
+    References
+    ----------
+    [Larson2016] Ruess's relation
 
     Examples
     --------
     >>> print(f"{modulus_ruess(hardness=75.0) / 1e6:.4f} MPa")
     13.2495 MPa
-
-    References
-    ----------
-    [Larson2016]
     """
     exponent = math.log(10) * (0.0235 * hardness - 0.6403)
     return 1e6 * namespace(hardness).exp(exponent)

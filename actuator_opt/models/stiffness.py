@@ -1,8 +1,9 @@
-"""Axial stiffness of the closed cylinder: per chamber, along the stroke, and as published.
+"""Axial stiffness of the closed cylinder: per chamber and along the stroke.
 
 Each chamber has one compliance C = V/K + dV/dp of barrel, pipes and hoses; the two chambers act
 in parallel on the piston, in series with rod and mounting. Chamber A is at the cap end, its
-length is the piston position x; chamber B is at the rod end, its length is stroke - x.
+length is the piston position x; chamber B is at the rod end, its length is stroke - x. The sources'
+own forms live in `stiffness_published`.
 """
 
 from __future__ import annotations
@@ -12,30 +13,6 @@ from typing import NamedTuple
 
 from ..numeric import Array, clip, maximum, real, sqrt, where
 from .fluid import ATMOSPHERIC_PRESSURE
-from .stiffness_published import (
-    barrel_stiffness_as_published,
-    cylinder_expansion_as_published,
-    line_stiffness_as_published,
-    oil_stiffness_as_published,
-    series_of_totals_as_published,
-)
-
-__all__ = [
-    "HoldingPressures",
-    "LoadStep",
-    "barrel_stiffness_as_published",
-    "chamber_compliance",
-    "chamber_stiffness",
-    "cylinder_expansion_as_published",
-    "holding_pressures",
-    "hydraulic_stiffness",
-    "line_stiffness_as_published",
-    "oil_stiffness_as_published",
-    "series",
-    "series_of_totals_as_published",
-    "trapped_air_load_step",
-    "weakest_position",
-]
 
 
 def chamber_compliance(*, volume: Array, bulk_modulus: Array, wall_compliance: Array) -> Array:
@@ -43,24 +20,26 @@ def chamber_compliance(*, volume: Array, bulk_modulus: Array, wall_compliance: A
 
     Parameters
     ----------
-    volume : oil volume with lines and dead volume, m^3
-    bulk_modulus : effective tangent value at the chamber's pressure, Pa
-    wall_compliance : sum over barrel, pipes and hoses, m^3/Pa
+    volume : oil volume with lines and dead volume [m^3]
+    bulk_modulus : effective tangent value at the chamber's pressure [Pa]
+    wall_compliance : sum over barrel, pipes and hoses [m^3/Pa]
 
     Returns
     -------
-    m^3/Pa
+    compliance [m^3/Pa]
 
+    Notes
+    -----
     Valid: small pressure changes.
+
+    References
+    ----------
+    [derived] oil and walls see the same pressure
 
     Examples
     --------
     >>> print(f"{chamber_compliance(volume=7e-5, bulk_modulus=1.4e9, wall_compliance=2e-14):.2e}")
     7.00e-14
-
-    References
-    ----------
-    [derived] oil and walls see the same pressure
     """
     return volume / bulk_modulus + wall_compliance
 
@@ -72,26 +51,28 @@ def chamber_stiffness(
 
     Parameters
     ----------
-    area : m^2
-    volume : oil volume with lines and dead volume, m^3
-    bulk_modulus : effective tangent value at the chamber's pressure, Pa
-    wall_compliance : sum over barrel, pipes and hoses, m^3/Pa
+    area : [m^2]
+    volume : oil volume with lines and dead volume [m^3]
+    bulk_modulus : effective tangent value at the chamber's pressure [Pa]
+    wall_compliance : sum over barrel, pipes and hoses [m^3/Pa]
 
     Returns
     -------
-    N/m
+    stiffness [N/m]
 
+    Notes
+    -----
     Valid: small pressure changes.
+
+    References
+    ----------
+    [AaltoThesis] eq. 6, one term; [derived] walls give beside the oil
 
     Examples
     --------
     >>> k = chamber_stiffness(area=5e-4, volume=5e-5, bulk_modulus=1.4e9, wall_compliance=0.0)
     >>> round(k)
     7000000
-
-    References
-    ----------
-    [AaltoThesis] eq. 6, one term, with the walls added [derived]
     """
     return area * area / (volume / bulk_modulus + wall_compliance)
 
@@ -103,24 +84,26 @@ def hydraulic_stiffness(
 
     Parameters
     ----------
-    area_a, area_b : m^2
-    compliance_a, compliance_b : of the chambers at the piston position, m^3/Pa
+    area_a, area_b : [m^2]
+    compliance_a, compliance_b : of the chambers at the piston position [m^3/Pa]
 
     Returns
     -------
-    N/m
+    stiffness [N/m]
 
+    Notes
+    -----
     Valid: ports closed.
+
+    References
+    ----------
+    [AaltoThesis] eq. 6; [derived] walls give beside the oil of each chamber
 
     Examples
     --------
     >>> round(hydraulic_stiffness(area_a=5e-4, compliance_a=5e-14,
     ...                           area_b=4e-4, compliance_b=4e-14))
     9000000
-
-    References
-    ----------
-    [AaltoThesis] eq. 6 with the walls inside each chamber [derived]
     """
     return area_a * area_a / compliance_a + area_b * area_b / compliance_b
 
@@ -142,16 +125,22 @@ def weakest_position(
 
     Parameters
     ----------
-    area_a, area_b : m^2
-    compliance_a0, compliance_b0 : chamber compliance at zero chamber length, m^3/Pa
-    compliance_a_per_length, compliance_b_per_length : growth with chamber length, m^2/Pa
-    stroke : m
+    area_a, area_b : [m^2]
+    compliance_a0, compliance_b0 : chamber compliance at zero chamber length [m^3/Pa]
+    compliance_a_per_length, compliance_b_per_length : growth with chamber length [m^2/Pa]
+    stroke : [m]
 
     Returns
     -------
-    m from the cap end
+    position from the cap end [m]
 
+    Notes
+    -----
     Valid: positive areas and compliances; k_h is convex in x, so the point is the minimum.
+
+    References
+    ----------
+    [derived] stationary point of A_A^2/C_A + A_B^2/C_B
 
     Examples
     --------
@@ -159,10 +148,6 @@ def weakest_position(
     ...     compliance_a_per_length=3e-13, compliance_b0=1e-14, compliance_b_per_length=3e-13)
     >>> print(f"{x:.3f}")
     0.050
-
-    References
-    ----------
-    [derived] stationary point of A_A^2/C_A + A_B^2/C_B
     """
     ratio = area_a / area_b * sqrt(compliance_a_per_length / compliance_b_per_length)
     top = ratio * (compliance_b0 + compliance_b_per_length * stroke) - compliance_a0
@@ -175,22 +160,24 @@ def series(*stiffnesses: Array) -> Array:
 
     Parameters
     ----------
-    stiffnesses : N/m, positive (infinity is a rigid part)
+    stiffnesses : [N/m], positive (infinity is a rigid part)
 
     Returns
     -------
-    N/m
+    stiffness [N/m]
 
+    Notes
+    -----
     Valid: everywhere; never stiffer than the softest part.
+
+    References
+    ----------
+    [derived] equal force, added deflections
 
     Examples
     --------
     >>> series(2.0, 2.0)
     1.0
-
-    References
-    ----------
-    [derived] equal force, added deflections
     """
     flexibility: Array = 0.0
     for stiffness in stiffnesses:
@@ -214,25 +201,27 @@ def holding_pressures(
 
     Parameters
     ----------
-    force : force the rod exerts on its load, > 0 push, < 0 pull, N
-    supply_pressure, return_pressure : gauge, Pa
-    area_a, area_b : m^2
+    force : force the rod exerts on its load, > 0 push, < 0 pull [N]
+    supply_pressure, return_pressure : gauge [Pa]
+    area_a, area_b : [m^2]
 
     Returns
     -------
-    pressure_a, pressure_b : gauge, Pa
+    gauge pressures of both chambers [Pa]
 
+    Notes
+    -----
     Valid: matched symmetrical valve edges; beyond the stall force the limits hold.
+
+    References
+    ----------
+    [Merritt1967] p_s = p_1 + p_2 of a matched valve; [derived] force balance of the piston
 
     Examples
     --------
     >>> holding_pressures(force=0.0, supply_pressure=1e7, return_pressure=0.0,
     ...                   area_a=4e-4, area_b=4e-4)
     HoldingPressures(pressure_a=5000000.0, pressure_b=5000000.0)
-
-    References
-    ----------
-    [Merritt1967] p_s = p_1 + p_2 of a matched valve; [derived] force balance of the piston
     """
     total = supply_pressure + return_pressure
     pressure = (force + total * area_b) / (area_a + area_b)
@@ -273,20 +262,26 @@ def trapped_air_load_step(
 
     Parameters
     ----------
-    force : step of the force the rod exerts, > 0 push (the rod gives way inwards), N
-    area_a, area_b : m^2
-    volume_a, volume_b : chamber volumes with lines, m^3
-    air_volume_a, air_volume_b : at atmospheric pressure, m^3
-    initial_pressure_a, initial_pressure_b : gauge, Pa
-    bulk_modulus : secant value of the oil, Pa
-    polytropic_index, atmospheric_pressure : -, Pa absolute
+    force : step of the force the rod exerts, > 0 push (the rod gives way inwards) [N]
+    area_a, area_b : [m^2]
+    volume_a, volume_b : chamber volumes with lines [m^3]
+    air_volume_a, air_volume_b : at atmospheric pressure [m^3]
+    initial_pressure_a, initial_pressure_b : gauge [Pa]
+    bulk_modulus : secant value of the oil [Pa]
+    polytropic_index, atmospheric_pressure : n [-] and absolute pressure [Pa]
 
     Returns
     -------
-    displacement (m, > 0 extends), pressure_a, pressure_b (Pa), secant stiffness -F/dx (N/m);
-    all NaN where no state above -0.9 p_a carries the load, the stiffness also at zero force.
+    displacement, > 0 extends [m], both pressures [Pa], secant stiffness -F/dx [N/m]; all NaN where
+    no state above -0.9 p_a carries the load, the stiffness also at zero force
 
+    Notes
+    -----
     Valid: air neither dissolves nor is released; rigid walls.
+
+    References
+    ----------
+    [derived] from the volume and force balances; idea of constant air [AaltoThesis] section 5.1
 
     Examples
     --------
@@ -295,10 +290,6 @@ def trapped_air_load_step(
     ...     initial_pressure_b=50e5, bulk_modulus=1.5e9)
     >>> print(f"{step.displacement * 1e3:.4f} mm, {step.stiffness / 1e6:.0f} kN/mm")
     -0.0417 mm, 24 kN/mm
-
-    References
-    ----------
-    [derived] from the volume and force balances; idea of constant air [AaltoThesis] section 5.1
     """
     index = 1 / polytropic_index
     start_a = initial_pressure_a + atmospheric_pressure

@@ -27,26 +27,28 @@ def series_of_totals_as_published(
 
     Parameters
     ----------
-    oil : N/m, `oil_stiffness_as_published`
-    barrel : sum of both chambers' barrel stiffness, N/m
-    rod : N/m
-    lines : sum of both chambers' line stiffness, N/m (infinite: rigid)
-    other : load cell, mounting, seals, N/m (infinite: rigid)
+    oil : `oil_stiffness_as_published` [N/m]
+    barrel : sum of both chambers' barrel stiffness [N/m]
+    rod : [N/m]
+    lines : sum of both chambers' line stiffness [N/m] (infinite: rigid)
+    other : load cell, mounting, seals [N/m] (infinite: rigid)
 
     Returns
     -------
-    N/m
+    stiffness as published [N/m]
 
-    Valid: reproduction of the sources only; `stiffness.hydraulic_stiffness` is the correct form.
+    Notes
+    -----
+    Valid: to reproduce the sources only; use `stiffness.hydraulic_stiffness`.
+
+    References
+    ----------
+    [AaltoThesis] eq. 3, 37, 38; [ElAsswad2018] eq. 7
 
     Examples
     --------
     >>> print(f"{series_of_totals_as_published(oil=2480e3, barrel=1e99, rod=13430e3):.4g}")
     2.093e+06
-
-    References
-    ----------
-    [AaltoThesis] eq. 3, 37, 38; [ElAsswad2018] eq. 7
     """
     return 1 / (1 / oil + 1 / barrel + 1 / rod + 1 / lines + 1 / other)
 
@@ -64,25 +66,27 @@ def oil_stiffness_as_published(
 
     Parameters
     ----------
-    bulk_modulus_a, bulk_modulus_b : Pa ([ElAsswad2018] uses one value)
-    area_a, area_b : m^2
-    volume_a, volume_b : chamber volumes with line volumes, m^3
+    bulk_modulus_a, bulk_modulus_b : [Pa] ([ElAsswad2018] uses one value)
+    area_a, area_b : [m^2]
+    volume_a, volume_b : chamber volumes with line volumes [m^3]
 
     Returns
     -------
-    N/m
+    stiffness [N/m]
 
+    Notes
+    -----
     Valid: rigid walls.
+
+    References
+    ----------
+    [ElAsswad2018] eq. 9, [AaltoThesis] eq. 6
 
     Examples
     --------
     >>> round(oil_stiffness_as_published(bulk_modulus_a=8e8, bulk_modulus_b=8e8, area_a=5e-4,
     ...                                  area_b=5e-4, volume_a=5e-5, volume_b=5e-5))
     8000000
-
-    References
-    ----------
-    [ElAsswad2018] eq. 9, [AaltoThesis] eq. 6
     """
     side_a = bulk_modulus_a * area_a * area_a / volume_a
     return side_a + bulk_modulus_b * area_b * area_b / volume_b
@@ -104,16 +108,22 @@ def barrel_stiffness_as_published(
 
     Parameters
     ----------
-    bore, outer_diameter : m
-    area : the chamber's effective piston area, m^2
-    chamber_length : m
-    youngs_modulus, poissons_ratio : Pa, -
+    bore, outer_diameter : [m]
+    area : the chamber's effective piston area [m^2]
+    chamber_length : [m]
+    youngs_modulus, poissons_ratio : [Pa], [-]
 
     Returns
     -------
-    N/m
+    stiffness [N/m]
 
-    Valid: eq. 22 isotropic open-ended barrel; eq. 23 reproduction only.
+    Notes
+    -----
+    Valid: eq. 22 isotropic, open ends; eq. 23 to reproduce the source only.
+
+    References
+    ----------
+    [AaltoThesis] eq. 22, 23, 24
 
     Examples
     --------
@@ -121,10 +131,6 @@ def barrel_stiffness_as_published(
     ...     chamber_length=0.11, youngs_modulus=210e9, poissons_ratio=0.3)
     >>> print(f"{k / 1e6:.1f} MN/m")
     247.0 MN/m
-
-    References
-    ----------
-    [AaltoThesis] eq. 22, 23, 24
     """
     growth = _expansion(bore, outer_diameter) + poissons_ratio
     return 0.5 * youngs_modulus * area / (chamber_length * growth)
@@ -143,15 +149,21 @@ def line_stiffness_as_published(
 
     Parameters
     ----------
-    area : the chamber's effective piston area, m^2
-    inner_diameter, outer_diameter, length : of the line, m
-    youngs_modulus, poissons_ratio : Pa, -
+    area : the chamber's effective piston area [m^2]
+    inner_diameter, outer_diameter, length : of the line [m]
+    youngs_modulus, poissons_ratio : [Pa], [-]
 
     Returns
     -------
-    N/m
+    stiffness [N/m]
 
+    Notes
+    -----
     Valid: isotropic open-ended line; exact as A^2/(dV/dp).
+
+    References
+    ----------
+    [AaltoThesis] eq. 25, 26
 
     Examples
     --------
@@ -159,14 +171,15 @@ def line_stiffness_as_published(
     ...     outer_diameter=12e-3, youngs_modulus=17.8e9, poissons_ratio=0.3)
     >>> print(f"{k / 1e6:.1f} MN/m")
     70.9 MN/m
-
-    References
-    ----------
-    [AaltoThesis] eq. 25, 26
     """
-    growth = _expansion(inner_diameter, outer_diameter) + poissons_ratio
-    compliance = (0.5 * math.pi) * inner_diameter * inner_diameter * length * growth
-    return youngs_modulus * area * area / compliance
+    compliance = line_compliance(
+        inner_diameter=inner_diameter,
+        outer_diameter=outer_diameter,
+        length=length,
+        youngs_modulus=youngs_modulus,
+        poissons_ratio=poissons_ratio,
+    )
+    return area * area / compliance
 
 
 def cylinder_expansion_as_published(*, pressure: Array, area: Array, stroke: Array) -> Array:
@@ -176,24 +189,28 @@ def cylinder_expansion_as_published(*, pressure: Array, area: Array, stroke: Arr
 
     Parameters
     ----------
-    pressure : pressure difference, Pa
-    area : m^2
-    stroke : m
+    pressure : pressure difference [Pa]
+    area : [m^2]
+    stroke : [m]
 
     Returns
     -------
-    N/m
+    stiffness as published [N/m]
 
-    Valid: reproduction only.
+    Notes
+    -----
+    Valid: to reproduce the source only.
+
+    Eq. 11, the area of the grown bore, lost its /4 in the extracted text: pass pi (D + 2 u)^2/4.
+
+    References
+    ----------
+    [ElAsswad2018] eq. 10 and 11
 
     Examples
     --------
     >>> k = cylinder_expansion_as_published(pressure=1e6, area=4.9087e-4, stroke=0.11)
     >>> print(f"{k / 1e3:.2f} N/mm")
     4.46 N/mm
-
-    References
-    ----------
-    [ElAsswad2018] eq. 10
     """
     return pressure * area / stroke

@@ -22,25 +22,6 @@ from .strength_modes import (
     max_stress_modes,
 )
 
-__all__ = [
-    "PlyStrength",
-    "hashin",
-    "hashin_modes",
-    "inverse_hashin",
-    "inverse_max_strain",
-    "inverse_max_stress",
-    "inverse_puck",
-    "inverse_tsai_hill",
-    "inverse_tsai_wu",
-    "load_multiplier",
-    "max_strain",
-    "max_stress",
-    "max_stress_modes",
-    "puck",
-    "tsai_hill",
-    "tsai_wu",
-]
-
 
 def inverse_tsai_hill(
     *, stress_1: Array, stress_2: Array, shear_12: Array, strength: PlyStrength

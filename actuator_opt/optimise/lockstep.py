@@ -15,13 +15,13 @@ from . import kkt, newton
 from .evaluator import Evaluator, Point
 from .problem import ParametricProblem, Vector
 
-ITERATIONS = 16
+ITERATIONS = 20
 """Most steps; 10 % changes mostly take three to five."""
 
-RENEWALS = (4, 7, 10, 13)
+RENEWALS = (5, 9, 13)
 """Steps before which problems still under way get a Hessian of their own."""
 
-SETTLED = 1e-3
+SETTLED = 1e-6
 """Length of the last step below which the optimality conditions are worth checking."""
 
 FEASIBLE = 1e-11
@@ -84,7 +84,7 @@ def resolve_together(
                 evaluator, trial, state.scale, hessians[k], state.equality_multipliers
             )
             longest = float(np.abs(step).max(initial=0.0))
-            if not np.isfinite(longest) or longest > 4 * max(last[k], SETTLED):
+            if not np.isfinite(longest) or longest > 4 * max(last[k], 1e-3):
                 continue
             last[k] = longest
             share = min(1.0, newton.RADIUS / max(longest, 1e-300))
