@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 
 from ..quantities import MATERIAL_PROPERTIES
+from ..tables import aligned
 from .material import Material, Property
 from .materials import Library
 
@@ -135,11 +136,7 @@ def _cell(entry: Property | None, first: Property | None) -> str:
 
 def _table(rows: Sequence[Sequence[str]]) -> list[str]:
     """Columns padded to their widest cell, a rule below the head."""
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    lines = [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
+    lines = aligned(rows).split("\n")
     rule = "─" * min(max(len(line) for line in lines), 120)
     return [lines[0], rule, *lines[1:]]
 

@@ -9,6 +9,7 @@ from typing import Any, Literal
 from .. import quantities
 from ..design.model import Design
 from ..numeric import Array
+from ..tables import aligned
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,6 +144,31 @@ class Evaluation:
     def met(self) -> bool:
         """Whether every requirement is met."""
         return all(row.met for row in self.requirements)
+
+    def __str__(self) -> str:
+        """Requirements and metrics as a table."""
+        rows = [["requirement", "limit", "value", "margin", "", "case"]]
+        for r in self.requirements:
+            quantity = self.metrics[r.metric].quantity
+            sign = "≥" if r.sense == "min" else "≤"
+            rows.append(
+                [
+                    r.name,
+                    f"{sign} {quantity.text(r.limit)}",
+                    "-" if r.value is None else quantity.text(r.value),
+                    "-" if r.margin is None else f"{100 * r.margin:+.1f} %",
+                    "met" if r.met else "missed",
+                    r.case or "",
+                ]
+            )
+        values = [["metric", "value", "case"]]
+        for m in self.metrics.values():
+            shown = m.why or "" if m.value is None else m.quantity.text(m.value)
+            values.append([m.name, shown, m.case or ""])
+        missed = [f"check missed: {c.name}" for c in self.checks if c.status == "missed"]
+        return "\n".join(
+            [self.name, "", aligned(rows, right=(1, 2, 3)), "", aligned(values), *missed]
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """The `evaluate --json` object (SI)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -28,9 +28,9 @@ class Computed:
     why: dict[str, str] = field(default_factory=dict)
     applies: dict[str, Array] = field(default_factory=dict)
 
-    def put(self, name: str, value: Array | Mapping[str, Array], cases: Array = None) -> None:
+    def put(self, name: str, value: Array | dict[str, Array], cases: Array = None) -> None:
         """Record a metric: one array, or one per place; `cases` marks where it applies."""
-        self.metrics[name] = dict(value) if isinstance(value, Mapping) else {"": value}
+        self.metrics[name] = value if isinstance(value, dict) else {"": value}
         if cases is not None:
             self.applies[name] = cases
 

@@ -12,7 +12,7 @@ from ..models import fluid, stiffness
 from ..numeric import Array, where
 from .allow import Stock
 from .geometry import Geometry
-from .values import Values
+from .values import Values, stacked
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ def case_force(v: Values, design: Design) -> Array:
             rows.append(v[f"{at}.force"])
         else:
             rows.append(v[f"{at}.joint_torque"] / v[f"{at}.lever_arm"])
-    return np.stack(np.broadcast_arrays(*[np.atleast_1d(np.asarray(row)) for row in rows]))
+    return stacked(rows)
 
 
 def oil_bulk_modulus(

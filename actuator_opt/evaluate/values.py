@@ -44,8 +44,14 @@ class Values:
     def case(self, field: str, default: Array = None) -> Array:
         """One field of every load case, (cases, 1) or (cases, designs)."""
         if field not in self._case_cache:
-            rows = [self.get(f"load_cases[{name}].{field}", default) for name in self.cases]
-            self._case_cache[field] = np.stack(
-                np.broadcast_arrays(*[np.atleast_1d(np.asarray(row)) for row in rows])
+            self._case_cache[field] = stacked(
+                [self.get(f"load_cases[{name}].{field}", default) for name in self.cases]
             )
         return self._case_cache[field]
+
+
+def stacked(rows: Sequence[Array]) -> Array:
+    """One number per load case, floats or arrays (designs,), as (cases, 1) or (cases, designs)."""
+    if all(isinstance(row, float) for row in rows):
+        return np.array(rows)[:, None]
+    return np.stack(np.broadcast_arrays(*[np.atleast_1d(np.asarray(row)) for row in rows]))

@@ -1,4 +1,4 @@
-"""Life and extremes: pressure cycles, the end of the stroke, oil trapped while it warms."""
+"""Life and extremes: pressure cycles and the end of the stroke."""
 
 from __future__ import annotations
 
@@ -181,7 +181,28 @@ def end_stop_compression(
 def end_stop_energy(
     *, driving_force: Array, compression: Array, mass: Array, velocity: Array
 ) -> Array:
-    """Energy an end stop takes: m v^2/2 + F_d delta [J].
+    """Energy an end stop takes.
+
+    E = m v^2/2 + F_d delta.
+
+    Parameters
+    ----------
+    driving_force : F_d, net force that keeps pushing [N]
+    compression : delta, travel into the stop [m]
+    mass : moving mass [kg]
+    velocity : v at the stop [m/s]
+
+    Returns
+    -------
+    energy [J]
+
+    Notes
+    -----
+    Valid: no damping (conservative).
+
+    References
+    ----------
+    [derived] kinetic energy and the work of the driving force
 
     Examples
     --------
@@ -193,7 +214,26 @@ def end_stop_energy(
 
 
 def end_stop_peak_force(*, stiffness: Array, compression: Array) -> Array:
-    """Peak force of a linear end stop: k delta [N].
+    """Peak force of a linear end stop.
+
+    F = k delta, delta from `end_stop_compression`.
+
+    Parameters
+    ----------
+    stiffness : k of the stop [N/m]
+    compression : delta, travel into the stop [m]
+
+    Returns
+    -------
+    peak force [N]
+
+    Notes
+    -----
+    Valid: linear stop.
+
+    References
+    ----------
+    [derived] definition of the stiffness
 
     Examples
     --------
@@ -204,7 +244,27 @@ def end_stop_peak_force(*, stiffness: Array, compression: Array) -> Array:
 
 
 def end_stop_peak_pressure(*, pressure: Array, peak_force: Array, area: Array) -> Array:
-    """Peak gauge pressure of oil trapped at the end of the stroke: p_0 + F_peak/A [Pa].
+    """Peak pressure of oil trapped at the end of the stroke.
+
+    p = p_0 + F_peak/A.
+
+    Parameters
+    ----------
+    pressure : p_0, gauge pressure before the stop [Pa]
+    peak_force : force of the trapped oil on the piston, from `end_stop_peak_force` [N]
+    area : piston area of the trapped side [m^2]
+
+    Returns
+    -------
+    peak gauge pressure [Pa]
+
+    Notes
+    -----
+    Valid: sealed end volume, no cushion flow (conservative).
+
+    References
+    ----------
+    [derived] force balance of the piston
 
     Examples
     --------
@@ -213,46 +273,3 @@ def end_stop_peak_pressure(*, pressure: Array, peak_force: Array, area: Array) -
     21.0 MPa
     """
     return pressure + peak_force / area
-
-
-def trapped_pressure_rate(
-    *,
-    liquid_expansion: Array,
-    wall_axial_expansion: Array,
-    wall_hoop_expansion: Array,
-    bulk_modulus: Array,
-    wall_compliance_per_volume: Array,
-) -> Array:
-    """Pressure rise per kelvin of oil locked in a chamber.
-
-    dp/dT = (alpha_V - alpha_z - 2 alpha_theta)/(1/K + (dV/dp)_wall/V).
-
-    Parameters
-    ----------
-    liquid_expansion : alpha_V of the oil, volumetric [1/K]
-    wall_axial_expansion, wall_hoop_expansion : alpha_z, alpha_theta of the barrel [1/K]
-    bulk_modulus : K of the oil [Pa]
-    wall_compliance_per_volume : (dV/dp)/V of the wall, 2 u/(p r_i) of a plain tube [1/Pa]
-
-    Returns
-    -------
-    pressure rise [Pa/K]
-
-    Notes
-    -----
-    Valid: no leakage, no free gas; integrate where K varies much.
-
-    References
-    ----------
-    [derived] volume balance of oil and chamber
-
-    Examples
-    --------
-    >>> r = trapped_pressure_rate(liquid_expansion=7e-4, wall_axial_expansion=12e-6,
-    ...                           wall_hoop_expansion=12e-6, bulk_modulus=1.4e9,
-    ...                           wall_compliance_per_volume=1.36278e-10)
-    >>> print(f"{r / 1e5:.3f} bar/K")
-    7.807 bar/K
-    """
-    surplus = liquid_expansion - wall_axial_expansion - 2 * wall_hoop_expansion
-    return surplus / (1 / bulk_modulus + wall_compliance_per_volume)

@@ -260,7 +260,26 @@ def bending_stiffness(*, plies: Sequence[Sequence[Any]], thicknesses: Sequence[A
 
 
 def thin_wall_ratio(*, thickness: Array, inner_radius: Array) -> Array:
-    """Wall thickness over bore radius; above `THIN_WALL_LIMIT` the thin laminate is unsafe [-].
+    """Wall thickness over bore radius; above `THIN_WALL_LIMIT` the thin laminate is unsafe.
+
+    t/r_i.
+
+    Parameters
+    ----------
+    thickness : wall thickness [m]
+    inner_radius : bore radius [m]
+
+    Returns
+    -------
+    ratio [-]
+
+    Notes
+    -----
+    Valid: any wall.
+
+    References
+    ----------
+    [derived] definition of the ratio
 
     Examples
     --------

@@ -1,6 +1,7 @@
 """Pipes, hoses and ports: compliance, volume, flow and pressure drop.
 
-Their lumped elements live in `elements`. Lines are round and full; a positive flow gives a positive pressure drop.
+Lines are round and full; a positive flow gives a positive pressure drop. Their lumped elements
+live in `elements`.
 """
 
 from __future__ import annotations

@@ -57,7 +57,25 @@ def netting(
 
 
 def netting_angle(*, line_force_ratio: Array = 2.0) -> Array:
-    """Winding angle at which one pair of fibres alone carries N_t/N_z; 54.74 deg closed [rad].
+    """Winding angle at which one pair of fibres alone carries the tube.
+
+    tan^2 a = N_t/N_z: 54.74 degrees for a closed tube.
+
+    Parameters
+    ----------
+    line_force_ratio : N_t/N_z [-]; 2 is closed
+
+    Returns
+    -------
+    angle from the tube axis [rad]
+
+    Notes
+    -----
+    Valid: as a limit check; the matrix carries nothing.
+
+    References
+    ----------
+    [derived] equilibrium of N_z = f cos^2 a and N_t = f sin^2 a by fibres
 
     Examples
     --------

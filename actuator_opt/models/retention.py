@@ -259,7 +259,27 @@ def guide_forces(*, side_force: Array, overhang: Array, span: Array) -> tuple[Ar
 
 
 def bearing_pressure(*, force: Array, diameter: Array, length: Array) -> Array:
-    """Mean pressure on a plain bearing or pin: F/(d L) [Pa].
+    """Mean pressure on a plain bearing or pin.
+
+    p = F/(d L), on the projected area.
+
+    Parameters
+    ----------
+    force : radial force [N]
+    diameter : diameter of the bearing [m]
+    length : bearing length [m]
+
+    Returns
+    -------
+    pressure [Pa]
+
+    Notes
+    -----
+    Valid: even load along the bearing; its edges carry more when the rod tilts.
+
+    References
+    ----------
+    [Shigley2011] nominal bearing pressure
 
     Examples
     --------

@@ -5,10 +5,29 @@ from __future__ import annotations
 from math import pi
 
 from ..numeric import Array
+from .mass import pitch_diameter
 
 
 def section_area(*, outer_diameter: Array, inner_diameter: Array = 0.0) -> Array:
-    """Cross-section of a round bar or tube: pi (d_o^2 - d_i^2)/4 [m^2].
+    """Cross-section of a round bar or tube.
+
+    A = pi (d_o^2 - d_i^2)/4.
+
+    Parameters
+    ----------
+    outer_diameter, inner_diameter : diameters of the rod [m]
+
+    Returns
+    -------
+    area [m^2]
+
+    Notes
+    -----
+    Valid: d_i < d_o.
+
+    References
+    ----------
+    [derived] area of a ring
 
     Examples
     --------
@@ -19,7 +38,25 @@ def section_area(*, outer_diameter: Array, inner_diameter: Array = 0.0) -> Array
 
 
 def second_moment(*, outer_diameter: Array, inner_diameter: Array = 0.0) -> Array:
-    """Second moment of area of a round bar or tube: pi (d_o^4 - d_i^4)/64 [m^4].
+    """Second moment of area of a round bar or tube.
+
+    I = pi (d_o^4 - d_i^4)/64.
+
+    Parameters
+    ----------
+    outer_diameter, inner_diameter : diameters of the rod [m]
+
+    Returns
+    -------
+    second moment of area [m^4]
+
+    Notes
+    -----
+    Valid: d_i < d_o.
+
+    References
+    ----------
+    [derived] integral of y^2 over a ring
 
     Examples
     --------
@@ -106,7 +143,26 @@ def axial_stiffness_as_published(
 
 
 def rod_stress(*, force: Array, outer_diameter: Array, inner_diameter: Array = 0.0) -> Array:
-    """Axial stress of the rod: F/A [Pa], with the sign of the force.
+    """Axial stress of the rod.
+
+    sigma = F/A.
+
+    Parameters
+    ----------
+    force : axial force, tension positive [N]
+    outer_diameter, inner_diameter : diameters of the rod [m]
+
+    Returns
+    -------
+    stress [Pa], with the sign of the force
+
+    Notes
+    -----
+    Valid: away from threads, shoulders and holes.
+
+    References
+    ----------
+    [derived] force over area
 
     Examples
     --------
@@ -119,7 +175,26 @@ def rod_stress(*, force: Array, outer_diameter: Array, inner_diameter: Array = 0
 def bending_stress(
     *, bending_moment: Array, outer_diameter: Array, inner_diameter: Array = 0.0
 ) -> Array:
-    """Largest bending stress of a round bar or tube: M d_o/(2 I) [Pa].
+    """Largest bending stress of a round bar or tube.
+
+    sigma = M d_o/(2 I).
+
+    Parameters
+    ----------
+    bending_moment : M [N m]
+    outer_diameter, inner_diameter : diameters of the rod [m]
+
+    Returns
+    -------
+    stress [Pa]
+
+    Notes
+    -----
+    Valid: linear elastic, slender.
+
+    References
+    ----------
+    [derived] linear stress over the section of a beam
 
     Examples
     --------
@@ -162,7 +237,27 @@ def thread_stress_area(*, diameter: Array, pitch: Array) -> Array:
 
 
 def thread_stress(*, force: Array, diameter: Array, pitch: Array) -> Array:
-    """Tensile stress in a metric thread: F/A_s [Pa].
+    """Tensile stress in a metric thread.
+
+    sigma = F/A_s.
+
+    Parameters
+    ----------
+    force : axial force [N]
+    diameter : nominal diameter [m]
+    pitch : pitch [m]
+
+    Returns
+    -------
+    stress [Pa]
+
+    Notes
+    -----
+    Valid: ISO 60 degree threads; nominal, without the notch of the root.
+
+    References
+    ----------
+    [ISO898-1] nominal stress area
 
     Examples
     --------
@@ -175,7 +270,8 @@ def thread_stress(*, force: Array, diameter: Array, pitch: Array) -> Array:
 def thread_shear_stress(*, force: Array, diameter: Array, pitch: Array, engagement: Array) -> Array:
     """Shear stress over the flanks of an engaged metric thread.
 
-    tau = F/(pi d_2 L_e/2), d_2 = d - 0.6495 P: half the pitch cylinder is sheared (a choice).
+    tau = F/(pi d_2 L_e/2), d_2 by `mass.pitch_diameter`: half the pitch cylinder is sheared
+    (a choice).
 
     Parameters
     ----------
@@ -194,7 +290,7 @@ def thread_shear_stress(*, force: Array, diameter: Array, pitch: Array, engageme
 
     References
     ----------
-    [ISO724] pitch diameter; half-cylinder area [derived]
+    [ISO724] pitch diameter; [derived] half of its cylinder is sheared
 
     Examples
     --------
@@ -202,5 +298,5 @@ def thread_shear_stress(*, force: Array, diameter: Array, pitch: Array, engageme
     >>> print(f"{tau / 1e6:.2f} MPa")
     88.17 MPa
     """
-    pitch_diameter = diameter - 0.6495 * pitch
-    return force / (pi / 2 * pitch_diameter * engagement)
+    sheared = pi / 2 * pitch_diameter(diameter=diameter, pitch=pitch) * engagement
+    return force / sheared

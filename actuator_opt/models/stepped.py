@@ -205,7 +205,7 @@ def stepped_column_load(
     References
     ----------
     [TimoshenkoGere1961] bars with varying cross-section; [Ostrowski1973] square-root iteration;
-    pole-free conditions [derived] in the module's text
+    [derived] pole-free conditions, in the module's text
 
     Examples
     --------

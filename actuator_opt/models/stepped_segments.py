@@ -102,7 +102,8 @@ def stepped_column_load_segments(
 
     References
     ----------
-    [TimoshenkoGere1961] bars with varying cross-section; transfer matrix [derived]
+    [TimoshenkoGere1961] bars with varying cross-section; [derived] transfer matrix of a
+    segment under axial load
 
     Examples
     --------

@@ -1,21 +1,15 @@
 """Stiffness formulas exactly as the sources print them, to reproduce and compare.
 
 They put the *totals* of oil, barrel and hoses in series, which is off by up to 13 % with hoses;
-`stiffness` holds the correct forms. `stiffness` re-exports these functions.
+`stiffness` holds the correct forms.
 """
 
 from __future__ import annotations
 
 import math
 
-from ..numeric import Array, real, where
-
-
-def _expansion(inner_diameter: Array, outer_diameter: Array) -> Array:
-    """Wall coefficient lambda = (Do^2 + D^2)/(Do^2 - D^2), NaN without a wall."""
-    inner, outer = inner_diameter * inner_diameter, outer_diameter * outer_diameter
-    valid = real(outer - inner) > 0
-    return where(valid, (outer + inner) / where(valid, outer - inner, 1.0), math.nan)
+from ..numeric import Array
+from .lines import line_compliance
 
 
 def series_of_totals_as_published(
@@ -132,8 +126,14 @@ def barrel_stiffness_as_published(
     >>> print(f"{k / 1e6:.1f} MN/m")
     247.0 MN/m
     """
-    growth = _expansion(bore, outer_diameter) + poissons_ratio
-    return 0.5 * youngs_modulus * area / (chamber_length * growth)
+    compliance = line_compliance(
+        inner_diameter=bore,
+        outer_diameter=outer_diameter,
+        length=chamber_length,
+        youngs_modulus=youngs_modulus,
+        poissons_ratio=poissons_ratio,
+    )
+    return area * (0.25 * math.pi) * bore * bore / compliance
 
 
 def line_stiffness_as_published(

@@ -1,26 +1,13 @@
-"""Quadratic ply failure criteria (Tsai-Hill, Tsai-Wu) and Puck's, as load multipliers.
+"""Quadratic ply failure criteria (Tsai-Hill, Tsai-Wu) and Puck's, as utilisations.
 
-`inverse_*` is 1/SR, the utilisation: finite at zero stress and linear in the load (at most 1 is
-safe). The plain name is SR, the factor by which the load may grow before the ply fails, infinite
-where it never does. Stresses are in material axes (1 fibre, 2 transverse in the wall, 3 radial),
-tension positive. The criteria that name a mode live in `strength_modes`, offered here too.
+The criteria that name a failure mode, the ply strengths and the conventions are in
+`strength_modes`.
 """
 
 from __future__ import annotations
 
 from ..numeric import Array, absolute, maximum, namespace, real, where
-from .strength_modes import (
-    PlyStrength,
-    hashin,
-    hashin_modes,
-    inverse_hashin,
-    inverse_max_strain,
-    inverse_max_stress,
-    load_multiplier,
-    max_strain,
-    max_stress,
-    max_stress_modes,
-)
+from .strength_modes import PlyStrength
 
 
 def inverse_tsai_hill(
@@ -59,22 +46,6 @@ def inverse_tsai_hill(
     mixed = along * stress_2 / s.tension_1
     squares = along * along - mixed + across * across + slip * slip
     return namespace(squares).sqrt(squares)
-
-
-def tsai_hill(*, stress_1: Array, stress_2: Array, shear_12: Array, strength: PlyStrength) -> Array:
-    """Load multiplier by Tsai-Hill: 1/`inverse_tsai_hill` [-].
-
-    Examples
-    --------
-    >>> p = PlyStrength(1900.0, 1300.0, 55.0, 190.0, 85.0)
-    >>> print(f"{tsai_hill(stress_1=0.0, stress_2=0.0, shear_12=42.5, strength=p):.3f}")
-    2.000
-    """
-    return load_multiplier(
-        inverse_tsai_hill(
-            stress_1=stress_1, stress_2=stress_2, shear_12=shear_12, strength=strength
-        )
-    )
 
 
 def _tsai_wu_form(strength: PlyStrength, interaction: Array, *, radial: bool) -> tuple[Array, ...]:
@@ -165,38 +136,6 @@ def inverse_tsai_wu(
     return where(never, 0 * inside, (linear + root) / (2 * left))
 
 
-def tsai_wu(
-    *,
-    stress_1: Array,
-    stress_2: Array,
-    shear_12: Array,
-    strength: PlyStrength,
-    stress_3: Array | None = None,
-    interaction: Array = -0.5,
-    residual: tuple[Array, Array, Array] | None = None,
-) -> Array:
-    """Load multiplier by Tsai-Wu: 1/`inverse_tsai_wu` [-].
-
-    Examples
-    --------
-    >>> p = PlyStrength(1900.0, 1300.0, 55.0, 190.0, 85.0)
-    >>> r = tsai_wu(stress_1=400.0, stress_2=30.0, shear_12=40.0, strength=p, stress_3=-25.0)
-    >>> print(f"{r:.6f}")
-    1.459933
-    """
-    return load_multiplier(
-        inverse_tsai_wu(
-            stress_1=stress_1,
-            stress_2=stress_2,
-            shear_12=shear_12,
-            strength=strength,
-            stress_3=stress_3,
-            interaction=interaction,
-            residual=residual,
-        )
-    )
-
-
 def inverse_puck(
     *,
     stress_1: Array,
@@ -257,32 +196,3 @@ def inverse_puck(
     between = where(pulled, mode_a, where(sheared, mode_b, mode_c))
     fibre = maximum(stress_1 / s.tension_1, -stress_1 / s.compression_1)
     return maximum(fibre, between)
-
-
-def puck(
-    *,
-    stress_1: Array,
-    stress_2: Array,
-    shear_12: Array,
-    strength: PlyStrength,
-    inclination_tension: Array = 0.35,
-    inclination_compression: Array = 0.30,
-) -> Array:
-    """Load multiplier by Puck's plane-stress criterion: 1/`inverse_puck` [-].
-
-    Examples
-    --------
-    >>> p = PlyStrength(1900.0, 1300.0, 55.0, 190.0, 85.0)
-    >>> print(f"{puck(stress_1=400.0, stress_2=30.0, shear_12=40.0, strength=p):.6f}")
-    1.323506
-    """
-    return load_multiplier(
-        inverse_puck(
-            stress_1=stress_1,
-            stress_2=stress_2,
-            shear_12=shear_12,
-            strength=strength,
-            inclination_tension=inclination_tension,
-            inclination_compression=inclination_compression,
-        )
-    )

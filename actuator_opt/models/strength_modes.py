@@ -1,9 +1,9 @@
-"""Ply strengths, and the criteria that name a failure mode: max stress, max strain, Hashin, Puck.
+"""Ply strengths, and the criteria that name a failure mode: max stress, max strain, Hashin.
 
-`*_modes` gives the utilisation 1/SR of every mode by name, `inverse_*` the largest of them,
-finite at zero stress and linear in the load (at most 1 is safe); the plain name is SR, the factor
-by which the load may grow before the ply fails, infinite where it never does. Stresses are in
-material axes (1 fibre, 2 transverse in the wall, 3 radial), tension positive.
+`*_modes` gives the utilisation 1/SR of every mode by name, `inverse_*` the largest of them:
+finite at zero stress and linear in the load, at most 1 is safe. `load_multiplier` turns it into SR,
+the factor by which the load may grow before the ply fails. Stresses are in material axes (1 fibre,
+2 transverse in the wall, 3 radial), tension positive. The quadratic criteria are in `strength`.
 """
 
 from __future__ import annotations
@@ -40,7 +40,25 @@ class PlyStrength:
 
 
 def load_multiplier(inverse: Array) -> Array:
-    """Strength ratio SR from a utilisation: 1/inverse, infinite where it is not positive.
+    """Factor by which the load may grow before the utilisation reaches one.
+
+    SR = 1/utilisation, infinite where it is not positive: the ply never fails.
+
+    Parameters
+    ----------
+    inverse : utilisation, of any criterion [-]
+
+    Returns
+    -------
+    strength ratio SR [-]
+
+    Notes
+    -----
+    Valid: proportional loading.
+
+    References
+    ----------
+    [derived] the utilisations here are linear in the load
 
     Examples
     --------
@@ -121,7 +139,26 @@ def inverse_max_stress(
     stress_3: Array | None = None,
     residual: tuple[Array, Array, Array] | None = None,
 ) -> Array:
-    """Utilisation by maximum stress: the largest of `max_stress_modes` [-].
+    """Utilisation by maximum stress: the largest of `max_stress_modes`.
+
+    Parameters
+    ----------
+    stress_1, stress_2, shear_12 : ply stresses of the load [Pa]
+    strength : ply strengths
+    stress_3 : radial stress of the load [Pa], or None in plane stress
+    residual : residual (thermal) sigma_1, sigma_2, tau_12 [Pa]
+
+    Returns
+    -------
+    utilisation [-]
+
+    Notes
+    -----
+    Valid: as `max_stress_modes`.
+
+    References
+    ----------
+    [Jones1999] maximum stress
 
     Examples
     --------
@@ -138,35 +175,6 @@ def inverse_max_stress(
         residual=residual,
     )
     return reduce(maximum, modes.values())
-
-
-def max_stress(
-    *,
-    stress_1: Array,
-    stress_2: Array,
-    shear_12: Array,
-    strength: PlyStrength,
-    stress_3: Array | None = None,
-    residual: tuple[Array, Array, Array] | None = None,
-) -> Array:
-    """Load multiplier by maximum stress: 1/`inverse_max_stress` [-].
-
-    Examples
-    --------
-    >>> p = PlyStrength(1900.0, 1300.0, 55.0, 190.0, 85.0)
-    >>> print(f"{max_stress(stress_1=400.0, stress_2=30.0, shear_12=40.0, strength=p):.5f}")
-    1.83333
-    """
-    return load_multiplier(
-        inverse_max_stress(
-            stress_1=stress_1,
-            stress_2=stress_2,
-            shear_12=shear_12,
-            strength=strength,
-            stress_3=stress_3,
-            residual=residual,
-        )
-    )
 
 
 def inverse_max_strain(
@@ -218,43 +226,6 @@ def inverse_max_strain(
     coupling = poissons_ratio_12 * modulus_ratio
     second = stress_2 - coupling * stress_1 - poissons_ratio_23 * stress_3
     return inverse_max_stress(stress_1=first, stress_2=second, shear_12=shear_12, strength=strength)
-
-
-def max_strain(
-    *,
-    stress_1: Array,
-    stress_2: Array,
-    shear_12: Array,
-    strength: PlyStrength,
-    poissons_ratio_12: Array,
-    modulus_ratio: Array,
-    stress_3: Array = 0.0,
-    poissons_ratio_13: Array = 0.0,
-    poissons_ratio_23: Array = 0.0,
-) -> Array:
-    """Load multiplier by maximum strain: 1/`inverse_max_strain` [-].
-
-    Examples
-    --------
-    >>> p = PlyStrength(1900.0, 1300.0, 55.0, 190.0, 85.0)
-    >>> r = max_strain(stress_1=-300.0, stress_2=-90.0, shear_12=60.0, strength=p,
-    ...                poissons_ratio_12=0.28, modulus_ratio=9 / 138)
-    >>> print(f"{r:.6f}")
-    1.416667
-    """
-    return load_multiplier(
-        inverse_max_strain(
-            stress_1=stress_1,
-            stress_2=stress_2,
-            shear_12=shear_12,
-            strength=strength,
-            poissons_ratio_12=poissons_ratio_12,
-            modulus_ratio=modulus_ratio,
-            stress_3=stress_3,
-            poissons_ratio_13=poissons_ratio_13,
-            poissons_ratio_23=poissons_ratio_23,
-        )
-    )
 
 
 def hashin_modes(
@@ -323,7 +294,25 @@ def inverse_hashin(
     strength: PlyStrength,
     fibre_shear: float = 1.0,
 ) -> Array:
-    """Utilisation by Hashin 1980: the largest of `hashin_modes` [-].
+    """Utilisation by Hashin's criterion: the largest of `hashin_modes`.
+
+    Parameters
+    ----------
+    stress_1, stress_2, shear_12 : ply stresses [Pa]
+    strength : ply strengths
+    fibre_shear : a, share of the shear term in fibre tension [-], 0 to 1
+
+    Returns
+    -------
+    utilisation [-]
+
+    Notes
+    -----
+    Valid: as `hashin_modes`.
+
+    References
+    ----------
+    [Hashin1980] plane-stress form
 
     Examples
     --------
@@ -339,30 +328,3 @@ def inverse_hashin(
         fibre_shear=fibre_shear,
     )
     return reduce(maximum, modes.values())
-
-
-def hashin(
-    *,
-    stress_1: Array,
-    stress_2: Array,
-    shear_12: Array,
-    strength: PlyStrength,
-    fibre_shear: float = 1.0,
-) -> Array:
-    """Load multiplier by Hashin 1980: 1/`inverse_hashin` [-].
-
-    Examples
-    --------
-    >>> p = PlyStrength(1900.0, 1300.0, 55.0, 190.0, 85.0)
-    >>> print(f"{hashin(stress_1=-300.0, stress_2=-90.0, shear_12=60.0, strength=p):.6f}")
-    1.211654
-    """
-    return load_multiplier(
-        inverse_hashin(
-            stress_1=stress_1,
-            stress_2=stress_2,
-            shear_12=shear_12,
-            strength=strength,
-            fibre_shear=fibre_shear,
-        )
-    )

@@ -10,6 +10,7 @@ from ..numeric import Array, expm1_quotient, namespace
 
 
 def _zero_pressure_modulus(zero_modulus: Array, coefficient: Array, temperature: Array) -> Array:
+    """K0 at a temperature."""
     cooled = coefficient * temperature
     return zero_modulus * namespace(cooled).exp(-cooled)
 

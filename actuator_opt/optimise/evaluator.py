@@ -165,10 +165,10 @@ class Evaluator:
     def jacobian(self, point: Point) -> Vector:
         """Gradients (rows, nf) at a point, in solver coordinates; a missing slope counts as 0."""
         if point.jacobian is None:
-            self._keep(point, self.jacobians(point.z[:, None])[:, 0])
+            return self._keep(point, self.jacobians(point.z[:, None])[:, 0])
         return point.jacobian
 
-    def _keep(self, point: Point, slopes: Vector) -> None:
+    def _keep(self, point: Point, slopes: Vector) -> Vector:
         broken = ~np.isfinite(slopes)
         if broken.any():
             self.bad_slopes += 1
@@ -177,6 +177,7 @@ class Evaluator:
         row = np.abs(slopes)
         self.influence[0] = np.maximum(self.influence[0], row[0])
         self.influence[1] = np.maximum(self.influence[1], row.max(axis=0))
+        return slopes
 
     def _value_and_slopes(self, z: Vector) -> tuple[Vector, Vector]:
         """Rows (rows, 1) and gradients (rows, nf) of one point from one complex evaluation.

@@ -71,10 +71,10 @@ def resolve_together(
         for k, trial in zip(alive, points, strict=True):
             if not trial.valid:
                 continue
-            if last[k] <= SETTLED and trial.violation <= FEASIBLE:
-                if kkt.check(evaluator, trial).residual <= RESIDUAL:
-                    found[k] = trial.objective
-                    continue
+            settled = last[k] <= SETTLED and trial.violation <= FEASIBLE
+            if settled and kkt.check(evaluator, trial).residual <= RESIDUAL:
+                found[k] = trial.objective
+                continue
             if iteration in RENEWALS:
                 own = Evaluator(parametric.at(parameters[:, k]))
                 there = newton.state_at(own, trial)

@@ -9,6 +9,7 @@ iterate is kept, and whoever calls judges the point itself.
 from __future__ import annotations
 
 import difflib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 

@@ -167,11 +167,7 @@ def _resolved_ends(
         for k in range(len(values))
         for sign in (1, -1)
     }
-    wanted = [
-        (k, sign)
-        for k, sign in ends
-        if change != 0 and given.matters(k) and values[k] != 0
-    ]
+    wanted = [(k, sign) for k, sign in ends if change != 0 and given.matters(k) and values[k] != 0]
     known = _together(parametric, evaluator, point, values, moves, change, wanted)
     for (k, sign), objective in zip(wanted, known, strict=True):
         step = sign * change * values[k]

@@ -8,6 +8,8 @@ from typing import Any
 
 from ..design.model import Design
 from ..evaluate.evaluation import Evaluation
+from ..quantities import INPUTS
+from ..tables import aligned
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +100,16 @@ class Optimisation:
     seed: int
     seconds: float
     certificate: None = None
+
+    def __str__(self) -> str:
+        """Outcome, variables and the evaluation of the best design as tables."""
+        rows = [["variable", "value", "lower", "upper", ""]]
+        for v in self.variables:
+            quantity = INPUTS[v.quantity]
+            numbers = [quantity.text(x, 6) for x in (v.value, v.lower, v.upper)]
+            rows.append([v.path, *numbers, f"at {v.at_bound} bound" if v.at_bound else ""])
+        table = aligned(rows, right=(1, 2, 3))
+        return "\n".join([self.sentence, "", table, "", str(self.evaluation)])
 
     def to_dict(self) -> dict[str, Any]:
         """The `optimise --json` object (SI): the evaluation's keys and the optimiser's."""
