@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actuator_opt.models import fluid
+from actuator_opt.models import density, fluid, tait
 
 CELSIUS = 273.15
 
@@ -129,13 +129,13 @@ def test_roelands_outside_its_domain_is_nan():
 )
 def test_density_tait(celsius, bar, expected):
     """Density of the generic mineral oil, published table."""
-    rho = fluid.density_tait(temperature=celsius + CELSIUS, pressure=bar * 1e5)
+    rho = tait.density_tait(temperature=celsius + CELSIUS, pressure=bar * 1e5)
     assert rho == pytest.approx(expected, abs=0.06)
 
 
 def test_density_dowson_higginson_limits():
     """The slope at zero is rho0 a; the ceiling is rho0 (1 + a/b)."""
-    rho = fluid.density_dowson_higginson(reference_density=870.0, pressure=np.array([1.0, 1e15]))
+    rho = density.density_dowson_higginson(reference_density=870.0, pressure=np.array([1.0, 1e15]))
     assert rho[0] - 870.0 == pytest.approx(870 * 0.6e-9, rel=1e-5)
     assert rho[1] == pytest.approx(870 * (1 + 0.6 / 1.7), rel=1e-5)
 
@@ -149,18 +149,18 @@ def test_density_dowson_higginson_limits():
 )  # fmt: skip
 def test_bulk_modulus_tait(celsius, bar, expected):
     """Tangent bulk modulus of the generic mineral oil; B = 11.9 (10.9 would give 1563 at 200)."""
-    modulus = fluid.bulk_modulus_tait(temperature=celsius + CELSIUS, pressure=bar * 1e5)
+    modulus = tait.bulk_modulus_tait(temperature=celsius + CELSIUS, pressure=bar * 1e5)
     assert modulus / 1e6 == pytest.approx(expected, abs=0.55 if expected % 1 == 0 else 0.06)
 
 
 def test_tait_density_and_moduli_agree():
     """K = rho dp/drho by central differences; secant = p/(1 - rho0/rho)."""
     t, p, h = 313.15, 200e5, 1e3
-    rho = [fluid.density_tait(temperature=t, pressure=q) for q in (0.0, p - h, p, p + h)]
+    rho = [tait.density_tait(temperature=t, pressure=q) for q in (0.0, p - h, p, p + h)]
     tangent = rho[2] * 2 * h / (rho[3] - rho[1])
-    assert fluid.bulk_modulus_tait(temperature=t, pressure=p) == pytest.approx(tangent, rel=1e-6)
+    assert tait.bulk_modulus_tait(temperature=t, pressure=p) == pytest.approx(tangent, rel=1e-6)
     secant = p / (1 - rho[0] / rho[2])
-    assert fluid.secant_bulk_modulus_tait(temperature=t, pressure=p) == pytest.approx(secant)
+    assert tait.secant_bulk_modulus_tait(temperature=t, pressure=p) == pytest.approx(secant)
 
 
 def test_warm_bulk_modulus_falls_as_tait_does():
@@ -173,8 +173,8 @@ def test_warm_bulk_modulus_falls_as_tait_does():
 
 def test_secant_tait_starts_at_the_tangent():
     """At zero pressure secant and tangent are the same K0."""
-    assert fluid.secant_bulk_modulus_tait(temperature=313.15, pressure=0.0) == pytest.approx(
-        fluid.bulk_modulus_tait(temperature=313.15, pressure=0.0)
+    assert tait.secant_bulk_modulus_tait(temperature=313.15, pressure=0.0) == pytest.approx(
+        tait.bulk_modulus_tait(temperature=313.15, pressure=0.0)
     )
 
 
@@ -235,7 +235,7 @@ def test_effective_bulk_modulus_holds_at_cavitation():
 def test_thermal_pressure_of_trapped_oil():
     """7.806 bar/K for the 16/20 mm aluminium barrel; the printed digit is truncated (7.8066)."""
     wall = 19.7282e-15 / (math.pi * 0.016**2 * 0.18)  # dV/dp over V of the barrel check values
-    slope = fluid.thermal_pressure_slope(
+    slope = density.thermal_pressure_slope(
         volume_expansion=7e-4,
         wall_expansion_axial=12e-6,
         wall_expansion_hoop=12e-6,

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actuator_opt.models import damping, friction, seals
+from actuator_opt.models import damping, friction, lugre, seals
 
 SLIDES = {  # [MECE5005]
     "coulomb": 500.0,
@@ -161,7 +161,7 @@ LUGRE = {"bristle_stiffness": 1e7, "bristle_damping": 3e4, "viscous": 1000.0}
 def test_lugre_check_values():
     """Deflection and force after 0.1/1/10 ms at 20 mm/s from rest."""
     level = friction.stribeck_level(speed=0.02, **SLIDES)
-    step = friction.lugre_step(
+    step = lugre.lugre_step(
         deflection=0.0, speed=0.02, time_step=np.array([1e-4, 1e-3, 1e-2]), level=level, **LUGRE
     )
     np.testing.assert_allclose(step.deflection * 1e6, [1.97104, 17.3411, 64.7208], rtol=4e-6)
@@ -172,10 +172,10 @@ def test_lugre_check_values():
 def test_lugre_step_is_stable_and_bounded(speed, start, time_step):
     """Any step size: z stays between its start and its steady value; at rest it stays."""
     level = friction.stribeck_level(speed=speed, **SLIDES)
-    step = friction.lugre_step(
+    step = lugre.lugre_step(
         deflection=start, speed=speed, time_step=time_step, level=level, **LUGRE
     )
-    steady = friction.lugre_steady_deflection(speed=speed, level=level, bristle_stiffness=1e7)
+    steady = lugre.lugre_steady_deflection(speed=speed, level=level, bristle_stiffness=1e7)
     if speed == 0:
         assert step.deflection == start
     else:
@@ -187,12 +187,12 @@ def test_lugre_step_is_stable_and_bounded(speed, start, time_step):
 def test_lugre_steps_compose(speed, time_step):
     """Two half steps are one step: the closed form is exact at constant speed."""
     level = friction.stribeck_level(speed=speed, **SLIDES)
-    whole = friction.lugre_step(
+    whole = lugre.lugre_step(
         deflection=1e-6, speed=speed, time_step=time_step, level=level, **LUGRE
     )
     half = 1e-6
     for _ in range(2):
-        half, _force = friction.lugre_step(
+        half, _force = lugre.lugre_step(
             deflection=half, speed=speed, time_step=time_step / 2, level=level, **LUGRE
         )
     assert half == pytest.approx(whole.deflection, rel=1e-9)
@@ -200,12 +200,12 @@ def test_lugre_steps_compose(speed, time_step):
 
 def test_lugre_passive_speed():
     """[MECE5005] sigma1 = sqrt(sigma0 m), m 234 kg: 0.0422 m/s at g = F_C."""
-    stiffness = friction.lugre_bristle_stiffness(static=1000.0, largest_deflection=1e-4)
-    sigma1 = friction.lugre_bristle_damping(bristle_stiffness=stiffness, mass=234.0)
-    limit = friction.lugre_passive_speed(level=500.0, bristle_damping=sigma1, viscous=1000.0)
+    stiffness = lugre.lugre_bristle_stiffness(static=1000.0, largest_deflection=1e-4)
+    sigma1 = lugre.lugre_bristle_damping(bristle_stiffness=stiffness, mass=234.0)
+    limit = lugre.lugre_passive_speed(level=500.0, bristle_damping=sigma1, viscous=1000.0)
     assert stiffness == pytest.approx(1e7)
     assert limit == pytest.approx(0.0422, abs=6e-5)
-    inert = friction.lugre_passive_speed(level=500.0, bristle_damping=sigma1, viscous=0.0)
+    inert = lugre.lugre_passive_speed(level=500.0, bristle_damping=sigma1, viscous=0.0)
     assert sigma1 * inert == pytest.approx(4 * 500.0)
 
 
@@ -213,7 +213,7 @@ def test_lugre_passive_speed():
 def test_lugre_passive_speed_bounds_the_power_balance(share, position):
     """F v - d(sigma0 z^2/2)/dt >= 0 for all z inside the limit, < 0 for some z outside."""
     g, s0, s1, s2 = 500.0, 1e7, 3e4, 1000.0
-    v = share * float(friction.lugre_passive_speed(level=g, bristle_damping=s1, viscous=s2))
+    v = share * float(lugre.lugre_passive_speed(level=g, bristle_damping=s1, viscous=s2))
     z = position * 2 * g / s0
 
     def dissipation(z):
@@ -230,9 +230,9 @@ def test_lugre_passive_speed_bounds_the_power_balance(share, position):
 
 def test_tapered_damping_keeps_passive():
     """sigma1 e^(-(v/v_d)^2) |v| <= 4 g everywhere when v_d is half the limit at rest."""
-    limit = float(friction.lugre_passive_speed(level=500.0, bristle_damping=3e4, viscous=0.0))
+    limit = float(lugre.lugre_passive_speed(level=500.0, bristle_damping=3e4, viscous=0.0))
     v = np.linspace(0, 5, 2001)
-    sigma1 = friction.lugre_tapered_damping(bristle_damping=3e4, speed=v, taper_speed=limit / 2)
+    sigma1 = lugre.lugre_tapered_damping(bristle_damping=3e4, speed=v, taper_speed=limit / 2)
     assert np.all(sigma1 * v <= 4 * 500.0)
 
 

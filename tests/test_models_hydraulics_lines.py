@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actuator_opt.models import lines
+from actuator_opt.models import elements, lines
 
 LINE = {"inner_diameter": 8e-3, "length": 1.2}
 
@@ -17,35 +17,35 @@ LINE = {"inner_diameter": 8e-3, "length": 1.2}
 def test_lumped_line_check_values():
     """R, L, C, resonance, quarter wave and speed of sound of an 8 mm line, independent values."""
     volume = lines.line_volume(**LINE)
-    inertance = lines.inertance(**LINE, density=865.0)
-    capacitance = lines.capacitance(volume=volume, bulk_modulus=1.4e9)
-    speed = lines.sound_speed(bulk_modulus=1.4e9, density=865.0)
-    assert lines.resistance(**LINE, dynamic_viscosity=0.04) == pytest.approx(4.77465e8, rel=2e-6)
+    inertance = elements.inertance(**LINE, density=865.0)
+    capacitance = elements.capacitance(volume=volume, bulk_modulus=1.4e9)
+    speed = elements.sound_speed(bulk_modulus=1.4e9, density=865.0)
+    assert elements.resistance(**LINE, dynamic_viscosity=0.04) == pytest.approx(4.77465e8, rel=2e-6)
     assert inertance == pytest.approx(2.06504e7, rel=3e-6)
     assert capacitance == pytest.approx(4.30847e-14, rel=2e-6)
-    resonance = lines.resonance_frequency(inertance=inertance, capacitance=capacitance)
+    resonance = elements.resonance_frequency(inertance=inertance, capacitance=capacitance)
     assert resonance == pytest.approx(168.731, rel=3e-6)
     assert speed == pytest.approx(1272.20, rel=3e-6)
-    wave = lines.quarter_wave_frequency(length=1.2, sound_speed=speed)
+    wave = elements.quarter_wave_frequency(length=1.2, sound_speed=speed)
     assert wave == pytest.approx(265.042, rel=3e-6)
 
 
 def test_helmholtz_check_value():
     """0.1 l behind a neck of 8 x 300 mm resonates at 262.090 Hz."""
-    neck = lines.inertance(inner_diameter=8e-3, length=0.3, density=865.0)
-    volume = lines.capacitance(volume=1e-4, bulk_modulus=1.4e9)
-    frequency = lines.resonance_frequency(inertance=neck, capacitance=volume)
+    neck = elements.inertance(inner_diameter=8e-3, length=0.3, density=865.0)
+    volume = elements.capacitance(volume=1e-4, bulk_modulus=1.4e9)
+    frequency = elements.resonance_frequency(inertance=neck, capacitance=volume)
     assert frequency == pytest.approx(262.090, rel=3e-6)
 
 
 def test_quarter_wave_of_the_thesis():
     """[AaltoThesis]: 20 Hz at 1300 m/s needs 16.25 m."""
-    assert lines.quarter_wave_frequency(length=16.25, sound_speed=1300.0) == pytest.approx(20.0)
+    assert elements.quarter_wave_frequency(length=16.25, sound_speed=1300.0) == pytest.approx(20.0)
 
 
 def test_orifice_check_value_and_sign():
     """C_q 0.611, 0.30 cm2, 5 bar, 870 kg/m3: 37.287 l/min, odd in the pressure difference."""
-    flow = lines.orifice_flow(
+    flow = elements.orifice_flow(
         area=0.3e-4, pressure_difference=np.array([5e5, -5e5, 0.0]), density=870.0
     )
     np.testing.assert_allclose(flow * 60000, [37.287, -37.287, 0.0], atol=5e-4)
@@ -90,7 +90,7 @@ def test_pressure_drop_is_hagen_poiseuille_when_laminar():
     for number in (1.0, 500.0, 2300.0):
         q = flow_at(number)
         assert drop(q) == pytest.approx(
-            lines.resistance(**LINE, dynamic_viscosity=0.01) * q, rel=1e-12
+            elements.resistance(**LINE, dynamic_viscosity=0.01) * q, rel=1e-12
         )
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actuator_opt.models import seals
+from actuator_opt.models import gland, seals
 
 NAMES = list(seals.LAWS)
 UNIT = {"section": 1.0, "youngs_modulus": 1.0}
@@ -166,18 +166,18 @@ def test_gent_ends_at_100():
 def test_squeeze_loses_growth_and_tolerance():
     """C = C0 - (u + tol)/W; without stretch the gland form is the same."""
     arguments = {"squeeze": 0.15, "section": 2e-3, "growth": 40e-6, "tolerance": 50e-6}
-    assert seals.squeeze_after(**arguments) == pytest.approx(0.105)
-    assert seals.squeeze_in_place(**arguments, stretch=0.0) == pytest.approx(0.105)
+    assert gland.squeeze_after(**arguments) == pytest.approx(0.105)
+    assert gland.squeeze_in_place(**arguments, stretch=0.0) == pytest.approx(0.105)
 
 
 @given(st.floats(0, 0.25), st.floats(0.05, 0.3), st.floats(0, 1e-4))
 def test_stretch_thins_the_ring(stretch, squeeze, growth):
     """Stretch keeps the ring's volume and takes squeeze away."""
-    thin = seals.stretched_section(section=2e-3, stretch=stretch)
+    thin = gland.stretched_section(section=2e-3, stretch=stretch)
     assert thin**2 * (1 + stretch) == pytest.approx(4e-6)
     arguments = {"squeeze": squeeze, "section": 2e-3, "growth": growth, "tolerance": 0.0}
-    assert seals.squeeze_in_place(**arguments, stretch=stretch) <= (
-        seals.squeeze_in_place(**arguments, stretch=0.0) + 1e-15
+    assert gland.squeeze_in_place(**arguments, stretch=stretch) <= (
+        gland.squeeze_in_place(**arguments, stretch=0.0) + 1e-15
     )
 
 
@@ -187,18 +187,18 @@ def test_stretch_thins_the_ring(stretch, squeeze, growth):
 )
 def test_metric_gland_table(section, width, depth, squeeze, fill):
     """Squeeze and fill of published dynamic glands (mm, %)."""
-    value = seals.gland_fill(
+    value = gland.gland_fill(
         section=section * 1e-3, groove_width=width * 1e-3, gland_depth=depth * 1e-3
     )
     assert value * 100 == pytest.approx(fill, abs=0.06)
-    assert seals.gland_depth(squeeze=squeeze / 100, section=section) == pytest.approx(
+    assert gland.gland_depth(squeeze=squeeze / 100, section=section) == pytest.approx(
         depth, abs=1e-3 * section
     )
 
 
 def test_limits_of_gap_and_width():
     """The gap is clearance plus growth; the contact is no wider than the groove."""
-    assert seals.extrusion_gap(clearance=3e-5, growth=1.9e-5) == pytest.approx(4.9e-5)
+    assert gland.extrusion_gap(clearance=3e-5, growth=1.9e-5) == pytest.approx(4.9e-5)
     np.testing.assert_array_equal(
-        seals.limited_width(contact_width=np.array([1e-3, 5e-3]), groove_width=2e-3), [1e-3, 2e-3]
+        gland.limited_width(contact_width=np.array([1e-3, 5e-3]), groove_width=2e-3), [1e-3, 2e-3]
     )

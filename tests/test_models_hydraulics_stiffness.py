@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actuator_opt.models import forces, lines, stiffness
+from actuator_opt.models import forces, lines, stiffness, stiffness_published
 
 # [AaltoThesis] test cylinder; barrel OD 50, rod 320 mm assumed (the thesis prints neither).
 BORE, ROD, STROKE = 0.040, 0.025, 0.220
@@ -36,15 +36,17 @@ def volumes(x, line_a, line_b):
 def barrel_as_published(x):
     """Eq. 22 and 23."""
     wall = {"bore": BORE, "outer_diameter": 0.050, **STEEL}
-    head = stiffness.barrel_stiffness_as_published(area=AREA_A, chamber_length=x, **wall)
-    rod = stiffness.barrel_stiffness_as_published(area=AREA_B, chamber_length=STROKE - x, **wall)
+    head = stiffness_published.barrel_stiffness_as_published(area=AREA_A, chamber_length=x, **wall)
+    rod = stiffness_published.barrel_stiffness_as_published(
+        area=AREA_B, chamber_length=STROKE - x, **wall
+    )
     return head, rod
 
 
 def oil(x, modulus, line_a, line_b):
     """Eq. 6 with one bulk modulus."""
     v_a, v_b = volumes(x, line_a, line_b)
-    return stiffness.oil_stiffness_as_published(
+    return stiffness_published.oil_stiffness_as_published(
         bulk_modulus_a=modulus,
         bulk_modulus_b=modulus,
         area_a=AREA_A,
@@ -84,7 +86,7 @@ def test_aalto_oil_with_pipes():
 
 def test_aalto_literal_eq_37():
     """Literal eq. 37 with load cell: 56.0/19.5/42.8 MN/m."""
-    k = stiffness.series_of_totals_as_published(
+    k = stiffness_published.series_of_totals_as_published(
         oil=oil(POSITIONS, 1.6e9, PIPE, PIPE),
         barrel=sum(barrel_as_published(POSITIONS)),
         rod=ROD_STIFFNESS,
@@ -105,17 +107,17 @@ def hose_circuit():
 def test_aalto_literal_eq_38():
     """Literal eq. 38: 20.5/11.33/12.4 MN/m with the cell, 25.46/12.68/14.10 without."""
     line_a, line_b, _, _ = hose_circuit()
-    hoses = stiffness.line_stiffness_as_published(
+    hoses = stiffness_published.line_stiffness_as_published(
         area=AREA_A, length=0.6, **HOSE
-    ) + stiffness.line_stiffness_as_published(area=AREA_B, length=0.8, **HOSE)
+    ) + stiffness_published.line_stiffness_as_published(area=AREA_B, length=0.8, **HOSE)
     arguments = {
         "oil": oil(POSITIONS, 1.3e9, line_a, line_b),
         "barrel": sum(barrel_as_published(POSITIONS)),
         "rod": ROD_STIFFNESS,
         "lines": hoses,
     }
-    with_cell = stiffness.series_of_totals_as_published(**arguments, other=CELL)
-    without = stiffness.series_of_totals_as_published(**arguments)
+    with_cell = stiffness_published.series_of_totals_as_published(**arguments, other=CELL)
+    without = stiffness_published.series_of_totals_as_published(**arguments)
     np.testing.assert_allclose(with_cell / 1e6, [20.5, 11.33, 12.4], atol=0.05)
     np.testing.assert_allclose(without / 1e6, [25.46, 12.68, 14.10], atol=0.005)
 
@@ -219,8 +221,8 @@ def test_elastic_check_cylinder_and_its_published_form():
     c_a, c_b = chambers(x, barrel_a + hose, barrel_b + hose, extra)
     k = stiffness.hydraulic_stiffness(area_a=A2, compliance_a=c_a, area_b=B2, compliance_b=c_b)
     np.testing.assert_allclose(k / 1e6, [12.746, 9.5686, 9.5194], rtol=5e-5)
-    totals = stiffness.series_of_totals_as_published(
-        oil=stiffness.oil_stiffness_as_published(
+    totals = stiffness_published.series_of_totals_as_published(
+        oil=stiffness_published.oil_stiffness_as_published(
             bulk_modulus_a=K2,
             bulk_modulus_b=K2,
             area_a=A2,
@@ -308,7 +310,7 @@ def test_totals_in_series_overstate_hosed_cylinders():
     ) + stiffness.chamber_stiffness(
         area=AREA_B, volume=v_b, bulk_modulus=1.3e9, wall_compliance=swell_b
     )
-    totals = stiffness.series_of_totals_as_published(
+    totals = stiffness_published.series_of_totals_as_published(
         oil=oil(POSITIONS, 1.3e9, line_a, line_b),
         barrel=sum(barrel_as_published(POSITIONS)),
         rod=ROD_STIFFNESS,

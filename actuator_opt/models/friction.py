@@ -1,6 +1,7 @@
 """Seal friction: dry sum over the seals, Stribeck curve, and published parameters.
 
-LuGre, the dynamic form, lives in `lugre`. Friction has the sign of the speed; the magnitudes here are positive.
+Friction has the sign of the speed; the magnitudes here are positive. The dynamic form, LuGre, lives
+in `lugre`.
 """
 
 from __future__ import annotations

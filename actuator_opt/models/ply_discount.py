@@ -322,8 +322,10 @@ def burst_by_ply_discount(
 
     Notes
     -----
-    Valid: thin walls with fibres; a wall of metals only returns its yield (use
-    `barrel.burst_pressure_thick`). The frozen liner stress is in equilibrium, is nowhere above
+    Valid: thin walls with fibres.
+
+    A wall of metals only returns its yield (use `barrel.burst_pressure_thick`). The frozen liner
+    stress is in equilibrium, is nowhere above
     yield and makes all pressures continuous where yield and ply failure coincide.
 
     References

@@ -11,6 +11,13 @@ from ..numeric import Array, maximum, minimum, namespace, positive, sqrt
 from .rod import thread_stress
 
 
+def _edge_ratio(*, loaded: Array, free: Array, reach: Array) -> Array:
+    """Edge over mean shear; reach = G L^2/t_a, K of the loaded and of the ending wall."""
+    half = sqrt(positive(reach * (1 / loaded + 1 / free))) / 2
+    wave = namespace(half).tanh(half)
+    return half * (1 / wave + (free - loaded) / (free + loaded) * wave)
+
+
 def bond_peak_ratio(
     *,
     shear_modulus: Array,
@@ -37,12 +44,13 @@ def bond_peak_ratio(
 
     Notes
     -----
-    Valid: linear adhesive, thin walls against the radius, no peel. A ductile adhesive levels the
-    peak: conservative.
+    Valid: linear adhesive, thin walls against the radius, no peel.
+
+    A ductile adhesive levels the peak: conservative.
 
     References
     ----------
-    [Volkersen1938]
+    [Volkersen1938] shear lag of a lap joint
 
     Examples
     --------
@@ -51,12 +59,11 @@ def bond_peak_ratio(
     >>> print(f"{r:.4f}")
     5.1662
     """
-    softness = 1 / membrane_stiffness_1 + 1 / membrane_stiffness_2
-    half = length / 2 * sqrt(positive(shear_modulus / bond_thickness * softness))
-    stiffer = maximum(membrane_stiffness_1, membrane_stiffness_2)
-    softer = minimum(membrane_stiffness_1, membrane_stiffness_2)
-    wave = namespace(half).tanh(half)
-    return half * (1 / wave + (stiffer - softer) / (stiffer + softer) * wave)
+    return _edge_ratio(
+        loaded=minimum(membrane_stiffness_1, membrane_stiffness_2),
+        free=maximum(membrane_stiffness_1, membrane_stiffness_2),
+        reach=shear_modulus / bond_thickness * length * length,
+    )
 
 
 def bond_shear_peak(
@@ -91,7 +98,7 @@ def bond_shear_peak(
 
     References
     ----------
-    [Volkersen1938]
+    [Volkersen1938] shear lag of a lap joint
 
     Examples
     --------
@@ -145,7 +152,7 @@ def bond_edge_shear(
 
     References
     ----------
-    [Volkersen1938]
+    [Volkersen1938] shear lag of a lap joint
 
     Examples
     --------
@@ -156,11 +163,11 @@ def bond_edge_shear(
     >>> print(f"{tau / 1e6:.2f} MPa")
     27.41 MPa
     """
-    loaded, free = membrane_stiffness_loaded, membrane_stiffness_free
-    softness = 1 / loaded + 1 / free
-    half = length / 2 * sqrt(positive(shear_modulus / bond_thickness * softness))
-    wave = namespace(half).tanh(half)
-    ratio = half * (1 / wave + (free - loaded) / (free + loaded) * wave)
+    ratio = _edge_ratio(
+        loaded=membrane_stiffness_loaded,
+        free=membrane_stiffness_free,
+        reach=shear_modulus / bond_thickness * length * length,
+    )
     return force / (pi * diameter * length) * ratio
 
 

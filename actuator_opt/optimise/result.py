@@ -111,6 +111,24 @@ class Optimisation:
         table = aligned(rows, right=(1, 2, 3))
         return "\n".join([self.sentence, "", table, "", str(self.evaluation)])
 
+    def columns(self) -> dict[str, list[Any]]:
+        """The sensitivity table as columns: SI, but `limit` in its display `unit`."""
+        rows = self.sensitivities
+        return {
+            "parameter": [r.parameter for r in rows],
+            "limit": [r.limit / r.scale for r in rows],
+            "unit": [r.unit for r in rows],
+            "active": [r.active for r in rows],
+            "price": [r.price for r in rows],
+            "percent_per_percent": [r.percent_per_percent for r in rows],
+            "predicted_10": [r.predicted_10 for r in rows],
+            "resolved_10": [r.resolved_10 for r in rows],
+            "predicted_minus10": [r.predicted_minus10 for r in rows],
+            "resolved_minus10": [r.resolved_minus10 for r in rows],
+            "holds_until": [r.holds_until for r in rows],
+            "next_active": [r.next_active for r in rows],
+        }
+
     def to_dict(self) -> dict[str, Any]:
         """The `optimise --json` object (SI): the evaluation's keys and the optimiser's."""
         return (

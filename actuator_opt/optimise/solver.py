@@ -152,7 +152,7 @@ def solve(
     ----------
     problem : the problem; its own start, if any, is always tried
     algorithm : "auto" (the default path) or a name that `nlopt_wrapper.find` knows
-    starts : how many starts to take from the global sweep
+    starts : how many starts to descend from: those given, the rest from the global sweep
     samples : points of the global sweep
     seed : of the sweep and of stochastic algorithms; the same seed gives the same result
     max_evaluations, max_seconds : limits of the whole run; the best point so far is kept
@@ -188,7 +188,7 @@ def _starts(search: _Search, swept: Sweep, wanted: int, more: Sequence[Vector]) 
     evaluator = search.evaluator
     given = [x for x in (evaluator.problem.start, *more) if x is not None]
     coordinates = [evaluator.space.to_z(np.asarray(x, dtype=float)) for x in given]
-    coordinates += distinct(evaluator, swept.z, wanted)
+    coordinates += distinct(evaluator, swept.z, max(wanted - len(coordinates), 1))
     if not coordinates:
         coordinates = [(evaluator.space.lower + evaluator.space.upper) / 2]
     points = [evaluator.point(z) for z in coordinates]

@@ -1,0 +1,95 @@
+"""Timings against the budgets; never gating. Run with `just bench`.
+
+Cold commands are reported as ratios to `import numpy` in the same run, since machines differ.
+"""
+
+from __future__ import annotations
+
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from actuator_opt.design import read_design
+from actuator_opt.evaluate import compute, prepare
+from actuator_opt.optimise.actuator import build
+from actuator_opt.optimise.evaluator import Evaluator
+from actuator_opt.optimise.run import sensitivities
+from actuator_opt.optimise.solver import solve
+
+KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
+
+
+@pytest.fixture(scope="module")
+def knee():
+    """The knee as a problem, at its start."""
+    return build(prepare(read_design(KNEE).design))
+
+
+def cold(*arguments: str) -> float:
+    """Median wall time of a fresh process, s."""
+    times = []
+    for _ in range(5):
+        began = time.perf_counter()
+        subprocess.run([sys.executable, *arguments], capture_output=True, check=False)
+        times.append(time.perf_counter() - began)
+    return statistics.median(times)
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "budget"),
+    [
+        ("--help", ("-m", "actuator_opt", "--help"), 1.6),
+        ("evaluate --json", ("-m", "actuator_opt", "evaluate", str(KNEE), "--json"), 4.0),
+        ("optimise --json", ("-m", "actuator_opt", "optimise", str(KNEE), "--json"), 12.0),
+    ],
+)
+def test_cold_command(benchmark, name, arguments, budget):
+    """A cold command costs at most its budget in units of `import numpy`."""
+    numpy = cold("-c", "import numpy")
+    took = benchmark.pedantic(cold, arguments, rounds=1)
+    benchmark.extra_info |= {"seconds": took, "ratio": took / numpy, "budget": budget}
+    print(f"\n{name}: {took:.3f} s, {took / numpy:.1f} x import numpy (budget {budget})")
+
+
+def test_optimise_with_report(benchmark, tmp_path):
+    """`optimise` with PDF and PNG: budget 2 s."""
+    arguments = ("-m", "actuator_opt", "optimise", str(KNEE), "--out", str(tmp_path), "-q")
+    took = benchmark.pedantic(cold, arguments, rounds=1)
+    print(f"\noptimise with report: {took:.3f} s (budget 2 s)")
+
+
+def test_evaluate_with_gradients(benchmark, knee):
+    """Value and all gradients of the knee: budget 1 ms."""
+    evaluator = Evaluator(knee.problem)
+    z = evaluator.space.to_z(knee.problem.start)[:, None]
+    benchmark(lambda: evaluator.jacobians(z))
+
+
+def test_evaluate(benchmark, knee):
+    """All metrics of one design."""
+    benchmark(lambda: compute(knee.subject, knee.subject.values()))
+
+
+def test_sweep_rate(benchmark, knee):
+    """Constraint margins of 8192 designs; budget 2 million designs/s on two cores."""
+    rng = np.random.default_rng(0)
+    low, high = knee.problem.lower[:, None], knee.problem.upper[:, None]
+    points = low + (high - low) * rng.random((len(knee.paths), 8192))
+    benchmark(lambda: knee.problem.rows(points))
+
+
+def test_solve(benchmark, knee):
+    """The search alone, warm."""
+    benchmark.pedantic(lambda: solve(knee.problem), rounds=3)
+
+
+def test_prices(benchmark, knee):
+    """The sensitivity table with its re-solves at +-10 %: budget 0.3 s for 30."""
+    solution = solve(knee.problem)
+    rows = benchmark.pedantic(lambda: sensitivities(knee, solution), rounds=3)
+    print(f"\n{2 * len(rows)} re-solves")

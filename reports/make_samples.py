@@ -1,0 +1,32 @@
+"""Write the committed sample reports, one for each shipped design, into reports/samples.
+
+Run from the root of the checkout; the same input gives the same bytes.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import actuator_opt as ao
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def main() -> None:
+    """Optimise the designs that have variables, evaluate the others, write each report."""
+    for path in sorted((ROOT / "designs").glob("*.yaml")):
+        actuator = ao.read(path)
+        verb = "optimise" if actuator.design.variables else "report"
+        subject = ao.optimise(actuator) if actuator.design.variables else ao.evaluate(actuator)
+        command = f"actuator-opt {verb} designs/{path.name}"
+        files = ao.report(
+            subject, folder=ROOT / "reports" / "samples", actuator=actuator, command=command
+        )
+        for file in files[1:]:
+            if file.path.stem != path.stem:  # the PDF holds every sheet; one PNG is enough here
+                file.path.unlink()
+        print(files[0].path.relative_to(ROOT), files[0].pages, "sheets")
+
+
+if __name__ == "__main__":
+    main()
