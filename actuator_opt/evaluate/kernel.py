@@ -12,8 +12,8 @@ from ..design.model import Design
 from ..models import forces
 from ..numeric import Array, minimum, where
 from ..quantities import METRICS, Quantity
+from . import duty, hydraulics, sealing, state, strength, wall, weight
 from . import geometry as geometry_module
-from . import hydraulics, sealing, state, strength, wall, weight
 from .allow import Stock
 from .geometry import Geometry
 from .plugin import Plugin
@@ -87,7 +87,8 @@ def compute(subject: Subject, v: Values) -> Pass:
         least = hydraulics.compute_stiffness(springs, moving, out)
         hydraulics.compute_damping(v, g, case_state, friction, least, moving, out)
         hydraulics.compute_flow(v, design, g, case_state, out)
-        strength.compute(v, design, stock, g, case_state, barrel, moving, net, out)
+        strength.compute(v, design, stock, g, case_state, barrel, out)
+        duty.compute(v, design, stock, g, case_state, barrel, moving, net, out)
         thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
         for name, value in geometry_module.lands(g, thread / 2).items():
             out.put(name, value)

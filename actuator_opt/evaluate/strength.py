@@ -1,4 +1,4 @@
-"""Strength, endurance and safety checks in an evaluation.
+"""Static strength in an evaluation: wall, rod, column, thread, retention, caps, pins, guides.
 
 Loads are the largest the supply can make: p A_A pushing (stall, column), p A_B pulling (rod
 tension), and what the end stop puts through barrel and retention.
@@ -9,17 +9,14 @@ from __future__ import annotations
 from math import pi, sqrt
 
 from ..design.model import Design
-from ..models import column, density, end_plate, endurance, retention, rod, stepped
-from ..numeric import Array, maximum, real, where
+from ..models import column, end_plate, retention, rod, stepped
+from ..numeric import Array, real, where
 from .allow import Stock
 from .geometry import Geometry
 from .rows import Computed
 from .state import State
 from .values import Values
 from .wall import Wall
-
-THREAD_NOTCH = 3.0
-"""Fatigue notch factor of a rolled thread root, [Shigley2011] table 8-16."""
 
 HOLE = 2.0
 """Stress at the edge of a small central hole over that of the solid plate [Timoshenko1959]."""
@@ -35,11 +32,9 @@ def compute(
     g: Geometry,
     state: State,
     wall: Wall,
-    moving: Array,
-    net: Array,
     out: Computed,
 ) -> None:
-    """Every strength and safety metric; `net` is the force of every case, `moving` its mass."""
+    """Every strength metric."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     through = max_axial(design, g, supply)
@@ -50,9 +45,6 @@ def compute(
     _caps(stock, design, g, supply, out)
     _pins(v, stock, design, push, out)
     _guides(stock, design, g, state, out)
-    _endurance(v, stock, design, g, wall, supply, push, pull, out)
-    _end_stop(v, design, g, state, supply, moving, net, out)
-    _thermal(v, stock, design, g, state, wall, supply, out)
 
 
 def max_axial(design: Design, g: Geometry, supply: Array) -> Array:
@@ -270,137 +262,3 @@ def _guides(stock: Stock, design: Design, g: Geometry, state: State, out: Comput
         safe = where(loaded, pressures[place], 1.0 + 0 * pressures[place])
         factors[place] = where(loaded, allowed / safe, float("inf"))
     out.put("bearing_factor", factors)
-
-
-def _endurance(
-    v: Values,
-    stock: Stock,
-    design: Design,
-    g: Geometry,
-    wall: Wall,
-    supply: Array,
-    push: Array,
-    pull: Array,
-    out: Computed,
-) -> None:
-    """Pressure-cycle life of metal parts: wall layers, rod (push/pull) and thread root."""
-    area = rod.section_area(outer_diameter=g.rod_diameter, inner_diameter=g.rod_inner_diameter)
-    loads: list[tuple[str, str, Array, Array]] = []
-    for place, pressure in wall.yield_pressure.items():
-        name = wall.yields[place]
-        strength = stock.allowable(name, "yield_strength", "ultimate_strength")
-        loads.append((place, name, strength * supply / pressure, 0.0))
-    loads.append(("rod", design.rod.material, pull / area, -push / pull))
-    if design.rod.thread is not None:
-        stress = THREAD_NOTCH * rod.thread_stress(
-            force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
-        )
-        loads.append(("rod thread", design.rod.material, stress, 0.0))
-    life, factor, lacking = {}, {}, []
-    for place, name, peak, ratio in loads:
-        ultimate, limit = stock.get(name, "ultimate_strength"), stock.get(name, "fatigue_strength")
-        if ultimate is None or limit is None:
-            lacking.append(name)
-            continue
-        cycles = stock.get(name, "fatigue_cycles", default=1e6)
-        life[place] = endurance.cycles_to_failure(
-            peak_stress=peak,
-            ultimate_strength=ultimate,
-            fatigue_limit=limit,
-            limit_cycles=cycles,
-            stress_ratio=ratio,
-        )
-        factor[place] = endurance.fatigue_factor(
-            peak_stress=peak,
-            ultimate_strength=ultimate,
-            amplitude_strength=limit,
-            stress_ratio=ratio,
-        )
-    for metric, values in (("cycle_life", life), ("fatigue_factor", factor)):
-        if values:
-            out.put(metric, values)
-        else:
-            out.skip(metric, f"no fatigue strength known of {', '.join(dict.fromkeys(lacking))}")
-
-
-def _end_stop(
-    v: Values,
-    design: Design,
-    g: Geometry,
-    state: State,
-    supply: Array,
-    moving: Array,
-    net: Array,
-    out: Computed,
-) -> None:
-    """Energy and peak pressure where the piston runs into its stop at the case's speed.
-
-    The case's own load still acts; what drives the piston into the stop is the rest.
-    """
-    if design.cylinder.end_stop == "external":
-        for name in ("end_stop_energy", "end_stop_pressure", "end_stop_factor"):
-            out.skip(name, "the end stop is outside the actuator")
-        return
-    stiffness = supply * g.area_a / v["cylinder.stop_travel"]
-    run = {
-        "driving_force": maximum(net - state.force, 0.0),
-        "mass": moving,
-        "velocity": state.speed,
-    }
-    travel = endurance.end_stop_compression(stiffness=stiffness, **run)
-    out.put("end_stop_energy", endurance.end_stop_energy(compression=travel, **run))
-    peak = endurance.end_stop_peak_pressure(
-        pressure=v["supply.return_pressure"],
-        peak_force=endurance.end_stop_peak_force(stiffness=stiffness, compression=travel),
-        area=where(state.push, g.area_b, g.area_a),
-    )
-    out.put("end_stop_pressure", peak)
-    out.put("end_stop_factor", v["supply.proof_ratio"] * supply / peak)
-
-
-def _thermal(
-    v: Values,
-    stock: Stock,
-    design: Design,
-    g: Geometry,
-    state: State,
-    wall: Wall,
-    supply: Array,
-    out: Computed,
-) -> None:
-    environment = design.environment
-    rise = None if environment is None else environment.trapped_rise
-    oil = design.fluid.material
-    expansion = stock.get(oil, "volume_expansion")
-    if rise is None or wall.expansion is None or expansion is None:
-        why = "no trapped_rise stated: add environment.trapped_rise"
-        if rise is not None:
-            why = f"thermal expansion of {oil} or of the barrel is not known"
-        out.skip("trapped_pressure", why)
-        out.skip("trapped_factor", why)
-    else:
-        slope = density.thermal_pressure_slope(
-            volume_expansion=expansion,
-            wall_expansion_axial=wall.expansion[0],
-            wall_expansion_hoop=wall.expansion[1],
-            bulk_modulus=maximum(state.bulk_modulus_a, state.bulk_modulus_b),
-            wall_compliance_per_volume=2 * wall.growth / (supply * g.inner_radius),
-        )
-        jump = slope * v["environment.trapped_rise"]
-        out.put("trapped_pressure", jump)
-        out.put("trapped_factor", v["supply.proof_ratio"] * supply / (supply + jump))
-    if wall.mismatch is not None:
-        out.put("liner_mismatch_factor", wall.mismatch)
-    else:
-        out.skip("liner_mismatch_factor", wall.why_no_mismatch)
-    if environment is None:
-        out.skip("temperature_margin", "no temperature range stated: add environment")
-        return
-    margins = {}
-    for name in stock.names():
-        low, high = stock.get(name, "temperature_min"), stock.get(name, "temperature_max")
-        if low is not None:
-            margins[f"{name}, cold"] = v["environment.temperature_min"] - low
-        if high is not None:
-            margins[f"{name}, hot"] = high - v["environment.temperature_max"]
-    out.put("temperature_margin", margins)
