@@ -64,6 +64,7 @@ INPUTS = _table("""
  rod_diameter         | d      | length      | mm   | 1     | 900   | rod outer diameter
  rod_inner_diameter   | d_i    | length      | mm   | 0     | 890   | rod inner diameter
  length               | L      | length      | mm   | 0     | 20000 | length
+ stop_travel          | s_e    | length      | mm   | 0.001 | 1000  | stop travel
  part_length          | L      | length      | mm   | 0.1   | 20000 | length of a part
  radial_clearance     | c      | length      | mm   | 0.001 | 2     | radial clearance
  tolerance            | tol    | length      | mm   | 0     | 2     | tolerance
@@ -190,7 +191,7 @@ METRICS = _table("""
  natural_frequency    | f_0    | frequency   | Hz   | | | lowest natural frequency at the load mass over the stroke
  efficiency           | eta    | ratio       | %    | | | force efficiency
  proof_factor         | S_p    | ratio       | -    | | | yield or first-ply pressure over proof pressure
- burst_factor         | S_b    | ratio       | -    | | | burst pressure over working pressure
+ burst_factor         | S_b    | ratio       | -    | | | barrel burst pressure over working pressure
  first_ply_factor     | S_fpf  | ratio       | -    | | | first-ply pressure over working pressure
  yield_factor         | S_y    | ratio       | -    | | | yield over working stress of metal parts
  fatigue_factor       | S_f    | ratio       | -    | | | fatigue strength over stress amplitude
@@ -198,6 +199,7 @@ METRICS = _table("""
  buckling_factor      | S_k    | ratio       | -    | | | buckling load over largest push load
  thread_factor        | S_t    | ratio       | -    | | | yield over stress at the rod thread root
  retention_factor     | S_r    | ratio       | -    | | | strength of cap retention over its load
+ retention_burst_factor| S_rb  | ratio       | -    | | | ultimate strength of cap retention over its load
  cap_factor           | S_c    | ratio       | -    | | | yield over bending stress of the end caps
  pin_factor           | S_pin  | ratio       | -    | | | shear yield over shear stress of the clevis pins
  bearing_overlap      | L/d    | ratio       | -    | | | bearing span at full extension over rod diameter

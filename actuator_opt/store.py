@@ -40,6 +40,44 @@ def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
     raise InputError(Diagnostic(message, "install the package again", str(packaged)))
 
 
+def require_writable(path: Path) -> None:
+    """Refuse a file that cannot be written, before the work that would fill it.
+
+    Raises
+    ------
+    InputError : a folder stands there, its own folder is missing, or permission is
+    """
+    folder = path.parent
+    if path.is_dir():
+        reason = "is a folder"
+    elif not folder.is_dir():
+        reason = "its folder does not exist"
+    elif not os.access(path if path.exists() else folder, os.W_OK):
+        reason = "no permission to write"
+    else:
+        return
+    raise InputError(Diagnostic(reason, "choose another file or folder", str(path)))
+
+
+def require_folder(folder: Path) -> None:
+    """Refuse a folder that cannot be made or written, before the work that would fill it.
+
+    Raises
+    ------
+    InputError : a file stands in the way, or permission is missing
+    """
+    place = folder
+    while not place.exists() and place != place.parent:
+        place = place.parent
+    if not place.is_dir():
+        reason = f"{place} is a file" if place != folder else "is a file"
+    elif not os.access(place, os.W_OK):
+        reason = "no permission to write"
+    else:
+        return
+    raise InputError(Diagnostic(reason, "choose a folder with --out", str(folder)))
+
+
 def write_text(path: Path, text: str) -> Path:
     """Write a text file whole: aside first, then renamed; no partial file on failure."""
     aside = path.with_name(f".{path.name}.{os.getpid()}.part")

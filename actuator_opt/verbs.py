@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .design import Design, LoadedDesign, Source, read_design, with_values
-from .errors import Diagnostic, InputError
-from .evaluate import Evaluation, Subject, prepare
+from .errors import Diagnostic, InputError, UsageError
+from .evaluate import Evaluation, Subject, compute, prepare
 from .evaluate import evaluate as evaluate_subject
 from .evaluate.plugin import Plugin, View, collect, load
 from .quantities import METRICS
@@ -18,6 +19,9 @@ from .quantities import METRICS
 if TYPE_CHECKING:
     from .optimise.result import Optimisation, Sensitivity
     from .report import ExtraTable, ReportFile
+
+_LAST_SECOND = 253_402_300_799
+"""End of the year 9999, the last a date can hold."""
 
 Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
 
@@ -36,7 +40,9 @@ class Actuator:
 
     def changed(self, values: Mapping[str, float | str]) -> Actuator:
         """The same actuator with other numbers by PATH (SI, or text with a unit)."""
-        return Actuator(with_values(self.design, dict(values)), self.source, self.plugins)
+        known = METRICS | {plugin.name: plugin.quantity for plugin in self.plugins}
+        design = with_values(self.design, dict(values), metrics=known)
+        return Actuator(design, self.source, self.plugins)
 
 
 def _plugins(given: Plugins) -> tuple[Plugin, ...]:
@@ -48,6 +54,10 @@ def _plugins(given: Plugins) -> tuple[Plugin, ...]:
             found += load(item)
         else:
             found += collect(item)
+    names = [plugin.name for plugin in found]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(Diagnostic(f"the metric {twice} is declared twice", "rename one of them"))
     return tuple(found)
 
 
@@ -88,17 +98,26 @@ def _actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -> 
     return read(design, plugins=plugins)
 
 
-def check(source: str | Path, *, plugins: Plugins = ()) -> list[Diagnostic]:
-    """All faults of a design file; an empty list for a good one.
+def check(
+    source: str | Path,
+    *,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    plugins: Plugins = (),
+) -> list[Diagnostic]:
+    """All faults of a design file; an empty list for a good one. Parameters as `read`.
 
-    Faults of the variables (no model reads it) are found too.
+    Found too: variables that no model reads, requirements that no model answers.
     """
     try:
-        actuator = read(source, plugins=plugins)
+        actuator = read(source, set=set, plugins=plugins)
+        subject = actuator.subject()
+        faults = _unanswered(actuator, subject)
+        if faults:
+            return faults
         if actuator.design.variables:
             from .optimise.actuator import build
 
-            build(actuator.subject(), _fault(actuator))
+            build(subject, _fault(actuator))
     except InputError as error:
         return error.diagnostics
     return []
@@ -106,6 +125,24 @@ def check(source: str | Path, *, plugins: Plugins = ()) -> list[Diagnostic]:
 
 def _fault(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
     return None if actuator.source is None else actuator.source.of_variable
+
+
+def _unanswered(actuator: Actuator, subject: Subject) -> list[Diagnostic]:
+    """Requirements on metrics that this design does not have."""
+    if not actuator.design.requirements:
+        return []
+    computed = compute(subject, subject.values()).computed
+    faults = []
+    for metric, limit in actuator.design.requirements.items():
+        if computed.metrics.get(metric):
+            continue
+        path = f"requirements.{metric}.{'max' if limit.min is None else 'min'}"
+        message = f"cannot be met: {computed.why.get(metric, 'it does not apply to this design')}"
+        remedy = "remove the requirement, or add what it needs"
+        source = actuator.source
+        place = source.diagnostic(path, message, remedy) if source is not None else None
+        faults.append(place or Diagnostic(message, remedy, path=path))
+    return faults
 
 
 def evaluate(design: Actuator | Design | str | Path, *, plugins: Plugins = ()) -> Evaluation:
@@ -127,8 +164,12 @@ def optimise(
     from .optimise.run import optimise as run
 
     actuator = _actuator(design, plugins)
+    subject = actuator.subject()
+    faults = _unanswered(actuator, subject)
+    if faults:
+        raise InputError(faults)
     return run(
-        actuator.subject(),
+        subject,
         fault=_fault(actuator),
         algorithm=algorithm,
         starts=starts,
@@ -172,7 +213,7 @@ def report(
 
     source = None if actuator is None else actuator.source
     text = source.text if source is not None else to_yaml(subject.design)
-    name = Path(source.file).name if source is not None else f"{subject.design.name}.yaml"
+    name = _file_name(subject.design, source)
     return write_report(
         subject,
         folder=Path(folder),
@@ -185,11 +226,28 @@ def report(
     )
 
 
+def _file_name(design: Design, source: Source | None) -> str:
+    """Name of the design's file; of a design that came without one, its own name made fit."""
+    if source is not None and not source.file.startswith("<"):
+        return Path(source.file).name
+    name = re.sub(r"[^\w-]+", "_", design.name).strip("_")
+    return f"{name or 'design'}.yaml"
+
+
 def date_from_environment() -> str | None:
-    """The date of SOURCE_DATE_EPOCH (UTC), or None."""
-    stamp = os.environ.get("SOURCE_DATE_EPOCH")
-    if stamp is None or not stamp.strip().isdigit():
+    """The date of SOURCE_DATE_EPOCH (UTC), or None.
+
+    Raises
+    ------
+    UsageError : it is no count of seconds
+    """
+    stamp = os.environ.get("SOURCE_DATE_EPOCH", "").strip()
+    if not stamp:
         return None
+    digits = stamp.isdecimal() and stamp.isascii() and len(stamp) <= 12
+    if not digits or int(stamp) > _LAST_SECOND:
+        message = f'SOURCE_DATE_EPOCH "{stamp[:40]}" is no count of seconds since 1970'
+        raise UsageError(Diagnostic(message, "write e.g. 1700000000, or unset it"))
     from datetime import UTC, datetime
 
     return datetime.fromtimestamp(int(stamp), UTC).date().isoformat()

@@ -243,3 +243,15 @@ def test_thermal_pressure_of_trapped_oil():
         wall_compliance_per_volume=wall,
     )
     assert slope / 1e5 == pytest.approx(7.806, rel=1e-4)
+
+
+def test_linear_and_thermal_laws_by_hand():
+    """1.4 GPa + 6 x 200 bar = 1.52 GPa; 870 kg/m^3 swell by 1.75 % over 25 K; 46 mm^2/s x 870."""
+    viscosity = fluid.dynamic_viscosity(kinematic_viscosity=46e-6, density=870.0)
+    assert viscosity == pytest.approx(0.04002, rel=1e-12)
+    modulus = fluid.bulk_modulus_linear(bulk_modulus=1.4e9, slope=6.0, pressure=200e5)
+    assert modulus == pytest.approx(1.52e9, rel=1e-12)
+    warm = density.density_thermal(
+        reference_density=870.0, volume_expansion=7e-4, temperature=313.15
+    )
+    assert warm * 1.0175 == pytest.approx(870.0, rel=1e-12)

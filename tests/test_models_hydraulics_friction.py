@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -84,6 +85,12 @@ def test_stribeck_check_values():
     np.testing.assert_allclose(f, [974.707, 549.158, -549.158, 0.0], atol=6e-4)
 
 
+def steady(row, speed):
+    """Steady friction of one row of [Huang2017] Table 2."""
+    curve = {key: value for key, value in asdict(row).items() if key != "pressure"}
+    return friction.stribeck(speed=speed, **curve)
+
+
 @pytest.mark.parametrize(
     ("speed", "expected"),
     [
@@ -95,14 +102,7 @@ def test_stribeck_check_values():
 def test_secant_damping_of_huang_table_2(speed, expected):
     """[Huang2017] eq. 31 with Table 2 at 0.6/2/4/6 MPa; v_s is in mm/s."""
     for row, value in zip(friction.HUANG_TABLE_2, expected, strict=True):
-        f = friction.stribeck(
-            speed=speed,
-            coulomb=row.coulomb,
-            static=row.static,
-            stribeck_speed=row.stribeck_speed,
-            exponent=row.exponent,
-            viscous=row.viscous,
-        )
+        f = steady(row, speed)
         assert damping.secant(friction=f, speed=speed) == pytest.approx(value, abs=0.6)
 
 
@@ -110,14 +110,7 @@ def test_secant_reaches_sigma2_only_far_out():
     """B <= 1.1 sigma2 needs v >= 10 F_C/sigma2."""
     for row in friction.HUANG_TABLE_2:
         v = 10 * row.coulomb / row.viscous
-        f = friction.stribeck(
-            speed=v,
-            coulomb=row.coulomb,
-            static=row.static,
-            stribeck_speed=row.stribeck_speed,
-            exponent=row.exponent,
-            viscous=row.viscous,
-        )
+        f = steady(row, v)
         assert f / v == pytest.approx(1.1 * row.viscous, rel=1e-9)
 
 

@@ -7,6 +7,7 @@ what would have to be true. Nothing is tuned.
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 
 import pytest
 
@@ -173,14 +174,8 @@ def test_elasswad_published_friction_coefficient_needs_two_megapascal():
 
 def secant_of(row, speed):
     """Secant VDC of one row of [Huang2017] Table 2."""
-    f = friction.stribeck(
-        speed=speed,
-        coulomb=row.coulomb,
-        static=row.static,
-        stribeck_speed=row.stribeck_speed,
-        exponent=row.exponent,
-        viscous=row.viscous,
-    )
+    curve = {key: value for key, value in asdict(row).items() if key != "pressure"}
+    f = friction.stribeck(speed=speed, **curve)
     return damping.secant(friction=f, speed=speed)
 
 

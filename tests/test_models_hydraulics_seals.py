@@ -147,6 +147,7 @@ def test_hardness_laws():
         assert values[name][0] == pytest.approx(printed[0], abs=0.051)
         assert values[name][1:] == pytest.approx(printed[1:], abs=6e-5)
     assert values["ruess"][0] / values["gent"][0] == pytest.approx(1.83, abs=0.02)
+    assert seals.modulus_ruess(hardness=75.0) / 1e6 == pytest.approx(values["ruess"][1], rel=1e-15)
 
 
 @pytest.mark.parametrize("name", list(seals.MODULUS_LAWS))
@@ -161,6 +162,12 @@ def test_harder_is_stiffer(name, hardness):
 def test_gent_ends_at_100():
     """Gent has no modulus at 100 Shore A and above."""
     assert math.isnan(seals.modulus_gent(hardness=100.0))
+
+
+def test_groove_width_of_an_eighth_inch_ring():
+    """3.531 mm: within the tabulated 4.750 to 4.877 mm of a reciprocating gland; NaN without W."""
+    assert 4.750e-3 <= gland.groove_width(section=3.531e-3) <= 4.877e-3
+    assert math.isnan(gland.groove_width(section=0.0))
 
 
 def test_squeeze_loses_growth_and_tolerance():

@@ -184,13 +184,9 @@ def chambers(x, wall_a=0.0, wall_b=0.0, extra=0.0):
     return c_a, c_b
 
 
-def test_rigid_check_cylinder():
-    """32/18-160: 42.5779/20.6583/29.7857 MN/m at 20/80/140 mm, minimum 20.3660 at 91.048 mm."""
-    x = np.array([0.020, 0.080, 0.140])
-    c_a, c_b = chambers(x)
-    k = stiffness.hydraulic_stiffness(area_a=A2, compliance_a=c_a, area_b=B2, compliance_b=c_b)
-    np.testing.assert_allclose(k / 1e6, [42.5779, 20.6583, 29.7857], rtol=3e-6)
-    weak = stiffness.weakest_position(
+def rigid_weakest():
+    """Weakest position of the 32/18-160 cylinder with rigid walls."""
+    return stiffness.weakest_position(
         area_a=A2,
         area_b=B2,
         compliance_a0=V2 / K2,
@@ -199,6 +195,15 @@ def test_rigid_check_cylinder():
         compliance_b_per_length=B2 / K2,
         stroke=S2,
     )
+
+
+def test_rigid_check_cylinder():
+    """32/18-160: 42.5779/20.6583/29.7857 MN/m at 20/80/140 mm, minimum 20.3660 at 91.048 mm."""
+    x = np.array([0.020, 0.080, 0.140])
+    c_a, c_b = chambers(x)
+    k = stiffness.hydraulic_stiffness(area_a=A2, compliance_a=c_a, area_b=B2, compliance_b=c_b)
+    np.testing.assert_allclose(k / 1e6, [42.5779, 20.6583, 29.7857], rtol=3e-6)
+    weak = rigid_weakest()
     assert weak * 1e3 == pytest.approx(91.048, abs=6e-4)
     c_a, c_b = chambers(weak)
     k = stiffness.hydraulic_stiffness(area_a=A2, compliance_a=c_a, area_b=B2, compliance_b=c_b)
@@ -277,15 +282,7 @@ def test_weakest_position_beats_a_grid(area_a, area_b, slope_a, slope_b, start_a
 
 def test_weakest_position_matches_the_rigid_rule():
     """Without walls the minimum is where (a + x)/(b + s - x) = sqrt(A_A/A_B)."""
-    weak = stiffness.weakest_position(
-        area_a=A2,
-        area_b=B2,
-        compliance_a0=V2 / K2,
-        compliance_a_per_length=A2 / K2,
-        compliance_b0=V2 / K2,
-        compliance_b_per_length=B2 / K2,
-        stroke=S2,
-    )
+    weak = rigid_weakest()
     ratio = (V2 / A2 + weak) / (V2 / B2 + S2 - weak)
     assert ratio == pytest.approx(math.sqrt(A2 / B2), rel=1e-12)
 

@@ -178,6 +178,17 @@ def test_pressure_step_check_values(distance, factor):
     assert value == pytest.approx(factor, abs=1e-6)
 
 
+def test_decay_of_a_layered_wall_of_one_layer():
+    """With E_theta t and D_z of a homogeneous wall the shell form is the orthotropic one."""
+    radius, thickness, product = 16.75e-3, 1.5e-3, 0.33**2
+    value = barrel_ends.shell_decay_length(
+        radius=radius,
+        hoop_stiffness=71.7e9 * thickness,
+        bending_stiffness=71.7e9 * thickness**3 / (12 * (1 - product)),
+    )
+    assert value == pytest.approx(sqrt(radius * thickness) / (3 * (1 - product)) ** 0.25, rel=1e-12)
+
+
 def test_decay_lengths_of_a_25_mm_bore():
     """Metal and woven walls settle in 2.7 to 4.5 mm, hoop-wound UD in 1.4 to 2.3 mm."""
     for thickness in (0.7e-3, 1.6e-3):

@@ -286,3 +286,20 @@ def test_pin_pin_form_is_the_tangent_condition():
     residual = tan(k1 * 0.20) / k1 + tan(k2 * 0.18) / k2
     assert residual == pytest.approx(0, abs=1e-12)
     assert cos(k1 * 0.20) > 0 > cos(k2 * 0.18)
+
+
+def test_section_of_a_tube():
+    """12/6 mm: 84.823 mm^2 = 27 pi, 954.26 mm^4; bending by the section modulus I/(d_o/2)."""
+    tube = {"outer_diameter": 12e-3, "inner_diameter": 6e-3}
+    assert rod.section_area(**tube) == pytest.approx(27e-6 * pi, rel=1e-12)
+    second_moment = pi / 64 * (12**4 - 6**4) * 1e-12
+    stress = rod.bending_stress(bending_moment=20.0, **tube)
+    assert stress == pytest.approx(20.0 * 6e-3 / second_moment, rel=1e-12)
+
+
+@pytest.mark.parametrize(("slenderness", "gamma"), [(100.0, 0.581), (500.0, 0.322)])
+def test_knockdown_of_a_thin_shell(slenderness, gamma):
+    """1 - 0.901 (1 - e^(-sqrt(R/t)/16)): phi = 0.625 and 1.398, by hand; 1 for a thick wall."""
+    value = column.local_shell_knockdown(radius=slenderness, thickness=1.0)
+    assert value == pytest.approx(gamma, abs=0.001)
+    assert column.local_shell_knockdown(radius=1e-6, thickness=1.0) == pytest.approx(1, abs=1e-4)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, log, pi, sinh, sqrt, tanh
+from math import cosh, inf, log, pi, sinh, sqrt, tanh
 
 import numpy as np
 import pytest
@@ -47,6 +47,53 @@ def test_bond_peak_solves_volkersens_equation(length, first, second):
     )
     assert value == pytest.approx(peak, rel=1e-6)
     assert value >= 1
+
+
+EDGE = {key: BOND[key] for key in ("length", "shear_modulus", "bond_thickness")}
+
+
+@given(st.floats(1e7, 1e9), st.floats(1e7, 1e9), st.floats(2e-3, 60e-3))
+@settings(max_examples=40, deadline=None)
+def test_bond_edges_bound_the_peak(first, second, length):
+    """The larger of both edges is the peak; equal walls share it between them."""
+    size = {**EDGE, "length": length, "force": 1e4, "diameter": 30e-3}
+
+    def edge(loaded, free):
+        return retention.bond_edge_shear(
+            **size, membrane_stiffness_loaded=loaded, membrane_stiffness_free=free
+        )
+
+    peak = retention.bond_shear_peak(
+        **size, membrane_stiffness_1=first, membrane_stiffness_2=second
+    )
+    assert max(edge(first, second), edge(second, first)) == pytest.approx(peak, rel=1e-12)
+    ratio = retention.bond_peak_ratio(
+        **{**EDGE, "length": length}, membrane_stiffness_1=first, membrane_stiffness_2=first
+    )
+    assert edge(first, first) == pytest.approx(ratio * 1e4 / (pi * 30e-3 * length), rel=1e-12)
+
+
+@pytest.mark.parametrize(("first", "second"), [(100e6, 50e6), (30e6, 300e6)])
+def test_bond_edges_carry_the_force(first, second):
+    """Shear that starts and ends at the two edge values and obeys tau'' = k^2 tau carries F.
+
+    [derived] k^2 = (G/t_a)(1/K_1 + 1/K_2); the solution through both edges integrates in closed
+    form to (tau_0 + tau_L) tanh(k L/2)/k per circumference. The walls' equation
+    tau' = (G/t_a)(e_2 - e_1) then holds at the edge where wall 1 still carries everything.
+    """
+    length, g, ta = (EDGE[key] for key in ("length", "shear_modulus", "bond_thickness"))
+    force, around = 1e4, pi * 30e-3
+    size = {**EDGE, "force": force, "diameter": 30e-3}
+    near = retention.bond_edge_shear(
+        **size, membrane_stiffness_loaded=first, membrane_stiffness_free=second
+    )
+    far = retention.bond_edge_shear(
+        **size, membrane_stiffness_loaded=second, membrane_stiffness_free=first
+    )
+    k = sqrt(g / ta * (1 / first + 1 / second))
+    assert around * (near + far) * tanh(k * length / 2) / k == pytest.approx(force, rel=1e-12)
+    slope = k * (far - near * cosh(k * length)) / sinh(k * length)
+    assert slope == pytest.approx(-g / ta * force / around / first, rel=1e-9)
 
 
 def test_bond_length_beyond_five_brings_nothing():
@@ -143,6 +190,8 @@ def test_guide_forces_balance(force, overhang, span):
     head, piston = retention.guide_forces(side_force=force, overhang=overhang, span=span)
     assert head - piston == pytest.approx(force, rel=1e-9)
     assert piston * span == pytest.approx(force * overhang, rel=1e-9)
+    pressure = retention.bearing_pressure(force=head, diameter=12e-3, length=10e-3)
+    assert pressure * 120e-6 == pytest.approx(head, rel=1e-12)  # projected area 120 mm^2
 
 
 def test_end_stop_check_value():

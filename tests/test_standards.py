@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from actuator_opt.design import standards
 from actuator_opt.errors import InputError
-from actuator_opt.models.glands import groove_width
+from actuator_opt.models.gland import groove_width
 
 MM = 1e-3
 

@@ -20,6 +20,14 @@ from .structure import Entry, Loc, child, entries, leaves
 
 MOST_FAULTS = 100
 
+_TABLE_KEYS = {
+    "variables": "PATHs such as cylinder.bore, each with lower and upper",
+    "requirements": "metrics such as stiffness_min, each with min or max",
+    "waivers": "metrics such as seal_section, each with a reason",
+    "materials": "names of materials, each with its changed properties",
+}
+"""What the keys of the tables of free names are."""
+
 
 @dataclass(frozen=True, slots=True)
 class Built:
@@ -34,6 +42,7 @@ def build(
     *,
     materials: Materials | None = None,
     metrics: Mapping[str, Quantity] | None = None,
+    contradictions: bool = True,
 ) -> Built:
     """The design a tree describes, or every fault it has.
 
@@ -42,6 +51,7 @@ def build(
     tree : dicts, lists, texts with units and SI numbers, in the shape of the design file
     materials : names and kinds of the library; None leaves material names unchecked
     metrics : metrics that requirements and the objective may name; default: `quantities.METRICS`
+    contradictions : whether values that contradict each other are faults
     """
     metrics = quantities.METRICS if metrics is None else metrics
     copy: dict[str, Any] = copy_tree(tree)
@@ -53,7 +63,8 @@ def build(
         design = Design.model_validate(copy)
     except ValidationError as error:
         faults += _unless_known(_translate(error, copy), faults)
-    faults += _unless_known(cross_field(copy), list(_nothing(copy, ())))
+    if contradictions:
+        faults += _unless_known(cross_field(copy), list(_nothing(copy, ())))
     if materials is not None:
         faults += material_names(copy, materials)
     return Built(None if faults else design, tuple(faults))
@@ -140,7 +151,7 @@ def _translate(error: ValidationError, tree: Any) -> Iterator[Fault]:
             remedy = 'add one, starting with "- "' if few else f"keep at most {limit}"
             yield Fault(loc, "the list is empty" if few else "too many entries", remedy)
         elif kind in ("model_type", "model_attributes_type", "dict_type"):
-            keys = ", ".join(list(entries(section))[:6]) if section else "names"
+            keys = ", ".join(list(entries(section))[:6]) if section else _TABLE_KEYS[str(loc[0])]
             yield Fault(
                 loc, f"need a block, not {_word(value)}", f"write its keys below it: {keys}"
             )
@@ -203,10 +214,12 @@ def with_values(
     *,
     materials: Materials | None = None,
     metrics: Mapping[str, Quantity] | None = None,
+    contradictions: bool = True,
 ) -> Design:
     """The design with other values: PATH to SI number or text with a unit; checked again.
 
-    A variable whose start was the old value starts from the new one.
+    A variable whose start was the old value starts from the new one. Without `contradictions`
+    values may contradict each other, as at the least bad point of a search that found no good one.
 
     Raises
     ------
@@ -229,7 +242,7 @@ def with_values(
         if variable is not None and variable.get("start") == old:
             variable["start"] = number
     if not diagnostics:
-        built = build(tree, materials=materials, metrics=metrics)
+        built = build(tree, materials=materials, metrics=metrics, contradictions=contradictions)
         diagnostics = [
             Diagnostic(fault.message, fault.remedy, path=spell(fault.loc, tree))
             for fault in built.faults

@@ -182,6 +182,17 @@ def squeeze(view: View) -> Iterator[Fault]:
             )
 
 
+def barrel_model(view: View) -> Iterator[Fault]:
+    """The isotropic wall model knows one layer."""
+    layers = len(view.items("barrel", "layup"))
+    if view.text("barrel", "model") == "isotropic" and layers > 1:
+        yield Fault(
+            ("barrel", "model"),
+            f"isotropic: the layup has {layers} layers, the model takes one",
+            "write auto, or keep one layer",
+        )
+
+
 def barrel_length(view: View) -> Iterator[Fault]:
     """The barrel holds stroke, piston and head."""
     length = view.number("barrel", "length")
@@ -257,10 +268,33 @@ def retention(view: View) -> Iterator[Fault]:
             f"missing: {kind} needs it",
             'add a block "thread:" with diameter, pitch',
         )
+    diameter, bore = view.number("retention", "thread", "diameter"), view.number("cylinder", "bore")
+    if kind == "thread" and diameter is not None and bore is not None and diameter <= bore:
+        yield Fault(
+            ("retention", "thread", "diameter"),
+            f"{_mm(diameter)}: the thread lies outside the barrel, whose bore is {_mm(bore)}",
+            "write the diameter of the thread on the barrel's outside",
+        )
+
+
+def _case_pressure(view: View, index: int) -> Iterator[Fault]:
+    """The driven port of a case lies above the return and not above the supply."""
+    loc = ("load_cases", index, "pressure")
+    pressure, supply = view.number(*loc), view.number("supply", "pressure")
+    back = view.number("supply", "return_pressure")
+    text = quantities.INPUTS["pressure"].text
+    if pressure is None or supply is None or back is None or back >= supply:
+        return
+    if pressure > supply * (1 + 1e-9):
+        message = f"{text(pressure)}: above supply.pressure ({text(supply)})"
+        yield Fault(loc, message, f"write at most {text(supply)}, or raise supply.pressure")
+    elif pressure < back:
+        message = f"{text(pressure)}: below supply.return_pressure ({text(back)})"
+        yield Fault(loc, message, f"write {text(back)} to {text(supply)}")
 
 
 def load_cases(view: View) -> Iterator[Fault]:
-    """Unique names; a force or a joint torque on a lever arm; positions within the stroke."""
+    """Unique names; force or torque on a lever arm; pressures and positions in range."""
     seen: dict[str, int] = {}
     stroke = view.number("cylinder", "stroke")
     for index, case in enumerate(view.items("load_cases")):
@@ -273,6 +307,7 @@ def load_cases(view: View) -> Iterator[Fault]:
             seen.setdefault(name, index)
         if isinstance(case, dict):
             yield from _case_force(loc, case)
+            yield from _case_pressure(view, index)
         position = child(case, "position")
         if isinstance(position, float) and stroke is not None and position > stroke:
             yield Fault(
@@ -299,7 +334,7 @@ def _case_force(loc: Loc, case: dict[str, Any]) -> Iterator[Fault]:
     elif arm and not torque:
         remedy = 'add e.g. "joint_torque: 120 N*m"'
         yield Fault((*loc, "joint_torque"), "missing: lever_arm needs it", remedy)
-    elif not force:
+    elif not force and not torque:
         remedy = 'add e.g. "force: 3 kN", or joint_torque with lever_arm'
         yield Fault((*loc, "force"), "missing", remedy)
 
@@ -308,6 +343,7 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     rod,
     grooves,
     squeeze,
+    barrel_model,
     barrel_length,
     lines,
     supply,

@@ -27,7 +27,8 @@ _NAME = re.compile(r"(?!\d+$)[^\W_][\w .+-]*", re.UNICODE)
 EXAMPLES = {
     "bore": "25 mm", "stroke": "110 mm", "wall_thickness": "1.2 mm", "winding_angle": "55 deg",
     "rod_diameter": "12 mm", "rod_inner_diameter": "6 mm", "length": "50 mm",
-    "part_length": "20 mm", "radial_clearance": "0.03 mm", "tolerance": "0.05 mm",
+    "part_length": "20 mm", "stop_travel": "0.5 mm", "radial_clearance": "0.03 mm",
+    "tolerance": "0.05 mm",
     "cross_section": "3.53 mm", "squeeze": "12 %", "stretch": "2 %", "groove_width": "4.8 mm",
     "seal_count": "1", "bolt_count": "4", "thread_diameter": "10 mm", "thread_pitch": "1.5 mm",
     "diameter": "6 mm", "volume": "2 ml", "pressure": "2 bar", "working_pressure": "100 bar",
@@ -43,6 +44,7 @@ EXAMPLES = {
 
 MATERIAL_EXAMPLES = {
     "structural": "al_7075_t6",
+    "isotropic": "steel_42crmo4",
     "fluid": "iso_vg_32",
     "seal": "nbr_70",
     "fastening": "epoxy_structural",
@@ -89,9 +91,8 @@ def check_range(number: float, quantity: Quantity, shown_value: str | None = Non
         text = shown_value or f"{number:.6g} {quantity.si_unit}".rstrip()
         raise _range_fault(text, number, quantity)
     if quantity.dimension == "count" and number != int(number):
-        raise ValueFault(
-            f"{shown_value or number}: must be a whole number", f"write {example(quantity)}"
-        )
+        text = str(shown_value or number).strip()
+        raise ValueFault(f"{text}: must be a whole number", f"write {example(quantity)}")
     return number
 
 
@@ -278,8 +279,11 @@ class CaseName(Text):
 class MaterialName(Text):
     """Name of a library entry; `role` says which kinds of material can stand here."""
 
-    def __init__(self, role: Literal["structural", "fluid", "seal", "fastening"]) -> None:
-        super().__init__(f"name of a {role} material of the library")
+    def __init__(
+        self, role: Literal["structural", "isotropic", "fluid", "seal", "fastening"]
+    ) -> None:
+        article = "an" if role[0] in "aeiou" else "a"
+        super().__init__(f"name of {article} {role} material of the library")
         self.role = role
         self.example = MATERIAL_EXAMPLES[role]
 

@@ -21,6 +21,7 @@ FAMILIES: Final = ("mineral", "ester", "phosphate_ester", "water_glycol")
 """Fluid families; a seal's `suits` lists those its compound withstands."""
 ROLES: Final[Mapping[str, tuple[str, ...]]] = {
     "structural": ("metal", "ply", "polymer"),
+    "isotropic": ("metal", "polymer"),
     "fluid": ("fluid",),
     "seal": ("seal",),
     "fastening": ("metal", "adhesive"),

@@ -47,6 +47,7 @@ class Environment(Section):
     assembly_temperature: Annotated[
         float, Of("temperature", "temperature at which the parts are joined and filled")
     ] = 293.15
+    wet: bool = True
     trapped_rise: Annotated[
         float | None, Of("temperature_rise", "warming of the oil while the ports are blocked")
     ] = None
@@ -70,7 +71,8 @@ class Cylinder(Section):
     ] = 0.0
     port_diameter: Annotated[float | None, Of("diameter", "inner diameter of both ports")] = None
     stop_travel: Annotated[
-        float, Of("length", "travel over which an internal end stop takes supply pressure's force")
+        float,
+        Of("stop_travel", "travel over which an internal end stop takes supply pressure's force"),
     ] = 0.2e-3
     mount_stiffness: Annotated[
         float | None, Of("stiffness", "axial stiffness of what holds the actuator")
@@ -107,7 +109,7 @@ class Thread(Section):
 class Rod(Section):
     """The piston rod; `extension` is what shows outside the head when retracted."""
 
-    material: Annotated[str, MaterialName("structural")]
+    material: Annotated[str, MaterialName("isotropic")]
     outer_diameter: Annotated[float, Of("rod_diameter", "diameter through the rod seal")]
     inner_diameter: Annotated[
         float, Of("rod_inner_diameter", "bore of a hollow rod; 0 is solid")
@@ -211,7 +213,7 @@ class Line(Section):
     length: Annotated[float, Of("part_length", "length of the line")]
     inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
     outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
-    material: Annotated[str, MaterialName("structural")]
+    material: Annotated[str, MaterialName("isotropic")]
 
 
 class Load(Section):
@@ -266,6 +268,8 @@ class Design(Section):
 
     name: Annotated[str, Text("title of the design")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
+    reproduces: Literal["ElAsswad2018"] | None = None
+    """The paper whose cylinder this is: reports set its published numbers beside ours."""
     fluid: FluidSection
     supply: Supply
     environment: Environment | None = None

@@ -241,7 +241,8 @@ def split_assignment(text: str) -> tuple[str, str]:
 def put(tree: dict[str, Any], target: Target, value: object) -> None:
     """Set a value in a tree of dicts and lists, adding the blocks on its way.
 
-    A number on a position written as a fraction of the stroke stays a fraction.
+    A number on a position written as a fraction of the stroke stays a fraction; a new objective
+    replaces the one there is.
 
     Raises
     ------
@@ -258,6 +259,8 @@ def put(tree: dict[str, Any], target: Target, value: object) -> None:
             raise ValueFault(message, "mend it in the file first")
         node = below
     key = target.loc[-1]
+    if target.loc[0] == "objective":
+        node.clear()  # a design has one objective: the new one replaces it
     if isinstance(value, float) and target.quantity is not None and target.entry is not None:
         is_share = target.quantity.name == "fraction"
         value = Fraction(value) if is_share and target.entry.name == "position" else value

@@ -73,6 +73,9 @@ class Source:
 
     def _find(self, fault: Fault) -> Span | Literal["--set"] | None:
         """The nearest place in the text at or above the fault's own."""
+        set_below = any(loc[: len(fault.loc)] == fault.loc for loc in self.overrides)
+        if fault.loc and set_below and fault.loc not in self.document.values:
+            return SET  # the block itself came from outside
         for depth in range(len(fault.loc), -1, -1):
             loc = fault.loc[:depth]
             if loc in self.overrides:
@@ -139,7 +142,7 @@ def read_document(
             places[target.loc] = value
         except ValueFault as fault:
             message = fault.message.removeprefix(f"{path}: ")
-            faults.append(Diagnostic(message, fault.remedy, SET, path=path))
+            faults.append(Diagnostic(message, fault.remedy, SET, path=suggest.shown(path, 120)))
     source = Source(document, places)
     built = build(tree, materials=library() if materials is None else materials, metrics=metrics)
     found = [fault for fault in built.faults if not _unusable(fault, document)]

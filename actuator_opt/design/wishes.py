@@ -15,8 +15,9 @@ from ..quantities import Quantity
 from . import suggest
 from .faults import Fault
 from .kinds import ValueFault, example, read_quantity, what
+from .model import Design
 from .paths import Target, resolve
-from .structure import Loc, number_of, value_at
+from .structure import Loc, entries, number_of, value_at
 
 _LARGEST = {
     "ratio": 1e12, "length": 1e3, "mass": 1e7, "force": 1e9, "stiffness": 1e13, "pressure": 1e12,
@@ -80,6 +81,8 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
     block = tree.get("variables")
     for path, bounds in block.items() if isinstance(block, dict) else ():
         loc = ("variables", path)
+        if _in_faulty_block(path, tree):
+            continue
         try:
             target = _movable(path, tree)
         except ValueFault as fault:
@@ -95,6 +98,17 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
         faults = [_number(bounds, (*loc, key), quantity) for key in ("lower", "upper", "start")]
         yield from (fault for fault in faults if fault)
         yield from _start(loc, bounds, target, tree)
+
+
+def _in_faulty_block(path: str, tree: dict[str, Any]) -> bool:
+    """Whether the block a PATH lies in is missing or no block: a fault of its own, said there."""
+    name = path.partition(".")[0]
+    entry = entries(Design).get(name)
+    if entry is None or entry.section is None or entry.shape == "table":
+        return False
+    if name not in tree:
+        return entry.required
+    return not isinstance(tree[name], (list, tuple) if entry.shape == "list" else dict)
 
 
 def _movable(path: str, tree: dict[str, Any]) -> Target:
@@ -125,10 +139,10 @@ def _start(
     lower, upper, start = (bounds.get(key) for key in ("lower", "upper", "start"))
     raw = value_at(tree, target.loc)
     place: Loc = (*loc, "start") if "start" in bounds else target.loc
-    if raw is None:
+    if raw is None and target.entry is not None and not target.entry.required:
         yield Fault(
             (*loc, "start"),
-            f"missing: {target.path} is not set, so there is nothing to start from",
+            f"{target.path} is not set, so it cannot be moved",
             f'write e.g. "{target.loc[-1]}: {example(quantity)}" in its block',
         )
     if "start" not in bounds:

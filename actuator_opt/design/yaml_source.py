@@ -70,7 +70,7 @@ class Document:
         source = None
         if line is not None and line <= len(self.lines):
             text = self.lines[line - 1].replace("\t", " ")
-            source = text if len(text) <= 200 and text.isprintable() else None
+            source = text if 0 < len(text) <= 200 and text.isprintable() else None
         return Diagnostic(message, remedy, self.file, line, column, path, source)
 
 

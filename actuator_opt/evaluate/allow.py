@@ -20,17 +20,25 @@ def hottest(design: Design, numbers: Mapping[str, float]) -> float:
 
 
 def allowances(
-    materials: Mapping[str, Material], temperature: float
+    materials: Mapping[str, Material],
+    numbers: Mapping[str, float],
+    *,
+    temperature: float,
+    wet: bool,
 ) -> dict[tuple[str, str], float]:
-    """What temperature, basis and process leave of every strength, by (material, property)."""
-    return {
-        (name, key): float(
-            allowable_factor(material.numbers, key, basis=entry.basis, temperature=temperature)
-        )
-        for name, material in materials.items()
-        for key, entry in material.properties.items()
-        if "strength" in key
-    }
+    """What temperature, moisture, basis and process leave of every strength.
+
+    Keys are (material, property); `numbers` (by PATH) may override the library's knock-downs.
+    """
+    factors = {}
+    for name, material in materials.items():
+        own = {key: numbers[f"materials.{name}.{key}"] for key in material.numbers}
+        for key, entry in material.properties.items():
+            if "strength" in key:
+                factors[name, key] = float(
+                    allowable_factor(own, key, basis=entry.basis, temperature=temperature, wet=wet)
+                )
+    return factors
 
 
 class Stock:
@@ -78,7 +86,7 @@ class Stock:
         return default
 
     def allowable(self, name: str, *properties: str) -> Array:
-        """A strength after temperature, basis and process knock-downs; None where none is stated.
+        """A strength after every knock-down that applies; None where none is stated.
 
         Temperature is the highest of oil, load cases and environment.
         """

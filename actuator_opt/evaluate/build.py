@@ -79,7 +79,12 @@ def prepare(
     for name, material in materials.items():
         numbers |= {f"materials.{name}.{key}": value for key, value in material.numbers.items()}
     numbers |= paths.numbers(design)
-    factors = allowances(materials, hottest(design, numbers))
+    factors = allowances(
+        materials,
+        numbers,
+        temperature=hottest(design, numbers),
+        wet=design.environment is None or design.environment.wet,
+    )
     return Subject(design, materials, numbers, factors, plugins)
 
 
@@ -141,6 +146,8 @@ def _metric(
         for case, value in by_case(computed, name, array, v.cases):
             rows.append((float(value[0]), case, place))
     usable = [row for row in rows if _finite(row[0])]
+    if any(math.isnan(row[0]) for row in rows):
+        usable = []  # a place without an answer must not hide behind the others
     if not usable:
         why = computed.why.get(name, "the models have no finite answer for these dimensions")
         if rows and all(math.isinf(row[0]) for row in rows):

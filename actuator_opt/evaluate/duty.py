@@ -53,7 +53,8 @@ def _endurance(
         name = wall.yields[place]
         strength = stock.allowable(name, "yield_strength", "ultimate_strength")
         loads.append((place, name, strength * supply / pressure, 0.0))
-    loads.append(("rod", design.rod.material, pull / area, -push / pull))
+    reversed_stress = (push + pull) / 2 / area  # its compressive mean earns no credit
+    loads.append(("rod", design.rod.material, reversed_stress, -1.0))
     if design.rod.thread is not None:
         stress = THREAD_NOTCH * rod.thread_stress(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..design.model import Design
-from ..models import forces, glands, mass
+from ..models import forces, gland, mass
 from ..numeric import Array
 from .values import Values
 
@@ -67,7 +67,7 @@ def _groove(v: Values, seal: str) -> Groove:
     return Groove(
         section=section,
         gland_depth=section * (1 - v[f"seals.{seal}.squeeze"]),
-        width=glands.groove_width(section=section) if width is None else width,
+        width=gland.groove_width(section=section) if width is None else width,
         count=v[f"seals.{seal}.count"],
     )
 

@@ -77,7 +77,7 @@ def compute(subject: Subject, v: Values) -> Pass:
         case_state = state.derive(v, design, stock, g)
         barrel = wall.compute(v, design, stock, g, case_state)
         out.put("bore_growth", barrel.growth)
-        friction = sealing.compute(v, design, g, case_state, barrel, out)
+        friction = sealing.compute(v, design, stock, g, case_state, barrel, out)
         net = _forces(g, case_state, friction, out)
         parts = weight.parts(v, design, g)
         out.put("mass", sum(parts.values()))

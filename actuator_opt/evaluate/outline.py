@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from math import cos, pi, sin
+from typing import Literal, TypeAlias
 
 from ..design.material import Material
 from ..design.model import Design
 from .evaluation import Outline
 from .geometry import Geometry, Groove
 
+_Polygon: TypeAlias = tuple[tuple[float, float], ...]
+_Part: TypeAlias = tuple[str, str, list[_Polygon]]
+"""Part, material, polygons."""
 
-def _rectangle(x0: float, x1: float, r0: float, r1: float) -> tuple[tuple[float, float], ...]:
+_Kind: TypeAlias = Literal["metal", "composite", "polymer", "seal", "oil"]
+
+
+def _rectangle(x0: float, x1: float, r0: float, r1: float) -> _Polygon:
     return ((x0, r0), (x1, r0), (x1, r1), (x0, r1))
 
 
@@ -27,7 +35,7 @@ def _grooves(start: float, length: float, groove: Groove) -> Iterator[tuple[floa
 
 def _grooved(
     x0: float, x1: float, inner: float, outer: float, groove: Groove, floor: float, *, outside: bool
-) -> tuple[tuple[float, float], ...]:
+) -> _Polygon:
     """A ring with rectangular grooves cut to radius `floor` from outside or from inside."""
     surface = outer if outside else inner
     edge = [(x0, surface)]
@@ -38,7 +46,7 @@ def _grooved(
     return (*edge, (x1, other), (x0, other))
 
 
-def _eye(centre: float, pin: float, side: int) -> list[tuple[tuple[float, float], ...]]:
+def _eye(centre: float, pin: float, side: int) -> list[_Polygon]:
     """Half of an eye seen from the side: lug of radius `pin` around the pin hole, and its neck."""
     angles = [pi * k / 24 for k in range(25)]
     rim = [(centre + pin * cos(a), pin * sin(a)) for a in angles]
@@ -48,98 +56,125 @@ def _eye(centre: float, pin: float, side: int) -> list[tuple[tuple[float, float]
     return [(*rim, *hole), _rectangle(neck[0], neck[1], 0.0, pin / 2)]
 
 
-def _kind(material: Material) -> str:
-    return {"ply": "composite", "polymer": "polymer", "seal": "seal"}.get(material.kind, "metal")
+def _kind(material: Material) -> _Kind:
+    kinds: dict[str, _Kind] = {"ply": "composite", "polymer": "polymer", "seal": "seal"}
+    return kinds.get(material.kind, "metal")
+
+
+@dataclass(frozen=True, slots=True)
+class _Stations:
+    """Axial stations from the cap pin, and radii, as floats."""
+
+    face: float
+    start: float
+    end: float
+    head: float
+    tip: float
+    piston_end: float
+    rod: float
+    bore: float
+    hole: float
+    piston_floor: float
+    head_floor: float
+
+
+def _stations(g: Geometry) -> _Stations:
+    face = float(g.eye_offset)
+    start = face + float(g.plate)
+    end = start + float(g.barrel_length)
+    rod, bore = float(g.rod_diameter) / 2, float(g.inner_radius)
+    return _Stations(
+        face=face,
+        start=start,
+        end=end,
+        head=end - float(g.head_length),
+        tip=end + float(g.plate) + float(g.rod_extension),
+        piston_end=start + float(g.piston_length),
+        rod=rod,
+        bore=bore,
+        hole=rod + float(g.head_clearance),
+        piston_floor=bore - float(g.piston_groove.gland_depth),
+        head_floor=rod + float(g.rod_groove.gland_depth),
+    )
+
+
+def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    radius = at.bore
+    for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
+        outer = radius + float(thickness)
+        yield f"layup[{i}]", ply.material, [_rectangle(at.start, at.end, radius, outer)]
+        radius = outer
+
+
+def _caps(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    plate, radius = float(g.plate), float(g.plate_radius)
+    polygons = [
+        _rectangle(at.face, at.start, 0.0, radius),
+        _rectangle(at.end, at.end + plate, at.hole, radius),
+    ]
+    length, inner = float(g.skirt_length), float(g.outer_radius)
+    outer = inner + float(g.skirt_wall)
+    if length > 0:
+        polygons += [
+            _rectangle(at.start, at.start + length, inner, outer),
+            _rectangle(at.end - length, at.end, inner, outer),
+        ]
+    yield "caps", design.caps.material, polygons
+
+
+def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """Piston, head plug, rod and seals."""
+    radius = at.bore - float(g.piston_clearance)
+    piston = _grooved(
+        at.start, at.piston_end, 0.0, radius, g.piston_groove, at.piston_floor, outside=True
+    )
+    plug = _grooved(at.head, at.end, at.hole, at.bore, g.rod_groove, at.head_floor, outside=False)
+    rod = _rectangle(at.piston_end, at.tip, float(g.rod_inner_diameter) / 2, at.rod)
+    yield "piston", design.piston.material, [piston]
+    yield "glands", design.head.material, [plug]
+    yield "rod", design.rod.material, [rod]
+    yield (
+        "piston seal",
+        design.seals.piston.compound,
+        _rings(at.start, g.piston_length, g.piston_groove, at.piston_floor, at.bore),
+    )
+    yield (
+        "rod seal",
+        design.seals.rod.compound,
+        _rings(at.head, g.head_length, g.rod_groove, at.rod, at.head_floor),
+    )
+
+
+def _rings(start: float, length: float, groove: Groove, low: float, high: float) -> list[_Polygon]:
+    rings = []
+    for left, right in _grooves(start, float(length), groove):
+        middle, half = (left + right) / 2, min(float(groove.section), right - left) / 2
+        rings.append(_rectangle(middle - half, middle + half, low, high))
+    return rings
+
+
+def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    if design.clevis is not None:
+        pin, name = float(g.pin_diameter), design.clevis.material
+        yield "cap eye", name, _eye(0.0, pin, 1)
+        yield "rod eye", name, _eye(at.tip + float(g.eye_offset), pin, -1)
 
 
 def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tuple[Outline, ...]:
     """Every part as closed polygons of (axial position from the cap pin, radius) in m."""
-    parts: list[tuple[str, str, list[tuple[tuple[float, float], ...]]]] = []
-    face = float(g.eye_offset)
-    start = face + float(g.plate)
-    end = start + float(g.barrel_length)
-    head = end - float(g.head_length)
-    tip = end + float(g.plate) + float(g.rod_extension)
-    piston_end = start + float(g.piston_length)
-    rod, bore = float(g.rod_diameter) / 2, float(g.inner_radius)
-    hole = rod + float(g.head_clearance)
-    skirt, outer, plate = float(g.skirt_length), float(g.outer_radius), float(g.plate_radius)
-
-    radius = bore
-    for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
-        next_radius = radius + float(thickness)
-        parts.append((f"layup[{i}]", ply.material, [_rectangle(start, end, radius, next_radius)]))
-        radius = next_radius
-    caps = [
-        _rectangle(face, start, 0.0, plate),
-        _rectangle(end, end + float(g.plate), hole, plate),
-    ]
-    if skirt > 0:
-        caps += [
-            _rectangle(start, start + skirt, outer, outer + float(g.skirt_wall)),
-            _rectangle(end - skirt, end, outer, outer + float(g.skirt_wall)),
-        ]
-    parts.append(("caps", design.caps.material, caps))
-    piston_radius = bore - float(g.piston_clearance)
-    piston_floor = bore - float(g.piston_groove.gland_depth)
-    parts.append(
-        (
-            "piston",
-            design.piston.material,
-            [
-                _grooved(
-                    start,
-                    piston_end,
-                    0.0,
-                    piston_radius,
-                    g.piston_groove,
-                    piston_floor,
-                    outside=True,
-                )
-            ],
-        )
+    at = _stations(g)
+    oil = Outline(
+        "oil",
+        design.fluid.material,
+        (_rectangle(at.piston_end, at.head, at.rod, at.bore),),
+        "oil",
     )
-    head_floor = rod + float(g.rod_groove.gland_depth)
-    parts.append(
-        (
-            "glands",
-            design.head.material,
-            [_grooved(head, end, hole, bore, g.rod_groove, head_floor, outside=False)],
-        )
-    )
-    parts.append(
-        (
-            "rod",
-            design.rod.material,
-            [_rectangle(piston_end, tip, float(g.rod_inner_diameter) / 2, rod)],
-        )
-    )
-    for name, compound, groove, x0, length, low, high in (
-        (
-            "piston seal",
-            design.seals.piston.compound,
-            g.piston_groove,
-            start,
-            g.piston_length,
-            piston_floor,
-            bore,
-        ),
-        ("rod seal", design.seals.rod.compound, g.rod_groove, head, g.head_length, rod, head_floor),
-    ):
-        rings = []
-        for left, right in _grooves(x0, float(length), groove):
-            middle, half = (left + right) / 2, min(float(groove.section), right - left) / 2
-            rings.append(_rectangle(middle - half, middle + half, low, high))
-        parts.append((name, compound, rings))
-    if design.clevis is not None:
-        pin = float(g.pin_diameter)
-        parts.append(("cap eye", design.clevis.material, _eye(0.0, pin, 1)))
-        parts.append(("rod eye", design.clevis.material, _eye(tip + float(g.eye_offset), pin, -1)))
-    oil = Outline("oil", design.fluid.material, (_rectangle(piston_end, head, rod, bore),), "oil")
+    groups = (_barrel, _caps, _inside, _eyes)
+    parts = [part for group in groups for part in group(design, g, at)]
     return (
         oil,
         *(
-            Outline(part, name, tuple(polygons), _kind(materials[name]))  # type: ignore[arg-type]
+            Outline(part, name, tuple(polygons), _kind(materials[name]))
             for part, name, polygons in parts
             if polygons
         ),

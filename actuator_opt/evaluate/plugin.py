@@ -7,12 +7,17 @@ complex numbers it gets exact gradients; otherwise the optimiser falls back to d
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
+import re
+import sys
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
+
+import numpy as np
 
 from ..errors import Diagnostic, InputError
 from ..numeric import Array, maximum
@@ -58,29 +63,66 @@ class Plugin:
     file: str = ""
 
     def call(self, values: Values, metrics: Mapping[str, Mapping[str, Array]]) -> Array:
-        """The metric's value; an exception of the user's function becomes one clear line."""
-        try:
-            return self.function(View(values, metrics))
-        except (ArithmeticError, LookupError, TypeError, ValueError, AttributeError) as error:
-            raise _fault(self, error) from error
+        """The metric's value; an exception of the user's function becomes one clear line.
+
+        What the function prints goes to standard error: standard output is for data.
+        """
+        with contextlib.redirect_stdout(sys.stderr):
+            try:
+                found = self.function(View(values, metrics))
+            except (Exception, SystemExit) as error:  # a stranger's code may raise anything
+                raise _fault(self, error) from error
+        return _checked(self, found, values)
 
 
 class PluginError(InputError):
     """A user's function raised."""
 
 
-def _fault(plugin: Plugin, error: BaseException) -> PluginError:
-    frames = traceback.extract_tb(error.__traceback__)
-    last = next((f for f in reversed(frames) if f.filename == plugin.file), frames[-1])
+def _line(error: BaseException, file: str) -> tuple[str, int | None]:
+    """The user's own line an exception came through last."""
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename != __file__]
+    own = [f for f in frames if file and Path(f.filename).resolve() == Path(file).resolve()]
+    last = (own or frames)[-1] if frames else None
+    return file or (last.filename if last else ""), last.lineno if last else None
+
+
+def _said(error: BaseException) -> str:
+    """An exception in one line."""
     detail = error.args[0] if isinstance(error, KeyError) and error.args else error
-    return PluginError(
-        Diagnostic(
-            f"{plugin.name} raised {type(error).__name__}: {detail}",
-            "mend the function, or guard its input",
-            file=plugin.file or last.filename,
-            line=last.lineno,
-        )
-    )
+    return " ".join(f"{type(error).__name__}: {detail}".split()).removesuffix(":")
+
+
+def _fault(plugin: Plugin, error: BaseException) -> PluginError:
+    file, line = _line(error, plugin.file)
+    remedy = "mend the function, or guard its input"
+    if isinstance(error, TypeError):
+        remedy = "use operators and NumPy functions; float(), int() and math take no arrays"
+    return PluginError(Diagnostic(f"{plugin.name} raised {_said(error)}", remedy, file, line))
+
+
+def _checked(plugin: Plugin, found: object, values: Values) -> Array:
+    """What a user's function returned, if it is a number for every design (and case)."""
+    array = np.asarray(found)
+    varied = [np.shape(value) for value in values.varied.values()]
+    designs = np.broadcast_shapes((1,), *varied)[-1]
+    shape = np.broadcast_shapes((1,), array.shape) if array.ndim < 2 else array.shape
+    plain = not any(np.iscomplexobj(value) for value in values.varied.values())
+    message = ""
+    if array.dtype.kind not in "biufc":
+        message = f"returned {type(found).__name__}, not a number"
+    elif plain and array.dtype.kind == "c":
+        message = "returned a complex number"
+    elif (
+        len(shape) > 2
+        or shape[-1] not in (1, designs)
+        or shape[0] not in ((1, len(values.cases)) if len(shape) == 2 else (1, designs))
+    ):
+        message = f"returned an array of shape {array.shape} for {designs} design(s)"
+    if message:
+        remedy = "return a number, or an array with one number for each design"
+        raise PluginError(Diagnostic(f"{plugin.name} {message}", remedy, plugin.file or None))
+    return array if array.ndim else array[()]
 
 
 def metric(
@@ -95,6 +137,10 @@ def metric(
     unit_name : display unit; default the SI unit
     label : what tables and reports call it
     """
+    if not isinstance(name, str):
+        raise InputError('a metric needs its name: write @metric("my_metric") above the function')
+    if not name.strip() or re.search(r"[.\[\]=]", name) or not name.isprintable():
+        raise InputError(f'"{name}" cannot name a metric; use letters, digits and _')
     if name in METRICS:
         raise InputError(f"{name} is a metric of the project; choose another name")
     if dimension not in BASE:
@@ -150,27 +196,19 @@ def load(path: str | Path) -> tuple[Plugin, ...]:
         raise InputError(Diagnostic("not a Python file", "name it *.py", str(path)))
     module = importlib.util.module_from_spec(spec)
     try:
-        spec.loader.exec_module(module)
+        with contextlib.redirect_stdout(sys.stderr):
+            spec.loader.exec_module(module)
     except SyntaxError as error:
+        place = (str(path), error.lineno, error.offset)
+        raise InputError(Diagnostic(f"syntax error: {error.msg}", "", *place)) from None
+    except InputError as error:
+        line = _line(error, str(path))[1]
         raise InputError(
-            Diagnostic(f"syntax error: {error.msg}", "", str(path), error.lineno, error.offset)
+            [replace(fault, file=str(path), line=line) for fault in error.diagnostics]
         ) from None
-    except InputError:
-        raise
-    except (
-        ImportError,
-        ArithmeticError,
-        LookupError,
-        TypeError,
-        ValueError,
-        AttributeError,
-        NameError,
-        OSError,
-    ) as error:
-        line = traceback.extract_tb(error.__traceback__)[-1].lineno
-        raise InputError(
-            Diagnostic(f"{type(error).__name__}: {error}", "", str(path), line)
-        ) from None
+    except (Exception, SystemExit) as error:  # a stranger's code may raise anything
+        line = _line(error, str(path))[1]
+        raise InputError(Diagnostic(_said(error), "mend the file", str(path), line)) from None
     marked = [getattr(value, _MARK, None) for value in vars(module).values() if callable(value)]
     plugins = [plugin for plugin in marked if isinstance(plugin, Plugin)]
     if not plugins:
@@ -181,7 +219,9 @@ def load(path: str | Path) -> tuple[Plugin, ...]:
                 str(path),
             )
         )
-    unique = {plugin.name: plugin for plugin in plugins}
-    return tuple(
-        Plugin(p.name, p.quantity, p.function, p.sense, str(path)) for p in unique.values()
-    )
+    unique: dict[str, Plugin] = {}
+    for plugin in plugins:
+        if unique.setdefault(plugin.name, plugin).function is not plugin.function:
+            message = f"{plugin.name} is declared twice"
+            raise InputError(Diagnostic(message, "give each metric its own name", str(path)))
+    return tuple(replace(plugin, file=str(path)) for plugin in unique.values())

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from ..design.model import Design
 from ..models import damping, friction, gland, seals
 from ..numeric import Array, absolute, maximum, real, where
+from .allow import Stock
 from .geometry import Geometry, Groove
 from .rows import Computed
 from .state import State
@@ -93,6 +94,10 @@ def _gland_metrics(v: Values, name: str, state: _SealState, full_growth: Array) 
 
 
 def _contact(law: seals.SealLaw, state: _SealState) -> tuple[Array, Array, Array]:
+    """Line load of the whole row, contact width and peak pressure of the ring that seals.
+
+    One ring of a row carries the pressure, the others only their squeeze.
+    """
     squeeze = gland.squeeze_after(
         squeeze=state.squeeze, section=state.groove.section, growth=state.growth, tolerance=0.0
     )
@@ -105,11 +110,21 @@ def _contact(law: seals.SealLaw, state: _SealState) -> tuple[Array, Array, Array
     width = gland.limited_width(
         contact_width=law.contact_width(**inputs), groove_width=state.groove.width
     )
-    return law.line_load(**inputs), width, law.peak_pressure(**inputs)
+    load = law.line_load(**inputs)
+    if not isinstance(state.groove.count, float) or state.groove.count != 1.0:
+        idle = law.line_load(**(inputs | {"pressure": 0.0 * state.pressure}))
+        load = load + (state.groove.count - 1) * idle
+    return load, width, law.peak_pressure(**inputs)
 
 
 def compute(
-    v: Values, design: Design, geometry: Geometry, state: State, wall: Wall, out: Computed
+    v: Values,
+    design: Design,
+    stock: Stock,
+    geometry: Geometry,
+    state: State,
+    wall: Wall,
+    out: Computed,
 ) -> Friction:
     """Gland, contact and friction metrics of both seals; returns the cylinder's friction."""
     supply = v["supply.pressure"]
@@ -136,9 +151,7 @@ def compute(
         ),
     }
     places: dict[str, dict[str, Array]] = {}
-    running: Array = 0.0
-    breakaway: Array = 0.0
-    slope: Array = 0.0
+    total = Friction(0.0, 0.0, 0.0)
     for place, part in parts.items():
         name = place.split()[0]
         section = getattr(design.seals, name)
@@ -148,58 +161,69 @@ def compute(
         load, width, peak = _contact(seals.LAWS[section.law], part)
         places.setdefault("contact_width", {})[place] = width
         places.setdefault("contact_pressure", {})[place] = peak
-        coulomb = friction.seal_friction(
-            line_load=load,
-            diameter=part.diameter,
-            friction_coefficient=part.coefficient,
-            count=part.groove.count,
+        own = _friction(load, part, state.speed, v[f"seals.{name}.viscous_friction"])
+        total = Friction(
+            total.running + own.running, total.breakaway + own.breakaway, total.slope + own.slope
         )
-        static = friction.breakaway(running=coulomb, ratio=part.breakaway_ratio)
-        curve = {
-            "speed": state.speed,
-            "coulomb": coulomb,
-            "static": static,
-            "stribeck_speed": part.stribeck_speed,
-            "exponent": STRIBECK_EXPONENT,
-        }
-        viscous = v[f"seals.{name}.viscous_friction"]
-        level = friction.stribeck_level(**curve)
-        sliding = level + viscous * state.speed
-        running = running + where(real(state.speed) > 0, sliding, coulomb)
-        breakaway = breakaway + static
-        slope = slope + friction.stribeck_slope(**curve, viscous=viscous)
-        _extrusion(v, design, name, place, geometry, full_growth, places)
+        _extrusion(v, stock, section.compound, place, geometry, state, full_growth, places)
     for metric, by_place in places.items():
         out.put(metric, by_place)
     if "extrusion_factor" not in places:
         out.skip("extrusion_factor", "the seal compounds state no extrusion_gap_max")
-    out.put(
-        "seal_gap", gland.extrusion_gap(clearance=geometry.piston_clearance, growth=full_growth)
-    )
-    out.put("friction_running", running)
-    out.put("friction_breakaway", breakaway)
+    gap = gland.extrusion_gap(clearance=geometry.piston_clearance, growth=full_growth)
+    out.put("seal_gap", gap)
+    out.put("friction_running", total.running)
+    out.put("friction_breakaway", total.breakaway)
     moving = real(state.speed)[:, 0] > 0
-    out.put("damping_seal", damping.secant(friction=running, speed=state.speed), cases=moving)
+    secant = damping.secant(friction=total.running, speed=state.speed)
+    out.put("damping_seal", secant, cases=moving)
     if not moving.any():
         out.skip("damping_seal", "a secant damping needs a speed; no load case states one")
-    return Friction(running, breakaway, slope)
+    return total
+
+
+def _friction(load: Array, part: _SealState, speed: Array, viscous: Array) -> Friction:
+    """Friction of one row of seals: sliding where the case moves, Coulomb where it does not."""
+    coulomb = friction.seal_friction(
+        line_load=load, diameter=part.diameter, friction_coefficient=part.coefficient
+    )
+    static = friction.breakaway(running=coulomb, ratio=part.breakaway_ratio)
+    curve = {
+        "speed": speed,
+        "coulomb": coulomb,
+        "static": static,
+        "stribeck_speed": part.stribeck_speed,
+        "exponent": STRIBECK_EXPONENT,
+    }
+    sliding = friction.stribeck_level(**curve) + viscous * speed
+    return Friction(
+        running=where(real(speed) > 0, sliding, coulomb),
+        breakaway=static,
+        slope=friction.stribeck_slope(**curve, viscous=viscous),
+    )
 
 
 def _extrusion(
     v: Values,
-    design: Design,
-    name: str,
+    stock: Stock,
+    compound: str,
     place: str,
     geometry: Geometry,
+    state: State,
     growth: Array,
     places: dict[str, dict[str, Array]],
 ) -> None:
-    path = f"materials.{getattr(design.seals, name).compound}.extrusion_gap_max"
-    if path not in v:
+    """Largest gap the compound bears at supply pressure over the present one.
+
+    Side load pushes piston and rod over: the gap of one side is then the clearance larger.
+    """
+    limit = stock.material(compound).properties.get("extrusion_gap_max")
+    if limit is None:
         return
-    gap = (
-        gland.extrusion_gap(clearance=geometry.piston_clearance, growth=growth)
-        if name == "piston"
-        else geometry.head_clearance
+    clearance = geometry.piston_clearance if place == "piston seal" else geometry.head_clearance
+    pushed = where(real(state.side_load) > 0, 2.0, 1.0)
+    gap = gland.extrusion_gap(
+        clearance=pushed * clearance, growth=growth if place == "piston seal" else 0.0
     )
-    places.setdefault("extrusion_factor", {})[place] = v[path] / gap
+    allowed = limit.at(v["supply.pressure"], value=stock.get(compound, "extrusion_gap_max"))
+    places.setdefault("extrusion_factor", {})[place] = allowed / gap

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..design.kinds import Fraction
 from ..design.material import Material
 from ..design.model import Design
+from ..models import density as oil_density
 from ..models import fluid, stiffness
 from ..numeric import Array, where
 from .allow import Stock
@@ -24,6 +26,8 @@ class State:
     """
 
     push: np.ndarray
+    reach: Array
+    """Piston position for column and side load: the case's own, or the full stroke (worst)."""
     force: Array
     speed: Array
     side_load: Array
@@ -89,6 +93,22 @@ def _viscosity(v: Values, oil: Material, temperature: Array) -> Array:
     )
 
 
+def _reach(v: Values, design: Design, geometry: Geometry) -> Array:
+    """Position of every case; one number where all are ``worst``, which is full extension."""
+    if all(case.position == "worst" for case in design.load_cases):
+        return geometry.stroke
+    rows = []
+    for case in design.load_cases:
+        path = f"load_cases[{case.name}].position"
+        if case.position == "worst":
+            rows.append(geometry.stroke)
+        elif isinstance(case.position, Fraction):
+            rows.append(v.get(path, case.position.value) * geometry.stroke)
+        else:
+            rows.append(v[path])
+    return stacked(rows)
+
+
 def derive(v: Values, design: Design, stock: Stock, geometry: Geometry) -> State:
     """State of every load case of a design."""
     push = np.array([[case.direction == "push"] for case in design.load_cases])
@@ -109,7 +129,7 @@ def derive(v: Values, design: Design, stock: Stock, geometry: Geometry) -> State
     density = stock.get(name, "density")
     expansion = stock.get(name, "volume_expansion")
     if expansion is not None and "density_temperature" in oil.numbers:
-        density = fluid.density_thermal(
+        density = oil_density.density_thermal(
             reference_density=density,
             volume_expansion=expansion,
             temperature=temperature,
@@ -117,6 +137,7 @@ def derive(v: Values, design: Design, stock: Stock, geometry: Geometry) -> State
         )
     return State(
         push=push,
+        reach=_reach(v, design, geometry),
         force=force,
         speed=v.case("speed"),
         side_load=v.case("side_load"),

@@ -39,7 +39,7 @@ def compute(
     push, pull = supply * g.area_a, supply * g.area_b
     through = max_axial(design, g, supply)
     _pressure_factors(v, stock, design, g, wall, supply, through, state, out)
-    _buckling(stock, design, g, wall, push, out)
+    _buckling(stock, design, g, state, wall, push, out)
     _rod_end(v, stock, design, pull, out)
     _retention(v, stock, design, g, wall, through, out)
     _caps(stock, design, g, supply, out)
@@ -93,7 +93,7 @@ def _pressure_factors(
             inner_diameter=g.rod_inner_diameter,
         )
         bending = rod.bending_stress(
-            bending_moment=state.side_load * overhang(g),
+            bending_moment=state.side_load * overhang(g, state),
             outer_diameter=g.rod_diameter,
             inner_diameter=g.rod_inner_diameter,
         )
@@ -104,19 +104,26 @@ def _pressure_factors(
     out.put("yield_factor", parts)
 
 
-def overhang(g: Geometry) -> Array:
-    """Distance of the rod eye from the middle of the head bearing at full extension."""
-    return g.stroke + g.rod_extension + g.eye_offset + (g.head_length + g.plate) / 2
+def overhang(g: Geometry, state: State) -> Array:
+    """Distance of the rod eye from the middle of the head bearing, at the case's position."""
+    return state.reach + g.rod_extension + g.eye_offset + (g.head_length + g.plate) / 2
 
 
 def _buckling(
-    stock: Stock, design: Design, g: Geometry, wall: Wall, push: Array, out: Computed
+    stock: Stock,
+    design: Design,
+    g: Geometry,
+    state: State,
+    wall: Wall,
+    push: Array,
+    out: Computed,
 ) -> None:
+    """Column of barrel and rod under the stall force, at the position of every case."""
     modulus = stock.get(design.rod.material, "youngs_modulus", "youngs_modulus_1")
     bending = modulus * rod.second_moment(
         outer_diameter=g.rod_diameter, inner_diameter=g.rod_inner_diameter
     )
-    exposed = g.stroke + g.rod_extension + g.eye_offset
+    exposed = state.reach + g.rod_extension + g.eye_offset
     mount = design.cylinder.mount
     if mount.startswith("head"):
         factor = FIXED_PINNED if mount == "head_flange" else 1.0
@@ -149,78 +156,130 @@ def _rod_end(v: Values, stock: Stock, design: Design, pull: Array, out: Computed
 
 
 def _retention(
-    v: Values, stock: Stock, design: Design, g: Geometry, wall: Wall, load: Array, out: Computed
+    v: Values,
+    stock: Stock,
+    design: Design,
+    g: Geometry,
+    wall: Wall,
+    load: Array,
+    out: Computed,
 ) -> None:
+    """What holds caps and head: elastic limit and breaking load over the largest axial force."""
     held = design.retention
+    found: tuple[dict[str, Array], Array] | str
     if held is None:
-        out.skip("retention_factor", "no retention stated: add retention")
-        return
-    if held.type == "bond" and held.material is not None:
-        strength = stock.allowable(held.material, "bond_strength")
-        modulus = stock.get(design.caps.material, "youngs_modulus")
-        shear = stock.get(held.material, "shear_modulus")
-        if strength is None or modulus is None or shear is None:
-            out.skip("retention_factor", "adhesive or caps lack bond strength or a modulus")
-            return
-        common = {
-            "force": load,
-            "diameter": 2 * g.outer_radius,
-            "length": g.skirt_length,
-            "shear_modulus": shear,
-            "bond_thickness": stock.get(held.material, "bond_thickness", default=0.15e-3),
-        }
-        skirt, barrel = modulus * g.skirt_wall, wall.axial_line_stiffness
-        edges = {
-            "bond at the skirt's edge": (barrel, skirt),
-            "bond at the barrel's edge": (skirt, barrel),
-        }
-        out.put(
-            "retention_factor",
-            {
-                place: strength
-                / retention.bond_edge_shear(
-                    **common, membrane_stiffness_loaded=loaded, membrane_stiffness_free=free
-                )
-                for place, (loaded, free) in edges.items()
-            },
+        found = "no retention stated: add retention"
+    elif held.type == "bond":
+        found = _bond(stock, design, g, wall, load)
+    else:
+        found = _screwed(v, stock, design, g, load)
+    if isinstance(found, str):
+        out.skip("retention_factor", found)
+        out.skip("retention_burst_factor", found)
+    else:
+        out.put("retention_factor", found[0])
+        out.put("retention_burst_factor", found[1])
+
+
+def _bond(
+    stock: Stock, design: Design, g: Geometry, wall: Wall, load: Array
+) -> tuple[dict[str, Array], Array] | str:
+    """Elastic edge shear of the bond, and its mean shear at break; or why not."""
+    adhesive = None if design.retention is None else design.retention.material
+    if adhesive is None:
+        return "a bond needs its adhesive: add retention.material"
+    strength = stock.allowable(adhesive, "bond_strength")
+    shear = stock.get(adhesive, "shear_modulus")
+    modulus = stock.get(design.caps.material, "youngs_modulus")
+    if strength is None or modulus is None or shear is None:
+        return "adhesive or caps lack bond strength or a modulus"
+    common = {
+        "force": load,
+        "diameter": 2 * g.outer_radius,
+        "length": g.skirt_length,
+        "shear_modulus": shear,
+        "bond_thickness": stock.get(adhesive, "bond_thickness", default=0.15e-3),
+    }
+    skirt, barrel = modulus * g.skirt_wall, wall.axial_line_stiffness
+    edges = {
+        "bond at the skirt's edge": (barrel, skirt),
+        "bond at the barrel's edge": (skirt, barrel),
+    }
+    factors = {}
+    for place, (loaded, free) in edges.items():
+        stress = retention.bond_edge_shear(
+            **common, membrane_stiffness_loaded=loaded, membrane_stiffness_free=free
         )
-        return
-    name = held.material if held.type == "tie_rods" else design.caps.material
+        factors[place] = strength / stress
+    return factors, strength * (2 * pi * g.outer_radius * g.skirt_length) / load
+
+
+def _screwed(
+    v: Values, stock: Stock, design: Design, g: Geometry, load: Array
+) -> tuple[dict[str, Array], Array] | str:
+    """Yield and ultimate strength of the retaining thread or the tie rods; or why not."""
+    held = design.retention
+    tied = held is not None and held.type == "tie_rods"
+    name = held.material if held is not None and tied else design.caps.material
     strength = None if name is None else stock.allowable(name, "yield_strength")
-    if strength is None or held.thread is None:
-        out.skip(
-            "retention_factor", "retention needs a thread and a material with a yield strength"
-        )
-    elif held.type == "tie_rods":
+    ultimate = None if name is None else stock.allowable(name, "ultimate_strength")
+    if held is None or held.thread is None or strength is None or ultimate is None:
+        return "retention needs a thread and a material with yield and ultimate strength"
+    pitch = v["retention.thread.pitch"]
+    if tied:
         stress = retention.tie_rod_stress(
             force=load,
             count=v["retention.count"],
             diameter=v["retention.thread.diameter"],
-            pitch=v["retention.thread.pitch"],
+            pitch=pitch,
         )
-        out.put("retention_factor", {"tie rods": strength / stress})
-    else:
-        stress = rod.thread_shear_stress(
-            force=load,
-            diameter=2 * g.outer_radius,
-            pitch=v["retention.thread.pitch"],
-            engagement=g.skirt_length,
-        )
-        out.put("retention_factor", {"thread": strength / sqrt(3) / stress})
+        return {"tie rods": strength / stress}, ultimate / stress
+    stress = sqrt(3) * rod.thread_shear_stress(
+        force=load, diameter=2 * g.outer_radius, pitch=pitch, engagement=g.skirt_length
+    )
+    return {"thread": strength / stress}, ultimate / stress
 
 
 def _caps(stock: Stock, design: Design, g: Geometry, supply: Array, out: Computed) -> None:
-    """Bending of the end plates; the head's plate and plug bend as one turned part."""
+    """Bending of the end plates; the head's plate and plug bend as one turned part.
+
+    The cap hangs on the skirt (or the tie rods) while the piston stands at the far end; on a
+    clevis its neck takes the push, pressure bending the plate around it, and the pull, which
+    comes in at the skirt.
+    """
     name = design.caps.material
     strength = stock.allowable(name, "yield_strength")
     ratio = stock.get(name, "poissons_ratio")
     if strength is None or ratio is None:
         out.skip("cap_factor", f"{name} states no yield strength or Poisson's ratio")
         return
-    flat = {"pressure": supply, "radius": g.inner_radius, "poissons_ratio": ratio}
-    cap = end_plate.end_plate_stress(thickness=g.plate, **flat)
-    head = end_plate.end_plate_stress(thickness=g.plate + g.head_length, **flat)
-    out.put("cap_factor", {"cap": strength / cap, "head": strength / (HOLE * head)})
+    tied = design.retention is not None and design.retention.type == "tie_rods"
+    support = (g.plate_radius + g.outer_radius) / 2
+    stresses: dict[str, Array] = {}
+    if design.cylinder.end_stop == "internal" or tied or design.clevis is None:
+        stresses["cap, hung on its skirt"] = end_plate.hung_plate_stress(
+            pressure=supply,
+            loaded_radius=g.inner_radius,
+            support_radius=support,
+            thickness=g.plate,
+            poissons_ratio=ratio,
+        )
+    if design.clevis is not None and design.cylinder.mount == "cap_clevis":
+        hub = {"hub_radius": g.pin_diameter / 2, "thickness": g.plate, "poissons_ratio": ratio}
+        stresses["cap, pushing on its neck"] = end_plate.hub_plate_stress(
+            pressure=supply, edge_force=0.0, edge_radius=g.inner_radius, **hub
+        )
+        stresses["cap, pulled by its neck"] = end_plate.hub_plate_stress(
+            pressure=0.0, edge_force=supply * g.area_b, edge_radius=support, **hub
+        )
+    head = end_plate.end_plate_stress(
+        pressure=supply,
+        radius=g.inner_radius,
+        thickness=g.plate + g.head_length,
+        poissons_ratio=ratio,
+    )
+    stresses["head"] = HOLE * head
+    out.put("cap_factor", {place: strength / stress for place, stress in stresses.items()})
 
 
 def _pins(v: Values, stock: Stock, design: Design, push: Array, out: Computed) -> None:
@@ -238,7 +297,7 @@ def _pins(v: Values, stock: Stock, design: Design, push: Array, out: Computed) -
 def _guides(stock: Stock, design: Design, g: Geometry, state: State, out: Computed) -> None:
     out.put("bearing_overlap", g.bearing_span / g.rod_diameter)
     head, piston = retention.guide_forces(
-        side_force=state.side_load, overhang=overhang(g), span=g.bearing_span
+        side_force=state.side_load, overhang=overhang(g, state), span=g.bearing_span
     )
     grooves = g.rod_groove.count * g.rod_groove.width
     pressures = {

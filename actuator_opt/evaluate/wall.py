@@ -14,7 +14,7 @@ import numpy as np
 
 from ..design.material import Material
 from ..design.model import Design
-from ..models import barrel, laminate, ply, ply_discount, rod, strength_modes
+from ..models import barrel, barrel_ends, laminate, ply, ply_discount, rod, strength_modes
 from ..models.strength_modes import PlyStrength
 from ..numeric import Array, maximum, minimum
 from .allow import Stock
@@ -76,10 +76,10 @@ def axial_forces(design: Design, state: State, geometry: Geometry) -> Array:
     if design.retention is not None and design.retention.type == "tie_rods":
         return 0.0 * state.moving_a
     if design.cylinder.mount.startswith("cap"):
-        return barrel.axial_force_cap_mounted(
+        return barrel_ends.axial_force_cap_mounted(
             rod_side_pressure=state.moving_b, rod_side_area=geometry.area_b, stop_force=0.0
         )
-    return barrel.axial_force_head_mounted(
+    return barrel_ends.axial_force_head_mounted(
         cap_side_pressure=state.moving_a, cap_side_area=geometry.area_a
     )
 
@@ -259,12 +259,13 @@ def _laminate(v: Values, design: Design, stock: Stock, g: Geometry, state: State
     _thermal(v, design, layers, stack, thicknesses, wall)
     middle = (g.inner_radius + g.outer_radius) / 2
     paths = _load_paths(v, design, state, g)
-    _strengths(layers, middle, tuple(paths), np.stack(list(paths.values())), wall)
+    _strengths(layers, stack, middle, tuple(paths), np.stack(list(paths.values())), wall)
     return wall
 
 
 def _strengths(
     layers: list[_Layer],
+    stack: laminate.Membrane,
     middle: Array,
     paths: tuple[str, ...],
     axial: Array,
@@ -279,6 +280,9 @@ def _strengths(
         for path, pressure in zip(paths, pressures, strict=True):
             table[f"{label}{path}"] = pressure
 
+    strain = laminate.strains(
+        membrane=stack, axial_line_force=axial / (2 * pi * middle), hoop_line_force=middle
+    )
     ladder = ply_discount.burst_by_ply_discount(
         layers=[layer.as_wall() for layer in layers],
         radius=middle,
@@ -288,7 +292,7 @@ def _strengths(
     for (index, mode), pressure in zip(ladder.modes(), pressures, strict=True):
         layer = layers[index]
         if mode == "yield":
-            put(wall.yield_pressure, f"{layer.label}, ", pressure)
+            put(wall.yield_pressure, f"{layer.label}, ", _yield_at_bore(layer, strain))
             wall.yields |= {f"{layer.label}, {path}": layer.name for path in paths}
         elif layer.strength is not None:
             label = f"{layer.label} {mode}, "
@@ -306,6 +310,20 @@ def _strengths(
     if any(layer.isotropic for layer in layers):
         label = "first ply with the liner yielding, "
         put(wall.first_ply_pressure, label, ladder.first_ply_pressure)
+
+
+def _yield_at_bore(layer: _Layer, strain: tuple[Array, Array]) -> Array:
+    """Yield pressure of a metal layer under the wall's strain per pressure.
+
+    The pressure itself is taken as the layer's radial stress, which is exact at the bore.
+    """
+    stress_1, stress_2, _ = ply.ply_stresses(
+        stiffness=layer.stiffness,
+        angle=layer.angle,
+        axial_strain=strain[0],
+        hoop_strain=strain[1],
+    )
+    return layer.yield_strength / barrel.von_mises(hoop=stress_1, radial=-1.0, axial=stress_2)
 
 
 def _thermal(

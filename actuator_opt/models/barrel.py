@@ -11,8 +11,6 @@ from math import pi
 import numpy as np
 
 from ..numeric import Array, namespace, positive, real, sqrt
-from .barrel_ends import axial_force_cap_mounted as axial_force_cap_mounted
-from .barrel_ends import axial_force_head_mounted as axial_force_head_mounted
 
 
 def bore_growth(

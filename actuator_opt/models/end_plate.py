@@ -50,6 +50,113 @@ def end_plate_stress(
     return factor * pressure * slender * slender
 
 
+def hung_plate_stress(
+    *,
+    pressure: Array,
+    loaded_radius: Array,
+    support_radius: Array,
+    thickness: Array,
+    poissons_ratio: Array,
+) -> Array:
+    """Largest bending stress of a cap under pressure, hung on a skirt wider than the bore.
+
+    Simply supported at a, p on r < c: M = (p c^2/4) [(1 + nu) ln(a/c) + 1 - (1 - nu) c^2/(4 a^2)]
+    at the centre, 6 M/t^2.
+
+    Parameters
+    ----------
+    pressure : gauge pressure on the loaded circle [Pa]
+    loaded_radius : c, radius of the bore [m]
+    support_radius : a, radius the plate hangs at, >= c [m]
+    thickness : t [m]
+    poissons_ratio : Poisson's ratio [-]
+
+    Returns
+    -------
+    bending stress [Pa]; NaN where the plate has no thickness
+
+    Notes
+    -----
+    Valid: t < a/2, deflection below t/2.
+
+    References
+    ----------
+    [Timoshenko1959] circular plate loaded on a concentric circle
+
+    Examples
+    --------
+    >>> s = hung_plate_stress(pressure=10e6, loaded_radius=12.5e-3, support_radius=12.5e-3,
+    ...                       thickness=5e-3, poissons_ratio=0.3)
+    >>> print(f"{s / 1e6:.2f} MPa")
+    77.34 MPa
+    """
+    ratio = support_radius / loaded_radius
+    log = namespace(ratio).log(ratio)
+    spread = (1 + poissons_ratio) * log + 1 - (1 - poissons_ratio) / (4 * ratio * ratio)
+    slender = loaded_radius / positive(thickness)
+    return 1.5 * pressure * slender * slender * spread
+
+
+def hub_plate_stress(
+    *,
+    pressure: Array,
+    edge_force: Array,
+    hub_radius: Array,
+    edge_radius: Array,
+    thickness: Array,
+    poissons_ratio: Array,
+) -> Array:
+    """Radial bending stress at the hub of a plate held there: a cap on the neck of its clevis.
+
+    Clamped at b, free at a, uniform p on the annulus and a ring force F at a:
+    M = [F/(2 pi) + p a^2/2 - p b^2/2] L/C8 - p a^2 L17/C8, s = b/a,
+    L = (1 + nu)/2 ln(a/b) + (1 - nu)/4 (1 - s^2), C8 = [1 + nu + (1 - nu) s^2]/2,
+    L17 = {1 - (1 - nu)/4 (1 - s^4) - s^2 [1 + (1 + nu) ln(a/b)]}/4; 6 M/t^2.
+
+    Parameters
+    ----------
+    pressure : gauge pressure on the annulus [Pa]
+    edge_force : total axial force on the outer edge, in the direction of the pressure [N]
+    hub_radius : b, radius of the neck [m]
+    edge_radius : a, outer radius [m]
+    thickness : t [m]
+    poissons_ratio : Poisson's ratio [-]
+
+    Returns
+    -------
+    bending stress [Pa]; NaN where the plate has no thickness
+
+    Notes
+    -----
+    Valid: b < a, t < a/2, deflection below t/2.
+
+    References
+    ----------
+    [Roark2002] table 11.2 cases 1l and 2l
+
+    Examples
+    --------
+    >>> s = hub_plate_stress(pressure=1e6, edge_force=0.0, hub_radius=10e-3, edge_radius=20e-3,
+    ...                      thickness=4e-3, poissons_ratio=0.3)
+    >>> print(f"{s / 1e6:.1f} MPa")
+    26.0 MPa
+    """
+    share = hub_radius / edge_radius
+    square = share * share
+    log = -namespace(share).log(share)
+    lever = (1 + poissons_ratio) / 2 * log + (1 - poissons_ratio) / 4 * (1 - square)
+    flex = (1 + poissons_ratio + (1 - poissons_ratio) * square) / 2
+    spread = (
+        1
+        - (1 - poissons_ratio) / 4 * (1 - square * square)
+        - square * (1 + (1 + poissons_ratio) * log)
+    ) / 4
+    area = edge_radius * edge_radius
+    moment = edge_force / (2 * pi) * lever
+    moment = moment + pressure * area * ((1 - square) / 2 * lever - spread)
+    return 6 * moment / flex / (positive(thickness) * thickness)
+
+
 def annular_plate_stress(
     *,
     pressure: Array,

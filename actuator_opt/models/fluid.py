@@ -11,7 +11,6 @@ import math
 from collections.abc import Sequence
 
 from ..numeric import Array, maximum, namespace, real, where
-from .density import density_thermal as density_thermal
 
 ATMOSPHERIC_PRESSURE = 101325.0
 """Standard atmosphere, Pa absolute."""

@@ -174,7 +174,9 @@ def _resolved_ends(
         if objective is None:
             problem = perturbed(parametric, given.names[k], k, values[k] + step)
             guess = point.z + moves[:, k] * step
-            objective = None if problem is None else resolved(problem, evaluator, guess, point)
+            tried = k < len(parametric.parameters) and lockstep.applicable(parametric, evaluator)
+            if problem is not None:
+                objective = resolved(problem, evaluator, guess, point, tried=tried)
         ends[k, sign] = objective
     return [(ends[k, 1], ends[k, -1]) for k in range(len(values))]
 
@@ -207,11 +209,13 @@ def _together(
     return known
 
 
-def resolved(problem: Problem, evaluator: Evaluator, guess: Vector, point: Point) -> float | None:
+def resolved(
+    problem: Problem, evaluator: Evaluator, guess: Vector, point: Point, *, tried: bool = False
+) -> float | None:
     """Objective of a slightly changed problem, from the predicted optimum; None if infeasible.
 
-    Newton first; where the active set changes too much for it, a search for a feasible point
-    (whose failure means that the changed problem has none nearby) and SLSQP from there.
+    Newton first (unless `tried`); where the active set changes too much for it, a search for a
+    feasible point (whose failure means that the changed problem has none nearby) and SLSQP.
     """
     near = Evaluator(problem)
     if near.space.size != len(guess):  # the changed bound fixes a variable
@@ -220,6 +224,9 @@ def resolved(problem: Problem, evaluator: Evaluator, guess: Vector, point: Point
     near.difference_rows = evaluator.difference_rows
     here = near.point(near.space.to_z(np.clip(point.x, problem.lower, problem.upper)))
     start = near.point(np.clip(guess, near.space.lower, near.space.upper))
+    if tried:
+        best = _from_feasible(near, here)
+        return None if best is None else best.objective
     best = _refined(near, start if start.valid else here)
     if best is None or (_met(here) and here.objective < best.objective):
         best = _refined(near, here) or best  # the guess led nowhere, or uphill
@@ -231,9 +238,12 @@ def _refined(near: Evaluator, start: Point) -> Point | None:
     if not start.valid:
         return None
     found = polish(near, start, iterations=8, tolerance=1e-10)
-    if _optimal(near, found):
-        return found
-    inside = elastic.feasible_point(near, found)
+    return found if _optimal(near, found) else _from_feasible(near, found)
+
+
+def _from_feasible(near: Evaluator, start: Point) -> Point | None:
+    """Return an optimum from the nearest feasible point, else that point; None without one."""
+    inside = elastic.feasible_point(near, start) if start.valid else None
     if inside is None:
         return None
     found = nlopt_wrapper.run(near, inside, "LD_SLSQP", most=100).point

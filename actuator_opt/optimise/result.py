@@ -137,7 +137,10 @@ class Optimisation:
                 "status": self.status,
                 "outcome": self.sentence,
                 "remedy": self.remedy,
-                "objective": {"metric": self.objective_metric, "value": self.objective_value},
+                "objective": {
+                    "metric": self.objective_metric,
+                    "value": self.objective_value if isfinite(self.objective_value) else None,
+                },
                 "variables": {
                     v.path: {
                         "value": v.value,

@@ -58,7 +58,10 @@ def optimise(
         actuator.problem, algorithm=algorithm, starts=starts, seed=seed, max_seconds=max_seconds
     )
     design = with_values(
-        subject.design, dict(zip(actuator.paths, solution.x.tolist(), strict=True))
+        subject.design,
+        dict(zip(actuator.paths, solution.x.tolist(), strict=True)),
+        metrics=subject.quantities,
+        contradictions=False,
     )
     best = prepare(design, subject.materials, subject.plugins)
     rows: tuple[Sensitivity, ...] = ()

@@ -1,13 +1,28 @@
-"""Published numbers beside ours, for the designs that re-create a paper."""
+"""Published numbers beside ours, for the designs that re-create a paper.
+
+Published values are data with their place in the paper; everything else in these tables is
+computed when the report is made: the paper's own formula (`*_as_published`) with the paper's
+numbers, and this project's models on the design as it stands.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from ..evaluate import Evaluation
 from ..optimise.result import Optimisation
+from . import elasswad_tables
 from .blocks import ExtraTable
+from .page import parts_of
+
+TABLES: dict[str, tuple[Callable[[Evaluation], ExtraTable], ...]] = {
+    "ElAsswad2018": elasswad_tables.TABLES,
+}
+"""What each paper's tables are made by; the keys are those of `Design.reproduces`."""
 
 
 def published_tables(subject: Evaluation | Optimisation) -> list[ExtraTable]:
     """Comparison tables of a design that names a paper; empty for others."""
-    del subject
-    return []
+    evaluation, _ = parts_of(subject)
+    paper = evaluation.design.reproduces
+    return [] if paper is None else [table(evaluation) for table in TABLES[paper]]

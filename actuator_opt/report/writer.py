@@ -7,6 +7,7 @@ file and the command inside itself (PDF/A-3), so that a report can be run again.
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import importlib.util
 import json
@@ -189,6 +190,9 @@ def _write(folder: Path, contents: Mapping[str, bytes]) -> None:
             path = folder / f".{name}.{os.getpid()}.part"
             aside.append((path, folder / name))
             path.write_bytes(content)
+        for _, target in aside:
+            if target.is_dir():
+                raise IsADirectoryError(errno.EISDIR, "a folder stands in the way", str(target))
         for path, target in aside:
             path.replace(target)
     except OSError as error:

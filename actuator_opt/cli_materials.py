@@ -1,0 +1,76 @@
+"""The commands below `actuator-opt materials`: what the library knows, with its sources."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from . import streams
+from .errors import Diagnostic, UsageError
+from .options import Json
+
+app = typer.Typer(
+    help="Look up materials, fluids, seal compounds and adhesives.",
+    no_args_is_help=True,
+)
+
+
+@app.command("list")
+def list_materials(
+    kind: Annotated[
+        str | None,
+        typer.Option(
+            "--kind", metavar="KIND", help="metal, ply, polymer, fluid, seal or adhesive."
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Every entry with its main numbers."""
+    from .design.material import KINDS
+    from .design.material_tables import list_lines, to_dict
+    from .design.materials import load_library
+
+    if kind is not None and kind not in KINDS:
+        raise UsageError(Diagnostic(f'--kind "{kind}"', f"use one of {', '.join(KINDS)}"))
+    found = load_library()
+    if as_json:
+        streams.out_json(to_dict(m for m in found if kind is None or m.kind == kind))
+    else:
+        streams.out("\n".join(list_lines(found, kind=kind, ascii=not streams.style()["unicode"])))
+
+
+@app.command("show")
+def show_material(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the entry.")],
+    as_json: Json = False,
+) -> None:
+    """Every property of one entry, with scatter and source."""
+    from .design.material_tables import show_lines, to_dict
+    from .design.materials import load_library
+
+    material = load_library().get(name)
+    if as_json:
+        streams.out_json(to_dict([material]))
+    else:
+        streams.out("\n".join(show_lines(material, ascii=not streams.style()["unicode"])))
+
+
+@app.command("compare")
+def compare_materials(
+    names: Annotated[list[str], typer.Argument(metavar="NAME", help="Two or more entries.")],
+    as_json: Json = False,
+) -> None:
+    """Properties side by side, with ratios to the first."""
+    from .design.material_tables import compare_lines, to_dict
+    from .design.materials import load_library
+
+    if len(names) < 2:
+        raise UsageError(Diagnostic("one material cannot be compared", "name two or more"))
+
+    found = load_library()
+    materials = [found.get(name) for name in names]
+    if as_json:
+        streams.out_json(to_dict(materials))
+    else:
+        streams.out("\n".join(compare_lines(materials, ascii=not streams.style()["unicode"])))

@@ -1,0 +1,59 @@
+"""The options that commands share, each declared once with its help."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+DesignFile = Annotated[str, typer.Argument(metavar="DESIGN", help="Design file, or - for stdin.")]
+Set = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="PATH=VALUE",
+        help='Replace a value, e.g. "cylinder.bore=30 mm"; a bare number is SI. Repeatable.',
+    ),
+]
+Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for reports.")]
+Seed = Annotated[
+    int,
+    typer.Option(
+        "--seed", min=0, metavar="N", help="Fixes random choices: same seed, same result."
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object (SI) to stdout.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+PluginFile = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--plugin", metavar="FILE.py", help="Python file with metrics of your own. Repeatable."
+    ),
+]
+Date = Annotated[
+    str | None,
+    typer.Option(
+        "--date",
+        metavar="YYYY-MM-DD",
+        help="Date to print on the report; default: none, or that of SOURCE_DATE_EPOCH.",
+    ),
+]
+Algorithm = Annotated[
+    str,
+    typer.Option(
+        "--algorithm", metavar="NAME", help="auto, or an NLopt algorithm such as LD_SLSQP."
+    ),
+]
+Starts = Annotated[
+    int,
+    typer.Option(
+        "--starts", min=1, max=1000, metavar="N", help="Local searches from different points."
+    ),
+]
+Write = Annotated[
+    Path | None,
+    typer.Option("--write", metavar="FILE", help="Save the best design as a design file."),
+]
+Report = Annotated[bool, typer.Option("--report", help="Write the report (PDF and PNG) too.")]
+REPORTS = Path("reports")
