@@ -182,7 +182,7 @@ def convex_hessian(evaluator: Evaluator, state: State) -> Vector:
     floor = 1e-7 * size
     held = near.gradients[firm]
     held = held / np.sqrt((held**2).sum(axis=1, keepdims=True))
-    for weight in (0.0, 10.0, 1e3):
+    for weight in (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e3):
         convex = hessian + weight * size * (held.T @ held)
         if np.linalg.eigvalsh(convex)[0] > floor:
             return np.asarray(convex)

@@ -123,7 +123,10 @@ class _Search:
         return optimum
 
     def best(self) -> _Optimum | None:
-        """Feasible optima by objective, then feasible points, then the least infeasible."""
+        """Feasible points by objective, then the least infeasible.
+
+        A point whose optimality is proven wins over one that is better by rounding only.
+        """
 
         def rank(optimum: _Optimum) -> tuple[float, float]:
             point = optimum.point
@@ -132,7 +135,14 @@ class _Search:
             missed = point.violation if point.violation > FEASIBLE else 0.0
             return (missed, point.objective)
 
-        return min(self.optima, key=rank, default=None)
+        first = min(self.optima, key=rank, default=None)
+        if first is None or first.good:
+            return first
+        room = 1e-7 * max(abs(first.point.objective), 1e-300)
+        proven = [
+            o for o in self.optima if o.good and o.point.objective <= first.point.objective + room
+        ]
+        return min(proven, key=rank, default=first)
 
 
 def solve(
