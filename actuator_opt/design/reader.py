@@ -73,14 +73,13 @@ class Source:
 
     def _find(self, fault: Fault) -> Span | Literal["--set"] | None:
         """The nearest place in the text at or above the fault's own."""
-        set_below = any(loc[: len(fault.loc)] == fault.loc for loc in self.overrides)
-        if fault.loc and set_below and fault.loc not in self.document.values:
-            return SET  # the block itself came from outside
         for depth in range(len(fault.loc), -1, -1):
             loc = fault.loc[:depth]
             if loc in self.overrides:
                 return SET
             span = self.document.values.get(loc)
+            if span is None and any(other[:depth] == loc for other in self.overrides):
+                return SET  # the block itself came from outside
             if fault.at_key or depth < len(fault.loc):
                 span = self.document.keys.get(loc) or span
             if span is not None:

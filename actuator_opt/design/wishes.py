@@ -82,6 +82,7 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
     for path, bounds in block.items() if isinstance(block, dict) else ():
         loc = ("variables", path)
         if _in_faulty_block(path, tree):
+            block[path] = {"lower": 0.0, "upper": 1.0, "start": 0.0}  # the block's fault is enough
             continue
         try:
             target = _movable(path, tree)

@@ -225,7 +225,7 @@ def resolved(
     here = near.point(near.space.to_z(np.clip(point.x, problem.lower, problem.upper)))
     start = near.point(np.clip(guess, near.space.lower, near.space.upper))
     if tried:
-        best = _from_feasible(near, here)
+        best = _from_feasible(near, here, quick=True)
         return None if best is None else best.objective
     best = _refined(near, start if start.valid else here)
     if best is None or (_met(here) and here.objective < best.objective):
@@ -241,9 +241,9 @@ def _refined(near: Evaluator, start: Point) -> Point | None:
     return found if _optimal(near, found) else _from_feasible(near, found)
 
 
-def _from_feasible(near: Evaluator, start: Point) -> Point | None:
+def _from_feasible(near: Evaluator, start: Point, *, quick: bool = False) -> Point | None:
     """Return an optimum from the nearest feasible point, else that point; None without one."""
-    inside = elastic.feasible_point(near, start) if start.valid else None
+    inside = elastic.feasible_point(near, start, quick=quick) if start.valid else None
     if inside is None:
         return None
     found = nlopt_wrapper.run(near, inside, "LD_SLSQP", most=100).point

@@ -21,7 +21,7 @@ from .outcome import Outcome, Solution
 from .result import Infeasibility, Kkt, Optimisation, Sensitivity, VariableResult
 from .solver import solve
 
-MOST_PARAMETERS = 12
+MOST_PARAMETERS = 10
 """Parameters (not limits) priced in the sensitivity table: those that matter most."""
 
 LEAST_EFFECT = 1e-3

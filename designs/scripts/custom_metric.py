@@ -16,6 +16,7 @@ from math import pi
 from pathlib import Path
 
 import actuator_opt as ao
+from actuator_opt import optimise, read
 
 KNEE = Path(__file__).parents[1] / "knee.yaml"
 SLENDERNESS = 11.0
@@ -39,10 +40,10 @@ def stocky_rod(design):
 
 def main() -> None:
     """Optimise the knee as it is, then with both additions, and print what they change."""
-    plain = ao.optimise(ao.read(KNEE), starts=4, prices=False)
+    plain = optimise(read(KNEE), starts=4, prices=False)
     ours = (oil_per_cycle, stocky_rod)
     limit = {"requirements.oil_per_cycle.max": "66 ml"}
-    extended = ao.optimise(ao.read(KNEE, set=limit, plugins=ours), starts=4, prices=False)
+    extended = optimise(read(KNEE, set=limit, plugins=ours), starts=4, prices=False)
 
     print(f"{'':28}{'knee':>12}{'with both':>12}")
     print(f"{'mass, g':28}{1e3 * plain.objective_value:12.1f}{1e3 * extended.objective_value:12.1f}")
