@@ -21,6 +21,7 @@ environment:
   temperature_max: 75 degC
   trapped_rise: 8 K
   cure_temperature: 120 degC
+  wet: false
 cylinder:
   bore: 24 mm
   stroke: 105 mm

@@ -205,6 +205,8 @@ def _layers(v: Values, design: Design, stock: Stock, g: Geometry, wall: list[str
         yields = None
         if isotropic:
             yields = stock.allowable(name, "yield_strength", "ultimate_strength")
+            if yields is None:
+                wall.append(f"{name} states no yield strength")
         else:
             values = [stock.allowable(name, key) for key in _STRENGTHS]
             if all(value is not None for value in values):
@@ -291,7 +293,7 @@ def _strengths(
     pressures = strength_modes.load_multiplier(ladder.intact)
     for (index, mode), pressure in zip(ladder.modes(), pressures, strict=True):
         layer = layers[index]
-        if mode == "yield":
+        if mode == "yield" and layer.yield_strength is not None:
             put(wall.yield_pressure, f"{layer.label}, ", _yield_at_bore(layer, strain))
             wall.yields |= {f"{layer.label}, {path}": layer.name for path in paths}
         elif layer.strength is not None:
