@@ -17,10 +17,6 @@ from .problem import Problem, Values, Vector
 FEASIBLE = 1e-6
 """Slack that counts as none."""
 
-QUICK = 40
-"""Evaluations of a quick search for a feasible point."""
-
-
 def common(problem: Problem, room: float) -> Problem:
     """Minimise one slack that every constraint and equality may be missed by."""
     m, e = len(problem.constraint_names), len(problem.equality_names)
@@ -93,16 +89,12 @@ def _extended(
     )
 
 
-def feasible_point(evaluator: Evaluator, point: Point, *, quick: bool = False) -> Point | None:
-    """Return a feasible point near `point`, by minimising one common slack, or None.
-
-    `quick` gives up after a short search: for many re-solves, where most are feasible or
-    clearly not.
-    """
+def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
+    """Return a feasible point near `point`, by minimising one common slack, or None."""
     if point.violation <= FEASIBLE:
         return point
     problem = common(evaluator.problem, 2.0 * point.violation + 1.0)
-    found, used = descend(problem, point.x, [point.violation], quick=quick)
+    found, used = descend(problem, point.x, [point.violation])
     evaluator.evaluations += used
     evaluator.check_limits()
     if not found.valid or found.violation + found.objective > FEASIBLE:
@@ -110,15 +102,11 @@ def feasible_point(evaluator: Evaluator, point: Point, *, quick: bool = False) -
     return evaluator.point(evaluator.space.to_z(found.x[: len(point.x)]))
 
 
-def descend(
-    problem: Problem, x: Vector, slack: Sequence[float], *, quick: bool = False
-) -> tuple[Point, int]:
+def descend(problem: Problem, x: Vector, slack: Sequence[float]) -> tuple[Point, int]:
     """Solve an elastic problem from a point and slacks; also the evaluations used."""
     inner = Evaluator(problem)
     start = inner.point(inner.space.to_z(np.concatenate([x, np.asarray(slack, dtype=float)])))
     if not start.valid:
         return start, 1
-    found = run(inner, start, "LD_SLSQP", most=QUICK if quick else 400).point
-    if not quick:
-        found = polish(inner, found)
+    found = polish(inner, run(inner, start, "LD_SLSQP", most=400).point)
     return found, inner.evaluations

@@ -21,6 +21,12 @@ ITERATIONS = 20
 RENEWALS = (5, 9, 13)
 """Steps before which problems still under way get a Hessian of their own."""
 
+RESTORATIONS = 24
+"""Most steps towards a feasible point."""
+
+PATIENCE = 4
+"""Steps within which the violation must fall by 2 %, or the problem counts as infeasible."""
+
 SETTLED = 1e-6
 """Length of the last step below which the optimality conditions are worth checking."""
 
@@ -95,6 +101,44 @@ def resolve_together(
     for k, objective in enumerate(found):
         if objective is not None and kept[k] < objective * (1 - 1e-9 * np.sign(objective)):
             found[k] = None  # the old optimum itself is better: another valley
+    return found
+
+
+def restore_together(
+    parametric: ParametricProblem, evaluator: Evaluator, point: Point, parameters: Vector
+) -> list[Vector | None]:
+    """A feasible point (nf,) near the unchanged optimum for each problem; None where none is.
+
+    Every step is the shortest that meets the linearised rows, or misses them least.
+    """
+    space = evaluator.space
+    count = parameters.shape[1]
+    found: list[Vector | None] = [None] * count
+    z = np.repeat(point.z[:, None], count, axis=1)
+    least = np.full(count, np.inf)
+    alive = list(range(count))
+    for iteration in range(RESTORATIONS):
+        if not alive:
+            break
+        points = _points(parametric, evaluator, z[:, alive], parameters[:, alive])
+        going = []
+        for k, trial in zip(alive, points, strict=True):
+            if trial.valid and trial.violation <= 1e-6:
+                found[k] = trial.z
+                continue
+            stuck = iteration > PATIENCE and trial.violation > 0.98 * least[k]
+            if not trial.valid or stuck:
+                continue
+            if iteration % PATIENCE == 0:
+                least[k] = trial.violation
+            rows = kkt.active_set(evaluator, trial, width=1.0)
+            step, _ = newton.quadratic_programme(
+                np.eye(space.size), np.zeros(space.size), rows.gradients, rows.margins - 1e-7
+            )
+            share = min(1.0, newton.RADIUS / max(float(np.abs(step).max(initial=0.0)), 1e-300))
+            z[:, k] = np.clip(z[:, k] + share * step, space.lower, space.upper)
+            going.append(k)
+        alive = going
     return found
 
 

@@ -168,17 +168,21 @@ def _resolved_ends(
         for sign in (1, -1)
     }
     wanted = [(k, sign) for k, sign in ends if change != 0 and given.matters(k) and values[k] != 0]
-    known = _together(parametric, evaluator, point, values, moves, change, wanted)
-    for (k, sign), objective in zip(wanted, known, strict=True):
+    known, inside = _together(parametric, evaluator, point, values, moves, change, wanted)
+    for i, (k, sign) in enumerate(wanted):
+        objective = known[i]
         step = sign * change * values[k]
-        if objective is None:
+        if objective is None and inside[i] is not _NOWHERE:
             problem = perturbed(parametric, given.names[k], k, values[k] + step)
             guess = point.z + moves[:, k] * step
-            tried = k < len(parametric.parameters) and lockstep.applicable(parametric, evaluator)
             if problem is not None:
-                objective = resolved(problem, evaluator, guess, point, tried=tried)
+                objective = resolved(problem, evaluator, guess, point, inside=inside[i])
         ends[k, sign] = objective
     return [(ends[k, 1], ends[k, -1]) for k in range(len(values))]
+
+
+_NOWHERE = np.empty(0)
+"""Stands for "no feasible point nearby"."""
 
 
 def _together(
@@ -189,13 +193,17 @@ def _together(
     moves: Vector,
     change: float,
     wanted: list[tuple[int, int]],
-) -> list[float | None]:
-    """What re-solving all at once gives; None where it does not apply or does not converge."""
+) -> tuple[list[float | None], list[Vector | None]]:
+    """What re-solving all at once gives, and a feasible point where it does not converge.
+
+    None and None where it does not apply, None and `_NOWHERE` where nothing is feasible nearby.
+    """
     count = len(parametric.parameters)
     known: list[float | None] = [None] * len(wanted)
+    inside: list[Vector | None] = [None] * len(wanted)
     chosen = [i for i, (k, _) in enumerate(wanted) if k < count]
     if not chosen or not lockstep.applicable(parametric, evaluator):
-        return known
+        return known, inside
     parameters = np.repeat(parametric.parameters[:, None], len(chosen), axis=1)
     starts = np.repeat(point.z[:, None], len(chosen), axis=1)
     for column, i in enumerate(chosen):
@@ -206,16 +214,26 @@ def _together(
     found = lockstep.resolve_together(parametric, evaluator, point, starts, parameters)
     for i, objective in zip(chosen, found, strict=True):
         known[i] = objective
-    return known
+    left = [column for column, i in enumerate(chosen) if known[i] is None]
+    restored = lockstep.restore_together(parametric, evaluator, point, parameters[:, left])
+    for column, z in zip(left, restored, strict=True):
+        inside[chosen[column]] = _NOWHERE if z is None else z
+    return known, inside
 
 
 def resolved(
-    problem: Problem, evaluator: Evaluator, guess: Vector, point: Point, *, tried: bool = False
+    problem: Problem,
+    evaluator: Evaluator,
+    guess: Vector,
+    point: Point,
+    *,
+    inside: Vector | None = None,
 ) -> float | None:
     """Objective of a slightly changed problem, from the predicted optimum; None if infeasible.
 
-    Newton first (unless `tried`); where the active set changes too much for it, a search for a
-    feasible point (whose failure means that the changed problem has none nearby) and SLSQP.
+    Newton first; where the active set changes too much for it, a search for a feasible point
+    (whose failure means that the changed problem has none nearby) and SLSQP. With `inside`, a
+    feasible point already found, SLSQP from there at once.
     """
     near = Evaluator(problem)
     if near.space.size != len(guess):  # the changed bound fixes a variable
@@ -224,8 +242,8 @@ def resolved(
     near.difference_rows = evaluator.difference_rows
     here = near.point(near.space.to_z(np.clip(point.x, problem.lower, problem.upper)))
     start = near.point(np.clip(guess, near.space.lower, near.space.upper))
-    if tried:
-        best = _from_feasible(near, here, quick=True)
+    if inside is not None:
+        best = _descended(near, near.point(inside))
         return None if best is None else best.objective
     best = _refined(near, start if start.valid else here)
     if best is None or (_met(here) and here.objective < best.objective):
@@ -241,14 +259,19 @@ def _refined(near: Evaluator, start: Point) -> Point | None:
     return found if _optimal(near, found) else _from_feasible(near, found)
 
 
-def _from_feasible(near: Evaluator, start: Point, *, quick: bool = False) -> Point | None:
+def _from_feasible(near: Evaluator, start: Point) -> Point | None:
     """Return an optimum from the nearest feasible point, else that point; None without one."""
-    inside = elastic.feasible_point(near, start, quick=quick) if start.valid else None
-    if inside is None:
-        return None
+    inside = elastic.feasible_point(near, start) if start.valid else None
+    return None if inside is None else _descended(near, inside)
+
+
+def _descended(near: Evaluator, inside: Point) -> Point | None:
+    """Return an optimum from a feasible point, else that point."""
     found = nlopt_wrapper.run(near, inside, "LD_SLSQP", most=100).point
     found = polish(near, found, iterations=8, tolerance=1e-10)
-    return found if _met(found) else inside
+    if _met(found):
+        return found
+    return inside if _met(inside) else None
 
 
 def _met(point: Point) -> bool:
