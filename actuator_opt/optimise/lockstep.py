@@ -15,10 +15,10 @@ from . import kkt, newton
 from .evaluator import Evaluator, Point
 from .problem import ParametricProblem, Vector
 
-ITERATIONS = 20
+ITERATIONS = 16
 """Most steps; 10 % changes mostly take three to five."""
 
-RENEWALS = (5, 9, 13)
+RENEWALS = (5, 10)
 """Steps before which problems still under way get a Hessian of their own."""
 
 RESTORATIONS = 24
