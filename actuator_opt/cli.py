@@ -110,10 +110,10 @@ def _check_date(date: str | None) -> None:
     from datetime import date as day
 
     try:
-        stated = day.fromisoformat(date).isoformat()
+        known = day.fromisoformat(date).isoformat() == date
     except ValueError:
-        stated = ""
-    if stated != date:
+        known = False
+    if not known:
         raise UsageError(Diagnostic(f'--date "{date}" is no date', "write YYYY-MM-DD"))
 
 

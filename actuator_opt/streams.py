@@ -98,9 +98,13 @@ def as_json() -> bool:
 
 def faults(found: Iterable[Diagnostic], code: ExitCode) -> ExitCode:
     """Print faults as lines, or as one JSON object under ``--json``; returns `code`."""
+    lines = list(found)
     if as_json():
-        out_json({"errors": [fault.to_dict() for fault in found]})
-    else:
-        for fault in found:
-            err(str(fault))
+        try:
+            out_json({"errors": [fault.to_dict() for fault in lines]})
+            return code
+        except InputError as error:  # standard output is what fails
+            lines += error.diagnostics
+    for fault in lines:
+        err(str(fault))
     return code

@@ -79,7 +79,9 @@ def requirements(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Itera
 def variables(tree: dict[str, Any]) -> Iterator[Fault]:
     """PATHs of numbers, bounds in their range and in order, the start between them."""
     block = tree.get("variables")
-    for path, bounds in block.items() if isinstance(block, dict) else ():
+    if not isinstance(block, dict):
+        return
+    for path, bounds in block.items():
         loc = ("variables", path)
         if _in_faulty_block(path, tree):
             block[path] = {"lower": 0.0, "upper": 1.0, "start": 0.0}  # the block's fault is enough

@@ -99,6 +99,7 @@ def spec_hash(subject: Subject) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
+@np.errstate(all="ignore")  # what has no finite answer is reported as such
 def evaluate(subject: Subject) -> Evaluation:
     """Every metric, requirement and check of one design."""
     v = subject.values()

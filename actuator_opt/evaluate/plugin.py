@@ -195,6 +195,7 @@ def load(path: str | Path) -> tuple[Plugin, ...]:
     if spec is None or spec.loader is None:
         raise InputError(Diagnostic("not a Python file", "name it *.py", str(path)))
     module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # dataclasses and pickling look their module up there
     try:
         with contextlib.redirect_stdout(sys.stderr):
             spec.loader.exec_module(module)

@@ -142,6 +142,7 @@ def _margins(wanted: tuple[Row, ...], computed: Computed, numbers: Numbers, coun
     return _bounded(sign * margin(value, bound, "min"))
 
 
+@np.errstate(all="ignore")  # what has no finite answer is the solver's to judge
 def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
     """The optimisation problem of a design.
 
@@ -194,6 +195,7 @@ def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
         constraint_names=tuple(row.label for row in rows),
         start=start,
         relaxable=tuple(row.limit_of.origin != "geometry" for row in rows),
+        groups=tuple(limits.index(row.limit_of) for row in rows),
     )
     holder.append(ActuatorProblem(subject, goal, paths, rows, fixed, problem))
     return holder[0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -14,8 +15,11 @@ from .newton import polish
 from .nlopt_wrapper import run
 from .problem import Problem, Values, Vector
 
+Indices: TypeAlias = npt.NDArray[np.intp]
+
 FEASIBLE = 1e-6
 """Slack that counts as none."""
+
 
 def common(problem: Problem, room: float) -> Problem:
     """Minimise one slack that every constraint and equality may be missed by."""
@@ -34,36 +38,20 @@ def common(problem: Problem, room: float) -> Problem:
     return _extended(problem, evaluate, ["slack"], room, names, ())
 
 
-def separate(problem: Problem, relaxed: npt.NDArray[np.intp], room: Sequence[float]) -> Problem:
-    """Minimise the sum of the slacks of the constraints `relaxed`; the others hold."""
+def separate(problem: Problem, groups: Sequence[Indices], room: Sequence[float]) -> Problem:
+    """Minimise the sum of one slack per group of constraints; the others hold."""
     n, m = len(problem.names), len(problem.constraint_names)
 
     def evaluate(x: Array) -> Values:
         rows = problem.rows(x[:n])
         margins = np.array(rows[1 : 1 + m], dtype=np.result_type(rows, x))
-        margins[relaxed] = margins[relaxed] + x[n:]
+        for slack, group in zip(x[n:], groups, strict=True):
+            margins[group] = margins[group] + slack
         return Values(x[n:].sum(axis=0), margins, rows[1 + m :])
 
-    names = [f"relax {problem.constraint_names[i]}" for i in relaxed]
+    names = [f"relax {problem.constraint_names[group[0]]}" for group in groups]
     return _extended(
         problem, evaluate, names, room, problem.constraint_names, problem.equality_names
-    )
-
-
-def maximise_margin(problem: Problem, index: int) -> Problem:
-    """Maximise one margin, the other constraints held."""
-    m = len(problem.constraint_names)
-    others = np.array([i for i in range(m) if i != index], dtype=np.intp)
-
-    def evaluate(x: Array) -> Values:
-        rows = problem.rows(x)
-        return Values(-rows[1 + index], rows[1 : 1 + m][others], rows[1 + m :])
-
-    return replace(
-        problem,
-        evaluate=evaluate,
-        constraint_names=tuple(problem.constraint_names[i] for i in others),
-        relaxable=None,
     )
 
 
@@ -86,6 +74,7 @@ def _extended(
         equality_names=tuple(equality_names),
         start=None,
         relaxable=None,
+        groups=None,
     )
 
 

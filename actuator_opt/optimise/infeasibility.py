@@ -82,29 +82,34 @@ def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
     """
     m = len(problem.constraint_names)
     mask = np.ones(m, dtype=bool) if problem.relaxable is None else np.array(problem.relaxable)
-    wishes = np.flatnonzero(mask)
-    found, evaluator = _smallest(problem, wishes, points)
+    everything = _groups(problem)
+    groups = [group for group in everything if mask[group].all()]
+    found, evaluator = _smallest(problem, groups, points)
     laws: tuple[str, ...] = ()
     if found.violation > NOTHING and not mask.all():
-        found, evaluator = _smallest(problem, np.arange(m), points)
+        groups = everything
+        found, evaluator = _smallest(problem, groups, points)
         amounts = found.x[len(problem.names) :]
         laws = tuple(
-            problem.constraint_names[i] for i in range(m) if not mask[i] and amounts[i] > NOTHING
+            problem.constraint_names[group[0]]
+            for group, amount in zip(groups, amounts, strict=True)
+            if not mask[group].all() and amount > NOTHING
         )
-        wishes = np.arange(m)
     n = len(problem.names)
     x, amounts = found.x[:n], found.x[n:]
     quality = kkt.check(evaluator, found, objective_scale=1.0)
     joint = [
-        Relaxation(problem.constraint_names[int(i)], int(i), float(a))
-        for i, a in zip(wishes, amounts, strict=True)
-        if a > NOTHING and mask[i]
+        _relaxation(problem, group, float(amount))
+        for group, amount in zip(groups, amounts, strict=True)
+        if amount > NOTHING and mask[group].all()
     ]
     joint.sort(key=lambda r: -(r.amount or 0.0))
     sole: tuple[Relaxation, ...] = ()
     if not laws:
-        part = quality.multipliers > 1e-7 if quality.unique else mask
-        sole = tuple(_alone(problem, mask, int(i), x) for i in np.flatnonzero(part & mask))
+        part = quality.multipliers > 1e-7 if quality.unique else np.ones(m, dtype=bool)
+        sole = tuple(
+            _alone(problem, groups, i, x) for i, group in enumerate(groups) if part[group].any()
+        )
     return Infeasibility(
         tuple(joint),
         sole,
@@ -116,10 +121,22 @@ def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
     )
 
 
+def _groups(problem: Problem) -> list[elastic.Indices]:
+    """Rows of the constraints that are relaxed together."""
+    m = len(problem.constraint_names)
+    numbers = np.arange(m) if problem.groups is None else np.asarray(problem.groups)
+    return [np.flatnonzero(numbers == number) for number in dict.fromkeys(numbers.tolist())]
+
+
+def _relaxation(problem: Problem, group: elastic.Indices, amount: float | None) -> Relaxation:
+    first = int(group[0])
+    return Relaxation(problem.constraint_names[first], first, amount)
+
+
 def _smallest(
-    problem: Problem, relaxed: np.ndarray, points: Sequence[Vector]
+    problem: Problem, groups: list[elastic.Indices], points: Sequence[Vector]
 ) -> tuple[Point, Evaluator]:
-    """Return the smallest sum of slacks over `relaxed`, from the best of several points."""
+    """Return the smallest sum of slacks of the groups, from the best of several points."""
     best: Point | None = None
     judge = Evaluator(problem)
     room, starts = 1.0, []
@@ -127,10 +144,10 @@ def _smallest(
         rows = judge.point(judge.space.to_z(x)).rows[1 : 1 + len(problem.constraint_names)]
         missed = np.maximum(-np.nan_to_num(rows, nan=0.0), 0.0)
         room = max(room, 2.0 * float(missed.max(initial=0.0)))
-        starts.append((x, missed[relaxed]))
-    stretched = elastic.separate(problem, relaxed, [room] * len(relaxed))
-    for x, missed in starts:
-        found, _ = elastic.descend(stretched, x, list(missed))
+        starts.append((x, [float(missed[group].max()) for group in groups]))
+    stretched = elastic.separate(problem, groups, [room] * len(groups))
+    for x, lacks in starts:
+        found, _ = elastic.descend(stretched, x, lacks)
         key = (max(found.violation - NOTHING, 0.0), found.objective)
         if best is None or key < (max(best.violation - NOTHING, 0.0), best.objective):
             best = found
@@ -138,31 +155,32 @@ def _smallest(
     return best, Evaluator(stretched)
 
 
-def _alone(problem: Problem, mask: np.ndarray, index: int, x: Vector) -> Relaxation:
-    """Return what constraint `index` alone must give up; None where that is not enough."""
-    name = problem.constraint_names[index]
-    others = _without(problem, index)
-    relaxed = np.flatnonzero(np.delete(mask, index))
-    rest, _ = _smallest(others, relaxed, [x])
+def _alone(problem: Problem, groups: list[elastic.Indices], index: int, x: Vector) -> Relaxation:
+    """Return what one group alone must give up; None where that is not enough."""
+    group = groups[index]
+    others, kept = _without(problem, group)
+    rest, _ = _smallest(others, [kept[g] for i, g in enumerate(groups) if i != index], [x])
     if rest.violation > NOTHING or rest.objective > NOTHING:
-        return Relaxation(name, index, None)
-    target = elastic.maximise_margin(problem, index)
-    found, _ = elastic.descend(target, rest.x[: len(problem.names)], [])
-    if found.violation > NOTHING:
-        return Relaxation(name, index, None)
-    return Relaxation(name, index, max(found.objective, 0.0))
+        return _relaxation(problem, group, None)
+    found, _ = _smallest(problem, [group], [rest.x[: len(problem.names)]])
+    enough = found.violation <= NOTHING
+    return _relaxation(problem, group, float(found.objective) if enough else None)
 
 
-def _without(problem: Problem, index: int) -> Problem:
+def _without(problem: Problem, group: elastic.Indices) -> tuple[Problem, elastic.Indices]:
+    """Leave a group of constraints out; also the new index of every old row."""
     m = len(problem.constraint_names)
-    kept = [i for i in range(m) if i != index]
+    kept = np.setdiff1d(np.arange(m), group)
+    places = np.full(m, -1, dtype=np.intp)
+    places[kept] = np.arange(len(kept))
 
     def evaluate(points: np.ndarray) -> Values:
         rows = problem.rows(points)
         return Values(rows[0], rows[1 : 1 + m][kept], rows[1 + m :])
 
     names = tuple(problem.constraint_names[i] for i in kept)
-    return replace(problem, evaluate=evaluate, constraint_names=names, relaxable=None)
+    slim = replace(problem, evaluate=evaluate, constraint_names=names, relaxable=None, groups=None)
+    return slim, places
 
 
 def _bounds(problem: Problem, evaluator: Evaluator, quality: kkt.Kkt) -> tuple[BindingBound, ...]:

@@ -124,9 +124,10 @@ def _lawson_hanson(matrix: Vector, vector: Vector) -> Vector:
             continue
         while trial[passive].min() <= 0:
             falling = np.flatnonzero(passive & (trial <= 0))
-            shares = result[falling] / (result[falling] - trial[falling])
+            room = result[falling] - trial[falling]
+            shares = np.where(room > 0, result[falling] / np.where(room > 0, room, 1.0), 0.0)
             result = result + shares.min() * (trial - result)
-            passive[falling[shares <= shares.min() * (1 + 1e-12)]] = False
+            passive[falling[shares <= shares.min() * (1 + 1e-12)]] = False  # at least one leaves
             result[~passive] = 0.0
             if not passive.any():
                 trial = result

@@ -48,6 +48,8 @@ class Problem:
     constraint_names, equality_names : label of each row of the values
     start : a first guess inside the box, or None
     relaxable : for each constraint, whether it is a wish (True) or a law such as geometry (False)
+    groups : for each constraint, a number shared by the rows of one limit, which are only ever
+        relaxed together; None gives each its own
     has_complex_step : False if `evaluate` cannot take complex points; finite differences then
     linear : labels of variables to keep linear although their lower bound is positive
     """
@@ -60,6 +62,7 @@ class Problem:
     equality_names: Sequence[str] = ()
     start: Vector | None = None
     relaxable: Sequence[bool] | None = None
+    groups: Sequence[int] | None = None
     has_complex_step: bool = True
     linear: Sequence[str] = ()
 

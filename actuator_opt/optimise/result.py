@@ -64,7 +64,7 @@ class Infeasibility:
     """Why nothing fits: joint relaxation, sole repairs, binding bounds.
 
     `joint` and `sole` entries hold requirement, parameter (PATH), metric, sense, limit, needed
-    (the limit that would do; None where this one alone cannot help) and relax (fraction);
+    (the limit that would do; None where this one alone cannot help) and relaxation (fraction);
     `bounds` entries hold path, side, value and gain; `laws` names geometry that conflicts.
     """
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -213,25 +214,36 @@ def _why_not(actuator: ActuatorProblem, solution: Solution) -> Infeasibility | N
     points = [found.x for found in solution.optima] or [solution.x]
     found = explain(actuator.problem, points)
 
-    def entry(index: int, amount: float | None) -> dict[str, object]:
+    def entry(index: int, amount: float | None) -> dict[str, Any]:
         row = actuator.rows[index]
         limit = float(np.ravel(row.limit)[0])
-        needed = None if amount is None else _relaxed(row, limit, amount)
         return {
-            "requirement": row.label,
+            "requirement": row.limit_of.name,
             "parameter": row.limit_of.path,
             "metric": row.limit_of.metric,
             "sense": row.limit_of.sense,
             "limit": limit,
-            "needed": needed,
-            "relax": amount,
+            "needed": None if amount is None else _relaxed(row, limit, amount),
+            "relaxation": amount,
         }
 
+    sole = [entry(r.index, r.amount) for r in found.sole]
+    named = {r.index for r in found.joint}
     return Infeasibility(
         joint=tuple(entry(r.index, r.amount) for r in found.joint),
-        sole=tuple(entry(r.index, r.amount) for r in found.sole),
+        sole=tuple(
+            item
+            for item, r in zip(sole, found.sole, strict=True)
+            if r.amount is not None or r.index in named
+        ),
         bounds=tuple(
-            {"path": b.variable, "side": b.side, "value": b.value, "gain": b.gain}
+            {
+                "variable": b.variable,
+                "quantity": quantity_of(b.variable, actuator.subject.design).name,
+                "bound": b.side,
+                "value": b.value,
+                "gain": b.gain,
+            }
             for b in found.bounds
         ),
         laws=found.laws,

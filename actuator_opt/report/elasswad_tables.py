@@ -193,6 +193,14 @@ def _hoop_modulus(evaluation: Evaluation) -> float:
     return float(laminate.effective_moduli(membrane=membrane, thickness=sum(thicknesses))[1])
 
 
+def _eq_10(pressure: float, *, growth_per_pressure: float) -> float:
+    """The printed k_cyl at a pressure, the bore grown by eq. 12."""
+    wide = forces.piston_area(bore=PAPER.bore + 2 * growth_per_pressure * pressure)
+    return float(
+        published.cylinder_expansion_as_published(pressure=pressure, area=wide, stroke=PAPER.stroke)
+    )
+
+
 def _barrel(evaluation: Evaluation) -> ExtraTable:
     design = evaluation.design
     supply = design.supply.pressure
@@ -211,16 +219,7 @@ def _barrel(evaluation: Evaluation) -> ExtraTable:
         inner_radius=inner, growth_per_pressure=correct / supply, length=PAPER.stroke
     )
     spring = float(barrel.barrel_stiffness(area=area, compliance=give))
-
-    def eq_10(pressure: float) -> float:
-        grown = PAPER.bore + 2 * printed * pressure / supply
-        wide = forces.piston_area(bore=grown)
-        return float(
-            published.cylinder_expansion_as_published(
-                pressure=pressure, area=wide, stroke=PAPER.stroke
-            )
-        )
-
+    eq_10 = partial(_eq_10, growth_per_pressure=printed / supply)
     rows = (
         (
             "modulus of the barrel",
@@ -313,7 +312,9 @@ def _friction(evaluation: Evaluation) -> ExtraTable:
     note = (
         f"Force and pressure loss together mean a piston of {_area(first)} or {_area(second)}, "
         f"{text.number(first / PAPER.area, 2)} and {text.number(second / PAPER.area, 2)} times the "
-        f"{_area(PAPER.area)} of the bore: one of the two columns is not of this cylinder."
+        f"{_area(PAPER.area)} of the bore: forces and pressure losses cannot both be of this "
+        f"cylinder. Our forces are no check of the paper's: they hold at the "
+        f"{_pressure(evaluation.design.supply.pressure)} assumed in the design."
     )
     return ExtraTable("El Asswad 2018: friction force", COLUMNS, rows, note)
 

@@ -11,12 +11,11 @@ the steel cylinders that the makers compare with.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from math import pi
 from pathlib import Path
 from textwrap import fill
-from typing import Any
+from typing import Any, NamedTuple
 
 import actuator_opt as ao
 from actuator_opt.verbs import evaluate, optimise, read
@@ -45,8 +44,7 @@ def force_to_weight(design: Any) -> Any:
     return design["supply.pressure"] * area / (GRAVITY * design.metric("mass"))
 
 
-@dataclass(frozen=True)
-class Saving:
+class Saving(NamedTuple):
     """Both optima and what is computed from them; masses in kg."""
 
     steel: Any
