@@ -78,7 +78,7 @@ def test_places_that_cannot_be_written(verb, design, tmp_path):
     blocked = tmp_path / "blocked"
     blocked.write_text("mine")
     report = ("--report",) if verb == "optimise" else ()
-    for out in (blocked, blocked / "below", "/proc/nowhere", "/dev/null"):
+    for out in (blocked, blocked / "below", "/dev/null"):
         result = run(verb, design, "--out", out, "--json", *report)
         assert result.code == 3
         assert result.errors[0]["file"] == str(out)
@@ -248,7 +248,7 @@ def test_an_interrupt(words, tmp_path):
         env=surroundings(),
         text=True,
     )
-    time.sleep(1.2)
+    time.sleep(0.8)
     process.send_signal(signal.SIGINT)
     shown, said = process.communicate(timeout=30)
     assert process.returncode == 130, (shown, said)
@@ -264,7 +264,7 @@ def test_a_kill_leaves_whole_files_or_none(design, tmp_path):
     whole = tmp_path / "whole"
     assert run("report", design, "--out", whole).code == 0
     sizes = {name: len(content) for name, content in files(whole).items()}
-    for delay in (0.4, 0.6):
+    for delay in (0.45, 0.55):
         out = tmp_path / f"out{delay}"
         process = subprocess.Popen(
             command("report", design, "--out", out), stderr=subprocess.DEVNULL, env=surroundings()

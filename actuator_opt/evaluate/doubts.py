@@ -103,8 +103,19 @@ def _seal_warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[st
             yield "", f"{name} seal: {compound} does not withstand {oil}"
 
 
-def models(metrics: dict[str, Metric], subject: Subject, outside: set[str]) -> Iterable[ModelUse]:
-    """Every model behind a computed metric, with the values it gave."""
+SOURCES = frozenset({"bore_growth", "first_ply_factor", "burst_factor"})
+"""Metrics whose own model, not one before it, is what the wall warning is about."""
+
+
+def models(
+    metrics: dict[str, Metric], subject: Subject, outside: set[str], said: Iterable[str]
+) -> Iterable[ModelUse]:
+    """Every model behind a computed metric, with the values it gave.
+
+    A model is extrapolated where it was itself used outside its range; a metric that only
+    inherits such a value is marked in its own row, not here. `said` are the warnings' texts.
+    """
+    said = tuple(said)
     laminated = kind_of(subject) == "thin_laminate"
     seen: dict[str, ModelUse] = {}
     for name, metric in metrics.items():
@@ -122,9 +133,24 @@ def models(metrics: dict[str, Metric], subject: Subject, outside: set[str]) -> I
             model.reference,
             model.valid,
             at,
-            name not in outside and (model.name not in seen or seen[model.name].in_range),
+            name not in (outside & SOURCES)
+            and (model.name not in seen or seen[model.name].in_range),
         )
-    return seen.values()
+    yield from seen.values()
+    for place, section in (
+        ("piston", subject.design.seals.piston),
+        ("rod", subject.design.seals.rod),
+    ):
+        law = seals.LAWS[section.law]
+        low, high = law.squeeze_range
+        yield ModelUse(
+            f"seals.{law.name}",
+            f"O-ring contact law of the {place} seal, modulus by {section.hardness_model}",
+            law.reference,
+            f"squeeze {100 * low:.0f} to {100 * high:.0f} %, p/E up to {law.pressure_range[1]:g}",
+            f"squeeze {100 * section.squeeze:.4g} %",
+            not any(text.startswith(f"{place} seal") for text in said),
+        )
 
 
 def unverified(subject: Subject, v: Values) -> Iterable[Unverified]:

@@ -51,10 +51,13 @@ def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
     evaluation, optimisation = parts_of(subject)
     missed = sum(not row.met for row in evaluation.requirements)
     total = len(evaluation.requirements)
+    failed = sum(check.status == "missed" for check in evaluation.checks)
     if optimisation is not None and optimisation.infeasibility is not None:
         state, words = "infeasible", "INFEASIBLE"
     elif missed:
         state, words = "missed", "REQUIREMENTS MISSED"
+    elif failed:
+        state, words = "checks", "REQUIREMENTS MET, CHECKS MISSED"
     else:
         state, words = "met", "REQUIREMENTS MET"
     counts = {

@@ -181,8 +181,8 @@ def assumptions(evaluation: Evaluation) -> Block:
             ["Every library value used is marked as checked; no check is waived."],
         )
     columns = [
-        column("material", "left", 0.75),
-        column("values", "left", 2.2),
+        column("material", "left", 1.05),
+        column("values", "left", 2.0),
         column("source", "left", 1.4),
         column("note", "left", 1.3),
     ]

@@ -17,11 +17,18 @@ from .text import DASH
 _STATE_STYLE = {
     "met": "green",
     "missed": "red bold",
+    "checks": "yellow bold",
     "not_checked": "dim",
     "infeasible": "red bold",
 }
-_MARKS = {"met": "✔", "missed": "✘", "not_checked": "○", "infeasible": "✘"}
-_PLAIN_MARKS = {"met": "ok", "missed": "MISSED", "not_checked": "-", "infeasible": "INFEASIBLE"}
+_MARKS = {"met": "✔", "checks": "!", "missed": "✘", "not_checked": "○", "infeasible": "✘"}
+_PLAIN_MARKS = {
+    "met": "ok",
+    "checks": "!",
+    "missed": "MISSED",
+    "not_checked": "-",
+    "infeasible": "INFEASIBLE",
+}
 
 
 class _Style(TypedDict):
