@@ -85,7 +85,7 @@ def test_extrapolated_models_are_flagged():
 @pytest.mark.parametrize(
     ("subject", "state"),
     [
-        (fixture.build_evaluation(), "met"),
+        (fixture.build_evaluation(), "checks"),
         (fixture.build_infeasible(), "infeasible"),
         (
             fixture.build_evaluation(
@@ -94,10 +94,10 @@ def test_extrapolated_models_are_flagged():
             "missed",
         ),
     ],
-    ids=["met", "infeasible", "missed"],
+    ids=["checks", "infeasible", "missed"],
 )
 def test_verdict(subject, state):
-    """The badge says met, missed or infeasible, with the counts behind it."""
+    """The badge says met (or which checks are not), missed or infeasible, with the counts."""
     found = verdict(subject)
     assert found["state"] == state
     assert found["lines"][1] == "checks: 6 met · 1 missed · 3 not checked"
