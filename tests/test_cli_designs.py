@@ -108,7 +108,6 @@ def test_isotropic_barrel():
         [("objective:\n  minimise: mass", "materials:\n  t700_epoxy:\n    density: 1600 kg/m^3")],
         [("  length: 14 mm\n", "  length: 14 mm\n  guide: guide_ptfe_bronze\n")],
     ],
-    ids=str,
 )  # fmt: skip
 def test_optional_parts(changes):
     """What may be left out or added changes the answer, never breaks it."""
@@ -297,7 +296,6 @@ def test_absurd_values(old, new, path):
         [("air_content: 0.5 %", "air_content: 20 %")],
         [("temperature: 40 degC", "temperature: -100 degC")],
     ],
-    ids=str,
 )  # fmt: skip
 def test_extreme_but_possible(changes):
     """The ends of every range are answered: with numbers, or null and why."""
