@@ -18,7 +18,7 @@ from . import version
 if TYPE_CHECKING:
     from .design.materials import load_library
     from .errors import ActuatorError, Diagnostic, InputError
-    from .evaluate.plugin import constraint, metric
+    from .evaluation.plugin import constraint, metric
     from .verbs import (
         Actuator,
         check,
@@ -38,10 +38,10 @@ _HOMES = {
     "Diagnostic": "errors",
     "InputError": "errors",
     "check": "verbs",
-    "constraint": "evaluate.plugin",
+    "constraint": "evaluation.plugin",
     "evaluate": "verbs",
     "load_library": "design.materials",
-    "metric": "evaluate.plugin",
+    "metric": "evaluation.plugin",
     "optimise": "verbs",
     "read": "verbs",
     "report": "verbs",

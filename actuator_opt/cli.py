@@ -33,8 +33,8 @@ from .options import (
 from .version import VERSION
 
 if TYPE_CHECKING:
-    from .evaluate import Evaluation
-    from .optimise.result import Optimisation
+    from .evaluation import Evaluation
+    from .optimisation.result import Optimisation
     from .verbs import Actuator
 
 app = typer.Typer(
@@ -222,7 +222,7 @@ def evaluate(
     if as_json:
         streams.out_json(evaluation.to_dict() | ({"files": files} if files else {}))
     elif not quiet:
-        from .report.terminal import evaluation_text
+        from .reporting.terminal import evaluation_text
 
         streams.out(evaluation_text(evaluation, **streams.style()), end="")
         _say_files(files)
@@ -260,7 +260,7 @@ def optimise(
     if as_json:
         streams.out_json(result.to_dict() | ({"files": files} if files else {}))
     elif not quiet:
-        from .report.terminal import optimisation_text
+        from .reporting.terminal import optimisation_text
 
         streams.out(optimisation_text(result, **streams.style()), end="")
         _say_files(([{"path": write}] if write is not None and good else []) + files)
@@ -305,7 +305,7 @@ def sensitivity(
         keys = ("name", "version", "status", "outcome", "objective", "sensitivities", "kkt")
         streams.out_json({key: data[key] for key in keys} | ({"files": files} if files else {}))
     elif not quiet:
-        from .report.terminal import infeasibility_card, sensitivity_table
+        from .reporting.terminal import infeasibility_card, sensitivity_table
 
         style = streams.style()
         shown = sensitivity_table(result, **style) if result.sensitivities else ""

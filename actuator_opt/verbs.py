@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 from .design import Design, LoadedDesign, Source, read_design, with_values
 from .errors import Diagnostic, InputError, UsageError
-from .evaluate import Evaluation, Subject, compute, prepare
-from .evaluate import evaluate as evaluate_subject
-from .evaluate.plugin import Plugin, View, collect, load
+from .evaluation import Evaluation, Subject, compute, prepare
+from .evaluation import evaluate as evaluate_subject
+from .evaluation.plugin import Plugin, View, collect, load
 from .quantities import METRICS
 
 if TYPE_CHECKING:
-    from .optimise.result import Optimisation, Sensitivity
-    from .report import ExtraTable, ReportFile
+    from .optimisation.result import Optimisation, Sensitivity
+    from .reporting import ExtraTable, ReportFile
 
 _LAST_SECOND = 253_402_300_799
 """End of the year 9999, the last a date can hold."""
@@ -115,7 +115,7 @@ def check(
         if faults:
             return faults
         if actuator.design.variables:
-            from .optimise.actuator import build
+            from .optimisation.actuator import build
 
             build(subject, _fault(actuator))
     except InputError as error:
@@ -161,7 +161,7 @@ def optimise(
     max_seconds: float | None = None,
 ) -> Optimisation:
     """The best design; parameters as `optimise.run.optimise`."""
-    from .optimise.run import optimise as run
+    from .optimisation.run import optimise as run
 
     actuator = _actuator(design, plugins)
     subject = actuator.subject()
@@ -208,8 +208,8 @@ def report(
     extra_tables : further tables
     """
     from .design.writer import to_yaml
-    from .report import write_report
-    from .report.published import published_tables
+    from .reporting import write_report
+    from .reporting.published import published_tables
 
     source = None if actuator is None else actuator.source
     text = source.text if source is not None else to_yaml(subject.design)

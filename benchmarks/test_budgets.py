@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 
 from actuator_opt.design import read_design
-from actuator_opt.evaluate import compute, prepare
-from actuator_opt.optimise.actuator import build
-from actuator_opt.optimise.evaluator import Evaluator
-from actuator_opt.optimise.run import sensitivities
-from actuator_opt.optimise.solver import solve
+from actuator_opt.evaluation import compute, prepare
+from actuator_opt.optimisation.actuator import build
+from actuator_opt.optimisation.evaluator import Evaluator
+from actuator_opt.optimisation.run import sensitivities
+from actuator_opt.optimisation.solver import solve
 
 KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from actuator_opt.optimise.problem import ParametricProblem, Problem, Values
+from actuator_opt.optimisation.problem import ParametricProblem, Problem, Values
 
 
 def rosen_suzuki() -> Problem:

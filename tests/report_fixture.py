@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from actuator_opt.design.model import Design
-from actuator_opt.evaluate.evaluation import (
+from actuator_opt.evaluation.result import (
     Check,
     Evaluation,
     Metric,
@@ -23,7 +23,7 @@ from actuator_opt.evaluate.evaluation import (
     StrokeCurve,
     Unverified,
 )
-from actuator_opt.optimise.result import (
+from actuator_opt.optimisation.result import (
     Infeasibility,
     Kkt,
     Optimisation,

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import concurrent.futures
+import hashlib
 import os
 import signal
 import subprocess
 import time
 
 import pytest
-from cli_runner import BENCH, bench, command, evaluated, run, spawn, surroundings
+from cli_runner import BENCH, bench, command, run, spawn, surroundings
 
 
 @pytest.fixture
@@ -25,20 +26,18 @@ def files(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
-def test_report_writes_pdf_and_pages(design, tmp_path):
-    """The files the command names are the files there are, with their hashes."""
-    import hashlib
-
+def test_report_writes_pdf_and_pages(tmp_path):
+    """The files named are the files there are, with their hashes; stdin's bear the design's name."""
     out = tmp_path / "new" / "folder"
-    result = run("report", design, "--out", out, "--json")
+    result = run("report", "-", "--out", out, "--json", stdin=BENCH.encode())
     assert result.code == 0
     found = files(out)
     assert {row["path"] for row in result.json["files"]} == {str(out / name) for name in found}
     for row in result.json["files"]:
         content = found[os.path.basename(row["path"])]
         assert hashlib.sha256(content).hexdigest() == row["sha256"]
-    assert found["bench.pdf"].startswith(b"%PDF")
-    assert found["bench.png"].startswith(b"\x89PNG")
+    assert found["test_bench.pdf"].startswith(b"%PDF")
+    assert found["test_bench.png"].startswith(b"\x89PNG")
 
 
 def test_same_input_same_bytes(design, tmp_path, monkeypatch):
@@ -116,15 +115,6 @@ def test_read_only_folder(design, tmp_path):
     assert run("optimise", design, "--write", locked / "x.yaml").code == 3
 
 
-def test_standard_input(tmp_path):
-    """`-` reads the design from stdin in every verb; its report bears the design's own name."""
-    assert evaluated()["name"] == "test bench"
-    assert run("check", "-", stdin=BENCH.encode()).code == 0
-    result = run("report", "-", "--out", tmp_path, stdin=BENCH.encode())
-    assert result.code == 0
-    assert {"test_bench.pdf", "test_bench.png"} <= set(files(tmp_path))
-
-
 @pytest.mark.parametrize(
     "data",
     [b"", b"\n\n", b"# only a comment\n", b"\xff\xfe\x00", b"\x00", b"name: \xff\n", b"42", b"[]",
@@ -160,13 +150,15 @@ def test_a_reader_who_leaves(design):
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
 def test_a_full_disk_and_a_closed_stream(design):
     """Data that cannot be printed is a fault with a line; a closed stream is nobody's fault."""
-    for words in (("evaluate", design), ("evaluate", "nope", "--json")):
-        with open("/dev/full", "w") as full:
-            done = subprocess.run(
-                command(*words), stdout=full, stderr=subprocess.PIPE, env=surroundings(), text=True
-            )
-        assert done.returncode == 3
-        assert "Traceback" not in done.stderr
+    words = command("evaluate", "nope", "--json")
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            words, stdout=full, stderr=subprocess.PIPE, env=surroundings(), text=True
+        )
+    assert done.returncode == 3
+    assert "no such file" in done.stderr
+    assert "No space left" in done.stderr
+    assert "Traceback" not in done.stderr
     shell = 'exec "$@" >&- 2>&-'
     done = subprocess.run(
         ["sh", "-c", shell, "sh", *command("evaluate", design)], env=surroundings()
@@ -177,7 +169,7 @@ def test_a_full_disk_and_a_closed_stream(design):
 def test_ascii_terminals(design):
     """Without Unicode every sign has its plain form; nothing fails."""
     text = bench(("name: test bench", "name: Knie α β 膝"))
-    for words in (("evaluate", "-"), ("optimise", "-", "--starts", "1", "--out", design.parent)):
+    for words in (("evaluate", "-"), ("sensitivity", "-")):
         result = run(*words, stdin=text.encode(), encoding="ascii")
         assert result.code == 0
         assert result.out.isascii()
@@ -235,14 +227,13 @@ HARD = bench(("min: 6 kN/mm", "min: 600 kN/mm"))
 
 
 @pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
-@pytest.mark.parametrize("words", [(), ("--json",)])
-def test_an_interrupt(words, tmp_path):
+def test_an_interrupt(tmp_path):
     """Ctrl-C during a search: exit 130, one word, no file."""
     design = tmp_path / "hard.yaml"
     design.write_text(HARD)
     out, best = tmp_path / "out", tmp_path / "best.yaml"
     process = subprocess.Popen(
-        command("optimise", design, "--starts", "500", "--out", out, "--write", best, *words),
+        command("optimise", design, "--starts", "500", "--out", out, "--write", best),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         env=surroundings(),
@@ -252,8 +243,7 @@ def test_an_interrupt(words, tmp_path):
     process.send_signal(signal.SIGINT)
     shown, said = process.communicate(timeout=30)
     assert process.returncode == 130, (shown, said)
-    assert "interrupted" in (shown if words else said)
-    assert "Traceback" not in said
+    assert (shown, said) == ("", "interrupted\n")
     assert not out.exists()
     assert not best.exists()
 
@@ -264,7 +254,7 @@ def test_a_kill_leaves_whole_files_or_none(design, tmp_path):
     whole = tmp_path / "whole"
     assert run("report", design, "--out", whole).code == 0
     sizes = {name: len(content) for name, content in files(whole).items()}
-    for delay in (0.45, 0.55):
+    for delay in (0.5,):
         out = tmp_path / f"out{delay}"
         process = subprocess.Popen(
             command("report", design, "--out", out), stderr=subprocess.DEVNULL, env=surroundings()

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from actuator_opt import verbs
-from actuator_opt.report.published import published_tables
+from actuator_opt.reporting.published import published_tables
 
 DESIGNS = Path(__file__).parents[1] / "designs"
 ALL = sorted(DESIGNS.glob("*.yaml"))

@@ -4,9 +4,9 @@ import numpy as np
 import problems
 import pytest
 
-from actuator_opt.optimise.kkt import Curvature
-from actuator_opt.optimise.outcome import Outcome
-from actuator_opt.optimise.solver import solve
+from actuator_opt.optimisation.kkt import Curvature
+from actuator_opt.optimisation.outcome import Outcome
+from actuator_opt.optimisation.solver import solve
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -6,10 +6,10 @@ import numpy as np
 import problems
 import pytest
 
-from actuator_opt.optimise.infeasibility import explain
-from actuator_opt.optimise.outcome import Outcome
-from actuator_opt.optimise.problem import Problem, Values
-from actuator_opt.optimise.solver import solve
+from actuator_opt.optimisation.infeasibility import explain
+from actuator_opt.optimisation.outcome import Outcome
+from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.solver import solve
 
 
 def box(margins, names, *, relaxable=None, low=0.1, high=10.0):

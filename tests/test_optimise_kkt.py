@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls as reference_nnls
 
-from actuator_opt.optimise import kkt, newton
-from actuator_opt.optimise.evaluator import Evaluator
-from actuator_opt.optimise.problem import Problem, Values
+from actuator_opt.optimisation import kkt, newton
+from actuator_opt.optimisation.evaluator import Evaluator
+from actuator_opt.optimisation.problem import Problem, Values
 
 
 @given(st.integers(0, 10**6), st.integers(1, 8), st.integers(1, 14), st.booleans())

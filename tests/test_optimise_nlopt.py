@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from actuator_opt.errors import UsageError
-from actuator_opt.optimise import nlopt_wrapper
-from actuator_opt.optimise.evaluator import Evaluator
-from actuator_opt.optimise.outcome import Outcome
-from actuator_opt.optimise.problem import Problem, Values
-from actuator_opt.optimise.solver import solve
+from actuator_opt.optimisation import nlopt_wrapper
+from actuator_opt.optimisation.evaluator import Evaluator
+from actuator_opt.optimisation.outcome import Outcome
+from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.solver import solve
 
 LOCAL = [
     "LD_SLSQP", "LD_MMA", "LD_CCSAQ", "LN_COBYLA", "AUGLAG", "AUGLAG+LD_LBFGS",

@@ -4,10 +4,10 @@ import numpy as np
 import problems
 import pytest
 
-from actuator_opt.optimise import movement
-from actuator_opt.optimise.prices import prices
-from actuator_opt.optimise.problem import ParametricProblem, Problem, Values
-from actuator_opt.optimise.solver import solve
+from actuator_opt.optimisation import movement
+from actuator_opt.optimisation.prices import prices
+from actuator_opt.optimisation.problem import ParametricProblem, Problem, Values
+from actuator_opt.optimisation.solver import solve
 
 
 def priced(parametric, **options):

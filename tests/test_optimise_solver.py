@@ -8,12 +8,12 @@ import problems
 import pytest
 
 from actuator_opt.errors import InputError
-from actuator_opt.optimise.evaluator import Evaluator
-from actuator_opt.optimise.kkt import Curvature
-from actuator_opt.optimise.outcome import Outcome
-from actuator_opt.optimise.problem import Problem, Values
-from actuator_opt.optimise.sampling import Halton
-from actuator_opt.optimise.solver import solve
+from actuator_opt.optimisation.evaluator import Evaluator
+from actuator_opt.optimisation.kkt import Curvature
+from actuator_opt.optimisation.outcome import Outcome
+from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.sampling import Halton
+from actuator_opt.optimisation.solver import solve
 
 
 def box(evaluate, n=2, constraints=(), low=0.1, high=10.0, **others):
@@ -322,8 +322,8 @@ def test_normal_path_imports_no_scipy():
 
     code = (
         "import sys, problems\n"
-        "from actuator_opt.optimise.solver import solve\n"
-        "from actuator_opt.optimise.prices import prices\n"
+        "from actuator_opt.optimisation.solver import solve\n"
+        "from actuator_opt.optimisation.prices import prices\n"
         "p = problems.pressure_vessel()\n"
         "prices(p, solve(p.problem))\n"
         "assert 'scipy' not in sys.modules, 'scipy was imported'\n"

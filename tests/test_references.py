@@ -14,7 +14,7 @@ import pytest
 import yaml
 from model_samples import public_functions
 
-from actuator_opt.evaluate.provenance import LAMINATED, METRIC_MODELS, describe
+from actuator_opt.evaluation.provenance import LAMINATED, METRIC_MODELS, describe
 from actuator_opt.models import seals
 
 ROOT = Path(__file__).parent.parent

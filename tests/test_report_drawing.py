@@ -9,9 +9,9 @@ import report_fixture as fixture
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from actuator_opt.evaluate.evaluation import Outline
-from actuator_opt.report import drawing, figures, ink
-from actuator_opt.report.drawing import SCALES, choose_scale, section
+from actuator_opt.evaluation.result import Outline
+from actuator_opt.reporting import drawing, figures, ink
+from actuator_opt.reporting.drawing import SCALES, choose_scale, section
 
 
 def span(marks, pick):

@@ -6,7 +6,7 @@ import re
 import pytest
 import report_fixture as fixture
 
-from actuator_opt.report import embed, fallback, read_attachment, write_report
+from actuator_opt.reporting import embed, fallback, read_attachment, write_report
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from actuator_opt import units
-from actuator_opt.report import blocks, console, drawing, figures, ink, optimum, text
+from actuator_opt.reporting import blocks, console, drawing, figures, ink, optimum, text
 
 
 @pytest.mark.parametrize("module", [text, ink, console, drawing, figures, optimum])

@@ -13,7 +13,7 @@ from types import ModuleType
 import pytest
 
 from actuator_opt import verbs
-from actuator_opt.evaluate.plugin import load
+from actuator_opt.evaluation.plugin import load
 
 ROOT = Path(__file__).parents[1]
 SCRIPTS = ROOT / "designs" / "scripts"

@@ -18,7 +18,6 @@ from textwrap import fill
 from typing import Any, NamedTuple
 
 import actuator_opt as ao
-from actuator_opt.verbs import evaluate, optimise, read
 
 DESIGNS = Path(__file__).parents[1]
 PUBLISHED = (
@@ -72,11 +71,13 @@ class Saving(NamedTuple):
 
 def compute(starts: int = 4) -> Saving:
     """Optimise both designs and the two variants of the steel one."""
-    best = partial(optimise, starts=starts, prices=False)
-    steel = best(read(DESIGNS / "steel_baseline.yaml", plugins=[force_to_weight]))
-    composite = best(read(DESIGNS / "knee.yaml", plugins=[force_to_weight]))
-    mixed = best(read(DESIGNS / "steel_baseline.yaml", set=ALUMINIUM_ENDS))
-    thick = evaluate(ao.Actuator(steel.design).changed({"barrel.layup[0].thickness": THICK_WALL}))
+    best = partial(ao.optimise, starts=starts, prices=False)
+    steel = best(ao.read(DESIGNS / "steel_baseline.yaml", plugins=[force_to_weight]))
+    composite = best(ao.read(DESIGNS / "knee.yaml", plugins=[force_to_weight]))
+    mixed = best(ao.read(DESIGNS / "steel_baseline.yaml", set=ALUMINIUM_ENDS))
+    thick = ao.evaluate(
+        ao.Actuator(steel.design).changed({"barrel.layup[0].thickness": THICK_WALL})
+    )
     return Saving(steel, composite, mixed, thick)
 
 

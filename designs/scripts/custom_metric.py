@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 import actuator_opt as ao
-from actuator_opt.verbs import optimise, read
 
 KNEE = Path(__file__).parents[1] / "knee.yaml"
 GUIDE = 0.6
@@ -42,9 +41,9 @@ def guided_piston(design: Any) -> Any:
 
 def main() -> None:
     """Optimise the knee as it is, then with both additions, and print what they change."""
-    plain = optimise(read(KNEE), starts=4, prices=False)
-    extended = optimise(
-        read(
+    plain = ao.optimise(ao.read(KNEE), starts=4, prices=False)
+    extended = ao.optimise(
+        ao.read(
             KNEE,
             set={"requirements.oil_per_cycle.max": OIL},
             plugins=(oil_per_cycle, guided_piston),

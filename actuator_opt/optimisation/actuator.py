@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import Diagnostic, InputError
-from ..evaluate import Subject, compute
-from ..evaluate.limits import all_limits, margin
-from ..evaluate.rows import UNLIMITED, Computed, Row, by_case, rows_of
-from ..evaluate.values import Values as Numbers
+from ..evaluation import Subject, compute
+from ..evaluation.limits import all_limits, margin
+from ..evaluation.rows import UNLIMITED, Computed, Row, by_case, rows_of
+from ..evaluation.values import Values as Numbers
 from ..numeric import Array, maximum, minimum, real, where
 from .problem import ParametricProblem, Problem, Values
 

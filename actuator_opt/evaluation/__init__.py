@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from .build import evaluate, prepare
-from .evaluation import Check, Evaluation, Metric, Requirement
 from .kernel import Subject, compute
+from .result import Check, Evaluation, Metric, Requirement
 
 __all__ = [
     "Check",

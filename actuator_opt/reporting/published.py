@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..evaluate import Evaluation
-from ..optimise.result import Optimisation
+from ..evaluation import Evaluation
+from ..optimisation.result import Optimisation
 from . import elasswad_tables
 from .blocks import ExtraTable
 from .page import parts_of

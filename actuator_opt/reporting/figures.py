@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..evaluate.evaluation import Requirement, StrokeCurve
+from ..evaluation.result import Requirement, StrokeCurve
 from .ink import BLACK, BLUE, GREY, PALE, RED, Ink, Point, hatch, spread_within, text_width
 from .text import number, trimmed
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from ..evaluate.evaluation import Evaluation, Outline
+from ..evaluation.result import Evaluation, Outline
 from .ink import BLACK, GREY, Ink, Point, Polygon, hatch, spread_within, text_width
 from .text import trimmed
 

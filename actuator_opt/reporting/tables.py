@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .. import quantities
-from ..evaluate.evaluation import Evaluation, Requirement
+from ..evaluation.result import Evaluation, Requirement
 from . import text
 from .blocks import Block, Cell, ExtraTable, bar, clean, column, notes, share, soft, status, table
 from .text import DASH

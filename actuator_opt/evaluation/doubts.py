@@ -8,9 +8,9 @@ import numpy as np
 
 from ..design.material import compatible
 from ..models import laminate, seals
-from .evaluation import Metric, ModelUse, Unverified
 from .kernel import Pass, Subject
 from .provenance import model_of
+from .result import Metric, ModelUse, Unverified
 from .values import Values
 from .wall import kind
 

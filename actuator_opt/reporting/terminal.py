@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TypedDict
 
-from ..evaluate.evaluation import Evaluation, Requirement, StrokeCurve
-from ..optimise.result import Infeasibility, Optimisation
+from ..evaluation.result import Evaluation, Requirement, StrokeCurve
+from ..optimisation.result import Infeasibility, Optimisation
 from . import optimum, page, plot, text
 from .console import Column, Console
 from .text import DASH

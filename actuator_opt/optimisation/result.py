@@ -8,7 +8,7 @@ from math import isfinite
 from typing import Any
 
 from ..design.model import Design
-from ..evaluate.evaluation import Evaluation
+from ..evaluation.result import Evaluation
 from ..quantities import INPUTS
 from ..tables import aligned
 

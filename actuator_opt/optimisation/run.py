@@ -10,8 +10,8 @@ import numpy as np
 
 from .. import quantities
 from ..design import quantity_of, with_values
-from ..evaluate import Subject, evaluate, prepare
-from ..evaluate.rows import Row
+from ..evaluation import Subject, evaluate, prepare
+from ..evaluation.rows import Row
 from ..numeric import STEP
 from ..quantities import Quantity
 from ..units import unit

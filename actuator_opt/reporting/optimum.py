@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..evaluate.evaluation import Evaluation
-from ..optimise.result import Infeasibility, Optimisation, Sensitivity
+from ..evaluation.result import Evaluation
+from ..optimisation.result import Infeasibility, Optimisation, Sensitivity
 from . import text
 from .blocks import Block, Cell, clean, column, soft, table
 from .text import DASH

@@ -11,7 +11,7 @@ from functools import partial
 
 from .. import units
 from ..design.materials import load_library
-from ..evaluate import Evaluation
+from ..evaluation import Evaluation
 from ..models import barrel, damping, fluid, forces, friction, laminate, ply, rod, seals
 from ..models import stiffness_published as published
 from . import text

@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import Diagnostic, InputError
-from ..evaluate.evaluation import Evaluation
-from ..optimise.result import Optimisation
+from ..evaluation.result import Evaluation
+from ..optimisation.result import Optimisation
 from .blocks import ExtraTable, printable
 from .embed import extract
 from .page import page, parts_of

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from ..evaluate.evaluation import Evaluation
-from ..optimise.result import Optimisation
+from ..evaluation.result import Evaluation
+from ..optimisation.result import Optimisation
 from . import optimum, tables, text
 from .blocks import Block, ExtraTable, clean, figure, listing, notes, short, soft
 from .drawing import section

@@ -9,8 +9,8 @@ from typing import Literal, TypeAlias
 
 from ..design.material import Material
 from ..design.model import Design
-from .evaluation import Outline
 from .geometry import Geometry, Groove
+from .result import Outline
 
 _Polygon: TypeAlias = tuple[tuple[float, float], ...]
 _Part: TypeAlias = tuple[str, str, list[_Polygon]]

@@ -18,17 +18,17 @@ from ..design.model import Design
 from ..version import VERSION
 from . import doubts, outline
 from .allow import allowances, hottest
-from .evaluation import (
+from .kernel import Pass, Subject, compute
+from .limits import CHECK_LIST, CheckLine, Limit, Sense, all_limits, check_limits, default_limits
+from .plugin import Plugin
+from .provenance import model_of
+from .result import (
     Check,
     Evaluation,
     Metric,
     Requirement,
     StrokeCurve,
 )
-from .kernel import Pass, Subject, compute
-from .limits import CHECK_LIST, CheckLine, Limit, Sense, all_limits, check_limits, default_limits
-from .plugin import Plugin
-from .provenance import model_of
 from .rows import ALL_CASES, Computed, Row, by_case, rows_of
 from .values import Values
 
