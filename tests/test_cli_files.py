@@ -27,7 +27,7 @@ def files(folder):
 
 
 def test_report_writes_pdf_and_pages(tmp_path):
-    """The files named are the files there are, with their hashes; stdin's bear the design's name."""
+    """The files named are the files there are, with their hashes; from stdin they bear its name."""
     out = tmp_path / "new" / "folder"
     result = run("report", "-", "--out", out, "--json", stdin=BENCH.encode())
     assert result.code == 0

@@ -25,7 +25,7 @@ ODD = [
     "line_velocity", "stiffness_min",
 ]  # fmt: skip
 FACTORS = [0.0, 1e-9, 1e-3, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 1.01, 1.1, 1.5, 2.0, 4.0, 10.0, 1e3, 1e9]
-MANY = int(os.environ.get("FUZZ_EXAMPLES", "20"))
+MANY = int(os.environ.get("FUZZ_EXAMPLES", "12"))
 QUICK = settings(max_examples=MANY, deadline=None, suppress_health_check=list(HealthCheck))
 
 
