@@ -140,7 +140,7 @@ def _smallest(
     best: Point | None = None
     judge = Evaluator(problem)
     room, starts = 1.0, []
-    for x in list(points)[:4] or [(problem.lower + problem.upper) / 2]:
+    for x in list(points)[:2] or [(problem.lower + problem.upper) / 2]:
         rows = judge.point(judge.space.to_z(x)).rows[1 : 1 + len(problem.constraint_names)]
         missed = np.maximum(-np.nan_to_num(rows, nan=0.0), 0.0)
         room = max(room, 2.0 * float(missed.max(initial=0.0)))

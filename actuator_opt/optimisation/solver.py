@@ -29,7 +29,7 @@ RESIDUAL = 1e-6
 
 FINISH = "active-set Newton"
 
-LOCAL_EVALUATIONS = 400
+LOCAL_EVALUATIONS = 150
 """Most evaluations of one local run of a default algorithm."""
 
 

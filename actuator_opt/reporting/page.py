@@ -54,6 +54,8 @@ def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
     failed = sum(check.status == "missed" for check in evaluation.checks)
     if optimisation is not None and optimisation.infeasibility is not None:
         state, words = "infeasible", "INFEASIBLE"
+    elif optimisation is not None and optimisation.status == "undefined":
+        state, words = "missed", "NO USABLE ANSWER"
     elif missed:
         state, words = "missed", "REQUIREMENTS MISSED"
     elif failed:
