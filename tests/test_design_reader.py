@@ -8,6 +8,7 @@ import sys
 import pytest
 
 from actuator_opt.design import read_design
+from actuator_opt.design.build import build, to_tree
 from actuator_opt.design.template import init_text
 from actuator_opt.errors import InputError
 
@@ -136,7 +137,6 @@ objective:
 """
 EXPECTED = [
     # place in the text (line, column), path, part of the message, part of the remedy
-    ((1, 1), "caps", "missing", "material, thickness"),
     ((3, 13), "fluid.material", "no such material", 'did you mean "iso_vg_32"?'),
     ((4, 3), "fluid.temprature", "unknown key", 'did you mean "temperature"?'),
     ((6, 13), "supply.pressure", "mm is a length, need a pressure", "bar"),
@@ -433,12 +433,22 @@ def test_standard_input(monkeypatch):
     assert read("-").source.file == "<stdin>"
 
 
+def test_head_and_caps_have_defaults():
+    """A file without head and caps gets them from piston and bore."""
+    tree = to_tree(read(GOOD).design)
+    del tree["head"], tree["caps"]
+    built = build(tree, materials=MATERIALS)
+    assert built.design is not None, built.faults
+    assert built.design.head.length == built.design.piston.length
+    assert built.design.caps.thickness == pytest.approx(0.25 * built.design.cylinder.bore)
+
+
 def test_many_faults_are_counted():
     """A file of nonsense gives the first hundred faults and the number of the rest."""
     found = faults("\n".join(f"key_{i}: 1" for i in range(5000)))
     assert len(found) == 101
-    # 5000 unknown keys and 11 missing ones: 100 shown
-    assert found[-1].message == "and 4911 more faults"
+    # 5000 unknown keys and 9 missing ones: 100 shown
+    assert found[-1].message == "and 4909 more faults"
 
 
 def test_messages_are_one_printable_line():

@@ -132,6 +132,8 @@ def _translate(error: ValidationError, tree: Any) -> Iterator[Fault]:
     for item in error.errors(include_url=False):
         loc: Loc = tuple(item["loc"])
         kind, value = item["type"], item["input"]
+        if kind == "default_factory_not_called":  # only echoes another fault
+            continue
         section, entry = _section_at(tree, loc)
         if kind == "value":
             yield Fault(loc, item["ctx"]["message"], item["ctx"]["remedy"])

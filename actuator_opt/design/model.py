@@ -6,7 +6,7 @@ Schema and reports read one declaration (`quantities.INPUTS`). Sections hold no 
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -123,7 +123,7 @@ class Piston(Section):
 
     material: Annotated[str, MaterialName("structural")]
     length: Annotated[float, Of("part_length", "axial length of the piston")]
-    guide: Annotated[str | None, MaterialName("structural")] = None
+    bearing: Annotated[str | None, MaterialName("structural")] = None
     clearance: Annotated[float, Of("radial_clearance", "radial clearance piston to bore")] = 3e-5
 
 
@@ -132,7 +132,7 @@ class Head(Section):
 
     material: Annotated[str, MaterialName("structural")]
     length: Annotated[float, Of("part_length", "axial length inside the barrel")]
-    guide: Annotated[str | None, MaterialName("structural")] = None
+    bearing: Annotated[str | None, MaterialName("structural")] = None
     clearance: Annotated[float, Of("radial_clearance", "radial clearance rod to head")] = 3e-5
 
 
@@ -263,6 +263,26 @@ class Objective(Section):
     maximise: Annotated[str | dict[str, float] | None, Goal()] = None
 
 
+def _like_the_piston(stated: dict[str, Any]) -> Head:
+    """A head of the piston's material and length, where the file states none."""
+    piston = stated.get("piston")
+    if piston is None:  # itself a fault; this only keeps the others readable
+        return Head.model_construct(material="", length=0.0)
+    return Head(material=piston.material, length=piston.length)
+
+
+PLAIN_CAP = 0.25
+"""Thickness over bore of the end plates where the file states none."""
+
+
+def _plain_caps(stated: dict[str, Any]) -> Caps:
+    """End plates of the piston's material and a quarter of the bore, where none are stated."""
+    piston, cylinder = stated.get("piston"), stated.get("cylinder")
+    if piston is None or cylinder is None:
+        return Caps.model_construct(material="", thickness=0.0)
+    return Caps(material=piston.material, thickness=PLAIN_CAP * cylinder.bore)
+
+
 class Design(Section):
     """A hydraulic actuator with its duties, its freedom and its requirements."""
 
@@ -277,8 +297,8 @@ class Design(Section):
     barrel: Barrel
     rod: Rod
     piston: Piston
-    head: Head
-    caps: Caps
+    head: Annotated[Head, Field(default_factory=_like_the_piston)]
+    caps: Annotated[Caps, Field(default_factory=_plain_caps)]
     retention: Retention | None = None
     clevis: Clevis | None = None
     seals: Seals

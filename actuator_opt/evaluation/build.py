@@ -47,7 +47,7 @@ def names_of_materials(design: Design) -> list[str]:
     names = [design.fluid.material]
     names += [ply.material for ply in design.barrel.layup]
     names += [design.rod.material, design.piston.material, design.head.material]
-    names += [part.guide for part in (design.piston, design.head) if part.guide is not None]
+    names += [part.bearing for part in (design.piston, design.head) if part.bearing is not None]
     names.append(design.caps.material)
     if design.retention is not None and design.retention.material is not None:
         names.append(design.retention.material)

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..design.material import compatible
+from ..design.model import PLAIN_CAP
 from ..models import laminate, seals
 from .kernel import Pass, Subject
 from .provenance import model_of
@@ -56,6 +57,12 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
             "cure stresses are checked on their own (liner mismatch) and not superposed on the "
             "pressure's in yield and first ply",
         )
+    for part, what in (
+        ("head", "of the piston's material and length"),
+        ("caps", f"of the piston's material, {PLAIN_CAP:g} bore thick"),
+    ):
+        if part not in subject.design.model_fields_set:
+            yield "", f"no {part} stated: taken {what}"
     yield from _seal_warnings(subject, v, done)
     if done.wall.missing:
         yield "burst_factor", f"barrel: {done.wall.missing[0]}"

@@ -32,7 +32,7 @@ class Limit:
     sense: Sense
     path: str | None = None
     constant: float | None = None
-    origin: Literal["requirement", "case", "check", "geometry"] = "requirement"
+    origin: Literal["requirement", "case", "check", "advice", "geometry"] = "requirement"
     case: str | None = None
     source: str = ""
     lever: str | None = None
@@ -54,6 +54,8 @@ class CheckLine:
     limit: float | None = None
     source: str = ""
     why_not: str = ""
+    advice: bool = False
+    """Shown and warned about, but no constraint of the optimiser."""
 
 
 _ASK = "no limit stated: add requirements.{metric}"
@@ -144,6 +146,7 @@ CHECK_LIST: tuple[CheckLine, ...] = (
         "min",
         3.53e-3,
         "advice against spiral failure: 3.53 mm or more",
+        advice=True,
     ),
     CheckLine("breakaway friction", "friction_breakaway", "max"),
     CheckLine("running friction", "friction_running", "max"),
@@ -273,7 +276,7 @@ def check_limits(design: Design) -> list[Limit]:
                 metric=line.metric,
                 sense=line.sense,
                 path=path,
-                origin="check",
+                origin="advice" if line.advice else "check",
                 source=line.source,
             )
         )

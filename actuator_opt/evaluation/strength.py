@@ -313,9 +313,11 @@ def _guides(stock: Stock, design: Design, g: Geometry, state: State, out: Comput
     out.put("bearing_pressure", pressures)
     factors = {}
     for place, part in (("head", design.head), ("piston", design.piston)):
-        allowed = stock.allowable(part.guide or part.material, "bearing_strength")
+        allowed = stock.allowable(part.bearing or part.material, "bearing_strength")
         if allowed is None:
-            out.skip("bearing_factor", f"{part.guide or part.material} states no bearing strength")
+            out.skip(
+                "bearing_factor", f"{part.bearing or part.material} states no bearing strength"
+            )
             return
         loaded = real(pressures[place]) > 0
         safe = where(loaded, pressures[place], 1.0 + 0 * pressures[place])

@@ -176,7 +176,9 @@ def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
         dtype=float,
     )
     goal = goal_of(subject)
-    limits = tuple(all_limits(subject.design, subject.plugins))
+    limits = tuple(
+        limit for limit in all_limits(subject.design, subject.plugins) if limit.origin != "advice"
+    )
     numbers = subject.values({path: np.array([v, v]) for path, v in zip(paths, start, strict=True)})
     done = compute(subject, numbers)
     goal.value(done.computed, subject.cases)
@@ -184,7 +186,9 @@ def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
     _check_read(numbers, paths, fault)
     rows = tuple(row for row in everything if np.size(row.margin) > 1)
     fixed = tuple(row for row in everything if np.size(row.margin) == 1)
-    missed = [row for row in fixed if not float(row.margin[0]) >= -1e-6]
+    missed = [  # a check that no variable can mend is reported, not optimised against
+        row for row in fixed if row.limit_of.origin != "check" and not float(row.margin[0]) >= -1e-6
+    ]
     rows += tuple(missed)
     holder: list[ActuatorProblem] = []
     problem = Problem(
