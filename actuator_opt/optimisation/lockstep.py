@@ -1,9 +1,8 @@
 """Re-solve many slightly changed problems at once: one model evaluation serves all of them.
 
 Each problem takes the quadratic steps of `newton` with the Hessian of the unchanged optimum,
-which converges linearly and fast for small changes; one still under way after some steps gets a
-Hessian of its own. A problem that does not get there is left to the slower, sturdier path of
-`prices.resolved`.
+which converges linearly and fast for small changes. Those it does not serve go on from a feasible
+point with Hessians of their own, and the rest is left to the sturdier path of `prices.resolved`.
 """
 
 from __future__ import annotations
@@ -15,11 +14,14 @@ from . import kkt, newton
 from .evaluator import Evaluator, Point
 from .problem import ParametricProblem, Vector
 
-ITERATIONS = 16
-"""Most steps; 10 % changes mostly take three to five."""
+ITERATIONS = 10
+"""Most steps with the shared Hessian; 10 % changes mostly take three to five."""
 
-RENEWALS = (5, 10)
-"""Steps before which problems still under way get a Hessian of their own."""
+RENEWALS = (0, 5, 10)
+"""Steps before which a problem with a Hessian of its own renews it."""
+
+LONGEST = 16
+"""Most steps with Hessians of one's own."""
 
 RESTORATIONS = 24
 """Most steps towards a feasible point."""
@@ -49,6 +51,8 @@ def resolve_together(
     point: Point,
     starts: Vector,
     parameters: Vector,
+    *,
+    own: bool = False,
 ) -> list[float | None]:
     """Objectives of the re-solved problems; None where a problem needs the sturdier path.
 
@@ -58,6 +62,7 @@ def resolve_together(
     evaluator, point : of the unchanged optimum
     starts : coordinates to start from (nf, K)
     parameters : parameter values of each problem (q, K)
+    own : each problem takes Hessians of its own, dearer and sturdier than the shared one
     """
     count = starts.shape[1]
     found: list[float | None] = [None] * count
@@ -69,7 +74,7 @@ def resolve_together(
     z = np.clip(starts, space.lower[:, None], space.upper[:, None])
     last = np.full(count, np.inf)
     alive = list(range(count))
-    for iteration in range(ITERATIONS):
+    for iteration in range(LONGEST if own else ITERATIONS):
         if not alive:
             break
         points = _points(parametric, evaluator, z[:, alive], parameters[:, alive])
@@ -81,10 +86,10 @@ def resolve_together(
             if settled and kkt.check(evaluator, trial).residual <= RESIDUAL:
                 found[k] = trial.objective
                 continue
-            if iteration in RENEWALS:
-                own = Evaluator(parametric.at(parameters[:, k]))
-                there = newton.state_at(own, trial)
-                hessians[k] = newton.convex_hessian(own, there) * (there.scale / state.scale)
+            if own and iteration in RENEWALS:
+                alone = Evaluator(parametric.at(parameters[:, k]))
+                there = newton.state_at(alone, trial)
+                hessians[k] = newton.convex_hessian(alone, there) * (there.scale / state.scale)
                 last[k] = np.inf
             step, _ = newton.quadratic_step(
                 evaluator, trial, state.scale, hessians[k], state.equality_multipliers

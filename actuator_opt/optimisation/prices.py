@@ -216,8 +216,18 @@ def _together(
         known[i] = objective
     left = [column for column, i in enumerate(chosen) if known[i] is None]
     restored = lockstep.restore_together(parametric, evaluator, point, parameters[:, left])
-    for column, z in zip(left, restored, strict=True):
-        inside[chosen[column]] = _NOWHERE if z is None else z
+    feasible = [(column, z) for column, z in zip(left, restored, strict=True) if z is not None]
+    for column in left:
+        inside[chosen[column]] = _NOWHERE
+    if feasible:
+        columns = [column for column, _ in feasible]
+        points = np.stack([z for _, z in feasible], axis=1)
+        again = lockstep.resolve_together(
+            parametric, evaluator, point, points, parameters[:, columns], own=True
+        )
+        for (column, z), objective in zip(feasible, again, strict=True):
+            known[chosen[column]] = objective
+            inside[chosen[column]] = z
     return known, inside
 
 
