@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from ..quantities import Quantity
 from ..units import unit
 from . import prices as pricing
 from .actuator import ActuatorProblem, Fault, build
+from .infeasibility import Infeasibility as Explanation
 from .infeasibility import explain
 from .outcome import Outcome, Solution
 from .result import Infeasibility, Kkt, Optimisation, Sensitivity, VariableResult
@@ -58,6 +60,7 @@ def optimise(
     solution = solve(
         actuator.problem, algorithm=algorithm, starts=starts, seed=seed, max_seconds=max_seconds
     )
+    why, solution = _explained(actuator, solution)
     design = with_values(
         subject.design,
         dict(zip(actuator.paths, solution.x.tolist(), strict=True)),
@@ -80,7 +83,7 @@ def optimise(
         variables=_variables(actuator, solution),
         kkt=_kkt(solution),
         sensitivities=rows,
-        infeasibility=_why_not(actuator, solution),
+        infeasibility=why,
         evaluations=solution.evaluations,
         samples=solution.samples,
         starts=tuple(actuator.goal.shown(record.objective) for record in solution.starts),
@@ -208,11 +211,20 @@ def _strongest(actuator: ActuatorProblem, solution: Solution, known: set[str]) -
     )
 
 
-def _why_not(actuator: ActuatorProblem, solution: Solution) -> Infeasibility | None:
+def _explained(
+    actuator: ActuatorProblem, solution: Solution
+) -> tuple[Infeasibility | None, Solution]:
+    """Why nothing fits, and the design that needs only the smallest joint relaxation."""
     if solution.feasible or solution.kkt is None:
-        return None
+        return None, solution
     points = [found.x for found in solution.optima] or [solution.x]
     found = explain(actuator.problem, points)
+    objective = float(np.ravel(actuator.evaluate(found.x[:, None]).objective)[0])
+    closest = replace(solution, x=found.x, objective=objective, kkt=None)
+    return _card(actuator, found), closest
+
+
+def _card(actuator: ActuatorProblem, found: Explanation) -> Infeasibility:
 
     def entry(index: int, amount: float | None) -> dict[str, Any]:
         row = actuator.rows[index]
