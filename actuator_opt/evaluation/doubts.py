@@ -63,6 +63,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
     ):
         if part not in subject.design.model_fields_set:
             yield "", f"no {part} stated: taken {what}"
+    yield from _oil_warnings(subject, v)
     yield from _seal_warnings(subject, v, done)
     if done.wall.missing:
         yield "burst_factor", f"barrel: {done.wall.missing[0]}"
@@ -77,6 +78,21 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
                 f"larger, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
             ),
         )
+
+
+def _oil_warnings(subject: Subject, v: Values) -> Iterable[tuple[str, str]]:
+    """Load cases outside the temperatures the oil is known or made for."""
+    oil = subject.materials[subject.design.fluid.material]
+    low = oil.numbers.get("temperature_min", -np.inf)
+    high = oil.numbers.get("temperature_max", np.inf)
+    temperatures = np.ravel(v.case("temperature", v["fluid.temperature"]))
+    for case, temperature in zip(v.cases, np.broadcast_to(temperatures, len(v.cases)), strict=True):
+        if not low <= temperature <= high:
+            yield (
+                "oil_viscosity",
+                f"{case}: {temperature - 273.15:.0f} degC is outside the service range of "
+                f"{oil.name}, {low - 273.15:.0f} to {high - 273.15:.0f} degC",
+            )
 
 
 def _seal_warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
