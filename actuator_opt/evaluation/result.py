@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 from .. import quantities
@@ -190,47 +190,10 @@ class Evaluation:
                 | ({"why": m.why} if m.value is None else {})
                 for m in self.metrics.values()
             },
-            "checks": [
-                {
-                    "name": c.name,
-                    "status": c.status,
-                    "reason": c.reason,
-                    "metric": c.metric,
-                    "sense": c.sense,
-                    "limit": c.limit,
-                    "value": c.value,
-                    "margin": c.margin,
-                    "case": c.case,
-                    "place": c.place,
-                    "source": c.source,
-                }
-                for c in self.checks
-            ],
-            "requirements": [
-                {
-                    "name": r.name,
-                    "metric": r.metric,
-                    "sense": r.sense,
-                    "limit": r.limit,
-                    "value": r.value,
-                    "margin": r.margin,
-                    "met": r.met,
-                    "case": r.case,
-                    "place": r.place,
-                }
-                for r in self.requirements
-            ],
+            "checks": [asdict(check) for check in self.checks],
+            "requirements": [asdict(row) for row in self.requirements],
             "warnings": list(self.warnings),
-            "unverified": [
-                {
-                    "material": u.material,
-                    "property": u.property,
-                    "value": u.value,
-                    "source": u.source,
-                    "note": u.note,
-                }
-                for u in self.unverified
-            ],
+            "unverified": [asdict(value) for value in self.unverified],
         }
 
     def columns(self) -> dict[str, list[Any]]:

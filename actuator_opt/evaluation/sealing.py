@@ -130,26 +130,7 @@ def compute(
     supply = v["supply.pressure"]
     full_growth = SEAL_STEP * wall.growth
     case_growth = full_growth * (state.driven_pressure / supply)
-    parts = {
-        "piston seal": _seal_state(
-            v,
-            design,
-            "piston",
-            geometry.bore,
-            geometry.piston_groove,
-            absolute(state.moving_a - state.moving_b),
-            case_growth,
-        ),
-        "rod seal": _seal_state(
-            v,
-            design,
-            "rod",
-            geometry.rod_diameter,
-            geometry.rod_groove,
-            maximum(state.moving_b, 0.0),
-            0.0,
-        ),
-    }
+    parts = _both(v, design, geometry, state, case_growth)
     places: dict[str, dict[str, Array]] = {}
     total = Friction(0.0, 0.0, 0.0)
     for place, part in parts.items():
@@ -180,6 +161,32 @@ def compute(
     if not moving.any():
         out.skip("damping_seal", "a secant damping needs a speed; no load case states one")
     return total
+
+
+def _both(
+    v: Values, design: Design, geometry: Geometry, state: State, case_growth: Array
+) -> dict[str, _SealState]:
+    """State of both seals in every case: the piston's sees the difference, the rod's p_B."""
+    return {
+        "piston seal": _seal_state(
+            v,
+            design,
+            "piston",
+            geometry.bore,
+            geometry.piston_groove,
+            absolute(state.moving_a - state.moving_b),
+            case_growth,
+        ),
+        "rod seal": _seal_state(
+            v,
+            design,
+            "rod",
+            geometry.rod_diameter,
+            geometry.rod_groove,
+            maximum(state.moving_b, 0.0),
+            0.0,
+        ),
+    }
 
 
 def _friction(load: Array, part: _SealState, speed: Array, viscous: Array) -> Friction:
