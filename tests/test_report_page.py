@@ -115,20 +115,28 @@ def test_key_figures_are_five_and_start_with_the_objective():
     assert "stiffness" not in " ".join(tile["label"] for tile in tiles)
 
 
-def test_infeasibility_fills_in_the_limit_that_would_do():
-    """A relaxation given as an amount becomes the limit that is needed, in its unit."""
+def test_infeasibility_is_in_the_unit_of_its_metric():
+    """Limit and needed limit carry the metric's unit, the relaxation is a share."""
     card = replace(
         fixture.build_infeasible().infeasibility,
-        joint=({"requirement": "stiffness_min", "amount": 0.1},),
+        joint=(
+            {
+                "requirement": "stiffness_min",
+                "metric": "stiffness_min",
+                "limit": 10e6,
+                "needed": 9e6,
+                "relaxation": 0.1,
+            },
+        ),
         sole=(),
         bounds=(),
     )
-    rows = optimum.infeasibility(card, fixture.build_evaluation())[0]["rows"]
+    rows = optimum.infeasibility(card)[0]["rows"]
     assert [text_of(cell) for cell in rows[0]] == [
         "stiffness_min",
-        "+10.0 %",
         "10.00 kN/mm",
         "9.000 kN/mm",
+        "+10.0 %",
     ]
 
 

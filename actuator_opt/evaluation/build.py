@@ -141,7 +141,6 @@ def _metric(
     name: str, computed: Computed, v: Values, subject: Subject, outside: set[str]
 ) -> Metric:
     laminated = doubts.kind_of(subject) == "thin_laminate"
-    model = model_of(name, laminated=laminated)
     rows: list[tuple[float, str, str]] = []
     for place, array in computed.metrics.get(name, {}).items():
         for case, value in by_case(computed, name, array, v.cases):
@@ -157,6 +156,7 @@ def _metric(
         return Metric(name=name, value=None, why=why, definition=definition)
     pick = min if SENSES.get(name, "max") == "min" else max
     value, case, place = pick(usable, key=lambda row: row[0])
+    model = model_of(name, laminated=laminated, place=place)
     per_case: dict[str, float] = {}
     for one, where, _ in usable:
         per_case[where] = pick(one, per_case.get(where, one))

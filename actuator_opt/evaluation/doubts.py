@@ -142,7 +142,7 @@ def models(
     laminated = kind_of(subject) == "thin_laminate"
     seen: dict[str, ModelUse] = {}
     for name, metric in metrics.items():
-        model = model_of(name, laminated=laminated)
+        model = model_of(name, laminated=laminated, place=metric.place)
         if model is None or metric.value is None:
             continue
         used = metric.quantity.text(metric.value)

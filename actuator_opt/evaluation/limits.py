@@ -58,8 +58,6 @@ class CheckLine:
     """Shown and warned about, but no constraint of the optimiser."""
 
 
-_ASK = "no limit stated: add requirements.{metric}"
-
 CHECK_LIST: tuple[CheckLine, ...] = (
     CheckLine("push force net of friction and back-pressure", "push_force"),
     CheckLine("pull force net of friction and back-pressure", "pull_force"),

@@ -101,7 +101,7 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "buckling_factor": stepped.stepped_column_load,
         "thread_factor": rod.thread_stress_area,
         "retention_factor": retention.bond_edge_shear,
-        "cap_factor": end_plate.end_plate_stress,
+        "cap_factor": end_plate.hub_plate_stress,
         "pin_factor": retention.pin_shear_stress,
         "bearing_overlap": retention.guide_forces,
         "bearing_pressure": retention.guide_forces,
@@ -133,7 +133,23 @@ LAMINATED: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
 """What replaces it where the barrel is a thin laminate."""
 
 
-def model_of(metric: str, *, laminated: bool) -> Model | None:
-    """The model behind a metric; None for plain geometry and inputs."""
-    function = (LAMINATED.get(metric) if laminated else None) or METRIC_MODELS.get(metric)
+AT_PLACE: MappingProxyType[tuple[str, str], Callable[..., object]] = MappingProxyType(
+    {
+        ("cap_factor", "cap, hung on its skirt"): end_plate.hung_plate_stress,
+        ("cap_factor", "head"): end_plate.end_plate_stress,
+        ("retention_factor", "thread"): rod.thread_shear_stress,
+        ("retention_factor", "tie rods"): retention.tie_rod_stress,
+        ("yield_factor", "rod"): rod.rod_stress,
+    }
+)
+"""What replaces both where another part of the actuator governs."""
+
+
+def model_of(metric: str, *, laminated: bool, place: str | None = None) -> Model | None:
+    """The model behind a metric at its governing place; None for plain geometry and inputs."""
+    function = (
+        AT_PLACE.get((metric, place or ""))
+        or (LAMINATED.get(metric) if laminated else None)
+        or METRIC_MODELS.get(metric)
+    )
     return None if function is None else describe(function)

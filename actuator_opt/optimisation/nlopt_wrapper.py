@@ -338,7 +338,7 @@ def run(
         return Run(start, 1, algorithm)
     outer, inner = find(algorithm)
     size, most = evaluator.space.size, most or outer.most_evaluations
-    evaluator.eager = (inner or outer).name.startswith("LD_")
+    evaluator.eager = (inner or outer).uses_gradients
     handle = _handle(outer, size, tolerance, most)
     guard = _Guard(evaluator, start, linear=linear, handle=handle)
     guard.known = known

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
-from ..evaluation.result import Evaluation
 from ..optimisation.result import Infeasibility, Optimisation, Sensitivity
 from . import text
 from .blocks import Block, Cell, clean, column, soft, table
@@ -117,7 +113,7 @@ def quality(optimisation: Optimisation) -> str:
     return (
         f"Quality: KKT residual {text.number(kkt.residual, 2)}, {len(kkt.active)} active rows of"
         f" rank {kkt.rank}, {kkt.curvature}. Prices are per unit shown in the limit column;"
-        f" {DASH} under solved: infeasible there."
+        f" {DASH} under solved: no feasible design found nearby."
     )
 
 
@@ -169,11 +165,11 @@ _HEADS = {
 }
 
 
-def infeasibility(card: Infeasibility, evaluation: Evaluation) -> list[Block]:
+def infeasibility(card: Infeasibility) -> list[Block]:
     """The card of an infeasible design: what conflicts, by how much, what would repair it."""
     blocks = []
     for name, (title, note) in _HEADS.items():
-        records = [_completed(record, evaluation) for record in getattr(card, name)]
+        records = getattr(card, name)
         if not records:
             continue
         keys = list(dict.fromkeys(key for record in records for key in record))
@@ -188,20 +184,3 @@ def infeasibility(card: Infeasibility, evaluation: Evaluation) -> list[Block]:
         ]
         blocks.append(table(title, heads, rows, note=note))
     return blocks
-
-
-def _completed(record: Mapping[str, Any], evaluation: Evaluation) -> dict[str, Any]:
-    """A relaxation with the metric, the limit and the limit needed, where they follow."""
-    found = dict(record)
-    named = found.get("requirement", found.get("constraint"))
-    row = next((r for r in evaluation.requirements if named in (r.name, r.path)), None)
-    if row is None:
-        return found
-    found.setdefault("metric", row.metric)
-    amount = found.get("relaxation", found.get("amount"))
-    if "needed" not in found and "amount" in found:
-        found.setdefault("limit", row.limit)
-        away = None if amount is None else amount * (abs(row.limit) or 1.0)
-        sign = -1.0 if row.sense == "min" else 1.0
-        found["needed"] = None if away is None else row.limit + sign * away
-    return found

@@ -128,7 +128,7 @@ def page(
     kind = "Optimisation report" if optimisation is not None else "Evaluation report"
     blocks: list[Block] = []
     if optimisation is not None and optimisation.infeasibility is not None:
-        blocks += optimum.infeasibility(optimisation.infeasibility, evaluation)
+        blocks += optimum.infeasibility(optimisation.infeasibility)
     blocks.append(tables.requirements(evaluation))
     if optimisation is not None and optimisation.variables:
         blocks.append(optimum.variables(optimisation))

@@ -300,7 +300,7 @@ def infeasibility_card(
     if card is None:
         return ""
     lines = []
-    for block in optimum.infeasibility(card, subject.evaluation):
+    for block in optimum.infeasibility(card):
         columns = [Column(c["head"], c["align"], flexible=True) for c in block["columns"]]
         rows = [["".join(cell) for cell in row] for row in block["rows"]]
         lines += ["", console.heading(block["title"]), *console.table(columns, rows)]
