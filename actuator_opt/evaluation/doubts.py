@@ -15,6 +15,9 @@ from .result import Metric, ModelUse, Unverified
 from .values import Values
 from .wall import kind
 
+LONGEST_LIFE = 1e9
+"""Cycles up to which stress-life lines have data [Shigley2011]."""
+
 GROWTH_FED = (
     "bore_growth",
     "seal_gap",
@@ -63,6 +66,13 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
     ):
         if part not in subject.design.model_fields_set:
             yield "", f"no {part} stated: taken {what}"
+    lives = [np.min(np.real(x)) for x in done.computed.metrics.get("cycle_life", {}).values()]
+    if lives and np.isfinite(min(lives)) and min(lives) > LONGEST_LIFE:
+        yield (
+            "cycle_life",
+            f"pressure-cycle life beyond {LONGEST_LIFE:.0e} cycles is extrapolated: read it as "
+            "longer than that; adhesive and plies are not in it",
+        )
     yield from _oil_warnings(subject, v)
     yield from _seal_warnings(subject, v, done)
     if done.wall.missing:
@@ -126,8 +136,8 @@ def _seal_warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[st
             yield "", f"{name} seal: {compound} does not withstand {oil}"
 
 
-SOURCES = frozenset({"bore_growth", "first_ply_factor", "burst_factor"})
-"""Metrics whose own model, not one before it, is what the wall warning is about."""
+SOURCES = frozenset({"bore_growth", "first_ply_factor", "burst_factor", "cycle_life"})
+"""Metrics whose own model, not one before it, is what a warning is about."""
 
 
 def models(
