@@ -8,7 +8,7 @@ refuse complex input; every comparison is made on real parts.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -84,6 +84,27 @@ def expm1_quotient(value: Array) -> Array:
     small = (real(value) < 1e-5) & (real(value) > -1e-5)
     safe = where(small, 0 * value + 1, value)
     return where(small, 1 + value / 2 + value * value / 6, xp.expm1(safe) / safe)
+
+
+def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
+    """Each row of layer values as an array (layers, ...); batches stand on one number of axes."""
+    xp = namespace(*(value for row in rows for value in row))
+    result = []
+    for row in rows:
+        if all(isinstance(value, (float, int)) for value in row):
+            result.append(xp.asarray([float(value) for value in row]))
+        else:
+            result.append(xp.stack(xp.broadcast_arrays(*[xp.asarray(value) for value in row])))
+    dims = max(value.ndim for value in result) - 1
+    return [lifted(value, dims) for value in result]
+
+
+def lifted(value: Array, dims: int) -> Array:
+    """A layer array (layers, ...) with its batch moved to the last of `dims` batch axes."""
+    missing = dims + 1 - value.ndim
+    if missing <= 0:
+        return value
+    return namespace(value).reshape(value, (value.shape[0], *(1,) * missing, *value.shape[1:]))
 
 
 def jacobian(function: Callable[[Array], Array], point: Array) -> tuple[Array, Array]:

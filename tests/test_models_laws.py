@@ -14,27 +14,35 @@ import numpy as np
 import pytest
 from model_samples import SAMPLES, SCALAR_ONLY, cases, leaves, public_functions, rebuilt
 
+from actuator_opt.models.burst_ladder import BurstLadder
+
 STEP = 1e-30
 CASES = [pytest.param(function, sample, id=label) for label, function, sample in cases()]
 ROWS, COLUMNS = np.array([[0.99], [1.0], [1.01]]), np.array([[1.0, 1.005]])
 
 
-def outputs(result):
-    """List the outputs of a model: one, several, by name, or the pressures of a burst ladder."""
-    if isinstance(result, tuple):
-        return list(result)
-    if isinstance(result, dict):
-        return list(result.values())
-    if dataclasses.is_dataclass(result):
+def outputs(result, dims):
+    """List the numbers of a result of `dims` batch axes: its parts, leading axes taken apart."""
+    if result is None or isinstance(result, bool | str):
+        return []
+    if isinstance(result, BurstLadder):
         pressures = [result.first_ply_pressure, result.burst_pressure]
         return [*pressures, result.liner_yield_pressure]
-    return [result]
+    if dataclasses.is_dataclass(result):
+        result = [getattr(result, field.name) for field in dataclasses.fields(result)]
+    if isinstance(result, dict):
+        result = list(result.values())
+    if isinstance(result, tuple | list):
+        return [number for part in result for number in outputs(part, dims)]
+    if getattr(result, "ndim", 0) <= dims:
+        return [result]
+    return [number for i in range(result.shape[0]) for number in outputs(result[i, ...], dims)]
 
 
-def called(function, sample, numbers):
+def called(function, sample, numbers, dims):
     """Outputs of a model at a sample with its numbers replaced."""
     arguments = rebuilt(sample, iter(numbers))
-    return outputs(function(*arguments.pop("*", ()), **arguments))
+    return outputs(function(*arguments.pop("*", ()), **arguments), dims)
 
 
 def plain(value):
@@ -54,12 +62,13 @@ def test_array_equals_scalar(function, sample):
     numbers = leaves(sample)
     arrays = [v * (ROWS if i % 2 else COLUMNS) for i, v in enumerate(numbers)]
     before = copy.deepcopy(arrays)
-    together = [np.broadcast_to(a, (3, 2)) for a in called(function, sample, arrays)]
+    together = [np.broadcast_to(a, (3, 2)) for a in called(function, sample, arrays, 2)]
     for array, kept in zip(arrays, before, strict=True):
         np.testing.assert_array_equal(array, kept)
     for row, column in ((0, 0), (1, 1), (2, 0)):
         factors = (float(COLUMNS[0, column]), float(ROWS[row, 0]))
-        one = called(function, sample, [v * factors[i % 2] for i, v in enumerate(numbers)])
+        scaled = [v * factors[i % 2] for i, v in enumerate(numbers)]
+        one = called(function, sample, scaled, 0)
         for array, scalar in zip(together, one, strict=True):
             assert np.ndim(scalar) == 0
             assert array[row, column] == pytest.approx(scalar, rel=1e-12)
@@ -73,9 +82,9 @@ def test_complex_step_equals_central_difference(function, sample):
     batch = np.repeat(values.astype(complex)[:, None], size, axis=1)
     batch[np.arange(size), np.arange(size)] += 1j * STEP
     change = np.diag(1e-5 * np.abs(values))
-    exact = called(function, sample, batch)
-    high = called(function, sample, values[:, None] + change)
-    low = called(function, sample, values[:, None] - change)
+    exact = called(function, sample, batch, 1)
+    high = called(function, sample, values[:, None] + change, 1)
+    low = called(function, sample, values[:, None] - change, 1)
     for derivative, above, below in zip(exact, high, low, strict=True):
         slope = np.broadcast_to(np.imag(derivative) / STEP * np.abs(values), (size,))
         with np.errstate(invalid="ignore"):  # infinite less infinite: no liner
@@ -89,8 +98,8 @@ def test_complex_step_equals_central_difference(function, sample):
 def test_any_array_namespace(function, sample, kind):
     """Strict array-API arrays give the scalar numbers: only standard functions are used."""
     numbers = leaves(sample)
-    ours = called(function, sample, [strict.asarray([[v]], dtype=kind) for v in numbers])
-    for array, scalar in zip(ours, called(function, sample, numbers), strict=True):
+    ours = called(function, sample, [strict.asarray([[v]], dtype=kind) for v in numbers], 2)
+    for array, scalar in zip(ours, called(function, sample, numbers, 0), strict=True):
         assert plain(array).ravel()[0] == pytest.approx(plain(scalar).ravel()[0], rel=1e-9)
 
 

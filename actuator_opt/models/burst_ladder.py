@@ -1,0 +1,302 @@
+"""Climbing to burst by ply discount, for one design or for many at once, on any wall mechanics.
+
+The load grows from zero. The most stressed mode (maximum stress) fails first: a matrix or shear
+failure softens every ply of that material and |angle|, a fibre failure ends the ladder; burst is
+the largest load on it. An isotropic liner yields (von Mises) and then keeps the stress it has
+reached while the rest of the load goes to the fibres: yielding is no failure. All designs of an
+array climb the same fixed number of steps under masks, and a complex step follows each design's
+own branch. How stresses follow from the load is the mechanics': thin laminate in `ply_discount`,
+exact tube in `tube_burst`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from math import inf
+from typing import Any, Protocol
+
+from ..numeric import Array, absolute, maximum, real, where
+from .strength_modes import PlyStrength, load_multiplier
+
+__all__ = ["MODES", "BurstLadder", "LadderStep", "Mechanics", "WallLayer"]
+
+MODES = (
+    "fibre tension",
+    "matrix tension",
+    "shear",
+    "fibre compression",
+    "matrix compression",
+    "shear",
+    "yield",
+)
+"""Names of the modes by their code in a ladder."""
+
+_YIELD = 6
+_NONE = 1e-300
+_FLOOR = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WallLayer:
+    """One layer of a wall: a balanced pair with `strength`, or a metal with `yield_strength`.
+
+    Parameters
+    ----------
+    youngs_modulus_1, youngs_modulus_2, poissons_ratio_12, shear_modulus_12 : elastic constants
+        [Pa], [-]; of an isotropic layer E, E, nu, G
+    thickness : thickness of the layer, of the whole pair [m]
+    angle : winding angle from the tube axis [rad]
+    strength : ply strengths of a composite; None for a metal
+    yield_strength : yield strength of a metal [Pa]; None for a composite
+    material : identity of the material: plies of one material and one |angle| soften together
+    youngs_modulus_3, poissons_ratio_13, poissons_ratio_23 : radial constants [Pa], [-]; None takes
+        E2, nu12 and 0.4 for a ply, E and nu for a metal
+    """
+
+    youngs_modulus_1: Array
+    youngs_modulus_2: Array
+    poissons_ratio_12: Array
+    shear_modulus_12: Array
+    thickness: Array
+    angle: Array = 0.0
+    strength: PlyStrength | None = None
+    yield_strength: Array | None = None
+    material: Hashable = None
+    youngs_modulus_3: Array | None = None
+    poissons_ratio_13: Array | None = None
+    poissons_ratio_23: Array | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LadderStep:
+    """One failure on the way to burst: the layer (from the bore), the mode, the pressure [Pa]."""
+
+    layer: int
+    mode: str
+    pressure: float
+
+
+@dataclass(frozen=True, slots=True)
+class BurstLadder:
+    """Pressures of first ply failure, liner yield and burst [Pa], with every step's record.
+
+    Parameters
+    ----------
+    first_ply_pressure : first failure of a composite ply
+    burst_pressure : largest load of the ladder
+    liner_yield_pressure : first yield of a metal layer in the intact wall; infinite without one
+    record : per step the code of its mode (a row of `intact`), its load, whether the design climbed
+    order : index from the bore of each internal layer, metals first
+    intact : 1/p of every mode in the intact wall: rows of modes, faces, layers, then metals' yield
+    faces : stations in each layer
+    """
+
+    first_ply_pressure: Array
+    burst_pressure: Array
+    liner_yield_pressure: Array
+    record: tuple[tuple[Array, Array, Array], ...]
+    order: tuple[int, ...]
+    intact: Array
+    faces: int = 1
+
+    def modes(self) -> list[tuple[int, str]]:
+        """Layer (from the bore) and mode of every row of `intact`."""
+        layers, stations = len(self.order), self.faces * len(self.order)
+        plies = [(self.order[i % layers], MODES[i // stations]) for i in range(_YIELD * stations)]
+        metals = (self.intact.shape[0] - _YIELD * stations) // self.faces
+        return plies + [(self.order[i % metals], "yield") for i in range(metals * self.faces)]
+
+    def steps(self, index: tuple[int, ...] = ()) -> tuple[LadderStep, ...]:
+        """List the ladder of one design of the arrays; of a single design without an index."""
+        named = self.modes()
+        ladder = []
+        for code, pressure, counted in self.record:
+            if not bool(counted[index]):
+                break
+            layer, mode = named[int(code[index])]
+            ladder.append(LadderStep(layer, mode, float(real(pressure[index]))))
+        return tuple(ladder)
+
+
+class Mechanics(Protocol):
+    """How a wall answers a unit pressure, with some layers softened; layers with metals first."""
+
+    @property
+    def faces(self) -> int:
+        """Stations in each layer."""
+
+    @property
+    def metals(self) -> int:
+        """How many layers are metals."""
+
+    @property
+    def order(self) -> tuple[int, ...]:
+        """Index from the bore of each layer, metals first."""
+
+    def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
+        """Stresses 1, 2, 12, 3 at every face and layer: per pressure, and of frozen metal."""
+
+    def frozen(self, held: Any, yielded: Array, stress: Array) -> Any:
+        """What the yielded metals hold from now on; `stress` is theirs, (4, faces, metals, ...)."""
+
+
+def batch_zero(values: Sequence[Array]) -> Array:
+    """A zero that carries the joint shape and type of the arrays among the values."""
+    total: Array = 0.0
+    for value in values:
+        if not isinstance(value, (float, int, complex)):
+            total = total + 0 * value
+    return total
+
+
+def inverse_strengths(layer: WallLayer) -> tuple[Array, ...]:
+    """1/X_t, 1/Y_t, 1/S, 1/X_c, 1/Y_c, 1/S, 1/yield of a layer; zero where a mode is missing."""
+    s = layer.strength
+    if s is None:
+        held = 0.0 if layer.yield_strength is None else 1 / layer.yield_strength
+        return (0.0,) * 6 + (held,)
+    shear = 1 / s.shear_12
+    return (
+        1 / s.tension_1, 1 / s.tension_2, shear, 1 / s.compression_1, 1 / s.compression_2, shear,
+        0.0,
+    )  # fmt: skip
+
+
+def metals_first(layers: Sequence[WallLayer]) -> tuple[int, ...]:
+    """Indices of the layers from the bore, metals before plies."""
+    return tuple(sorted(range(len(layers)), key=lambda i: layers[i].strength is not None))
+
+
+def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Array:
+    """Values of every layer as (values, layers, ...) with `dims` batch axes."""
+    rows = list(zip(*columns, strict=True))
+    zero = batch_zero([value for row in rows for value in row])
+    ones = (1,) * dims
+    if isinstance(zero, float):
+        return xp.reshape(xp.asarray(rows), (len(rows), len(columns), *ones))
+    zero = xp.reshape(zero, (1,) * (dims - zero.ndim) + zero.shape)
+    return xp.stack([xp.stack([value + zero for value in row]) for row in rows])
+
+
+def _above(value: Array) -> Array:
+    """`value`, not below a small positive number: a strength already used up."""
+    return where(real(value) > _FLOOR, value, 0 * value + _FLOOR)
+
+
+def _mises(first: Array, second: Array) -> Array:
+    """Bilinear form of von Mises: its square for first = second; stresses 1, 2, 12, 3."""
+    a1, a2, a3 = first[0, ...], first[1, ...], first[3, ...]
+    b1, b2, b3 = second[0, ...], second[1, ...], second[3, ...]
+    return ((a1 - a2) * (b1 - b2) + (a2 - a3) * (b2 - b3) + (a3 - a1) * (b3 - b1)) / 2
+
+
+def _yield_rows(xp: Any, rate: Array, base: Array | None, inverse: Array) -> Array:
+    """1/p at which the stress base + p rate of a metal reaches yield by von Mises.
+
+    A single metal layer is free of frozen stress until it yields itself: no base.
+    """
+    scaled = rate * inverse
+    square = _mises(scaled, scaled)
+    if base is None:
+        return xp.sqrt(square)
+    fixed = base * inverse
+    left, linear = _above(1 - _mises(fixed, fixed)), _mises(scaled, fixed)
+    return (linear + xp.sqrt(linear * linear + left * square)) / left
+
+
+def _utilisations(xp: Any, metals: int, inverse: Array, rate: Array, base: Array | None) -> Array:
+    """1/p of every mode: rows of modes, faces, layers, then the metals' yield."""
+    modes = xp.concat([rate[:3, ...], -rate[:3, ...]]) * inverse[:6, ...]
+    if base is not None:
+        used = xp.concat([base[:3, ...], -base[:3, ...]]) * inverse[:6, ...]
+        modes = modes / _above(1 - used)
+    rows = xp.reshape(modes, (-1, *modes.shape[3:]))
+    if not metals:
+        return rows
+    held = None if base is None or metals == 1 else base[:, :, :metals, ...]
+    yields = _yield_rows(xp, rate[:, :, :metals, ...], held, inverse[6, :, :metals, ...])
+    return xp.concat([rows, xp.reshape(yields, (-1, *yields.shape[2:]))])
+
+
+def _critical(xp: Any, values: Array, rows: Array, shape: Array) -> tuple[Array, ...]:
+    """Code, one-hot mask and load of the largest utilisation; whether any mode is loaded."""
+    code = xp.argmax(real(values), axis=0)
+    hit = rows == code
+    inverse = xp.sum(where(hit, values, 0.0), axis=0)
+    idle = real(inverse) <= _NONE
+    pressure = where(idle, shape + inf, 1 / where(idle, shape + 1, inverse))
+    return code, hit, pressure, ~idle
+
+
+def _softening(xp: Any, hit: Array, faces: int, count: int, metals: int) -> Array:
+    """Which layer loses stiffness at this step: by matrix or shear failure, or by yield."""
+    plies = _YIELD * faces * count
+    modes = xp.reshape(hit[:plies, ...], (_YIELD, faces, count, *hit.shape[1:]))
+    modes = xp.any(modes, axis=1)
+    matrix = modes[1, ...] | modes[2, ...] | modes[4, ...] | modes[5, ...]
+    if not metals:
+        return matrix
+    yields = xp.reshape(hit[plies:, ...], (faces, metals, *hit.shape[1:]))
+    return xp.concat([xp.any(yields, axis=0), matrix[metals:, ...]])
+
+
+def _together(xp: Any, walls: Sequence[WallLayer], dims: int) -> Array:
+    """Which layers soften with which, (layers, layers, ...)."""
+    count, ones = len(walls), (1,) * dims
+    same = [
+        [i == j or (a.material == b.material and bool(a.strength) and bool(b.strength))
+         for j, b in enumerate(walls)]
+        for i, a in enumerate(walls)
+    ]  # fmt: skip
+    alike = xp.reshape(xp.asarray(same), (count, count, *ones))
+    angle = stacked_rows(xp, [(wall.angle,) for wall in walls], dims)[0, ...]
+    turned = absolute(real(angle))
+    return alike & (turned[:, None, ...] == turned[None, ...])
+
+
+def climb(xp: Any, mechanics: Mechanics, layers: Sequence[WallLayer], shape: Array) -> BurstLadder:
+    """The ladder of a wall; `shape` is a zero of the designs' joint shape and type."""
+    walls = [layers[i] for i in mechanics.order]
+    count, metals, faces = len(walls), mechanics.metals, mechanics.faces
+    dims = shape.ndim
+    strengths = stacked_rows(xp, [inverse_strengths(wall) for wall in walls], dims)
+    keeps = xp.reshape(xp.asarray([float(mode in (0, 3)) for mode in range(7)]), (7, 1))
+    left = strengths * xp.reshape(keeps, (7, *(1,) * (dims + 1)))
+    together = _together(xp, walls, dims)
+    rows = xp.reshape(xp.arange(faces * (_YIELD * count + metals)), (-1,) + (1,) * dims)
+    highest, first, liner_yield = shape, shape + inf, shape + inf
+    climbing = untouched = real(shape) == 0
+    held, soft, intact = None, None, None
+    record = []
+    for _ in range(count + 1):
+        rate, base = mechanics.answer(soft, held)
+        inverse = strengths if soft is None else where(soft[None, ...], left, strengths)
+        values = _utilisations(xp, metals, inverse[:, None, ...], rate, base)
+        if intact is None:
+            intact = values
+            if metals:
+                own = [values[i - faces * metals, ...] for i in range(faces * metals)]
+                liner_yield = load_multiplier(reduce(maximum, own))
+        code, hit, pressure, found = _critical(xp, values, rows, shape)
+        counted = climbing & found
+        record.append((code, pressure, counted))
+        highest = where(counted, maximum(highest, pressure), highest)
+        event = _softening(xp, hit, faces, count, metals)
+        fresh = xp.any(together & event[None, ...], axis=1) & counted
+        plied = counted
+        if metals:
+            yielded = event[:metals, ...] & counted
+            plied = counted & ~xp.any(yielded, axis=0)
+            stress = rate[:, :, :metals, ...] * where(counted, pressure, shape)
+            if base is not None:
+                stress = stress + base[:, :, :metals, ...]
+            held = mechanics.frozen(held, yielded, stress)
+        first = where(plied & untouched, highest, first)
+        untouched = untouched & ~plied
+        climbing = counted & xp.any(event, axis=0)
+        if not bool(xp.any(climbing)):
+            break
+        soft = fresh if soft is None else soft | fresh
+    return BurstLadder(first, highest, liner_yield, tuple(record), mechanics.order, intact, faces)

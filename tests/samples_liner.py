@@ -1,0 +1,5 @@
+"""Samples of the law tests for the liner models; merged into `model_samples`."""
+
+from __future__ import annotations
+
+SAMPLES: dict = {}
