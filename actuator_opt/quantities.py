@@ -60,7 +60,7 @@ INPUTS = _table("""
  bore                 | D      | length      | mm   | 2     | 1000  | bore diameter
  stroke               | s      | length      | mm   | 1     | 10000 | stroke
  wall_thickness       | t      | length      | mm   | 0.01  | 200   | thickness
- winding_angle        | theta  | angle       | deg  | 0     | 90    | winding angle from the tube axis
+ winding_angle        | theta  | angle       | deg  | -90   | 90    | winding angle from the tube axis
  rod_diameter         | d      | length      | mm   | 1     | 900   | rod outer diameter
  rod_inner_diameter   | d_i    | length      | mm   | 0     | 890   | rod inner diameter
  length               | L      | length      | mm   | 0     | 20000 | length
@@ -99,6 +99,9 @@ INPUTS = _table("""
  stiffness            | k      | stiffness   | kN/mm| 0.0001| 1e6   | stiffness
  coefficient          | c      | ratio       | -    | 0     | 10    | coefficient
  surface_roughness    | Ra     | length      | um   | 0.01  | 20    | surface roughness Ra
+ allowed_angle        | theta  | angle       | deg  | 0     | 90    | winding angle the shop can make
+ ply_thickness        | t_p    | length      | mm   | 0.01  | 50    | cured thickness of one ply
+ autofrettage_pressure| p_af   | pressure    | bar  | 1     | 5000  | autofrettage pressure
 """)
 
 MATERIAL_PROPERTIES = _table("""
@@ -215,6 +218,14 @@ METRICS = _table("""
  end_stop_pressure    | p_end  | pressure    | bar  | | | peak pressure at the end stop
  trapped_pressure     | p_tr   | pressure    | bar  | | | pressure rise of trapped oil over the temperature range
  liner_mismatch_factor| S_th   | ratio       | -    | | | liner yield over thermal mismatch stress
+ liner_bond_factor    | S_bd   | ratio       | -    | | | strength over the pull of the liner on its plies after cool-down
+ liner_range_factor   | S_dl   | ratio       | -    | | | twice yield over the liner's stress range
+ joint_factor         | S_j    | ratio       | -    | | | tie-rod preload over its loss at supply pressure
+ local_buckling_factor| S_w    | ratio       | -    | | | wall buckling load of the rod over largest push load
+ rod_factor           | S_ro   | ratio       | -    | | | strength of the rod's plies over their stress
+ fitting_factor       | S_ft   | ratio       | -    | | | strength of the bonded rod fittings over their load
+ growth_at_seal       | u_s    | length      | um   | | | radial bore growth at the piston seal
+ decay_length         | 1/beta | length      | mm   | | | length over which growth settles beside a pressure step
  temperature_margin   | dT     | temperature_difference | K | | | distance to the service limits of every material
  oil_viscosity        | nu     | kinematic_viscosity | mm^2/s | | | oil viscosity at the case temperature
  extrusion_factor     | g_max/g| ratio       | -    | | | allowed over present extrusion gap

@@ -104,8 +104,6 @@ REDUCED = (139e9, 2.5e9, 9.1e9, 5e9)
 SHEET = {"membrane": (1.1e8, 2e7, 1.5e8)}
 STRENGTH = PlyStrength(1900e6, 1300e6, 55e6, 190e6, 85e6)
 PULLED = {"stress_1": 400e6, "stress_2": 30e6, "shear_12": 40e6, "strength": STRENGTH}
-PRESSED = {"stress_1": -300e6, "stress_2": -90e6, "shear_12": 60e6, "strength": STRENGTH}
-RESIDUAL = (-10e6, 20e6, 3e6)
 LINER = WallLayer(
     youngs_modulus_1=71.7e9, youngs_modulus_2=71.7e9, poissons_ratio_12=0.33,
     shear_modulus_12=71.7e9 / 2.66, thickness=0.6e-3, yield_strength=240e6,
@@ -259,10 +257,11 @@ SAMPLES = {
     "stiffness.chamber_stiffness": {
         "area": 5e-4, "volume": 7e-5, "bulk_modulus": 1.4e9, "wall_compliance": 2e-14,
     },
-    "stiffness.hydraulic_stiffness": CHAMBERS,
+    "stiffness.hydraulic_stiffness": [CHAMBERS, {**CHAMBERS, "compliance_ab": -2e-15}],
     "stiffness.weakest_position": {
         "area_a": 8e-4, "area_b": 5e-4, "compliance_a0": 6e-15, "compliance_a_per_length": 6e-13,
         "compliance_b0": 6e-15, "compliance_b_per_length": 4e-13, "stroke": 0.16,
+        "compliance_ab0": -1e-15, "compliance_ab_per_length": -2e-14,
     },
     "stiffness.series": {"*": (2e7, 9e7, 4e8)},
     "stiffness.holding_pressures": {
@@ -363,27 +362,7 @@ SAMPLES = {
         {"layers": [LINER, HOOP, HELICAL], "radius": 17e-3, "axial_force_per_pressure": 9e-4},
     ],
     "strength_modes.load_multiplier": {"inverse": 0.4},
-    "strength_modes.max_stress_modes": [PULLED, {**PRESSED, "stress_3": -15e6}],
-    "strength_modes.inverse_max_stress": [
-        PULLED, PRESSED, {**PULLED, "residual": RESIDUAL}, {**PULLED, "stress_3": -150e6},
-    ],
-    "strength_modes.inverse_max_strain": {
-        **PULLED, "poissons_ratio_12": 0.28, "modulus_ratio": 0.07, "stress_3": -20e6,
-        "poissons_ratio_13": 0.3, "poissons_ratio_23": 0.4,
-    },
-    "strength_modes.hashin_modes": [PULLED, PRESSED],
-    "strength_modes.inverse_hashin": [
-        PULLED, {**PRESSED, "strength": replace(STRENGTH, shear_23=62e6)},
-    ],
     "strength.inverse_tsai_hill": PULLED,
-    "strength.inverse_tsai_wu": [
-        PULLED,
-        {**PULLED, "stress_3": -25e6, "interaction": -0.3},
-        {**PRESSED, "stress_3": -25e6, "residual": RESIDUAL},
-    ],
-    "strength.inverse_puck": [
-        PULLED, PRESSED, {**PULLED, "stress_1": 1e6, "stress_2": -20e6, "shear_12": 60e6},
-    ],
     "rod.section_area": ROD,
     "rod.second_moment": ROD,
     "rod.axial_stiffness": {"youngs_modulus": 2e11, "length": 0.2, **ROD},

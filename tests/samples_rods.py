@@ -2,4 +2,68 @@
 
 from __future__ import annotations
 
-SAMPLES: dict = {}
+COLUMN = {
+    "critical_load": 1.3e5, "bending_stiffness_1": 5000.0, "length_1": 0.2,
+    "shear_stiffness_1": 4e6, "bending_stiffness_2": 1200.0, "length_2": 0.18,
+    "shear_stiffness_2": 1e6,
+}  # fmt: skip
+SHELL = {"youngs_modulus": 7e10, "thickness": 1.2e-3, "radius": 15e-3, "poissons_ratio": 0.3}
+THIN = {**SHELL, "radius": 0.6}
+PLY = (140e9, 4e9, 4.2e9, 11e9, 5e9, 11e9, 1e9, 2e9, 3e9, 5e9)
+WEIGHTS = {"weight_1": 40.0, "length_1": 0.8, "weight_2": 25.0, "length_2": 0.6}
+FLEXURE = {
+    "span": 0.3, "second_moment": 7e-9, "shear_compliance": 5e-6, "local_compliance": 4e-7,
+}  # fmt: skip
+
+SAMPLES: dict = {
+    "stepped.mode_shear_stiffness": [
+        {**COLUMN, "ends": ends}
+        for ends in (
+            ("pinned", "pinned"), ("fixed", "pinned"), ("pinned", "fixed"), ("fixed", "fixed"),
+            ("fixed", "free"), ("guided", "fixed"), ("pinned", "guided"),
+        )
+    ],
+    "shell_buckling.shell_modulus": [
+        {"axial_modulus": 9e10, "hoop_modulus": 2e10, "shear_modulus": g, "poissons_ratio": 0.2}
+        for g in (5e9, 3e10)
+    ],
+    "shell_buckling.local_shell_force": [SHELL, {**SHELL, "knockdown": 0.8}],
+    "shell_buckling.bending_shell_knockdown": {"radius": 15e-3, "thickness": 1.2e-3},
+    "shell_buckling.local_shell_moment": [SHELL, THIN, {**THIN, "knockdown": 0.5}],
+    "rod.layered_section": {
+        "walls": [PLY, (2e10, *PLY[1:])], "thicknesses": [1.5e-3, 0.5e-3], "inner_diameter": 12e-3,
+    },
+    "beam_column.self_weight_moments": [
+        WEIGHTS, {**WEIGHTS, "length_2": 0.9, "weight_2": 60.0}, {**WEIGHTS, "weight_2": 0.0},
+    ],
+    "beam_column.amplified_moment": {
+        "bending_moment": 10.0, "axial_force": 9e3, "critical_load": 3e4, "shape": 0.27,
+    },
+    "beam_column.bending_axial_force": {
+        "bending_moment": 20.0, "radius": 8e-3, "axial_stiffness": 9.3e6,
+        "bending_stiffness": 215.0,
+    },
+    "beam_column.push_capacity": {
+        "strength_force": 68e3, "force_per_moment": 500.0, "critical_load": 30e3,
+        "bending_moment": 12.0, "offset": 5e-4, "shape": 0.27,
+    },
+    "retention.bond_thermal_shear": {
+        "strain_difference": -2e-3, "length": 20e-3, "shear_modulus": 1e9,
+        "bond_thickness": 0.2e-3, "membrane_stiffness_1": 1e8, "membrane_stiffness_2": 5e7,
+    },
+    "bending_test.bending_modulus_as_published": {
+        "slope": 1.5e5, "span": 0.3, "second_moment": 7e-9,
+    },
+    "bending_test.bending_modulus": {"slope": 1.5e5, **FLEXURE},
+    "bending_test.bending_slope": {"youngs_modulus": 6e10, **FLEXURE},
+    "bending_test.equivalent_second_moment": {
+        "second_moments": [3e-8, 7e-9, 1.2e-8], "steps": [0.03, 0.08], "span": 0.3,
+    },
+    "bending_test.indentation_compliance": {
+        "force": 500.0, "roller_radius": 5e-3, "specimen_radius": 6e-3, "contact_modulus": 9e9,
+    },
+    "stiffness_published.equivalent_stiffness_as_published": {
+        "pressure": 5e6, "bore": 0.025, "outer_diameter": 0.03, "youngs_modulus": 3.48e9,
+        "poissons_ratio": 0.3, "stroke": 0.11, "oil": 2.48e6, "rod": 1.343e7,
+    },
+}  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import time
 
@@ -82,6 +83,10 @@ ODD = [
     "-400 degC",
     "steel_42crmo4",
     "b",
+    "[90_2/+-45]s",
+    "90/0",
+    "+-25_0",
+    "false",
 ]
 
 
@@ -166,6 +171,12 @@ TREES = st.recursive(
                     "bore",
                     "barrel",
                     "layup",
+                    "plies",
+                    "ply_thickness",
+                    "thickness",
+                    "balanced",
+                    "allowed_angles",
+                    "fitting",
                     "variables",
                     "min",
                     "requirements",
@@ -199,6 +210,7 @@ TREES = st.recursive(
                 "name",
                 "cylinder",
                 "barrel",
+                "rod",
                 "variables",
                 "seals",
                 "lines",
@@ -231,6 +243,10 @@ def test_any_tree(tree):
 PATHS = [
     "cylinder.bore",
     "barrel.layup[1].angle",
+    "barrel.layup[1].balanced",
+    "rod.layup[0].thickness",
+    "barrel.allowed_angles[0]",
+    "rod.fitting.length",
     "load_cases[0].position",
     "requirements.mass.max",
     "variables.rod.extension.lower",
@@ -247,6 +263,33 @@ PATHS = [
     "cylinder..bore",
     "objective.minimise.mass",
 ]
+
+
+LAYERS = st.lists(
+    st.dictionaries(
+        st.sampled_from(["material", "plies", "ply_thickness", "angle", "thickness", "balanced"]),
+        st.sampled_from([*ODD, "0.2 mm"]) | st.text("0123456789+-/[]_s ", max_size=12),
+        max_size=5,
+    ),
+    max_size=4,
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(LAYERS, LAYERS)
+def test_any_layers(barrel, rod):
+    """Any entries for the walls of barrel and rod, compact or not, among good and bad ones."""
+
+    def block(entries):
+        quoted = ({key: json.dumps(value) for key, value in item.items()} for item in entries)
+        lines = (", ".join(f"{key}: {value}" for key, value in item.items()) for item in quoted)
+        return "".join(f"    - {{{line}}}\n" for line in lines)
+
+    outcome(
+        GOOD.replace(
+            "    - material: al_6061_t6 ", block(barrel) + "    - material: al_6061_t6 "
+        ).replace("  extension: 25 mm", "  layup:\n" + block(rod) + "  extension: 25 mm")
+    )
 
 
 @settings(max_examples=150, deadline=None)
@@ -269,8 +312,10 @@ def test_odd_overrides(overrides, whole):
         "a: " + "&a " * 1000,
         "x" * 900_000,
         "? " * 60_000,
+        "barrel:\n  layup:\n" + "    - {plies: '[90/0]_12', ply_thickness: 1 mm}\n" * 3_000,
+        f"barrel:\n  layup:\n    - plies: '{'[' * 100_000}'\n",
     ],
-    ids=range(10),
+    ids=range(12),
 )
 def test_large_nonsense_is_refused_quickly(text):
     """Files made to be slow are refused in about a second."""

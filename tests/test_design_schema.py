@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 from actuator_opt import quantities, units
+from actuator_opt.design import read_design
 from actuator_opt.design.build import build
 from actuator_opt.design.kinds import EXAMPLES, ValueFault, example, read_quantity
 from actuator_opt.design.model import Design
@@ -16,6 +17,7 @@ from actuator_opt.design.schema import json_schema, quantity_schema
 from actuator_opt.design.structure import entries
 from actuator_opt.design.template import init_text
 from actuator_opt.design.yaml_source import parse
+from actuator_opt.errors import InputError
 
 jsonschema = pytest.importorskip("jsonschema")
 SCHEMA = json_schema()
@@ -67,6 +69,69 @@ def test_bad_lines_fail_in_editor_and_reader(old, new):
     assert text != GOOD
     assert faults(text)
     assert build(parse(text, "f").data).faults
+
+
+HOOP = (
+    "      angle: 88 deg            # from the tube axis; a balanced +- pair\n"
+    "      thickness: 1.2 mm"
+)
+COMPACT = '      plies: "[88_4 / +-25_2 / 0]s"\n      ply_thickness: 0.2 mm'
+
+
+def test_compact_lay_up_passes_both():
+    """Editor and reader take a list entry in compact notation, and each of its spellings."""
+    assert GOOD.count(HOOP) == 1
+    for text in ('"[88_4 / +-25_2 / 0]s"', "88_4/±25", "90", "'[90/0]_3'"):
+        compact = GOOD.replace(HOOP, COMPACT.replace('"[88_4 / +-25_2 / 0]s"', text))
+        assert faults(compact) == []
+        assert read_design(compact).design
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        '      plies: "90/0"',
+        COMPACT + "\n      angle: 3 deg",
+        COMPACT + "\n      thickness: 3 mm",
+        COMPACT + "\n      balanced: false",
+        COMPACT.replace("88_4", "88x4"),
+        COMPACT.replace("0.2 mm", "0.2 bar"),
+        "      ply_thickness: 0.2 mm",
+        HOOP.split("\n")[1] + "\n      balanced: maybe",
+    ],
+)
+def test_bad_layers_fail_in_editor_and_reader(entry):
+    """What the reader refuses of a layer or of several in one entry shows in the editor."""
+    text = GOOD.replace(HOOP, entry)
+    assert faults(text)
+    with pytest.raises(InputError):
+        read_design(text)
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        "  allowed_angles: [0 deg, 45 deg]\n  criterion: hashin\n",
+        "  autofrettage_pressure: 400 bar\n",
+        "  model: layered\n",
+    ],
+)
+def test_options_of_the_barrel_pass_both(lines):
+    """The barrel's options are offered and taken."""
+    text = GOOD.replace(
+        "  model: auto                  # isotropic for one metal layer, else layered\n", lines
+    )
+    assert text != GOOD
+    assert faults(text) == []
+    assert read_design(text).design
+
+
+@pytest.mark.parametrize("word", ["true", "no", "off", "False"])
+def test_yes_or_no_passes_both(word):
+    """An editor reads no as a boolean or a text; both are offered."""
+    text = GOOD.replace("environment:\n", f"environment:\n  wet: {word}\n")
+    assert faults(text) == []
+    assert read_design(text).design
 
 
 @pytest.mark.parametrize(

@@ -12,11 +12,12 @@ from .. import quantities
 from ..errors import Diagnostic, InputError
 from ..quantities import Quantity
 from . import suggest, wishes
-from .faults import Fault, Materials, cross_field, material_names
+from .faults import cross_field, material_faults
 from .kinds import Of, ValueFault, example, what
-from .model import Design, Section
+from .model import Design, Ply, Section
 from .paths import put, resolve, spell
-from .structure import Entry, Loc, child, entries, leaves
+from .structure import Entry, Loc, child_at, entries, leaves
+from .view import Fault, Materials
 
 MOST_FAULTS = 100
 
@@ -66,7 +67,7 @@ def build(
     if contradictions:
         faults += _unless_known(cross_field(copy), list(_nothing(copy, ())))
     if materials is not None:
-        faults += material_names(copy, materials)
+        faults += material_faults(copy, materials)
     return Built(None if faults else design, tuple(faults))
 
 
@@ -96,10 +97,7 @@ def _to_si(tree: dict[str, Any]) -> None:
             number = entry.kind.validate(value)
         except ValueFault:
             continue
-        node: Any = tree
-        for key in loc[:-1]:
-            node = child(node, key)
-        node[loc[-1]] = number
+        child_at(tree, loc[:-1])[loc[-1]] = number
 
 
 def _unless_known(faults: Iterable[Fault], known: Sequence[Fault]) -> list[Fault]:
@@ -176,6 +174,7 @@ def _unknown_key(loc: Loc, tree: Any) -> Fault:
         names = ["lower", "upper", "start"] if loc[0] == "variables" else ["min", "max"]
     else:
         names = list(entries(section)) if section else []
+        names += ["plies"] if section is Ply else []
     return Fault(loc, "unknown key", suggest.remedy(str(loc[-1]), names), at_key=True)
 
 
@@ -252,10 +251,3 @@ def with_values(
         if built.design is not None:
             return built.design
     raise InputError(diagnostics)
-
-
-def child_at(tree: Any, loc: Loc) -> Any:
-    """The value at a place of a tree; None where there is none."""
-    for key in loc:
-        tree = child(tree, key)
-    return tree

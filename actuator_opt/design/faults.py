@@ -1,83 +1,25 @@
 """Faults that only show when two values are read together, each at the place of one of them.
 
 Every check is a small function of a `View`; it yields nothing where a value it needs is missing
-or already faulty, so the checks also run on a file with other faults.
+or already faulty, so the checks also run on a file with other faults. Those of the walls of
+barrel and rod are in `wall_faults`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Protocol
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 from .. import quantities
-from . import suggest
+from . import suggest, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
-from .structure import Loc, child, leaves, number_of, value_at
+from .structure import Loc, child, leaves
+from .view import Fault, Materials, View, length_text
 
 SQUEEZE_RANGE = {"plane_strain": (0.02, 0.40), "hertz_lindley": (0.02, 0.40), "chord": (0.0, 0.45)}
 """Squeeze a contact law can be used at: outside, its width leaves the free section or the load
 law (compared with finite elements at 0.10 to 0.30) means nothing."""
-
-
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """A fault by its place in the tree; `at_key` points at the key instead of the value.
-
-    What is missing has the place it would have; the message then stands at its block.
-    """
-
-    loc: Loc
-    message: str
-    remedy: str = ""
-    at_key: bool = False
-
-
-class Materials(Protocol):
-    """What the input layer asks of the material library (`materials.Library` is one)."""
-
-    def __contains__(self, name: object) -> bool: ...
-
-    def names(self) -> Sequence[str]:
-        """Every name."""
-        ...
-
-    def kind(self, name: str) -> str | None:
-        """Kind of an entry: metal, ply, polymer, fluid, seal, adhesive."""
-        ...
-
-
-class View:
-    """A tree in SI, read by dotted keys, with the model's defaults; None where unusable."""
-
-    def __init__(self, tree: Any) -> None:
-        self.tree = tree
-
-    def number(self, *loc: str | int) -> float | None:
-        """The SI number at a place."""
-        return number_of(value_at(self.tree, loc))
-
-    def text(self, *loc: str | int) -> str | None:
-        """The text at a place."""
-        value = value_at(self.tree, loc)
-        return value if isinstance(value, str) else None
-
-    def items(self, *loc: str | int) -> Sequence[Any]:
-        """The entries of a list."""
-        value = value_at(self.tree, loc)
-        return value if isinstance(value, (list, tuple)) else ()
-
-    def has(self, *loc: str | int) -> bool:
-        """Whether the file states a value here."""
-        node = self.tree
-        for key in loc:
-            node = child(node, key)
-        return node is not None
-
-
-def _mm(value: float) -> str:
-    return quantities.INPUTS["length"].text(value)
 
 
 def _smaller(
@@ -90,8 +32,8 @@ def _smaller(
     name = ".".join(str(key) for key in outer)
     yield Fault(
         inner,
-        f"{_mm(small)}: must be smaller than {name} ({_mm(large)}){why}",
-        f"write less than {_mm(large * factor)}",
+        f"{length_text(small)}: must be smaller than {name} ({length_text(large)}){why}",
+        f"write less than {length_text(large * factor)}",
     )
 
 
@@ -107,8 +49,8 @@ def rod(view: View) -> Iterator[Fault]:
     if thread is not None and diameter is not None and thread > diameter:
         yield Fault(
             ("rod", "thread", "diameter"),
-            f"{_mm(thread)}: larger than the rod ({_mm(diameter)})",
-            f"write at most {_mm(diameter)}",
+            f"{length_text(thread)}: larger than the rod ({length_text(diameter)})",
+            f"write at most {length_text(diameter)}",
         )
     for owner in ("rod", "retention"):
         yield from _smaller(
@@ -144,8 +86,8 @@ def grooves(view: View) -> Iterator[Fault]:
         if length is not None and width >= length:
             yield Fault(
                 ("seals", seal, given),
-                f"grooves outside the {part}: they take at least {_mm(width)} of "
-                f"{part}.length {_mm(length)}",
+                f"grooves outside the {part}: they take at least {length_text(width)} of "
+                f"{part}.length {length_text(length)}",
                 f"lengthen {part}.length or use a smaller ring",
             )
         if bore is None or rod_diameter is None:
@@ -156,15 +98,15 @@ def grooves(view: View) -> Iterator[Fault]:
             if core < bore and left <= core:
                 yield Fault(
                     ("seals", seal, "section"),
-                    f"groove too deep: {_mm(max(left, 0.0))} core left in the piston, "
-                    f"the rod needs {_mm(core)}",
+                    f"groove too deep: {length_text(max(left, 0.0))} core left in the piston, "
+                    f"the rod needs {length_text(core)}",
                     "use a smaller section, a larger bore or a rod thread that fits",
                 )
         elif rod_diameter < bore <= rod_diameter + 2 * depth:
             yield Fault(
                 ("seals", seal, "section"),
-                f"groove outside the head: it reaches {_mm(rod_diameter + 2 * depth)}, "
-                f"the bore is {_mm(bore)}",
+                f"groove outside the head: it reaches {length_text(rod_diameter + 2 * depth)}, "
+                f"the bore is {length_text(bore)}",
                 "use a smaller section, a larger bore or a thinner rod",
             )
 
@@ -182,17 +124,6 @@ def squeeze(view: View) -> Iterator[Fault]:
             )
 
 
-def barrel_model(view: View) -> Iterator[Fault]:
-    """The isotropic wall model knows one layer."""
-    layers = len(view.items("barrel", "layup"))
-    if view.text("barrel", "model") == "isotropic" and layers > 1:
-        yield Fault(
-            ("barrel", "model"),
-            f"isotropic: the layup has {layers} layers, the model takes one",
-            "write auto, or keep one layer",
-        )
-
-
 def barrel_length(view: View) -> Iterator[Fault]:
     """The barrel holds stroke, piston and head."""
     length = view.number("barrel", "length")
@@ -205,8 +136,8 @@ def barrel_length(view: View) -> Iterator[Fault]:
     if length is not None and length < needed * (1 - 1e-9):
         yield Fault(
             ("barrel", "length"),
-            f"{_mm(length)}: shorter than stroke + piston + head ({_mm(needed)})",
-            f"write at least {_mm(needed)}, or leave it out",
+            f"{length_text(length)}: shorter than stroke + piston + head ({length_text(needed)})",
+            f"write at least {length_text(needed)}, or leave it out",
         )
 
 
@@ -218,8 +149,8 @@ def lines(view: View) -> Iterator[Fault]:
         if inner is not None and outer is not None and outer <= inner:
             yield Fault(
                 ("lines", index, "outer_diameter"),
-                f"{_mm(outer)}: not larger than inner_diameter ({_mm(inner)})",
-                f"write more than {_mm(inner)}",
+                f"{length_text(outer)}: not larger than inner_diameter ({length_text(inner)})",
+                f"write more than {length_text(inner)}",
             )
 
 
@@ -256,8 +187,15 @@ def environment(view: View) -> Iterator[Fault]:
 
 
 def retention(view: View) -> Iterator[Fault]:
-    """A bond names its adhesive, a thread and tie rods name their thread."""
+    """A bond names its adhesive, a thread and tie rods name their thread, tie rods their pull."""
     kind = view.text("retention", "type")
+    if view.has("retention", "preload") and kind in ("bond", "thread"):
+        yield Fault(
+            ("retention", "preload"),
+            f"a {kind} has no preload, only tie rods have",
+            "remove the line, or write type: tie_rods",
+            at_key=True,
+        )
     if kind in ("bond", "tie_rods") and not view.has("retention", "material"):
         name = "epoxy_structural" if kind == "bond" else "steel_bolt_10_9"
         what = "a bond needs its adhesive" if kind == "bond" else "tie rods need their material"
@@ -272,7 +210,8 @@ def retention(view: View) -> Iterator[Fault]:
     if kind == "thread" and diameter is not None and bore is not None and diameter <= bore:
         yield Fault(
             ("retention", "thread", "diameter"),
-            f"{_mm(diameter)}: the thread lies outside the barrel, whose bore is {_mm(bore)}",
+            f"{length_text(diameter)}: the thread lies outside the barrel, whose bore is "
+            f"{length_text(bore)}",
             "write the diameter of the thread on the barrel's outside",
         )
 
@@ -312,8 +251,8 @@ def load_cases(view: View) -> Iterator[Fault]:
         if isinstance(position, float) and stroke is not None and position > stroke:
             yield Fault(
                 (*loc, "position"),
-                f"{_mm(position)}: beyond cylinder.stroke ({_mm(stroke)})",
-                f'write at most {_mm(stroke)}, or a share such as "50 %"',
+                f"{length_text(position)}: beyond cylinder.stroke ({length_text(stroke)})",
+                f'write at most {length_text(stroke)}, or a share such as "50 %"',
             )
 
 
@@ -343,13 +282,13 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     rod,
     grooves,
     squeeze,
-    barrel_model,
     barrel_length,
     lines,
     supply,
     environment,
     retention,
     load_cases,
+    *wall_faults.CHECKS,
 )
 
 
@@ -364,7 +303,13 @@ def _a(word: str | None) -> str:
     return f"{'an' if word and word[0] in 'aeiou' else 'a'} {word}"
 
 
-def material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
+def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
+    """Every fault that shows when the library is asked."""
+    yield from _material_names(tree, materials)
+    yield from wall_faults.of_materials(tree, materials)
+
+
+def _material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
     """Unknown materials, and materials of a kind that cannot stand where they are named."""
     bonded = View(tree).text("retention", "type") == "bond"
     for loc, entry, name in leaves(tree):
@@ -373,6 +318,8 @@ def material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
         fits = ROLES[entry.kind.role]
         if loc == ("retention", "material"):
             fits = ("adhesive",) if bonded else ("metal",)
+        elif loc == ("rod", "fitting", "adhesive"):
+            fits = ("adhesive",)
         if name in materials and materials.kind(name) in fits:
             continue
         fitting = [other for other in materials.names() if materials.kind(other) in fits]

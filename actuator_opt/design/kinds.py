@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, Final, Literal, TypeAlias, get_args
 
 from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
@@ -26,6 +26,7 @@ _NAME = re.compile(r"(?!\d+$)[^\W_][\w .+-]*", re.UNICODE)
 
 EXAMPLES = {
     "bore": "25 mm", "stroke": "110 mm", "wall_thickness": "1.2 mm", "winding_angle": "55 deg",
+    "allowed_angle": "45 deg", "ply_thickness": "0.2 mm", "autofrettage_pressure": "400 bar",
     "rod_diameter": "12 mm", "rod_inner_diameter": "6 mm", "length": "50 mm",
     "part_length": "20 mm", "stop_travel": "0.5 mm", "radial_clearance": "0.03 mm",
     "tolerance": "0.05 mm",
@@ -258,6 +259,28 @@ class Text(Kind):
         if not value.strip() and not self.multiline:
             raise ValueFault("the text is empty", "write a name")
         return value
+
+
+class Flag(Kind):
+    """Yes or no."""
+
+    example = "false"
+    words: Final = {
+        **dict.fromkeys(("true", "yes", "on", "1"), True),
+        **dict.fromkeys(("false", "no", "off", "0"), False),
+    }
+
+    def __init__(self, help: str) -> None:
+        self.help = help
+
+    def validate(self, value: Any) -> bool:
+        """True or False."""
+        if value in (0, 1):  # booleans, and the numbers a script may set
+            return bool(value)
+        if isinstance(value, str) and value.strip().lower() in self.words:
+            return self.words[value.strip().lower()]
+        word = f'"{shown(value)}"' if isinstance(value, str) else what(value)
+        raise ValueFault(f"need true or false, not {word}", "write true or false")
 
 
 class CaseName(Text):

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from .kinds import CaseName, Goal, MaterialName, Of, Position, PositionKind, Text
+from .kinds import CaseName, Flag, Goal, MaterialName, Of, Position, PositionKind, Text
 
 
 class Section(BaseModel):
@@ -47,7 +47,7 @@ class Environment(Section):
     assembly_temperature: Annotated[
         float, Of("temperature", "temperature at which the parts are joined and filled")
     ] = 293.15
-    wet: bool = True
+    wet: Annotated[bool, Flag("whether the laminate has taken up moisture")] = True
     trapped_rise: Annotated[
         float | None, Of("temperature_rise", "warming of the oil while the ports are blocked")
     ] = None
@@ -80,20 +80,54 @@ class Cylinder(Section):
 
 
 class Ply(Section):
-    """One layer of the barrel, from the bore outwards; an angle means a balanced +-angle pair."""
+    """One layer of a tube wall, from the inside outwards.
+
+    In the file several layers may stand as one entry in compact notation (`layup`).
+    """
 
     material: Annotated[str, MaterialName("structural")]
     thickness: Annotated[float, Of("wall_thickness", "thickness of the layer")]
     angle: Annotated[
-        float, Of("winding_angle", "winding angle from the tube axis; a balanced +- pair")
+        float, Of("winding_angle", "winding angle from the tube axis; signed where not balanced")
     ] = 0.0
+    balanced: Annotated[
+        bool,
+        Flag(
+            "an angle is a balanced +-angle pair; false: one ply at that signed angle, "
+            "the wall may twist"
+        ),
+    ] = True
+    ply_thickness: Annotated[
+        float | None,
+        Of(
+            "ply_thickness",
+            "cured thickness of one ply; thickness must be whole plies when the design is rounded",
+        ),
+    ] = None
+
+
+MOST_LAYERS = 24
+"""Largest number of layers of a wall."""
 
 
 class Barrel(Section):
     """The pressure tube; one isotropic layer is a metal barrel."""
 
-    layup: Annotated[tuple[Ply, ...], Field(min_length=1, max_length=24)]
-    model: Literal["auto", "isotropic", "thin_laminate", "as_published"] = "auto"
+    layup: Annotated[tuple[Ply, ...], Field(min_length=1, max_length=MOST_LAYERS)]
+    model: Literal["auto", "isotropic", "thin_laminate", "layered", "as_published"] = "auto"
+    criterion: Literal["max_stress", "max_strain", "tsai_wu", "hashin", "puck"] = "max_stress"
+    autofrettage_pressure: Annotated[
+        float | None,
+        Of("autofrettage_pressure", "pressure that yields the metal liner once, before use"),
+    ] = None
+    allowed_angles: Annotated[
+        tuple[
+            Annotated[float, Of("allowed_angle", "winding angle the shop can make, for rounding")],
+            ...,
+        ]
+        | None,
+        Field(min_length=1, max_length=100),
+    ] = None
     length: Annotated[
         float | None, Of("part_length", "length of the tube; default: piston + stroke + head")
     ] = None
@@ -106,8 +140,24 @@ class Thread(Section):
     pitch: Annotated[float, Of("thread_pitch", "pitch")]
 
 
+class Fitting(Section):
+    """Metal ends bonded into a laminated rod."""
+
+    material: Annotated[str | None, MaterialName("isotropic")] = None
+    """Default: the rod's material."""
+    adhesive: Annotated[str, MaterialName("fastening")]
+    length: Annotated[float, Of("part_length", "overlap of fitting and tube, inside the tube")]
+    wall: Annotated[
+        float | None, Of("wall_thickness", "wall of the fitting in the overlap; default: solid")
+    ] = None
+
+
 class Rod(Section):
-    """The piston rod; `extension` is what shows outside the head when retracted."""
+    """The piston rod; `extension` is what shows outside the head when retracted.
+
+    A laminated rod has a `layup`, whose outer diameter is `outer_diameter`; `material` then is
+    the metal of its end fittings, and its bore follows from the layers.
+    """
 
     material: Annotated[str, MaterialName("isotropic")]
     outer_diameter: Annotated[float, Of("rod_diameter", "diameter through the rod seal")]
@@ -116,6 +166,8 @@ class Rod(Section):
     ] = 0.0
     extension: Annotated[float, Of("length", "what shows outside the head when retracted")] = 0.0
     thread: Thread | None = None
+    layup: Annotated[tuple[Ply, ...], Field(max_length=MOST_LAYERS)] = ()
+    fitting: Fitting | None = None
 
 
 class Piston(Section):
@@ -158,6 +210,7 @@ class Retention(Section):
     material: Annotated[str | None, MaterialName("fastening")] = None
     count: Annotated[float, Of("bolt_count", "number of tie rods")] = 4.0
     thread: Thread | None = None
+    preload: Annotated[float | None, Of("force", "total tie-rod tension without pressure")] = None
 
 
 class Clevis(Section):

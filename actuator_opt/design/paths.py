@@ -19,7 +19,7 @@ from ..quantities import Quantity
 from . import suggest
 from .kinds import Fraction, ValueFault
 from .model import Design, Section
-from .structure import Entry, Loc, child, entries, leaves, number_of
+from .structure import Entry, Loc, child, child_at, entries, leaves, number_of
 
 _PATH = re.compile(r"[^.\[\]=]+(\[[^\[\]=]+\])?(\.[^.\[\]=]+(\[[^\[\]=]+\])?)*")
 _TOKEN = re.compile(r"\[([^\[\]]+)\]|([^.\[\]]+)")
@@ -109,13 +109,16 @@ def _resolve_section(
         if rest:
             raise ValueFault(f"{path}: {spell(loc, tree)} is a single value", "name just that")
         return Target(spell(loc, tree), loc, entry.quantity(node), entry)
-    if entry.section is None or entry.shape == "table":
-        raise _not_a_value(path, ["NAME"])
     if entry.shape == "list":
         if not rest or not rest[0].bracket:
-            raise ValueFault(f"{path}: {name} is a list", f"write {spell(loc)}[0].…")
+            more = "" if entry.section is None else ".…"
+            raise ValueFault(f"{path}: {name} is a list", f"write {spell(loc)}[0]{more}")
         loc = (*loc, _index(path, rest[0].text, node, loc))
         node, rest = child(node, loc[-1]), rest[1:]
+        if entry.section is None and not rest:
+            return Target(spell(loc, tree), loc, entry.quantity(node), entry)
+    if entry.section is None or entry.shape == "table":
+        raise _not_a_value(path, ["NAME"])
     return _resolve_section(path, rest, tree, node, entry.section, loc)
 
 
@@ -188,9 +191,7 @@ def quantity_of(path: str, design: Design) -> Quantity:
 
 def get(design: Design, path: str) -> float | str | None:
     """The value at a PATH: SI number, text, or None where an optional value is not set."""
-    node: Any = design
-    for key in _target(path, design).loc:
-        node = child(node, key)
+    node = child_at(design, _target(path, design).loc)
     number = number_of(node)
     return node if number is None else number
 

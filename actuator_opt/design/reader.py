@@ -11,13 +11,13 @@ from typing import Final, Literal
 from .. import units
 from ..errors import Diagnostic, InputError
 from ..quantities import Quantity
-from . import suggest
+from . import layup, suggest
 from .build import MOST_FAULTS, build, copy_tree
-from .faults import Fault, Materials
 from .kinds import ValueFault
 from .model import Design
 from .paths import put, resolve, spell
 from .structure import Loc
+from .view import Fault, Materials
 from .yaml_source import MAX_BYTES, Document, Span, decode, parse
 
 TEXT = "<text>"
@@ -131,6 +131,7 @@ def read_document(
     metrics: Mapping[str, Quantity] | None = None,
 ) -> LoadedDesign:
     """The design of a parsed YAML document; parameters as `read_design`."""
+    document = layup.expanded(document)
     tree = copy_tree(document.data)
     faults = list(document.faults)
     places: dict[Loc, str] = {}
@@ -144,7 +145,7 @@ def read_document(
             faults.append(Diagnostic(message, fault.remedy, SET, path=suggest.shown(path, 120)))
     source = Source(document, places)
     built = build(tree, materials=library() if materials is None else materials, metrics=metrics)
-    found = [fault for fault in built.faults if not _unusable(fault, document)]
+    found = _once([f for f in built.faults if not _unusable(f, document)], document)
     if built.design is None or faults or found:
         raise InputError(_in_order(source, faults, found))
     return LoadedDesign(built.design, source)
@@ -152,6 +153,20 @@ def read_document(
 
 def _unusable(fault: Fault, document: Document) -> bool:
     return any(fault.loc[: len(loc)] == loc for loc in document.unusable)
+
+
+def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
+    """Faults that the layers of one compact entry share, said at the first of them."""
+    found, said = [], set()
+    for fault in faults:
+        shorthand = document.shorthand(fault.loc)
+        if shorthand is not None:
+            same = (shorthand, fault.loc[len(shorthand.wall) + 1 :], fault.message)
+            if same in said:
+                continue
+            said.add(same)
+        found.append(fault)
+    return found
 
 
 def _in_order(

@@ -14,18 +14,18 @@ from typing import Any
 
 from .. import quantities, units
 from ..quantities import Quantity
-from . import wishes
-from .faults import Materials
-from .kinds import CaseName, Kind, MaterialName, Of, PositionKind, Text, example
+from . import layup, wishes
+from .kinds import CaseName, Flag, Kind, MaterialName, Of, PositionKind, Text, example
 from .material import ROLES
-from .model import Design, Section
+from .model import Design, Ply, Section
 from .structure import Entry, entries
+from .view import Materials
 
 Schema = dict[str, Any]
 
 _NUMBER = r"(\d[\d_]*\.?\d*|\.\d+)([eE][+-]?\d+)?"
 _REFERENCE = str.maketrans({"/": "_per_", "^": "", "*": "_", "%": "percent"})
-_LISTED = {"barrel.layup": 6, "lines": 2}
+_LISTED = {"barrel.layup": 6, "rod.layup": 4, "lines": 2}
 """How many entries of a list have their PATHs offered by name under `variables`."""
 
 
@@ -131,6 +131,9 @@ def _value(kind: Kind | None, materials: Materials | None) -> Schema:
             "examples": ["worst", "50 %", "55 mm"],
         }
     help = kind.help if kind is not None else ""
+    if isinstance(kind, Flag):
+        words = [*kind.words, True, False]
+        return {"description": help, "enum": words, "examples": [True, False]}
     schema: Schema = {"description": help, "type": "string"}
     if isinstance(kind, MaterialName):
         schema |= {"title": "material", "examples": [kind.example]}
@@ -153,8 +156,9 @@ def _entry(entry: Entry, materials: Materials | None) -> Schema:
         schema: Schema = {"type": "string", "enum": list(entry.choices)}
     elif entry.shape == "section" and entry.section is not None:
         schema = _section(entry.section, materials)
-    elif entry.shape == "list" and entry.section is not None:
-        items = _section(entry.section, materials)
+    elif entry.shape == "list":
+        of = entry.section
+        items = _value(entry.kind, materials) if of is None else _section(of, materials)
         schema = {"type": "array", "minItems": entry.least, "items": items}
         schema["description"] = items["description"]
         if entry.most is not None:
@@ -181,6 +185,28 @@ def _section(section: type[Section], materials: Materials | None) -> Schema:
         schema["required"] = required
         body = {name: _snippet(entry) for name, entry in known.items() if entry.required}
         schema["defaultSnippets"] = [{"label": section.__name__.lower(), "body": body}]
+    return _with_notation(schema) if section is Ply else schema
+
+
+def _with_notation(schema: Schema) -> Schema:
+    """A layer, or several of them in compact notation."""
+    said = [{"required": [key]} for key in ("angle", "thickness", "balanced")]
+    schema["properties"]["plies"] = {
+        "title": "lay-up in compact notation",
+        "description": "Several layers, from the inside outwards: angles in degrees, +-25 a "
+        "balanced pair of plies, 25 one ply at that angle, _n repeats, s mirrors a group",
+        "type": ["string", "number"],
+        "pattern": r"^[-+±0-9./_\[\]sS\s]+$",
+        "examples": [layup.EXAMPLE],
+        "errorMessage": f'write e.g. "{layup.EXAMPLE}", with ply_thickness',
+    }
+    schema["required"] = ["material"]
+    schema["oneOf"] = [
+        {"required": ["thickness"], "not": {"required": ["plies"]}},
+        {"required": ["plies", "ply_thickness"], "not": {"anyOf": said}},
+    ]
+    body = {"material": "t700_epoxy", "plies": layup.EXAMPLE, "ply_thickness": "0.2 mm"}
+    schema["defaultSnippets"].append({"label": "plies", "body": body})
     return schema
 
 
@@ -198,6 +224,8 @@ def _movable(section: type[Section] = Design, prefix: str = "") -> dict[str, Of]
     found: dict[str, Of] = {}
     for name, entry in entries(section).items():
         path = f"{prefix}.{name}" if prefix else name
+        if entry.shape == "list" and entry.section is None:
+            continue
         if isinstance(entry.kind, Of) and entry.kind.quantity.dimension != "count":
             found[path] = entry.kind
         elif entry.section is not None and entry.shape == "section":

@@ -5,7 +5,7 @@ The reader, the PATHs, the writer and the JSON Schema walk this, so none of them
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from types import UnionType
@@ -25,9 +25,9 @@ Shape: TypeAlias = Literal["value", "choice", "section", "list", "table"]
 class Entry:
     """One key of a section.
 
-    `kind` is set for a value, `choices` for a choice, `section` for a section, a list of
-    sections, or a table of sections under free names; a table without section holds texts,
-    numbers or tables (waivers, objective, materials).
+    `kind` is set for a value or a list of values, `choices` for a choice, `section` for a
+    section, a list of sections, or a table of sections under free names; a table without section
+    holds texts, numbers or tables (waivers, objective, materials).
     """
 
     name: str
@@ -57,7 +57,7 @@ def entries(section: type[Section]) -> Mapping[str, Entry]:
 def _entry(name: str, info: Any) -> Entry:
     required = info.is_required()
     default = None if required else info.default
-    kind = next((m for m in info.metadata if isinstance(m, Kind)), None)
+    kind = _kind(info.metadata)
     if kind is not None:
         return Entry(name, "value", required, default, kind)
     least = next((m.min_length for m in info.metadata if hasattr(m, "min_length")), 0)
@@ -68,7 +68,9 @@ def _entry(name: str, info: Any) -> Entry:
     if origin is Literal:
         return Entry(name, "choice", required, default, choices=arguments)
     if origin is tuple:
-        return Entry(name, "list", required, default, None, (), arguments[0], least, most)
+        kind = _kind(getattr(arguments[0], "__metadata__", ()))
+        section = None if kind else arguments[0]
+        return Entry(name, "list", required, default, kind, (), section, least, most)
     if origin is dict:
         inner = arguments[1]
         section = inner if isinstance(inner, type) and issubclass(inner, Section) else None
@@ -76,6 +78,10 @@ def _entry(name: str, info: Any) -> Entry:
     if isinstance(annotation, type) and issubclass(annotation, Section):
         return Entry(name, "section", required, default, section=annotation)
     return Entry(name, "value", required, default)
+
+
+def _kind(metadata: Iterable[Any]) -> Kind | None:
+    return next((item for item in metadata if isinstance(item, Kind)), None)
 
 
 def _options(annotation: Any) -> tuple[Any, ...]:
@@ -91,6 +97,30 @@ def child(node: Any, key: str | int) -> Any:
     if isinstance(node, (list, tuple)):
         return node[key] if isinstance(key, int) and -len(node) <= key < len(node) else None
     return getattr(node, str(key), None) if isinstance(node, Section) else None
+
+
+def child_at(tree: Any, loc: Loc) -> Any:
+    """The value at a place of a tree; None where there is none."""
+    for key in loc:
+        tree = child(tree, key)
+    return tree
+
+
+@cache
+def lists_of(wanted: type[Section], section: type[Section] = Design) -> tuple[Loc, ...]:
+    """Where the model has lists of a section.
+
+    >>> from .model import Ply
+    >>> lists_of(Ply)
+    (('barrel', 'layup'), ('rod', 'layup'))
+    """
+    found: list[Loc] = []
+    for name, entry in entries(section).items():
+        if entry.shape == "list" and entry.section is wanted:
+            found.append((name,))
+        elif entry.shape == "section" and entry.section is not None:
+            found += [(name, *loc) for loc in lists_of(wanted, entry.section)]
+    return tuple(found)
 
 
 def leaves(
@@ -109,10 +139,13 @@ def leaves(
             yield (*loc, name), entry, below
         elif entry.shape == "section" and entry.section is not None:
             yield from leaves(below, entry.section, (*loc, name))
-        elif entry.shape == "list" and entry.section is not None:
+        elif entry.shape == "list":
             items = below if isinstance(below, (list, tuple)) else ()
             for index, item in enumerate(items):
-                yield from leaves(item, entry.section, (*loc, name, index))
+                if entry.section is not None:
+                    yield from leaves(item, entry.section, (*loc, name, index))
+                elif item is not None:
+                    yield (*loc, name, index), entry, item
 
 
 def number_of(value: object) -> float | None:

@@ -43,13 +43,15 @@ cylinder:
   port_diameter: 6 mm
 
 barrel:
-  model: auto                  # isotropic for one metal layer, else thin_laminate
+  model: auto                  # isotropic for one metal layer, else layered
   layup:                       # from the bore outwards; one isotropic layer = a metal barrel
     - material: al_6061_t6     # liner: seals, and takes the wear of the piston seal
       thickness: 0.8 mm
     - material: t700_epoxy     # hoop layer: holds the pressure
       angle: 88 deg            # from the tube axis; a balanced +- pair
       thickness: 1.2 mm
+                               # or both at once: plies: "+-88_3 / +-20_2" with
+                               # ply_thickness: 0.2 mm instead of angle and thickness
     - material: t700_epoxy     # axial layer: holds the cap ends together
       angle: 20 deg
       thickness: 0.8 mm

@@ -13,11 +13,11 @@ from typing import Any
 from .. import quantities
 from ..quantities import Quantity
 from . import suggest
-from .faults import Fault
 from .kinds import ValueFault, example, read_quantity, what
 from .model import Design
 from .paths import Target, resolve
 from .structure import Loc, entries, number_of, value_at
+from .view import Fault
 
 _LARGEST = {
     "ratio": 1e12, "length": 1e3, "mass": 1e7, "force": 1e9, "stiffness": 1e13, "pressure": 1e12,
@@ -126,7 +126,7 @@ def _movable(path: str, tree: dict[str, Any]) -> Target:
         raise ValueFault(
             "is a count and cannot be moved continuously", "fix it and compare designs"
         )
-    if target.entry is None:
+    if target.entry is None or target.entry.shape == "list":
         raise ValueFault("is not a dimension of the actuator", "name a number of the design")
     if target.path != path:
         raise ValueFault("is not the canonical PATH", f"write {target.path}")

@@ -15,12 +15,13 @@ from typing import Any, NamedTuple
 from .. import quantities, units
 from ..errors import InputError
 from ..quantities import Quantity
+from . import layup
 from .build import build, to_tree
-from .kinds import Fraction
+from .kinds import Flag, Fraction
 from .model import Design, Section
 from .paths import resolve
 from .reader import Source
-from .structure import Loc, child, entries, number_of, value_at
+from .structure import Loc, child, child_at, entries, number_of, value_at
 from .yaml_source import Document, parse
 
 _PLAIN = re.compile(r"[^\W\d_][\w .()/+%-]*(?<! )")
@@ -85,18 +86,16 @@ def to_yaml(
     """
     metrics = quantities.METRICS if metrics is None else metrics
     if source is not None:
-        try:
-            text = _edited(design, source.document, metrics)
-        except _CannotEdit:
-            text = ""
-        if text and _reads_back(text, design, metrics):
+        text = _kept(design, source.document, metrics)
+        text = text or _kept(design, _in_list_form(source.document), metrics)
+        if text:
             return text
     writer = _Leaves(design, metrics)
     return "\n".join(_lines(_stated(to_tree(design), Design, design), (), writer, "")) + "\n"
 
 
 class _CannotEdit(Exception):
-    """The text does not have the shape of the design (flow style, removed blocks)."""
+    """The text does not have the shape of the design (flow style, removed blocks, plies)."""
 
 
 class _Edit(NamedTuple):
@@ -136,7 +135,7 @@ class _Leaves:
         """The YAML scalar of a value, in the unit of the text it replaces."""
         number = number_of(value)
         if number is None:
-            return scalar(value)
+            return str(value).lower() if isinstance(value, bool) else scalar(value)
         unit = None
         quantity = self.quantity(loc, value)
         if old is not None and quantity is not None:
@@ -149,6 +148,8 @@ class _Leaves:
     def same(self, loc: Loc, value: Any, old: str) -> bool:
         """Whether the text `old` already says `value`."""
         number = number_of(value)
+        if isinstance(value, bool):
+            return Flag.words.get(old.strip().lower()) == value
         if number is None:
             return bool(value == old)
         quantity = self.quantity(loc, value)
@@ -192,7 +193,10 @@ def _stated(
         if isinstance(value, dict):
             stated[key] = _stated(value, below, design, here)
         elif isinstance(value, list):
-            stated[key] = [_stated(item, below, design, (*here, i)) for i, item in enumerate(value)]
+            stated[key] = [
+                _stated(item, below, design, (*here, i)) if isinstance(item, dict) else item
+                for i, item in enumerate(value)
+            ]
         else:
             stated[key] = value
     return stated
@@ -206,8 +210,11 @@ def _lines(node: dict[str, Any], loc: Loc, writer: _Leaves, indent: str) -> Iter
         if isinstance(value, dict):
             yield f"{indent}{name}:" if value else f"{indent}{name}: {{}}"
             yield from _lines(value, here, writer, indent + "  ")
+        elif isinstance(value, list) and not isinstance(next(iter(value), None), dict):
+            texts = (writer.text((*here, i), item) for i, item in enumerate(value))
+            yield f"{indent}{name}: [{', '.join(texts)}]"
         elif isinstance(value, list):
-            yield f"{indent}{name}:" if value else f"{indent}{name}: []"
+            yield f"{indent}{name}:"
             for index, item in enumerate(value):
                 block = list(_lines(item, (*here, index), writer, indent + "    "))
                 yield f"{indent}  - {block[0].lstrip()}"
@@ -216,9 +223,46 @@ def _lines(node: dict[str, Any], loc: Loc, writer: _Leaves, indent: str) -> Iter
             yield f"{indent}{name}: {writer.text(here, value)}"
 
 
+def _kept(design: Design, document: Document | None, metrics: Mapping[str, Quantity]) -> str:
+    """The document's text with the design's values; empty where it cannot say them."""
+    try:
+        text = "" if document is None else _edited(design, document, metrics)
+    except _CannotEdit:
+        return ""
+    return text if _reads_back(text, design, metrics) else ""
+
+
+def _in_list_form(document: Document) -> Document | None:
+    """The document with its compact lay-ups as lists; None where there are none to write so."""
+    text, newline = document.text, "\r\n" if "\r\n" in document.text else "\n"
+    for shorthand in sorted(document.shorthands, key=lambda s: s.entry.start, reverse=True):
+        start, end = shorthand.entry.start, shorthand.entry.end
+        dash = text[text.rfind("\n", 0, start) + 1 : start]
+        if re.fullmatch(r"[ ]*-[ ]+", dash) is None:
+            return None  # a list in flow style
+        layers = value_at(document.data, shorthand.wall)[shorthand.first :]
+        blocks = [
+            (newline + " " * len(dash)).join(
+                f"{key}: {_as_read(said)}" for key, said in layer.items()
+            )
+            for layer in layers[: shorthand.layers]
+        ]
+        text = text[:start] + (newline + dash).join(blocks) + text[end:]
+    try:
+        return parse(text, document.file) if document.shorthands else None
+    except InputError:
+        return None
+
+
+def _as_read(text: str) -> str:
+    """A value of the file as YAML; false and numbers with a unit need no quotes."""
+    plain = text == "false" or re.fullmatch(r"[+-]?[\w.]+ \w+", text)
+    return text if plain else scalar(text)
+
+
 def _reads_back(text: str, design: Design, metrics: Mapping[str, Quantity]) -> bool:
     try:
-        document = parse(text, "")
+        document = layup.expanded(parse(text, ""))
     except InputError:
         return False
     built = build(document.data, metrics=metrics)
@@ -265,24 +309,35 @@ def _compare(
             if not isinstance(old[key], list) or len(old[key]) != len(value):
                 raise _CannotEdit
             for index, (item, was) in enumerate(zip(value, old[key], strict=True)):
-                _compare(item, was, (*here, index), below, document, writer, edits)
-        elif not isinstance(old[key], str):
-            raise _CannotEdit
-        elif not writer.same(here, value, old[key]):
-            span = document.values[here]
-            if document.text[span.start : span.start + 1] in ("|", ">"):
-                raise _CannotEdit
-            new = writer.text(here, value, old[key])
-            edits.append(_Edit(span.start, span.end, new, len(here)))
+                if isinstance(item, dict):
+                    _compare(item, was, (*here, index), below, document, writer, edits)
+                else:
+                    edits += _replacement(item, was, (*here, index), document, writer)
+        else:
+            edits += _replacement(value, old[key], here, document, writer)
+
+
+def _replacement(
+    value: Any, old: Any, loc: Loc, document: Document, writer: _Leaves
+) -> Iterator[_Edit]:
+    """The edit of one value, if it changed."""
+    if not isinstance(old, str):
+        raise _CannotEdit
+    if writer.same(loc, value, old):
+        return
+    span = document.values[loc]
+    if document.shorthand(loc) or document.text[span.start : span.start + 1] in ("|", ">"):
+        raise _CannotEdit
+    yield _Edit(span.start, span.end, writer.text(loc, value, old), len(loc))
 
 
 def _insertion(stated: dict[str, Any], loc: Loc, document: Document, writer: _Leaves) -> _Edit:
     """New lines at the end of a block: below the line of its last value."""
     text = document.text
     block = document.values[loc]
-    node: Any = document.data
-    for key in loc:
-        node = child(node, key)
+    if document.shorthand(loc):
+        raise _CannotEdit
+    node = child_at(document.data, loc)
     if text[block.start : block.start + 1] == "{" or not node:
         raise _CannotEdit
     column = document.keys[(*loc, next(iter(node)))].column

@@ -47,6 +47,15 @@ class Span(NamedTuple):
     end: int
 
 
+class Shorthand(NamedTuple):
+    """Entries `first` to `first + layers - 1` of a list, which the text writes as one."""
+
+    wall: Loc
+    first: int
+    layers: int
+    entry: Span
+
+
 @dataclass(slots=True)
 class Document:
     """A parsed YAML file: its tree of texts, and where each key and value stands."""
@@ -61,6 +70,18 @@ class Document:
     """Faults that do not stop the reading: duplicate keys, tags, anchors."""
     unusable: set[Loc] = field(default_factory=set)
     """Places whose value could not be read (aliases)."""
+    shorthands: tuple[Shorthand, ...] = ()
+    """Layers in compact notation, which `layup.expanded` wrote out."""
+
+    def shorthand(self, loc: Loc) -> Shorthand | None:
+        """The compact entry that a place lies in."""
+        for found in self.shorthands:
+            depth = len(found.wall)
+            if len(loc) > depth and loc[:depth] == found.wall:
+                index = loc[depth]
+                if isinstance(index, int) and 0 <= index - found.first < found.layers:
+                    return found
+        return None
 
     def diagnostic(
         self, span: Span | None, message: str, remedy: str = "", path: str | None = None
@@ -307,6 +328,9 @@ def _syntax_fault(document: Document, error: yaml.MarkedYAMLError) -> Diagnostic
             break
     if mark is None:
         return document.diagnostic(None, message, remedy)
+    before = "".join(document.lines[mark.line : mark.line + 1])[: mark.column].rstrip()
+    if before.endswith(("]", "}")) and "does not fit the lines above" in message:
+        message, remedy = f'text after "{before[-1]}"', "put the whole value in quotes"
     span = Span(mark.line + 1, mark.column + 1, mark.index, mark.index)
     character = document.text[mark.index : mark.index + 1]
     if "cannot start any token" in problem:

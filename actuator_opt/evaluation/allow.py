@@ -10,32 +10,35 @@ from ..numeric import Array
 from .values import Values
 
 
-def hottest(design: Design, numbers: Mapping[str, float]) -> float:
-    """Highest temperature of oil, load cases and environment, K."""
+def extremes(design: Design, numbers: Mapping[str, float]) -> tuple[float, float]:
+    """Lowest and highest temperature of oil, load cases and environment, K."""
     temperatures = [numbers["fluid.temperature"]]
     temperatures += [c.temperature for c in design.load_cases if c.temperature is not None]
     if design.environment is not None:
-        temperatures.append(design.environment.temperature_max)
-    return max(temperatures)
+        temperatures += [design.environment.temperature_min, design.environment.temperature_max]
+    return min(temperatures), max(temperatures)
 
 
 def allowances(
     materials: Mapping[str, Material],
     numbers: Mapping[str, float],
     *,
-    temperature: float,
+    temperatures: tuple[float, float],
     wet: bool,
-) -> dict[tuple[str, str], float]:
+) -> dict[tuple[str, str, bool], float]:
     """What temperature, moisture, basis and process leave of every strength.
 
-    Keys are (material, property); `numbers` (by PATH) may override the library's knock-downs.
+    Keys are (material, property, cold) for the lowest and the highest of `temperatures`; `numbers`
+    (by PATH) may override the library's knock-downs.
     """
     factors = {}
     for name, material in materials.items():
         own = {key: numbers[f"materials.{name}.{key}"] for key in material.numbers}
         for key, entry in material.properties.items():
-            if "strength" in key:
-                factors[name, key] = float(
+            if "strength" not in key:
+                continue
+            for cold, temperature in zip((True, False), temperatures, strict=True):
+                factors[name, key, cold] = float(
                     allowable_factor(own, key, basis=entry.basis, temperature=temperature, wet=wet)
                 )
     return factors
@@ -48,7 +51,7 @@ class Stock:
         self,
         v: Values,
         materials: Mapping[str, Material],
-        factors: Mapping[tuple[str, str], float],
+        factors: Mapping[tuple[str, str, bool], float],
         constants: dict[str, dict[str, Array]],
     ) -> None:
         self._v = v
@@ -85,12 +88,12 @@ class Stock:
                 return self._v[f"materials.{name}.{key}"]
         return default
 
-    def allowable(self, name: str, *properties: str) -> Array:
+    def allowable(self, name: str, *properties: str, cold: bool = False) -> Array:
         """A strength after every knock-down that applies; None where none is stated.
 
-        Temperature is the highest of oil, load cases and environment.
+        Temperature is the highest of oil, load cases and environment, or the lowest.
         """
         for key in properties:
             if key in self.materials[name].numbers:
-                return self._v[f"materials.{name}.{key}"] * self._factors[name, key]
+                return self._v[f"materials.{name}.{key}"] * self._factors[name, key, cold]
         return None

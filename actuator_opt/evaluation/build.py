@@ -17,7 +17,7 @@ from ..design.materials import Library, load_library
 from ..design.model import Design
 from ..version import VERSION
 from . import doubts, outline
-from .allow import allowances, hottest
+from .allow import allowances, extremes
 from .kernel import Pass, Subject, compute
 from .limits import CHECK_LIST, CheckLine, Limit, Sense, all_limits, check_limits, default_limits
 from .plugin import Plugin
@@ -37,6 +37,7 @@ SENSES: dict[str, Sense] = {line.metric: line.sense for line in CHECK_LIST if li
     "stiffness_rod": "min",
     "stiffness_barrel": "min",
     "liner_yield_factor": "min",
+    "local_buckling_factor": "min",
 }
 TOLERANCE = 1e-6
 """A margin of at least −TOLERANCE counts as met (CONTRACT)."""
@@ -46,7 +47,10 @@ def names_of_materials(design: Design) -> list[str]:
     """Every material a design names, once, in order of appearance."""
     names = [design.fluid.material]
     names += [ply.material for ply in design.barrel.layup]
+    names += [ply.material for ply in design.rod.layup]
     names += [design.rod.material, design.piston.material, design.head.material]
+    if design.rod.fitting is not None:
+        names += [design.rod.fitting.material or design.rod.material, design.rod.fitting.adhesive]
     names += [part.bearing for part in (design.piston, design.head) if part.bearing is not None]
     names.append(design.caps.material)
     if design.retention is not None and design.retention.material is not None:
@@ -82,7 +86,7 @@ def prepare(
     factors = allowances(
         materials,
         numbers,
-        temperature=hottest(design, numbers),
+        temperatures=extremes(design, numbers),
         wet=design.environment is None or design.environment.wet,
     )
     return Subject(design, materials, numbers, factors, plugins)
@@ -140,7 +144,6 @@ def _finite(value: float) -> bool:
 def _metric(
     name: str, computed: Computed, v: Values, subject: Subject, outside: set[str]
 ) -> Metric:
-    laminated = doubts.kind_of(subject) == "thin_laminate"
     rows: list[tuple[float, str, str]] = []
     for place, array in computed.metrics.get(name, {}).items():
         for case, value in by_case(computed, name, array, v.cases):
@@ -156,7 +159,12 @@ def _metric(
         return Metric(name=name, value=None, why=why, definition=definition)
     pick = min if SENSES.get(name, "max") == "min" else max
     value, case, place = pick(usable, key=lambda row: row[0])
-    model = model_of(name, laminated=laminated, place=place)
+    model = model_of(
+        name,
+        wall=doubts.kind_of(subject),
+        criterion=subject.design.barrel.criterion,
+        place=place,
+    )
     per_case: dict[str, float] = {}
     for one, where, _ in usable:
         per_case[where] = pick(one, per_case.get(where, one))

@@ -9,11 +9,11 @@ import numpy as np
 from ..design.material import compatible
 from ..design.model import PLAIN_CAP
 from ..models import laminate, seals
+from .barrel import LAMINATES, kind
 from .kernel import Pass, Subject
 from .provenance import model_of
 from .result import Metric, ModelUse, Unverified
 from .values import Values
-from .wall import kind
 
 LONGEST_LIFE = 1e9
 """Cycles up to which stress-life lines have data [Shigley2011]."""
@@ -54,12 +54,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
         )
         for metric in GROWTH_FED:
             yield metric, text
-    if done.wall.mismatch is not None:
-        yield (
-            "",
-            "cure stresses are checked on their own (liner mismatch) and not superposed on the "
-            "pressure's in yield and first ply",
-        )
+    yield from _wall_warnings(subject, done)
     for part, what in (
         ("head", "of the piston's material and length"),
         ("caps", f"of the piston's material, {PLAIN_CAP:g} bore thick"),
@@ -87,6 +82,31 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
                 "side load pushes the piston over: on one side the extrusion gap is the clearance "
                 f"larger, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
             ),
+        )
+
+
+def _wall_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:
+    """What the wall model leaves out."""
+    laminated = kind_of(subject) in LAMINATES
+    environment = subject.design.environment
+    if laminated and (environment is None or environment.cure_temperature is None):
+        yield (
+            "",
+            "no cure temperature stated: stresses from cooling are left out of first ply and yield",
+        )
+    elif laminated and done.wall.expansion is None:
+        yield (
+            "",
+            f"stresses from cooling are left out of first ply and yield: "
+            f"{done.wall.why_no_mismatch}",
+        )
+    retention = subject.design.retention
+    if done.wall.path.tie_rods is not None and retention is not None and retention.preload is None:
+        force = float(np.max(np.real(done.wall.path.tie_rods.preload)))
+        yield (
+            "joint_factor",
+            f"no tie-rod preload stated: taken {force / 1e3:.1f} kN, which keeps the joint closed "
+            "at proof pressure",
         )
 
 
@@ -149,10 +169,10 @@ def models(
     inherits such a value is marked in its own row, not here. `said` are the warnings' texts.
     """
     said = tuple(said)
-    laminated = kind_of(subject) == "thin_laminate"
+    wall, criterion = kind_of(subject), subject.design.barrel.criterion
     seen: dict[str, ModelUse] = {}
     for name, metric in metrics.items():
-        model = model_of(name, laminated=laminated, place=metric.place)
+        model = model_of(name, wall=wall, criterion=criterion, place=metric.place)
         if model is None or metric.value is None:
             continue
         used = metric.quantity.text(metric.value)

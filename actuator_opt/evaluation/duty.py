@@ -154,10 +154,16 @@ def _thermal(
         jump = slope * v["environment.trapped_rise"]
         out.put("trapped_pressure", jump)
         out.put("trapped_factor", v["supply.proof_ratio"] * supply / (supply + jump))
-    if wall.mismatch is not None:
-        out.put("liner_mismatch_factor", wall.mismatch)
-    else:
-        out.skip("liner_mismatch_factor", wall.why_no_mismatch)
+    for metric, values, why in (
+        ("liner_mismatch_factor", wall.mismatch, wall.why_no_mismatch),
+        ("liner_bond_factor", wall.bond, wall.why_no_mismatch),
+        ("liner_range_factor", wall.strain_range, "the wall has no metal layer under plies"),
+    ):
+        if values:
+            scale = supply if metric == "liner_range_factor" else 1.0
+            out.put(metric, {place: value / scale for place, value in values.items()})
+        else:
+            out.skip(metric, why)
     if environment is None:
         out.skip("temperature_margin", "no temperature range stated: add environment")
         return

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
+from typing import NamedTuple
 
 from ..design.model import Design
 from ..models import damping, dynamics, forces, lines, rod, stiffness
@@ -16,58 +18,83 @@ from .values import Values
 from .wall import Wall
 
 
-@dataclass(frozen=True, slots=True)
-class Chambers:
-    """Compliance of both chambers, C = fixed + per_length · chamber length, by cause.
+class Give(NamedTuple):
+    """One cause of compliance along the piston's position x.
 
-    Each entry is (fixed, per_length) for `oil`, `barrel` and `lines`.
+    Of chamber A a0 + a1 x, of chamber B b0 + b1 (s - x); c0 + c1 x is what the pressure of one adds
+    to the volume of the other.
     """
 
-    a: dict[str, tuple[Array, Array]]
-    b: dict[str, tuple[Array, Array]]
+    a0: Array = 0.0
+    a1: Array = 0.0
+    b0: Array = 0.0
+    b1: Array = 0.0
+    c0: Array = 0.0
+    c1: Array = 0.0
 
-    def total(self, side: str) -> tuple[Array, Array]:
-        """Compliance of one chamber (fixed, per length) of all causes."""
-        entries = list((self.a if side == "a" else self.b).values())
-        return sum(e[0] for e in entries), sum(e[1] for e in entries)
+
+CAUSES = ("oil", "barrel", "stretch", "lines")
+"""What gives in the chambers, in the order their shares are told."""
 
 
 @dataclass(frozen=True, slots=True)
 class Springs:
-    """Everything that gives way between load and ground."""
+    """Everything that gives way between load and ground; chambers by cause."""
 
-    chambers: Chambers
+    chambers: dict[str, Give]
     rod: Array
     mount: Array | None
     geometry: Geometry
 
-    def hydraulic(self, position: Array, causes: tuple[str, ...]) -> Array:
+    def total(self, causes: Sequence[str] = CAUSES) -> Give:
+        """Compliance of some causes together."""
+        chosen = [self.chambers[cause] for cause in causes]
+        return Give(*(sum(part[1:], start=part[0]) for part in zip(*chosen, strict=True)))
+
+    def hydraulic(self, position: Array, causes: Sequence[str]) -> Array:
         """Stiffness of the chambers at a position, counting only some causes."""
-        g = self.geometry
-        length_b = g.stroke - position
-        compliance_a = sum(self.chambers.a[c][0] + self.chambers.a[c][1] * position for c in causes)
-        compliance_b = sum(self.chambers.b[c][0] + self.chambers.b[c][1] * length_b for c in causes)
+        g, give = self.geometry, self.total(causes)
         return stiffness.hydraulic_stiffness(
-            area_a=g.area_a, compliance_a=compliance_a, area_b=g.area_b, compliance_b=compliance_b
+            area_a=g.area_a,
+            compliance_a=give.a0 + give.a1 * position,
+            area_b=g.area_b,
+            compliance_b=give.b0 + give.b1 * (g.stroke - position),
+            compliance_ab=give.c0 + give.c1 * position,
         )
 
     def compliances(self, position: Array) -> dict[str, Array]:
         """Compliance by part at a position (m/N); they add up to 1/stiffness.
 
-        Barrel and lines are what they add to the compliance of oil alone, in this order.
+        Barrel (swelling), its axial stretch and lines are what they add to the compliance of the
+        parts before them.
         """
-        oil = 1 / self.hydraulic(position, ("oil",))
-        with_barrel = 1 / self.hydraulic(position, ("oil", "barrel"))
-        full = 1 / self.hydraulic(position, ("oil", "barrel", "lines"))
-        parts = {
-            "oil": oil,
-            "barrel": with_barrel - oil,
-            "lines": full - with_barrel,
-            "rod": 1 / self.rod,
-        }
+        parts: dict[str, Array] = {}
+        before: Array = 0.0
+        for i, cause in enumerate(CAUSES):
+            now = 1 / self.hydraulic(position, CAUSES[: i + 1])
+            parts[cause] = now - before
+            before = now
+        parts["rod"] = 1 / self.rod
         if self.mount is not None:
             parts["mount"] = 1 / self.mount
         return parts
+
+
+def _stretch(design: Design, g: Geometry, wall: Wall) -> Give:
+    """Axial stretch of the barrel under the pressure of the chamber that pulls on it.
+
+    Cap-mounted, N = p_B A_B over the whole length: the head moves by e_N L N + e_p (x p_A +
+    (s - x) p_B), and N narrows both chambers by e_p N per length; e_p is the strain per pressure.
+    Head-mounted, the same with p_A A_A. Tie rods take their share of N.
+    """
+    shortening = wall.swelling.shortening * wall.path.share
+    cap = design.cylinder.mount.startswith("cap")
+    area = g.area_b if cap else g.area_a
+    own = area * area * wall.swelling.stretch * wall.path.share * g.barrel_length
+    twice, once = 2 * shortening * area, shortening * area
+    if cap:
+        return Give(b0=own, b1=twice, c1=once)
+    return Give(a0=own, a1=twice, c0=once * g.stroke, c1=-once)
 
 
 def springs(v: Values, design: Design, geometry: Geometry, state: State, wall: Wall) -> Springs:
@@ -88,20 +115,21 @@ def springs(v: Values, design: Design, geometry: Geometry, state: State, wall: W
             youngs_modulus=v[material + "youngs_modulus"],
             poissons_ratio=v[material + "poissons_ratio"],
         )
-    per_length = 2 * pi * g.inner_radius * (wall.growth / v["supply.pressure"])
-    sides = {}
-    for side, area, bulk in (
-        ("a", g.area_a, state.bulk_modulus_a),
-        ("b", g.area_b, state.bulk_modulus_b),
-    ):
-        sides[side] = {
-            "oil": (volume[side] / bulk, area / bulk),
-            "barrel": (0.0, per_length),
-            "lines": (give[side], 0.0),
-        }
+    swelling = 2 * pi * g.inner_radius * (wall.growth / v["supply.pressure"])
+    oil_a, oil_b = state.bulk_modulus_a, state.bulk_modulus_b
     modulus = v[f"materials.{design.rod.material}.youngs_modulus"]
     return Springs(
-        chambers=Chambers(sides["a"], sides["b"]),
+        chambers={
+            "oil": Give(
+                a0=volume["a"] / oil_a,
+                a1=g.area_a / oil_a,
+                b0=volume["b"] / oil_b,
+                b1=g.area_b / oil_b,
+            ),
+            "barrel": Give(a1=swelling, b1=swelling),
+            "stretch": _stretch(design, g, wall),
+            "lines": Give(a0=give["a"], b0=give["b"]),
+        },
         rod=rod.axial_stiffness(
             youngs_modulus=modulus,
             outer_diameter=g.rod_diameter,
@@ -115,16 +143,17 @@ def springs(v: Values, design: Design, geometry: Geometry, state: State, wall: W
 
 def weakest(s: Springs) -> Array:
     """Position of least stiffness in every case."""
-    a0, a1 = s.chambers.total("a")
-    b0, b1 = s.chambers.total("b")
+    give = s.total()
     return stiffness.weakest_position(
         area_a=s.geometry.area_a,
         area_b=s.geometry.area_b,
-        compliance_a0=a0,
-        compliance_a_per_length=a1,
-        compliance_b0=b0,
-        compliance_b_per_length=b1,
+        compliance_a0=give.a0,
+        compliance_a_per_length=give.a1,
+        compliance_b0=give.b0,
+        compliance_b_per_length=give.b1,
         stroke=s.geometry.stroke,
+        compliance_ab0=give.c0,
+        compliance_ab_per_length=give.c1,
     )
 
 

@@ -12,7 +12,8 @@ from ..design.model import Design
 from ..models import forces
 from ..numeric import Array, minimum, where
 from ..quantities import METRICS, Quantity
-from . import duty, hydraulics, sealing, state, strength, wall, weight
+from . import barrel as barrel_module
+from . import duty, hydraulics, sealing, state, strength, weight
 from . import geometry as geometry_module
 from .allow import Stock
 from .geometry import Geometry
@@ -30,8 +31,8 @@ class Subject:
     design: Design
     materials: dict[str, Material]
     numbers: Mapping[str, float]
-    factors: Mapping[tuple[str, str], float]
-    """Knock-downs of every strength, by (material, property)."""
+    factors: Mapping[tuple[str, str, bool], float]
+    """Knock-downs of every strength, by (material, property, at the coldest)."""
     plugins: tuple[Plugin, ...] = ()
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
     """Ply constants by material, filled when first needed."""
@@ -75,7 +76,7 @@ def compute(subject: Subject, v: Values) -> Pass:
         stock = Stock(v, subject.materials, subject.factors, subject.constants)
         g = geometry_module.derive(v, design)
         case_state = state.derive(v, design, stock, g)
-        barrel = wall.compute(v, design, stock, g, case_state)
+        barrel = barrel_module.compute(v, design, stock, g, case_state)
         out.put("bore_growth", barrel.growth)
         friction = sealing.compute(v, design, stock, g, case_state, barrel, out)
         net = _forces(g, case_state, friction, out)

@@ -207,6 +207,27 @@ CHECK_LIST: tuple[CheckLine, ...] = (
         1.0,
         "liner yield under cool-down",
     ),
+    CheckLine(
+        "liner bond after cool-down",
+        "liner_bond_factor",
+        "min",
+        1.0,
+        "transverse strength of the ply at the liner",
+    ),
+    CheckLine(
+        "liner strain range",
+        "liner_range_factor",
+        "min",
+        1.0,
+        "shakedown: stress range between zero and supply pressure within twice yield",
+    ),
+    CheckLine(
+        "tie-rod joint stays closed",
+        "joint_factor",
+        "min",
+        1.0,
+        "preload over what supply pressure takes from it",
+    ),
     CheckLine("mass", "mass", "max"),
     CheckLine(
         "leakage",

@@ -7,9 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
+from typing import cast
 
 from ..models import (
     barrel,
+    barrel_ends,
     damping,
     dynamics,
     end_plate,
@@ -19,6 +21,7 @@ from ..models import (
     friction,
     gland,
     laminate,
+    layered_tube,
     lines,
     mass,
     ply_discount,
@@ -28,8 +31,11 @@ from ..models import (
     stepped,
     stiffness,
     strength_modes,
+    tube_burst,
+    yielding,
 )
 from ..models import density as oil_density
+from ..models.criteria import CRITERIA
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +86,8 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "natural_frequency": dynamics.natural_frequency,
         "damping_ratio": dynamics.friction_damping_ratio,
         "bore_growth": barrel.bore_growth,
+        "growth_at_seal": barrel_ends.pressure_step_factor,
+        "decay_length": barrel_ends.shell_decay_length,
         "seal_gap": gland.extrusion_gap,
         "extrusion_factor": gland.extrusion_gap,
         "seal_squeeze": gland.squeeze_in_place,
@@ -114,6 +122,7 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "trapped_pressure": oil_density.thermal_pressure_slope,
         "trapped_factor": oil_density.thermal_pressure_slope,
         "liner_mismatch_factor": laminate.thermal_line_forces,
+        "joint_factor": barrel_ends.tie_rod_forces,
         "flow": forces.chamber_flow,
         "port_velocity": lines.port_velocity,
         "line_velocity": lines.line_velocity,
@@ -124,13 +133,32 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
 )
 """The leading model of every metric that has one; the rest is plain geometry."""
 
-LAMINATED: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
+WALL_MODELS: MappingProxyType[str, MappingProxyType[str, Callable[..., object]]] = MappingProxyType(
     {
-        "bore_growth": laminate.bore_growth_thin,
-        "burst_factor": ply_discount.burst_by_ply_discount,
+        "layered": MappingProxyType(
+            {
+                "bore_growth": layered_tube.tube_state,
+                "growth_at_seal": barrel_ends.pressure_step_factor,
+                "yield_factor": yielding.yield_utilisation,
+                "liner_yield_factor": yielding.yield_utilisation,
+                "liner_range_factor": yielding.yield_utilisation,
+                "liner_mismatch_factor": layered_tube.tube_state,
+                "liner_bond_factor": layered_tube.tube_state,
+                "burst_factor": tube_burst.burst_of_tube,
+            }
+        ),
+        "thin_laminate": MappingProxyType(
+            {
+                "bore_growth": laminate.bore_growth_thin,
+                "yield_factor": yielding.yield_utilisation,
+                "liner_yield_factor": yielding.yield_utilisation,
+                "liner_range_factor": yielding.yield_utilisation,
+                "burst_factor": ply_discount.burst_by_ply_discount,
+            }
+        ),
     }
 )
-"""What replaces it where the barrel is a thin laminate."""
+"""What replaces it where the barrel is a laminate, by wall model."""
 
 
 AT_PLACE: MappingProxyType[tuple[str, str], Callable[..., object]] = MappingProxyType(
@@ -145,11 +173,15 @@ AT_PLACE: MappingProxyType[tuple[str, str], Callable[..., object]] = MappingProx
 """What replaces both where another part of the actuator governs."""
 
 
-def model_of(metric: str, *, laminated: bool, place: str | None = None) -> Model | None:
-    """The model behind a metric at its governing place; None for plain geometry and inputs."""
-    function = (
-        AT_PLACE.get((metric, place or ""))
-        or (LAMINATED.get(metric) if laminated else None)
-        or METRIC_MODELS.get(metric)
-    )
+def model_of(
+    metric: str, *, wall: str, criterion: str = "max_stress", place: str | None = None
+) -> Model | None:
+    """The model behind a metric at its governing place; None for plain geometry and inputs.
+
+    `wall` is the barrel's model, `criterion` that of its plies.
+    """
+    if metric in ("first_ply_factor", "proof_factor") and wall in WALL_MODELS:
+        return describe(cast(Callable[..., object], CRITERIA[criterion]))
+    own = WALL_MODELS[wall].get(metric) if wall in WALL_MODELS else None
+    function = AT_PLACE.get((metric, place or "")) or own or METRIC_MODELS.get(metric)
     return None if function is None else describe(function)

@@ -153,6 +153,7 @@ def compute(
         out.skip("extrusion_factor", "the seal compounds state no extrusion_gap_max")
     gap = gland.extrusion_gap(clearance=geometry.piston_clearance, growth=full_growth)
     out.put("seal_gap", gap)
+    out.put("growth_at_seal", full_growth)
     out.put("friction_running", total.running)
     out.put("friction_breakaway", total.breakaway)
     moving = real(state.speed)[:, 0] > 0

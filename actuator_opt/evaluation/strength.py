@@ -11,6 +11,7 @@ from math import pi, sqrt
 from ..design.model import Design
 from ..models import column, end_plate, retention, rod, stepped
 from ..numeric import Array, real, where
+from . import load_path
 from .allow import Stock
 from .geometry import Geometry
 from .rows import Computed
@@ -37,7 +38,7 @@ def compute(
     """Every strength metric."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
-    through = max_axial(design, g, supply)
+    through = supply * load_path.largest_area(design, g)
     _pressure_factors(v, stock, design, g, wall, supply, through, state, out)
     _buckling(stock, design, g, state, wall, push, out)
     _rod_end(v, stock, design, pull, out)
@@ -45,15 +46,6 @@ def compute(
     _caps(stock, design, g, supply, out)
     _pins(v, stock, design, push, out)
     _guides(stock, design, g, state, out)
-
-
-def max_axial(design: Design, g: Geometry, supply: Array) -> Array:
-    """Largest axial force through barrel and retention: end stop, mount or tie rods."""
-    tied = design.retention is not None and design.retention.type == "tie_rods"
-    if design.cylinder.end_stop == "internal" or tied:
-        return supply * g.area_a
-    area = g.area_b if design.cylinder.mount.startswith("cap") else g.area_a
-    return supply * area
 
 
 def _pressure_factors(
@@ -99,7 +91,7 @@ def _pressure_factors(
         )
         parts["rod"] = strength / (axial + bending)
     skirt = stock.allowable(design.caps.material, "yield_strength")
-    if skirt is not None and design.retention is not None and design.retention.type != "tie_rods":
+    if skirt is not None and design.retention is not None and not load_path.tied(design):
         parts["cap skirt"] = skirt * (2 * pi * g.outer_radius * g.skirt_wall) / through
     out.put("yield_factor", parts)
 
@@ -172,13 +164,17 @@ def _retention(
     elif held.type == "bond":
         found = _bond(stock, design, g, wall, load)
     else:
-        found = _screwed(v, stock, design, g, load)
+        found = _screwed(v, stock, design, g, wall, load)
     if isinstance(found, str):
         out.skip("retention_factor", found)
         out.skip("retention_burst_factor", found)
     else:
         out.put("retention_factor", found[0])
         out.put("retention_burst_factor", found[1])
+    if wall.path.tie_rods is None:
+        out.skip("joint_factor", "no tie rods")
+    else:
+        out.put("joint_factor", wall.path.tie_rods.closed)
 
 
 def _bond(
@@ -215,11 +211,11 @@ def _bond(
 
 
 def _screwed(
-    v: Values, stock: Stock, design: Design, g: Geometry, load: Array
+    v: Values, stock: Stock, design: Design, g: Geometry, wall: Wall, load: Array
 ) -> tuple[dict[str, Array], Array] | str:
     """Yield and ultimate strength of the retaining thread or the tie rods; or why not."""
     held = design.retention
-    tied = held is not None and held.type == "tie_rods"
+    tied = load_path.tied(design)
     name = held.material if held is not None and tied else design.caps.material
     strength = None if name is None else stock.allowable(name, "yield_strength")
     ultimate = None if name is None else stock.allowable(name, "ultimate_strength")
@@ -227,8 +223,9 @@ def _screwed(
         return "retention needs a thread and a material with yield and ultimate strength"
     pitch = v["retention.thread.pitch"]
     if tied:
+        assert wall.path.tie_rods is not None
         stress = retention.tie_rod_stress(
-            force=load,
+            force=wall.path.tie_rods.largest,
             count=v["retention.count"],
             diameter=v["retention.thread.diameter"],
             pitch=pitch,
@@ -253,10 +250,9 @@ def _caps(stock: Stock, design: Design, g: Geometry, supply: Array, out: Compute
     if strength is None or ratio is None:
         out.skip("cap_factor", f"{name} states no yield strength or Poisson's ratio")
         return
-    tied = design.retention is not None and design.retention.type == "tie_rods"
     support = (g.plate_radius + g.outer_radius) / 2
     stresses: dict[str, Array] = {}
-    if design.cylinder.end_stop == "internal" or tied or design.clevis is None:
+    if design.cylinder.end_stop == "internal" or load_path.tied(design) or design.clevis is None:
         stresses["cap, hung on its skirt"] = end_plate.hung_plate_stress(
             pressure=supply,
             loaded_radius=g.inner_radius,

@@ -18,7 +18,8 @@ from math import inf
 from typing import Any, Protocol
 
 from ..numeric import Array, absolute, maximum, real, where
-from .strength_modes import PlyStrength, load_multiplier
+from .strength_modes import PlyStrength, Stress, load_multiplier
+from .yielding import yield_utilisation
 
 __all__ = ["MODES", "BurstLadder", "LadderStep", "Mechanics", "WallLayer"]
 
@@ -185,25 +186,17 @@ def _above(value: Array) -> Array:
     return where(real(value) > _FLOOR, value, 0 * value + _FLOOR)
 
 
-def _mises(first: Array, second: Array) -> Array:
-    """Bilinear form of von Mises: its square for first = second; stresses 1, 2, 12, 3."""
-    a1, a2, a3 = first[0, ...], first[1, ...], first[3, ...]
-    b1, b2, b3 = second[0, ...], second[1, ...], second[3, ...]
-    return ((a1 - a2) * (b1 - b2) + (a2 - a3) * (b2 - b3) + (a3 - a1) * (b3 - b1)) / 2
+def _yields(rate: Array, base: Array | None, inverse: Array) -> Array:
+    """1/p at which the metals yield; a single metal layer yields free of frozen stress."""
 
+    def stress(values: Array) -> Stress:
+        return values[0, ...], values[1, ...], values[3, ...], 0 * values[2, ...]
 
-def _yield_rows(xp: Any, rate: Array, base: Array | None, inverse: Array) -> Array:
-    """1/p at which the stress base + p rate of a metal reaches yield by von Mises.
-
-    A single metal layer is free of frozen stress until it yields itself: no base.
-    """
-    scaled = rate * inverse
-    square = _mises(scaled, scaled)
-    if base is None:
-        return xp.sqrt(square)
-    fixed = base * inverse
-    left, linear = _above(1 - _mises(fixed, fixed)), _mises(scaled, fixed)
-    return (linear + xp.sqrt(linear * linear + left * square)) / left
+    return yield_utilisation(
+        stress=stress(rate * inverse),
+        yield_strength=1.0,
+        residual=None if base is None else stress(base * inverse),
+    )
 
 
 def _utilisations(xp: Any, metals: int, inverse: Array, rate: Array, base: Array | None) -> Array:
@@ -216,7 +209,7 @@ def _utilisations(xp: Any, metals: int, inverse: Array, rate: Array, base: Array
     if not metals:
         return rows
     held = None if base is None or metals == 1 else base[:, :, :metals, ...]
-    yields = _yield_rows(xp, rate[:, :, :metals, ...], held, inverse[6, :, :metals, ...])
+    yields = _yields(rate[:, :, :metals, ...], held, inverse[6, :, :metals, ...])
     return xp.concat([rows, xp.reshape(yields, (-1, *yields.shape[2:]))])
 
 

@@ -1,7 +1,7 @@
 """Buckling of uniform columns: Euler, Johnson, shear correction, local shell.
 
 The stepped column lives in `stepped` (two segments, elementwise) and `stepped_segments` (any
-number of segments, scalar).
+number of segments, scalar); forces and moments of a laminated wall in `shell_buckling`.
 """
 
 from __future__ import annotations
@@ -140,6 +140,8 @@ def engesser_load(*, critical_load: Array, shear_stiffness: Array) -> Array:
     -----
     Valid: exact for a uniform pinned column, on the safe side for others.
 
+    A column of two segments takes `stepped.mode_shear_stiffness`.
+
     References
     ----------
     [TimoshenkoGere1961] effect of shearing force
@@ -197,7 +199,7 @@ def local_shell_stress(
 
     Parameters
     ----------
-    youngs_modulus : Young's modulus; sqrt(E_z E_theta) of a laminate (a choice) [Pa]
+    youngs_modulus : Young's modulus; `shell_buckling.shell_modulus` of a laminate [Pa]
     thickness : wall thickness [m]
     radius : mid-radius [m]
     poissons_ratio : Poisson's ratio; sqrt(nu_ztheta nu_thetaz) of a laminate [-]

@@ -150,6 +150,8 @@ def bond_edge_shear(
     -----
     Valid: as `bond_peak_ratio`.
 
+    A plug or a thick sleeve counts with E A/(pi D), D of the bond.
+
     References
     ----------
     [Volkersen1938] shear lag of a lap joint
@@ -169,6 +171,56 @@ def bond_edge_shear(
         reach=shear_modulus / bond_thickness * length * length,
     )
     return force / (pi * diameter * length) * ratio
+
+
+def bond_thermal_shear(
+    *,
+    strain_difference: Array,
+    length: Array,
+    shear_modulus: Array,
+    bond_thickness: Array,
+    membrane_stiffness_1: Array,
+    membrane_stiffness_2: Array,
+) -> Array:
+    """Shear stress at an edge of a bonded overlap whose walls change length unequally.
+
+    tau = (G L/t_a) (e_l - e_f) tanh(w/2)/w, w as in `bond_peak_ratio`; opposite at the other edge.
+    It adds to the shear of a tensile force from `bond_edge_shear`; l is the wall that carries
+    that force at this edge, f the one that ends here.
+
+    Parameters
+    ----------
+    strain_difference : e_l - e_f, free axial strains alpha dT (and swelling) of both walls [-]
+    length : L, overlap [m]
+    shear_modulus, bond_thickness : G and thickness of the adhesive [Pa], [m]
+    membrane_stiffness_1, membrane_stiffness_2 : axial E t of both walls, either order [N/m]
+
+    Returns
+    -------
+    shear stress at the edge [Pa]
+
+    Notes
+    -----
+    Valid: as `bond_peak_ratio`; stress-free at the reference temperature (cure).
+
+    The radial stress of unequal hoop expansion is that of the layered tube.
+
+    References
+    ----------
+    [derived] Volkersen's tau'' = (w/L)^2 tau with tau' = (G/t_a)(e_f - e_l) at both edges
+
+    Examples
+    --------
+    >>> tau = bond_thermal_shear(strain_difference=22e-6 * 100, length=20e-3, shear_modulus=1e9,
+    ...                          bond_thickness=0.2e-3, membrane_stiffness_1=100e6,
+    ...                          membrane_stiffness_2=50e6)
+    >>> print(f"{tau / 1e6:.2f} MPa")
+    28.38 MPa
+    """
+    lag = shear_modulus / bond_thickness
+    flex = 1 / membrane_stiffness_1 + 1 / membrane_stiffness_2
+    decay = sqrt(positive(lag * flex))
+    return lag * strain_difference / decay * namespace(decay).tanh(decay * length / 2)
 
 
 def tie_rod_stress(*, force: Array, count: Array, diameter: Array, pitch: Array) -> Array:

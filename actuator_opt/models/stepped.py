@@ -139,6 +139,17 @@ class _Waves:
         return (value, slope, curve) if curved else (value, slope)
 
 
+def _ordered(ends: Ends, *pairs: Pair) -> tuple[tuple[str, str], list[Pair]]:
+    """Fixity as `_UNIFORM` names it, and properties of both segments turned round with it."""
+    key = (str(ends[0]), str(ends[1]))
+    if key in _MIRRORED:
+        return key[::-1], [(second, first) for first, second in pairs]
+    if key not in _UNIFORM:
+        message = f"ends {ends[0]}-{ends[1]} leave a mechanism or are unknown"
+        raise ValueError(message)
+    return key, list(pairs)
+
+
 def _lower_bound(ends: tuple[str, str], stiffness: Pair, length: Pair) -> Array:
     """Load no column of these segments buckles below.
 
@@ -214,14 +225,8 @@ def stepped_column_load(
     >>> print(f"{p / 1e3:.3f} kN")
     128.933 kN
     """
-    stiffness = (positive(bending_stiffness_1), positive(bending_stiffness_2))
-    length = (length_1, length_2)
-    key = (str(ends[0]), str(ends[1]))
-    if key in _MIRRORED:
-        key, stiffness, length = key[::-1], stiffness[::-1], length[::-1]
-    if key not in _UNIFORM:
-        message = f"ends {ends[0]}-{ends[1]} leave a mechanism or are unknown"
-        raise ValueError(message)
+    bending = (positive(bending_stiffness_1), positive(bending_stiffness_2))
+    key, (stiffness, length) = _ordered(ends, bending, (length_1, length_2))
     flex = (1 / sqrt(stiffness[0]), 1 / sqrt(stiffness[1]))
     exact = _form(key, flex, length)
     flat = (real(length[0]), real(length[1]))
@@ -233,3 +238,106 @@ def stepped_column_load(
     value, slope = _Waves.of(exact).at(xp, x, curved=False)
     x = x - value / slope
     return x * x
+
+
+Wave: TypeAlias = tuple[Array, Array, Array]
+"""cos(k L), sin(k L)/k and k sin(k L) of a segment."""
+
+
+def _start(key: tuple[str, str], total: Array, near: Wave, far: Wave) -> Pair:
+    """Moment and its slope at the first end of the buckled column, to any scale.
+
+    A pin or a free end has M = 0; a fixed or guided end has w' = 0, so M' = Q: (M_L - M_0)/L where
+    both ends are held sideways, 0 where one sways.
+    """
+    if key[0] == "pinned":
+        return 0.0, 1.0
+    if key == ("fixed", "pinned"):
+        return total, -1.0
+    if key == ("fixed", "fixed"):  # M_L = keep M_0 + rise M'_0 = M_0 + L M'_0
+        keep = near[0] * far[0] - near[2] * far[1]
+        rise = near[1] * far[0] + near[0] * far[1]
+        return total - rise, keep - 1
+    return 1.0, 0.0
+
+
+def mode_shear_stiffness(
+    *,
+    critical_load: Array,
+    bending_stiffness_1: Array,
+    length_1: Array,
+    shear_stiffness_1: Array,
+    bending_stiffness_2: Array,
+    length_2: Array,
+    shear_stiffness_2: Array,
+    ends: Ends = ("pinned", "pinned"),
+) -> Array:
+    """Shear stiffness of a stepped column in its buckling mode, for `column.engesser_load`.
+
+    1/S = (a_1/S_1 + a_2/S_2)/e: a_i = int (M'/P)^2 over segment i, e = int w'^2 over both, of the
+    mode in bending; M'' = -k_i^2 M, so the a_i are in closed form. S_1 = S_2 of a statically
+    determinate column gives S = S_1.
+
+    Parameters
+    ----------
+    critical_load : of the same column by bending alone, `stepped_column_load` [N]
+    bending_stiffness_1, bending_stiffness_2 : EI of both segments [N m^2]
+    length_1, length_2 : their lengths [m]
+    shear_stiffness_1, shear_stiffness_2 : kappa G A of both segments, may be infinite [N]
+    ends : fixity of the outer end of segment 1 and of segment 2
+
+    Returns
+    -------
+    kappa G A of the whole column [N]
+
+    Raises
+    ------
+    ValueError
+        Where the ends leave a mechanism.
+
+    Notes
+    -----
+    Valid: EI ratio to 100; load within 0.5 % to P/S_i = 0.1, 4 % to 0.3.
+
+    Fixed-pinned within 2 % and 11 %, fixed-fixed 2 % and 16 %. Of the other columns the load is
+    from above, and Engesser's with the smaller S_i from below.
+
+    References
+    ----------
+    [TimoshenkoGere1961] effect of shearing force; [derived] stationary energy quotient
+    1/P = int (M^2/EI + M'^2/S)/(P^2 int w'^2), taken at the mode without shear
+
+    Examples
+    --------
+    >>> s = mode_shear_stiffness(critical_load=128.933e3, bending_stiffness_1=5000.0,
+    ...     length_1=0.20, shear_stiffness_1=4e6, bending_stiffness_2=1200.0, length_2=0.18,
+    ...     shear_stiffness_2=1e6)
+    >>> print(f"{s / 1e6:.4f} MN")
+    1.3756 MN
+    """
+    key, (stiffness, length, shear) = _ordered(
+        ends,
+        (bending_stiffness_1, bending_stiffness_2),
+        (length_1, length_2),
+        (shear_stiffness_1, shear_stiffness_2),
+    )
+    square = (critical_load / stiffness[0], critical_load / stiffness[1])
+    waves = []
+    for part, long in zip(square, length, strict=True):
+        k = sqrt(part)
+        angle = k * long
+        xp = namespace(angle)
+        sine = xp.sin(angle)
+        waves.append((xp.cos(angle), sine / k, sine * k))
+    near, far = waves
+    total = length[0] + length[1]
+    moment, slope = _start(key, total, near, far)
+    middle, turn = moment * near[0] + slope * near[1], slope * near[0] - moment * near[2]
+    first = (slope * slope + square[0] * moment * moment) * length[0] + middle * turn
+    second = (turn * turn + square[1] * middle * middle) * length[1] - middle * turn
+    spare: Array = 0.0
+    if key[0] == "fixed" and key[1] in ("pinned", "fixed"):  # held sideways: M' = P w' + Q
+        last, tip = middle * far[0] + turn * far[1], turn * far[0] - middle * far[2]
+        first, second = first - moment * slope, second + last * tip
+        spare = 2 * slope * (slope * total - 2 * (last - moment))
+    return (first + second + spare) / (first / shear[0] + second / shear[1])

@@ -78,14 +78,23 @@ def chamber_stiffness(
 
 
 def hydraulic_stiffness(
-    *, area_a: Array, compliance_a: Array, area_b: Array, compliance_b: Array
+    *,
+    area_a: Array,
+    compliance_a: Array,
+    area_b: Array,
+    compliance_b: Array,
+    compliance_ab: Array = 0.0,
 ) -> Array:
-    """Stiffness of both closed chambers, k_h = A_A^2/C_A + A_B^2/C_B.
+    """Stiffness of both closed chambers, k_h = a^T C^-1 a with a = (A_A, -A_B).
+
+    (A_A^2 C_B + A_B^2 C_A + 2 A_A A_B C_AB)/(C_A C_B - C_AB^2); A_A^2/C_A + A_B^2/C_B where neither
+    chamber's pressure changes the other's volume.
 
     Parameters
     ----------
     area_a, area_b : [m^2]
     compliance_a, compliance_b : of the chambers at the piston position [m^3/Pa]
+    compliance_ab : volume of one chamber per pressure of the other (axial stretch) [m^3/Pa]
 
     Returns
     -------
@@ -93,11 +102,11 @@ def hydraulic_stiffness(
 
     Notes
     -----
-    Valid: ports closed.
+    Valid: ports closed, C_A C_B > C_AB^2.
 
     References
     ----------
-    [AaltoThesis] eq. 6; [derived] walls give beside the oil of each chamber
+    [AaltoThesis] eq. 6; [derived] walls give beside the oil of each chamber, coupled by stretch
 
     Examples
     --------
@@ -105,7 +114,11 @@ def hydraulic_stiffness(
     ...                           area_b=4e-4, compliance_b=4e-14))
     9000000
     """
-    return area_a * area_a / compliance_a + area_b * area_b / compliance_b
+    if isinstance(compliance_ab, float) and compliance_ab == 0.0:
+        return area_a * area_a / compliance_a + area_b * area_b / compliance_b
+    cross = compliance_a * compliance_b - compliance_ab * compliance_ab
+    pull = area_a * area_a * compliance_b + area_b * area_b * compliance_a
+    return (pull + 2 * area_a * area_b * compliance_ab) / cross
 
 
 def weakest_position(
@@ -117,11 +130,14 @@ def weakest_position(
     compliance_b0: Array,
     compliance_b_per_length: Array,
     stroke: Array,
+    compliance_ab0: Array = 0.0,
+    compliance_ab_per_length: Array = 0.0,
 ) -> Array:
     """Piston position where the closed cylinder is softest, clipped to the stroke.
 
-    With C_A = a0 + a' x, C_B = b0 + b' (s - x), dk_h/dx = 0 where
-    C_A/C_B = r = (A_A/A_B) sqrt(a'/b'), so x = [r (b0 + b' s) - a0]/(a' + r b').
+    With C_A = a0 + a' x, C_B = b0 + b' (s - x), C_AB = c0 + c' x the stiffness is N/D with
+    N = n0 + n' x and D = d0 + d' x + d'' x^2, so dk_h/dx = 0 is
+    n' d'' x^2 + 2 n0 d'' x + n0 d' - n' d0 = 0.
 
     Parameters
     ----------
@@ -129,6 +145,7 @@ def weakest_position(
     compliance_a0, compliance_b0 : chamber compliance at zero chamber length [m^3/Pa]
     compliance_a_per_length, compliance_b_per_length : growth with chamber length [m^2/Pa]
     stroke : [m]
+    compliance_ab0, compliance_ab_per_length : coupling at x = 0, and its growth with x
 
     Returns
     -------
@@ -140,7 +157,7 @@ def weakest_position(
 
     References
     ----------
-    [derived] stationary point of A_A^2/C_A + A_B^2/C_B
+    [derived] stationary point of `hydraulic_stiffness`
 
     Examples
     --------
@@ -149,9 +166,21 @@ def weakest_position(
     >>> print(f"{x:.3f}")
     0.050
     """
-    ratio = area_a / area_b * sqrt(compliance_a_per_length / compliance_b_per_length)
-    top = ratio * (compliance_b0 + compliance_b_per_length * stroke) - compliance_a0
-    position = top / (compliance_a_per_length + ratio * compliance_b_per_length)
+    a0, a1, c0, c1 = (
+        compliance_a0,
+        compliance_a_per_length,
+        compliance_ab0,
+        compliance_ab_per_length,
+    )
+    whole, b1 = compliance_b0 + compliance_b_per_length * stroke, compliance_b_per_length
+    square_a, square_b, both = area_a * area_a, area_b * area_b, 2 * area_a * area_b
+    top_0 = square_a * whole + square_b * a0 + both * c0
+    top_1 = square_b * a1 - square_a * b1 + both * c1
+    low_0 = a0 * whole - c0 * c0
+    low_1 = a1 * whole - a0 * b1 - 2 * c0 * c1
+    low_2 = a1 * b1 + c1 * c1
+    half, rest = top_0 * low_2, top_0 * low_1 - top_1 * low_0
+    position = rest / (half + sqrt(half * half + top_1 * low_2 * rest))
     return clip(position, 0.0, stroke)
 
 

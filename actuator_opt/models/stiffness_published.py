@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from ..numeric import Array
+from .barrel import bore_growth_as_published
 from .lines import line_compliance
 
 
@@ -214,3 +215,61 @@ def cylinder_expansion_as_published(*, pressure: Array, area: Array, stroke: Arr
     4.46 N/mm
     """
     return pressure * area / stroke
+
+
+def equivalent_stiffness_as_published(
+    *,
+    pressure: Array,
+    bore: Array,
+    outer_diameter: Array,
+    youngs_modulus: Array,
+    poissons_ratio: Array,
+    stroke: Array,
+    oil: Array,
+    rod: Array,
+) -> tuple[Array, Array]:
+    """Equivalent stiffness and radial expansion along a record of pressure, as in figure 10.
+
+    k = dp A/L_p with A of the bore grown by eq. 12, in series with oil and rod. Zero where the
+    pressure is: `cylinder_expansion_as_published` is no stiffness. Per chamber and independent of
+    pressure: `stiffness.hydraulic_stiffness` with the compliance of `barrel.chamber_compliance`.
+
+    Parameters
+    ----------
+    pressure : pressure difference at each time [Pa]
+    bore, outer_diameter : of the barrel [m]
+    youngs_modulus, poissons_ratio : of the barrel [Pa], [-]; the source inserts a bending modulus
+    stroke : [m]
+    oil, rod : stiffness of oil and rod [N/m]
+
+    Returns
+    -------
+    equivalent stiffness [N/m], radial expansion of the bore [m], at each time
+
+    Notes
+    -----
+    Valid: to reproduce the source only.
+
+    References
+    ----------
+    [ElAsswad2018] eq. 7, 10, 11, 12 and figure 10
+
+    Examples
+    --------
+    >>> k, growth = equivalent_stiffness_as_published(pressure=5e6, bore=0.025, stroke=0.11,
+    ...     outer_diameter=0.03, youngs_modulus=3.48e9, poissons_ratio=0.3, oil=2480e3, rod=13430e3)
+    >>> print(f"{k / 1e3:.2f} N/mm, {growth * 1e6:.1f} um")
+    22.52 N/mm, 126.0 um
+    """
+    growth = bore_growth_as_published(
+        pressure=pressure,
+        inner_radius=bore / 2,
+        outer_radius=outer_diameter / 2,
+        youngs_modulus=youngs_modulus,
+        poissons_ratio=poissons_ratio,
+    )
+    grown = bore + 2 * growth
+    barrel = cylinder_expansion_as_published(
+        pressure=pressure, area=0.25 * math.pi * grown * grown, stroke=stroke
+    )
+    return barrel / (1 + barrel * (1 / oil + 1 / rod)), growth

@@ -1,0 +1,363 @@
+"""Compact lay-up notation: ``plies: "[90_4 / +-25_2 / 0]s"`` for the layers it means.
+
+Angles are in degrees from the tube axis, layers from the inside outwards::
+
+    layup = item {"/" item}
+    item  = angle ["_" n]  |  "+-" angle ["_" n]  |  "[" layup "]" ["_" n] ["s"]
+
+``+-25`` (or ±25) is a balanced pair, two plies; 25 alone is one ply at that signed angle, 0 and
+90 have no sign. ``_n`` repeats, ``s`` mirrors a group; neighbours of one angle become one layer.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from decimal import Decimal
+from typing import Any, NamedTuple
+
+from .. import quantities, units
+from ..errors import Diagnostic
+from .kinds import ValueFault, example, read_quantity, what
+from .model import MOST_LAYERS, Ply
+from .paths import spell
+from .structure import Loc, child, child_at, lists_of
+from .suggest import shown
+from .yaml_source import Document, Shorthand, Span
+
+EXAMPLE = "[90_4 / +-25_2 / 0]s"
+MOST_REPEATS = 999
+_LONGEST = 1000
+_DEEPEST = 20
+_TOKEN = re.compile(
+    r"\s*(?:(?P<pair>\+/-|\+-|±)|(?P<sign>[+-])|(?P<number>[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
+    r"|(?P<mark>[\[\]/_sS])|(?P<odd>[^\W\d_]+|\S))"
+)
+_OWN_KEYS = ("plies", "ply_thickness", "angle", "thickness", "balanced")
+"""Keys that say what the layers are; the others stay as they are written."""
+
+
+class NotationFault(ValueFault):
+    """What is wrong with a notation, and at which of its characters."""
+
+    def __init__(self, offset: int, message: str, remedy: str) -> None:
+        super().__init__(message, remedy)
+        self.offset = offset
+
+
+class Layer(NamedTuple):
+    """Neighbouring plies of one angle; `offset` is where the notation says so."""
+
+    angle: str
+    balanced: bool
+    plies: int
+    offset: int
+
+    def same(self, other: Layer) -> bool:
+        """Whether two layers differ in nothing but their plies."""
+        return (float(self.angle), self.balanced) == (float(other.angle), other.balanced)
+
+
+def read_notation(text: str, most: int = MOST_LAYERS) -> tuple[Layer, ...]:
+    """The layers a notation means, from the inside outwards.
+
+    Raises
+    ------
+    NotationFault
+        not a lay-up, an angle beyond 90 degrees, more than `most` layers
+
+    >>> [(layer.angle, layer.balanced, layer.plies) for layer in read_notation("[90_2 / +-25]s")]
+    [('90', True, 2), ('25', True, 4), ('90', True, 2)]
+    """
+    if len(text) > _LONGEST:
+        raise NotationFault(0, f"a lay-up of {len(text)} characters", f"write at most {_LONGEST}")
+    tokens = [
+        (str(m.lastgroup), m[str(m.lastgroup)], m.start(str(m.lastgroup)))
+        for m in _TOKEN.finditer(text)
+    ]
+    parser = _Parser([*tokens, ("end", "", len(text.rstrip()))], most)
+    layers = parser.layup(0)
+    if parser.kind != "end":
+        raise parser.unexpected('a "/" or the end')
+    return tuple(layers)
+
+
+def _joined(layers: Sequence[Layer]) -> list[Layer]:
+    """Layers with neighbours of one angle made one."""
+    joined: list[Layer] = []
+    for layer in layers:
+        if joined and joined[-1].same(layer):
+            joined[-1] = joined[-1]._replace(plies=joined[-1].plies + layer.plies)
+        else:
+            joined.append(layer)
+    return joined
+
+
+class _Parser:
+    """Recursive descent over the tokens of a notation."""
+
+    def __init__(self, tokens: Sequence[tuple[str, str, int]], most: int) -> None:
+        self.tokens = tokens
+        self.most = most
+        self.at = 0
+
+    @property
+    def kind(self) -> str:
+        return self.tokens[self.at][0]
+
+    @property
+    def text(self) -> str:
+        return self.tokens[self.at][1]
+
+    @property
+    def offset(self) -> int:
+        return self.tokens[self.at][2]
+
+    def unexpected(self, wanted: str) -> NotationFault:
+        """The present token is not what the grammar wants here."""
+        text, remedy = self.text, f'write e.g. "{EXAMPLE}"'
+        if self.kind == "end":
+            return NotationFault(self.offset, f"the lay-up ends where {wanted} belongs", remedy)
+        if text in ",;|":
+            remedy = 'separate plies by "/"'
+        elif text in ("deg", "°", "rad"):
+            remedy = "angles are in degrees, without a unit"
+        elif text in ("s", "S"):
+            remedy = f"s mirrors a group in brackets, {remedy}"
+        elif text == "]":
+            remedy = 'remove it, or open a "["'
+        return NotationFault(self.offset, f'"{shown(text)}" where {wanted} belongs', remedy)
+
+    def layup(self, depth: int) -> list[Layer]:
+        """Items between slashes."""
+        layers = self.item(depth)
+        while self.text == "/":
+            self.at += 1
+            layers = [*layers, *self.item(depth)]
+        return self.limited(layers)
+
+    def limited(self, layers: Sequence[Layer]) -> list[Layer]:
+        """Neighbours made one; not more layers than fit a wall."""
+        joined = _joined(layers)
+        if len(joined) > self.most:
+            message = f"more than {self.most} layers"
+            raise NotationFault(joined[self.most].offset, message, "write fewer")
+        return joined
+
+    def item(self, depth: int) -> list[Layer]:
+        """A ply, a pair or a group, with its repeats."""
+        if self.text != "[":
+            layer = self.ply()
+            return [layer._replace(plies=layer.plies * self.repeats())]
+        opened = self.offset
+        if depth == _DEEPEST:
+            raise NotationFault(opened, f"groups nested deeper than {_DEEPEST}", "write fewer")
+        self.at += 1
+        layers = self.layup(depth + 1)
+        if self.kind == "end":
+            raise NotationFault(opened, 'this "[" is not closed', 'write "]" after the group')
+        if self.text != "]":
+            raise self.unexpected('a "/" or "]"')
+        self.at += 1
+        layers = self.limited(layers * self.repeats())
+        if self.text in ("s", "S"):
+            self.at += 1
+            layers = self.limited([*layers, *reversed(layers)])
+        return layers
+
+    def repeats(self) -> int:
+        """The count after an underscore; 1 without."""
+        if self.text != "_":
+            return 1
+        self.at += 1
+        if self.kind != "number":
+            raise self.unexpected("a number of repeats")
+        if not self.text.isdecimal() or not 1 <= int(self.text) <= MOST_REPEATS:
+            raise NotationFault(
+                self.offset,
+                f"{shown(self.text, 20)} repeats",
+                f"write a whole number from 1 to {MOST_REPEATS}",
+            )
+        self.at += 1
+        return int(self.tokens[self.at - 1][1])
+
+    def ply(self) -> Layer:
+        """An angle with its sign."""
+        offset, pair = self.offset, self.kind == "pair"
+        signed, sign = self.kind in ("pair", "sign"), "-" if self.text == "-" else ""
+        self.at += signed
+        if self.kind != "number":
+            raise self.unexpected("an angle" if signed else "a ply")
+        size = float(self.text)
+        if size > 90:
+            message = f"{sign}{shown(self.text, 20)}: outside the valid range of an angle"
+            raise NotationFault(offset, message, "write -90 to 90")
+        plain = size in (0.0, 90.0)
+        angle = self.text if plain else sign + self.text
+        self.at += 1
+        return Layer(angle, pair or plain, 2 if pair else 1, offset)
+
+
+def expanded(document: Document) -> Document:
+    """The document with the layers each compact entry means, every place still in the text.
+
+    Faults of an entry are added to the document's; a faulty one stays a single layer without
+    thickness, of which nothing more is said.
+    """
+    for wall in lists_of(Ply):
+        items = child_at(document.data, wall)
+        if isinstance(items, list) and any(isinstance(i, dict) and "plies" in i for i in items):
+            document = _in_full(document, wall, items)
+    return document
+
+
+def _in_full(document: Document, wall: Loc, items: Sequence[Any]) -> Document:
+    """One list entry by entry; what stood at an index then stands at `starts[index]`."""
+    whole: list[Any] = []
+    starts: list[int] = []
+    places: dict[Loc, Span] = {}
+    faults: list[Diagnostic] = []
+    unusable: set[Loc] = set()
+    shorthands: list[Shorthand] = []
+    for index, item in enumerate(items):
+        first, loc = len(whole), (*wall, index)
+        starts.append(first)
+        if not isinstance(item, dict) or "plies" not in item:
+            whole.append(item)
+            continue
+        wrong = list(_wrong(item))
+        faults += [
+            _diagnostic(document, loc, fault, (*wall, first))
+            for fault in wrong
+            if (*loc, fault.key) not in document.unusable
+        ]
+        layers = () if wrong or first > MOST_LAYERS else read_notation(item["plies"])
+        if not layers:
+            whole.append({key: item[key] for key in item if key not in _OWN_KEYS})
+            unusable.add((*wall, first, "thickness"))
+            continue
+        whole += _entries(item, layers)
+        shorthands.append(Shorthand(wall, first, len(layers), _extent(document, loc)))
+        for number, layer in enumerate(layers):
+            places |= _places(document, loc, (*wall, first + number), layer)
+    if faults:  # PATHs to layers that are not there yet would only echo them
+        variables = child(document.data, "variables")
+        named = variables if isinstance(variables, dict) else ()
+        unusable |= {("variables", path) for path in named if path.startswith(f"{spell(wall)}[")}
+
+    def moved(loc: Loc) -> Loc:
+        depth = len(wall)
+        if len(loc) <= depth or loc[:depth] != wall:
+            return loc
+        return (*wall, starts[int(loc[depth])], *loc[depth + 1 :])
+
+    return replace(
+        document,
+        data=_with(document.data, wall, whole),
+        values=places | {moved(loc): span for loc, span in document.values.items()},
+        keys={moved(loc): span for loc, span in document.keys.items()},
+        faults=[*document.faults, *faults],
+        unusable={moved(loc) for loc in document.unusable} | unusable,
+        shorthands=(*document.shorthands, *shorthands),
+    )
+
+
+def _with(node: Any, loc: Loc, value: Any) -> Any:
+    """A tree with another value at a place; the tree itself stays."""
+    return value if not loc else {**node, loc[0]: _with(node[loc[0]], loc[1:], value)}
+
+
+class _Wrong(NamedTuple):
+    """A fault of a compact entry: at a key, at its value, or at a character of the value."""
+
+    key: str
+    message: str
+    remedy: str
+    offset: int | None = None
+    at_key: bool = False
+
+
+def _wrong(item: Mapping[str, Any]) -> Iterator[_Wrong]:
+    """Every fault of a compact entry but those of its material."""
+    for key in ("angle", "thickness", "balanced"):
+        if key in item:
+            message = f"{key} and plies in one entry: plies says it"
+            yield _Wrong(key, message, "keep one of them", at_key=True)
+    thickness = quantities.INPUTS["ply_thickness"]
+    if "ply_thickness" not in item:
+        remedy = f'add e.g. "ply_thickness: {example(thickness)}"'
+        yield _Wrong("ply_thickness", "missing: plies needs it", remedy)
+    for key in ("plies", "ply_thickness"):
+        value = item.get(key, "")
+        try:
+            if value is None:
+                raise ValueFault("no value", "write one, or remove the line")
+            if key == "ply_thickness" and key in item:
+                read_quantity(value, thickness)
+            elif key == "plies" and not isinstance(value, str):
+                remedy = f'put it in quotes: plies: "{EXAMPLE}"'
+                raise ValueFault(f"need a text, not {what(value)}", remedy)
+            elif key == "plies":
+                read_notation(value)
+        except NotationFault as fault:
+            yield _Wrong(key, fault.message, fault.remedy, fault.offset)
+        except ValueFault as fault:
+            yield _Wrong(key, fault.message, fault.remedy)
+
+
+def _diagnostic(document: Document, loc: Loc, wrong: _Wrong, now: Loc) -> Diagnostic:
+    """A fault of the compact entry at `loc`, whose first layer stands at `now`."""
+    at = (*loc, wrong.key)
+    span = document.keys.get(at) if wrong.at_key else document.values.get(at)
+    if wrong.offset is not None:
+        span = _character(document, at, wrong.offset)
+    span = span or document.values.get(loc)
+    return document.diagnostic(span, wrong.message, wrong.remedy, spell((*now, wrong.key)))
+
+
+def _character(document: Document, loc: Loc, offset: int) -> Span | None:
+    """Place of one character of a text; of the text where it is folded or has escapes."""
+    span, value = document.values.get(loc), child_at(document.data, loc)
+    if span is None or not isinstance(value, str):
+        return span
+    for quote in (0, 1):
+        start = span.start + quote
+        if document.text.startswith(value, start) and span.start <= start + len(value) <= span.end:
+            at = quote + offset
+            return Span(span.line, span.column + at, span.start + at, span.end)
+    return span
+
+
+def _entries(item: Mapping[str, Any], layers: Sequence[Layer]) -> Iterator[dict[str, Any]]:
+    """The entries of the list form; keys nobody knows stay in the first."""
+    number, unit = units.split(item["ply_thickness"])
+    for layer in layers:
+        thickness = (Decimal(repr(number)) * layer.plies).normalize()
+        entry: dict[str, Any] = {}
+        for key in item if layer is layers[0] else ("material",):
+            if key not in _OWN_KEYS and key in item:
+                entry[key] = item[key]
+        entry |= {"angle": f"{layer.angle} deg", "thickness": f"{thickness:f} {unit}"}
+        entry |= {} if layer.balanced else {"balanced": "false"}
+        yield entry | {"ply_thickness": item["ply_thickness"]}
+
+
+def _places(document: Document, loc: Loc, now: Loc, layer: Layer) -> dict[Loc, Span]:
+    """Where the values of a layer stand: those of the notation at its angle."""
+    said = _character(document, (*loc, "plies"), layer.offset)
+    found = {now: said} | {(*now, key): said for key in ("angle", "thickness", "balanced")}
+    found |= {
+        (*now, key): document.values.get((*loc, key)) for key in ("material", "ply_thickness")
+    }
+    return {place: span for place, span in found.items() if span is not None}
+
+
+def _extent(document: Document, loc: Loc) -> Span:
+    """Place of a compact entry, from its first key to the end of its last value."""
+    span = document.values[loc]
+    if document.text.startswith("{", span.start):
+        return span
+    below = [at for place, at in document.values.items() if place[: len(loc)] == loc != place]
+    end = max(at.end for at in below)  # a block scalar's is on the next line
+    return span._replace(end=len(document.text[:end].rstrip()))

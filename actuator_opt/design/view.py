@@ -1,0 +1,81 @@
+"""A design's tree as checks read it: numbers by place, and the fault a check finds there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol, runtime_checkable
+
+from .. import quantities
+from .structure import Loc, child_at, number_of, value_at
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A fault by its place in the tree; `at_key` points at the key instead of the value.
+
+    What is missing has the place it would have; the message then stands at its block.
+    """
+
+    loc: Loc
+    message: str
+    remedy: str = ""
+    at_key: bool = False
+
+
+class Materials(Protocol):
+    """What the input layer asks of the material library (`materials.Library` is one)."""
+
+    def __contains__(self, name: object) -> bool: ...
+
+    def names(self) -> Sequence[str]:
+        """Every name."""
+        ...
+
+    def kind(self, name: str) -> str | None:
+        """Kind of an entry: metal, ply, polymer, fluid, seal, adhesive."""
+        ...
+
+
+@runtime_checkable
+class Properties(Protocol):
+    """A material library that also tells what it knows of each entry."""
+
+    def numbers(self, name: str) -> Mapping[str, float]:
+        """Every stated property, SI."""
+        ...
+
+
+class View:
+    """A tree in SI, read by dotted keys, with the model's defaults; None where unusable."""
+
+    def __init__(self, tree: Any) -> None:
+        self.tree = tree
+
+    def number(self, *loc: str | int) -> float | None:
+        """The SI number at a place."""
+        return number_of(value_at(self.tree, loc))
+
+    def text(self, *loc: str | int) -> str | None:
+        """The text at a place."""
+        value = value_at(self.tree, loc)
+        return value if isinstance(value, str) else None
+
+    def flag(self, *loc: str | int) -> bool | None:
+        """The yes or no at a place."""
+        value = value_at(self.tree, loc)
+        return value if isinstance(value, bool) else None
+
+    def items(self, *loc: str | int) -> Sequence[Any]:
+        """The entries of a list."""
+        value = value_at(self.tree, loc)
+        return value if isinstance(value, (list, tuple)) else ()
+
+    def has(self, *loc: str | int) -> bool:
+        """Whether the file states a value here."""
+        return child_at(self.tree, loc) is not None
+
+
+def length_text(value: float) -> str:
+    """A length as people read it."""
+    return quantities.INPUTS["length"].text(value)

@@ -1,0 +1,208 @@
+"""Faults of the walls of barrel and rod: layers that cannot be, materials that cannot bear them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from .. import quantities
+from ..errors import InputError
+from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_constants
+from .model import Ply
+from .paths import spell
+from .structure import Loc, child, child_at, lists_of, number_of
+from .view import Fault, Materials, Properties, View, length_text
+
+PLY_STRENGTHS = (
+    "strength_1_tension", "strength_1_compression", "strength_2_tension",
+    "strength_2_compression", "strength_12",
+)  # fmt: skip
+"""Strengths that every failure criterion needs; what else one may use has a stated default."""
+
+_WITHOUT_PLIES = ("isotropic", "as_published")
+"""Wall models that know no failure of plies."""
+
+_ELASTIC = (*PLY_CONSTANTS, "youngs_modulus", "poissons_ratio", "shear_modulus")
+
+
+def signs(view: View) -> Iterator[Fault]:
+    """A balanced pair has no sign, neither its angle nor the bounds of it."""
+    for wall in lists_of(Ply):
+        for index in range(len(view.items(*wall))):
+            loc = (*wall, index, "angle")
+            if view.flag(*wall, index, "balanced") is not True:
+                continue
+            bound = ("variables", spell(loc), "lower")
+            stated = {loc: view.number(*loc), bound: number_of(child_at(view.tree, bound))}
+            for place, angle in stated.items():
+                if angle is not None and angle < 0:
+                    text = quantities.INPUTS["winding_angle"].text
+                    yield Fault(
+                        place,
+                        f"{text(angle)}: a balanced +-pair has no sign",
+                        f'write {text(-angle)}, or add "balanced: false" for one signed ply'
+                        if place == loc
+                        else f'write 0 deg or more, or add "balanced: false" to {spell(loc[:-1])}',
+                    )
+
+
+def barrel_model(view: View) -> Iterator[Fault]:
+    """The isotropic wall model knows one layer."""
+    layers = len(view.items("barrel", "layup"))
+    if view.text("barrel", "model") == "isotropic" and layers > 1:
+        yield Fault(
+            ("barrel", "model"),
+            f"isotropic: the layup has {layers} layers, the model takes one",
+            "write auto, or keep one layer",
+        )
+
+
+def autofrettage(view: View) -> Iterator[Fault]:
+    """The liner yields above the supply pressure, under layers that hold it."""
+    loc = ("barrel", "autofrettage_pressure")
+    pressure, supply = view.number(*loc), view.number("supply", "pressure")
+    if pressure is None:
+        return
+    text = quantities.INPUTS["autofrettage_pressure"].text
+    if supply is not None and pressure <= supply:
+        yield Fault(
+            loc,
+            f"{text(pressure)}: not above supply.pressure ({text(supply)})",
+            f"write more than {text(supply)}",
+        )
+    elif len(view.items("barrel", "layup")) == 1:
+        remedy = "remove the line, or wrap the liner"
+        yield Fault(loc, "the wall is one layer: nothing holds a liner", remedy, at_key=True)
+
+
+def laminated_rod(view: View) -> Iterator[Fault]:
+    """The bore of a laminated rod follows from its layers, which leave one; fittings need both."""
+    layers = len(view.items("rod", "layup"))
+    if not layers:
+        if view.has("rod", "fitting"):
+            remedy = "remove it, or add the layers: rod.layup"
+            yield Fault(("rod", "fitting"), "a rod without layup has none", remedy, at_key=True)
+        return
+    why = "the bore of a laminated rod follows from outer_diameter and its layers"
+    if view.number("rod", "inner_diameter"):
+        yield Fault(("rod", "inner_diameter"), why, "remove the line", at_key=True)
+    moved = ("variables", "rod.inner_diameter")
+    if child_at(view.tree, moved) is not None:
+        remedy = "remove it; move e.g. rod.layup[0].thickness"
+        yield Fault(moved, why, remedy, at_key=True)
+    outer = view.number("rod", "outer_diameter")
+    parts = [view.number("rod", "layup", index, "thickness") for index in range(layers)]
+    known = [part for part in parts if part is not None]
+    if outer is None or len(known) < layers:
+        return
+    if 2 * sum(known) >= outer * (1 - 1e-9):
+        yield Fault(
+            ("rod", "layup"),
+            f"layers of {length_text(sum(known))} leave no bore in a rod of {length_text(outer)}",
+            f"write less than {length_text(outer / 2)} in all, or a larger rod.outer_diameter",
+            at_key=True,
+        )
+        return
+    wall, room = view.number("rod", "fitting", "wall"), outer / 2 - sum(known)
+    if wall is not None and wall > room * (1 + 1e-9):
+        yield Fault(
+            ("rod", "fitting", "wall"),
+            f"{length_text(wall)}: the bore has a radius of {length_text(room)}",
+            f"write at most {length_text(room)}, or leave it out: solid",
+        )
+
+
+CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+    signs,
+    barrel_model,
+    autofrettage,
+    laminated_rod,
+)
+
+
+def of_materials(tree: Any, materials: Materials) -> Iterator[Fault]:
+    """Faults of the walls that show when the library is asked."""
+    view = View(tree)
+    yield from _kinds(view, materials)
+    if isinstance(materials, Properties):
+        known = _Known(view, materials)
+        yield from _strengths(view, known)
+        yield from _stiffness(view, known)
+
+
+def _names(view: View, wall: Loc) -> list[str | None]:
+    return [view.text(*wall, index, "material") for index in range(len(view.items(*wall)))]
+
+
+def _kinds(view: View, materials: Materials) -> Iterator[Fault]:
+    """Autofrettage yields a metal liner; a laminated rod ends in metal fittings."""
+    first = next(iter(_names(view, ("barrel", "layup"))), None)
+    stated = view.number("barrel", "autofrettage_pressure") is not None
+    if stated and first is not None and materials.kind(first) not in (None, "metal"):
+        yield Fault(
+            ("barrel", "autofrettage_pressure"),
+            f"the innermost layer is {first}, no metal liner that could yield",
+            "remove the line, or add a metal liner",
+            at_key=True,
+        )
+    wound = [name for name in _names(view, ("rod", "layup")) if name is not None]
+    if any(materials.kind(name) == "ply" for name in wound) and not view.has("rod", "fitting"):
+        yield Fault(
+            ("rod", "fitting"),
+            "missing: a rod of plies needs bonded end fittings",
+            'add a block "fitting:" with adhesive, length',
+        )
+
+
+class _Known:
+    """Properties of the library with the design's own over them."""
+
+    def __init__(self, view: View, materials: Properties) -> None:
+        self.own = child(view.tree, "materials")
+        self.materials = materials
+
+    def changed(self, name: str) -> dict[str, float]:
+        """What the design states itself; what is faulty is left out."""
+        own = child(self.own, name)
+        pairs = own.items() if isinstance(own, Mapping) else ()
+        return {key: value for key, value in pairs if isinstance(value, float)}
+
+    def numbers(self, name: str) -> dict[str, float]:
+        """Every known property; none where the entry is missing or faulty (said elsewhere)."""
+        try:
+            return {**self.materials.numbers(name), **self.changed(name)}
+        except InputError:
+            return {}
+
+
+def _strengths(view: View, known: _Known) -> Iterator[Fault]:
+    """Every ply of the barrel has the strengths of the criterion the file chooses."""
+    criterion = view.text("barrel", "criterion")
+    if not view.has("barrel", "criterion") or view.text("barrel", "model") in _WITHOUT_PLIES:
+        return
+    for name in dict.fromkeys(_names(view, ("barrel", "layup"))):
+        numbers = known.numbers(name) if name is not None else {}
+        missing = [key for key in PLY_STRENGTHS if key not in numbers]
+        if "youngs_modulus_1" in numbers and missing:
+            yield Fault(
+                ("barrel", "criterion"),
+                f"{criterion}: {name} states no {', '.join(missing)}",
+                f'add e.g. "{missing[0]}: 60 MPa" under materials.{name}, or use another material',
+            )
+
+
+def _stiffness(view: View, known: _Known) -> Iterator[Fault]:
+    """Elastic constants the design changes leave the stiffness positive definite."""
+    for name in known.own if isinstance(known.own, Mapping) else ():
+        changed = [key for key in known.changed(name) if key in _ELASTIC]
+        numbers = known.numbers(name) if changed else {}
+        if "youngs_modulus_1" in numbers and not set(PLY_REQUIRED) <= set(numbers):
+            continue
+        constants = ply_constants(numbers)
+        if constants and not compliance_determinant(constants) > 0:
+            ratios = [key for key in changed if key.startswith("poissons")]
+            yield Fault(
+                ("materials", name, (ratios or changed)[-1]),
+                "these elastic constants are impossible: the stiffness is not positive definite",
+                "check the Poisson's ratios against the moduli: nu_12^2 < E_1/E_2 and alike",
+            )

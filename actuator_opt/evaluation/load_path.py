@@ -1,0 +1,133 @@
+"""The axial force in the barrel's wall: from the mount, the direction of load, stop and tie rods.
+
+Never open or closed by assumption. Tie rods clamp the barrel with their preload and take their
+share of what tears the ends apart; without a stated preload it is what keeps the joint closed at
+proof pressure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..design.model import Design
+from ..models import barrel_ends
+from ..numeric import Array, maximum
+from .allow import Stock
+from .geometry import Geometry
+from .state import State
+from .values import Values
+
+if TYPE_CHECKING:
+    from .wall import Swelling
+
+NONE = "no axial load"
+STOP = "piston at the end stop"
+LARGEST = "largest axial load"
+
+
+@dataclass(frozen=True, slots=True)
+class TieRods:
+    """Forces of tie rods [N]: preload, all rods at supply pressure; preload over its loss then."""
+
+    preload: Array
+    largest: Array
+    closed: Array
+
+
+@dataclass(frozen=True, slots=True)
+class LoadPath:
+    """Axial force in the wall.
+
+    `per_pressure` by name (designs,) [m^2]; `held` without pressure [N]; `cases` at the chambers'
+    pressures (cases, designs) [N], `held` included; `share` is the barrel's part of a force that
+    tears the ends apart.
+    """
+
+    per_pressure: dict[str, Array]
+    held: Array
+    cases: Array
+    tie_rods: TieRods | None = None
+    share: Array = 1.0
+
+
+def tied(design: Design) -> bool:
+    """Whether tie rods hold the ends."""
+    return design.retention is not None and design.retention.type == "tie_rods"
+
+
+def largest_area(design: Design, g: Geometry) -> Array:
+    """Area on which supply pressure tears the ends apart at worst: end stop or mount."""
+    if design.cylinder.end_stop == "internal":
+        return g.area_a
+    return g.area_b if design.cylinder.mount.startswith("cap") else g.area_a
+
+
+def derive(
+    v: Values, design: Design, stock: Stock, g: Geometry, state: State, swelling: Swelling
+) -> LoadPath:
+    """The load path of a design, once the wall's own stiffness is known."""
+    if design.cylinder.mount.startswith("cap"):
+        cases = barrel_ends.axial_force_cap_mounted(
+            rod_side_pressure=state.moving_b, rod_side_area=g.area_b, stop_force=0.0
+        )
+    else:
+        cases = barrel_ends.axial_force_head_mounted(
+            cap_side_pressure=state.moving_a, cap_side_area=g.area_a
+        )
+    none = 0.0 * np.atleast_1d(np.asarray(g.area_a))
+    worst = none + largest_area(design, g)
+    if not tied(design):
+        name = STOP if design.cylinder.end_stop == "internal" else LARGEST
+        return LoadPath({NONE: none, name: worst}, 0.0, cases)
+    return _clamped(v, design, stock, g, state, swelling, worst, cases)
+
+
+def _clamped(
+    v: Values,
+    design: Design,
+    stock: Stock,
+    g: Geometry,
+    state: State,
+    swelling: Swelling,
+    worst: Array,
+    cases: Array,
+) -> LoadPath:
+    """A barrel between tie rods: two springs in parallel with preload."""
+    assert design.retention is not None
+    assert design.retention.material is not None
+    modulus = stock.get(design.retention.material, "youngs_modulus")
+    diameter = v["retention.thread.diameter"]
+    length = g.barrel_length + 2 * g.plate
+    springs = {
+        "barrel_stiffness": 1 / (swelling.stretch * g.barrel_length),
+        "tie_rod_stiffness": v["retention.count"] * modulus * pi * diameter * diameter / 4 / length,
+    }
+    supply = v["supply.pressure"]
+    proof = v["supply.proof_ratio"] * supply
+    slack = -swelling.shortening * g.barrel_length
+
+    def shared(force: Array, pressure: Array) -> tuple[Array, Array]:
+        return barrel_ends.tie_rod_forces(
+            axial_force=force, preload=0.0, free_shortening=slack * pressure, **springs
+        )
+
+    unit, _ = shared(worst, 1.0)
+    relaxed, _ = shared(0.0 * worst, 1.0)
+    preload = v.get("retention.preload", None)
+    if preload is None:
+        preload = proof * unit
+    pressure = maximum(state.moving_a, state.moving_b)
+    barrel, _ = shared(cases, pressure)
+    rods = supply * worst - (supply * unit - preload)
+    lost = supply * unit
+    return LoadPath(
+        {NONE: relaxed, STOP: unit},
+        -preload,
+        barrel - preload,
+        TieRods(preload, rods, preload / lost),
+        springs["barrel_stiffness"] / (springs["barrel_stiffness"] + springs["tie_rod_stiffness"]),
+    )

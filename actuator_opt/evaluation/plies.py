@@ -1,0 +1,233 @@
+"""The layers of a laminated wall or rod as the models take them, strengths after knock-downs.
+
+Residual stresses matter at both ends of the temperature range: cold, where cooling from the cure
+has shrunk the most, and hot, where the matrix is weakest. Each `Climate` goes with the allowables
+of its own temperature.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..design.model import Design, Ply
+from ..models.burst_ladder import WallLayer
+from ..models.criteria import CRITERIA
+from ..models.layered_tube import TubeLayer
+from ..models.solid_ply import Solid, solid_stiffness
+from ..models.strength_modes import PlyRatios, PlyStrength, Stress
+from ..numeric import Array, real
+from .allow import Stock
+from .values import Values
+
+_STRENGTHS = (
+    "strength_1_tension",
+    "strength_1_compression",
+    "strength_2_tension",
+    "strength_2_compression",
+    "strength_12",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Climate:
+    """Temperature change from the stress-free state, K, and the allowables that go with it."""
+
+    name: str
+    change: Array
+    cold: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """One layer with its numbers; `strengths` and `yields` one per climate, None where unknown."""
+
+    label: str
+    name: str
+    isotropic: bool
+    constants: dict[str, Array]
+    solid: Solid
+    angle: Array
+    balanced: bool
+    thickness: Array
+    strengths: tuple[PlyStrength, ...]
+    yields: tuple[Array, ...]
+
+    @property
+    def strength(self) -> PlyStrength | None:
+        """Ply strengths where the matrix is weakest: the last climate is the hottest."""
+        return self.strengths[-1] if self.strengths else None
+
+    @property
+    def yield_strength(self) -> Array:
+        """Yield strength at the hottest; None for a ply."""
+        return self.yields[-1] if self.yields else None
+
+    @property
+    def expansions(self) -> tuple[Array, Array] | None:
+        """Thermal expansions along and across the fibre; None where not stated."""
+        first = self.constants.get("thermal_expansion_1")
+        second = self.constants.get("thermal_expansion_2")
+        return None if first is None or second is None else (first, second)
+
+    def as_tube(self) -> TubeLayer:
+        """The layer as the exact tube takes it."""
+        first, second = self.expansions or (0.0, 0.0)
+        return TubeLayer(
+            stiffness=self.solid,
+            thickness=self.thickness,
+            angle=self.angle,
+            balanced=self.balanced,
+            expansion_1=first,
+            expansion_2=second,
+            expansion_3=second,
+        )
+
+    def as_wall(self) -> WallLayer:
+        """The layer as the burst models take it."""
+        c = self.constants
+        return WallLayer(
+            youngs_modulus_1=c["youngs_modulus_1"],
+            youngs_modulus_2=c["youngs_modulus_2"],
+            youngs_modulus_3=c["youngs_modulus_3"],
+            poissons_ratio_12=c["poissons_ratio_12"],
+            poissons_ratio_13=c["poissons_ratio_13"],
+            poissons_ratio_23=c["poissons_ratio_23"],
+            shear_modulus_12=c["shear_modulus_12"],
+            thickness=self.thickness,
+            angle=self.angle,
+            strength=self.strength,
+            yield_strength=self.yield_strength,
+            material=self.name,
+        )
+
+
+def climates(v: Values, design: Design) -> tuple[Climate, ...]:
+    """Coldest and hottest state with cure stresses; only the hottest without, where none stated."""
+    environment = design.environment
+    if environment is None or environment.cure_temperature is None:
+        return (Climate("", 0.0, cold=False),)
+    cure = v["environment.cure_temperature"]
+    return (
+        Climate("cold", v["environment.temperature_min"] - cure, cold=True),
+        Climate("hot", v["environment.temperature_max"] - cure, cold=False),
+    )
+
+
+def layers(
+    v: Values,
+    stock: Stock,
+    layup: Sequence[Ply],
+    at: str,
+    states: Sequence[Climate],
+    missing: list[str],
+) -> list[Layer]:
+    """Layers of a wall; `at` is the PATH of its lay-up; `missing` collects strengths not stated."""
+    found = []
+    for i, entry in enumerate(layup):
+        name = entry.material
+        constants = stock.ply_constants(name)
+        isotropic = stock.material(name).isotropic
+        strengths: list[PlyStrength] = []
+        yields: list[Array] = []
+        for state in states:
+            if isotropic:
+                value = stock.allowable(
+                    name, "yield_strength", "ultimate_strength", cold=state.cold
+                )
+                if value is not None:
+                    yields.append(value)
+                continue
+            values = [stock.allowable(name, key, cold=state.cold) for key in _STRENGTHS]
+            if all(value is not None for value in values):
+                across = stock.allowable(name, "strength_23", cold=state.cold)
+                tension_1, compression_1, tension_2, compression_2, shear = values
+                strengths.append(
+                    PlyStrength(tension_1, compression_1, tension_2, compression_2, shear, across)
+                )
+        if not strengths and not yields:
+            missing.append(
+                f"{name} states no yield strength" if isotropic else f"{name} lacks ply strengths"
+            )
+        found.append(
+            Layer(
+                label=f"layup[{i}] {name}",
+                name=name,
+                isotropic=isotropic,
+                constants=constants,
+                solid=_solid(constants),
+                angle=v[f"{at}[{i}].angle"],
+                balanced=entry.balanced,
+                thickness=v[f"{at}[{i}].thickness"],
+                strengths=tuple(strengths),
+                yields=tuple(yields),
+            )
+        )
+    return found
+
+
+def _solid(constants: dict[str, Array]) -> Solid:
+    """3-D stiffness of a material's elastic constants."""
+    keys = ("youngs_modulus_1", "youngs_modulus_2", "youngs_modulus_3", "poissons_ratio_12",
+            "poissons_ratio_13", "poissons_ratio_23", "shear_modulus_12")  # fmt: skip
+    return solid_stiffness(**{key: constants[key] for key in keys})
+
+
+def worst(values: Array, axes: tuple[int, ...]) -> Array:
+    """The largest by real part over some axes, keeping each design's own branch."""
+    kept = [i for i in range(values.ndim) if i not in axes]
+    moved = np.transpose(values, (*axes, *kept)).reshape(-1, *(values.shape[i] for i in kept))
+    if len(moved) == 1:
+        return moved[0]
+    pick = np.argmax(real(moved), axis=0)
+    return np.take_along_axis(moved, pick[None], axis=0)[0]
+
+
+def utilisations(
+    criterion: str,
+    plies: Sequence[Layer],
+    stress: Stress,
+    residual: Stress | None,
+) -> dict[str, Array]:
+    """1/SR of every mode by one criterion; stresses are (faces, plies, climates, ...).
+
+    Strengths of each ply and climate stand on those axes; batches follow.
+    """
+    extra = stress[0].ndim - 3
+
+    def column(key: str) -> Array:
+        own = [layer.constants[key] for layer in plies]
+        shape = (len(plies), 1, *(1,) * (extra - 1), -1)
+        return np.stack(np.broadcast_arrays(*own)).reshape(shape)
+
+    across = all(one.shear_23 is not None for layer in plies for one in layer.strengths)
+    strength = PlyStrength(
+        tension_1=_strengths(plies, "tension_1", extra),
+        compression_1=_strengths(plies, "compression_1", extra),
+        tension_2=_strengths(plies, "tension_2", extra),
+        compression_2=_strengths(plies, "compression_2", extra),
+        shear_12=_strengths(plies, "shear_12", extra),
+        shear_23=_strengths(plies, "shear_23", extra) if across else None,
+    )
+    elastic = None
+    if criterion == "max_strain":
+        elastic = PlyRatios(
+            poissons_ratio_12=column("poissons_ratio_12"),
+            poissons_ratio_13=column("poissons_ratio_13"),
+            poissons_ratio_23=column("poissons_ratio_23"),
+            modulus_ratio=column("youngs_modulus_2") / column("youngs_modulus_1"),
+        )
+    return CRITERIA[criterion](stress=stress, strength=strength, residual=residual, elastic=elastic)
+
+
+def _strengths(plies: Sequence[Layer], name: str, extra: int) -> Array:
+    """One strength of every ply and climate, (plies, climates, ...)."""
+    rows = [
+        np.stack(np.broadcast_arrays(*[np.asarray(getattr(one, name)) for one in layer.strengths]))
+        for layer in plies
+    ]
+    stacked = np.stack(np.broadcast_arrays(*rows))
+    batch = stacked.shape[2:]
+    return stacked.reshape(*stacked.shape[:2], *(1,) * (extra - len(batch)), *batch)

@@ -1,0 +1,308 @@
+"""The laminated barrel: exact layered tube by default, thin laminate where asked for.
+
+Stresses of unit pressure, unit axial force and unit warming are superposed to every load path;
+cure stresses and the clamp of tie rods stand as residual stresses that do not grow with the load.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from ..design.model import Design
+from ..models import column, laminate, ply, ply_discount, rod, tube_burst, yielding
+from ..models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
+from ..models.strength_modes import Stress, load_multiplier
+from ..numeric import Array, maximum, real, where
+from . import load_path, plies
+from .allow import Stock
+from .geometry import Geometry
+from .load_path import LoadPath
+from .plies import Climate, Layer
+from .state import State
+from .values import Values
+from .wall import Swelling, Wall
+
+PRESSURE, FORCE, WARMTH = range(3)
+"""Unit loads of an `_Answer`."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Answer:
+    """How the wall answers unit loads: ply stresses (faces, layers, loads, designs) and stiffness.
+
+    `walls` are the layers' stiffness in tube axes, as `rod.layered_section` takes them.
+    """
+
+    stress: Stress
+    growth: Array
+    axial: Array
+    warm_hoop: Array
+    walls: Sequence[Sequence[Array]]
+
+
+def compute(
+    v: Values, design: Design, stock: Stock, g: Geometry, state: State, *, exact: bool
+) -> Wall:
+    """The wall of several layers, or of plies."""
+    missing: list[str] = []
+    states = plies.climates(v, design)
+    layers = plies.layers(v, stock, design.barrel.layup, "barrel.layup", states, missing)
+    answer = _exact(layers, g) if exact else _thin(layers, g)
+    shortening = answer.axial[PRESSURE]
+    swelling = Swelling(
+        growth=answer.growth[PRESSURE],
+        shortening=shortening,
+        stretch=answer.axial[FORCE],
+        growth_by_force=answer.growth[FORCE],
+    )
+    path = load_path.derive(v, design, stock, g, state, swelling)
+    free = v["supply.pressure"] * swelling.growth
+    bending, shear = rod.layered_section(
+        walls=answer.walls,
+        thicknesses=[layer.thickness for layer in layers],
+        inner_diameter=2 * g.inner_radius,
+    )
+    contraction = -swelling.growth_by_force / (g.inner_radius * swelling.stretch)
+    ratio = g.inner_radius / g.outer_radius
+    wall = Wall(
+        swelling=swelling,
+        path=path,
+        growth=maximum(free + swelling.growth_by_force * path.cases, free),
+        bending_stiffness=bending,
+        shear_stiffness=shear * column.cowper_tube(poissons_ratio=contraction, radius_ratio=ratio),
+        thin_ratio=(g.outer_radius - g.inner_radius) / g.inner_radius,
+        axial_line_stiffness=1 / (swelling.stretch * pi * (g.inner_radius + g.outer_radius)),
+        missing=missing,
+    )
+    unknown = [layer.name for layer in layers if layer.expansions is None]
+    if unknown:
+        wall.why_no_mismatch = f"{unknown[0]} states no thermal expansion"
+        states = tuple(Climate(state.name, 0.0, cold=state.cold) for state in states)
+    else:
+        wall.expansion = (answer.axial[WARMTH], answer.warm_hoop)
+    _cooling(layers, answer, states, path, wall)
+    _strengths(design, layers, answer, states, path, wall)
+    _ladder(layers, g, path, wall, exact=exact)
+    return wall
+
+
+def _exact(layers: Sequence[Layer], g: Geometry) -> _Answer:
+    """The layered tube under its three unit loads."""
+    tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=g.inner_radius)
+    unit = np.eye(3)
+    state = tube_state(
+        tube=tube,
+        inner_pressure=unit[PRESSURE][:, None],
+        axial_force=unit[FORCE][:, None],
+        temperature_change=unit[WARMTH][:, None],
+    )
+    return _Answer(
+        stress=ply_stresses_at_faces(tube=tube, state=state),
+        growth=state.bore_displacement,
+        axial=state.axial_strain,
+        warm_hoop=state.hoop_strain[0, 0, WARMTH],
+        walls=[[part[i] for part in tube.wall] for i in range(len(layers))],
+    )
+
+
+def _thin(layers: Sequence[Layer], g: Geometry) -> _Answer:
+    """The membrane at mid-radius for stresses, at the bore for growth."""
+    reduced, turned, loads = [], [], []
+    for layer in layers:
+        c = layer.constants
+        stiffness = ply.ply_stiffness(
+            youngs_modulus_1=c["youngs_modulus_1"],
+            youngs_modulus_2=c["youngs_modulus_2"],
+            poissons_ratio_12=c["poissons_ratio_12"],
+            shear_modulus_12=c["shear_modulus_12"],
+        )
+        first, second = layer.expansions or (0.0, 0.0)
+        reduced.append(stiffness)
+        turned.append(ply.rotated(stiffness=stiffness, angle=layer.angle))
+        loads.append(
+            ply.thermal_ply_load(
+                stiffness=stiffness, angle=layer.angle, expansion_1=first, expansion_2=second
+            )
+        )
+    thicknesses = [layer.thickness for layer in layers]
+    sheet = laminate.membrane(plies=turned, thicknesses=thicknesses)
+    warm = laminate.thermal_line_forces(
+        loads=loads, thicknesses=thicknesses, temperature_change=1.0
+    )
+    middle, none = (g.inner_radius + g.outer_radius) / 2, 0.0 * np.atleast_1d(g.inner_radius)
+
+    def strains(radius: Array) -> tuple[Array, Array]:
+        return laminate.strains(
+            membrane=sheet,
+            axial_line_force=np.stack([none, none + 1 / (2 * pi * radius), none + warm[0]]),
+            hoop_line_force=np.stack([none + radius, none, none + warm[1]]),
+        )
+
+    axial, hoop = strains(middle)
+    unit = np.array([0.0, 0.0, 1.0])[:, None]
+    rows = []
+    for layer, stiffness in zip(layers, reduced, strict=True):
+        first, second = layer.expansions or (0.0, 0.0)
+        one, two, slip = ply.ply_stresses(
+            stiffness=stiffness,
+            angle=layer.angle,
+            axial_strain=axial,
+            hoop_strain=hoop,
+            free_strain_1=first * unit,
+            free_strain_2=second * unit,
+        )
+        pressed = 0.0 * one
+        if layer.isotropic:  # the pressure itself is exact at the liner's bore
+            pressed = pressed - np.array([1.0, 0.0, 0.0])[:, None]
+        rows.append(np.stack(np.broadcast_arrays(one, two, pressed, slip)))
+    stress = np.stack(rows, axis=1)[:, None]
+    near_axial, near_hoop = strains(g.inner_radius)
+    return _Answer(
+        stress=(stress[0], stress[1], stress[2], stress[3]),
+        growth=g.inner_radius * near_hoop,
+        axial=near_axial,
+        warm_hoop=hoop[WARMTH],
+        walls=[(q[0], q[1], 0.0, q[2], 0.0, 1.0, q[5]) for q in turned],
+    )
+
+
+def _residual(
+    answer: _Answer, rows: list[int], states: Sequence[Climate], path: LoadPath
+) -> Stress | None:
+    """Cure stress and clamp of some layers, (faces, layers, climates, 1, designs)."""
+    clamped = path.tie_rods is not None
+    if not clamped and not any(np.any(real(state.change)) for state in states):
+        return None
+    change = np.stack([np.atleast_1d(state.change) for state in states])
+    parts = []
+    for part in answer.stress:
+        own = part[:, rows, None, WARMTH] * change
+        if clamped:
+            own = own + part[:, rows, None, FORCE] * path.held
+        parts.append(own[:, :, :, None])
+    return (parts[0], parts[1], parts[2], parts[3])
+
+
+def _load(answer: _Answer, rows: list[int], axial: Array) -> Stress:
+    """Stress per pressure of some layers under every load path, (faces, layers, 1, paths, designs).
+
+    `axial` is the axial force per pressure, (paths, designs).
+    """
+    one, two, three, slip = (
+        (part[:, rows, None, PRESSURE] + part[:, rows, None, FORCE] * axial)[:, :, None]
+        for part in answer.stress
+    )
+    return one, two, three, slip
+
+
+def _by_climate(values: Sequence[Array]) -> Array:
+    """A strength of one layer, one value per climate, on the axes of its stresses."""
+    rows = np.stack(np.broadcast_arrays(*[np.atleast_1d(value) for value in values]))
+    return rows[None, None, :, None]
+
+
+def _strengths(
+    design: Design,
+    layers: Sequence[Layer],
+    answer: _Answer,
+    states: Sequence[Climate],
+    path: LoadPath,
+    wall: Wall,
+) -> None:
+    """First-ply and yield pressures of every layer, mode and load path."""
+    paths, axial = tuple(path.per_pressure), np.stack(list(path.per_pressure.values()))
+    brittle = [i for i, layer in enumerate(layers) if layer.strengths]
+    if brittle:
+        modes = plies.utilisations(
+            design.barrel.criterion,
+            [layers[i] for i in brittle],
+            _load(answer, brittle, axial),
+            _residual(answer, brittle, states, path),
+        )
+        for mode, used in modes.items():
+            pressures = load_multiplier(plies.worst(used, (0, 2)))
+            for k, i in enumerate(brittle):
+                for p, place in enumerate(paths):
+                    label = f"{layers[i].label} {mode}, {place}"
+                    wall.first_ply_pressure[label] = pressures[k, p]
+    for i, layer in enumerate(layers):
+        if not layer.yields:
+            continue
+        load, residual = _load(answer, [i], axial), _residual(answer, [i], states, path)
+        strength = _by_climate(layer.yields)
+        used = yielding.yield_utilisation(stress=load, yield_strength=strength, residual=residual)
+        pressures = 1 / plies.worst(used, (0, 1, 2))
+        own = yielding.yield_utilisation(stress=load, yield_strength=2 * strength)
+        ranges = 1 / plies.worst(own, (0, 1, 2))
+        for p, place in enumerate(paths):
+            wall.yield_pressure[f"{layer.label}, {place}"] = pressures[p]
+            wall.yields[f"{layer.label}, {place}"] = layer.name
+            wall.strain_range[f"{layer.label}, {place}"] = ranges[p]
+
+
+def _cooling(
+    layers: Sequence[Layer],
+    answer: _Answer,
+    states: Sequence[Climate],
+    path: LoadPath,
+    wall: Wall,
+) -> None:
+    """Liner yield over its stress after cooling from the cure, and its pull on the plies."""
+    liners = [i for i, layer in enumerate(layers) if layer.yields]
+    if not liners or len(liners) == len(layers):
+        wall.why_no_mismatch = "the wall has no liner under plies"
+        return
+    residual = _residual(answer, liners, states, path)
+    if residual is None:
+        if "thermal expansion" not in wall.why_no_mismatch:
+            wall.why_no_mismatch = "no cure temperature stated: add environment.cure_temperature"
+        return
+    for k, i in enumerate(liners):
+        own = tuple(part[:, [k]] for part in residual)
+        used = yielding.yield_utilisation(
+            stress=(own[0], own[1], own[2], own[3]), yield_strength=_by_climate(layers[i].yields)
+        )
+        wall.mismatch[layers[i].label] = 1 / plies.worst(used, (0, 1, 2, 3))
+        for near, face in ((i - 1, 0), (i + 1, -1)):
+            if not 0 <= near < len(layers) or not layers[near].strengths:
+                continue
+            pull = own[2][face, 0, :, 0]
+            allowed = np.stack([np.atleast_1d(one.tension_2) for one in layers[near].strengths])
+            pulled = real(pull) > 0
+            used = where(pulled, pull, 0.0) / allowed
+            wall.bond[f"{layers[i].label} to {layers[near].label}"] = load_multiplier(
+                plies.worst(used, (0,))
+            )
+
+
+def _ladder(
+    layers: Sequence[Layer], g: Geometry, path: LoadPath, wall: Wall, *, exact: bool
+) -> None:
+    """Burst of every load path, and the first ply where the liner yields before it."""
+    if wall.missing:
+        return
+    if all(layer.isotropic for layer in layers):
+        wall.missing.append("burst of a wall of several metals is not modelled")
+        return
+    axial = np.stack(list(path.per_pressure.values()))
+    stack = [layer.as_wall() for layer in layers]
+    if exact:
+        ladder = tube_burst.burst_of_tube(
+            layers=stack, inner_radius=g.inner_radius, axial_force_per_pressure=axial
+        )
+    else:
+        ladder = ply_discount.burst_by_ply_discount(
+            layers=stack,
+            radius=(g.inner_radius + g.outer_radius) / 2,
+            axial_force_per_pressure=axial,
+        )
+    lined = any(layer.isotropic for layer in layers)
+    for p, place in enumerate(path.per_pressure):
+        wall.burst_pressure[place] = ladder.burst_pressure[p]
+        if lined:
+            label = f"first ply with the liner yielding, {place}"
+            wall.first_ply_pressure[label] = ladder.first_ply_pressure[p]
