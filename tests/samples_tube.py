@@ -86,7 +86,6 @@ SAMPLES: dict = {
         {"stress": (3e8, 1e8, -5e7, 4e7), "yield_strength": 4e8, "residual": residual}
         for residual in (None, (-5e7, 8e7, 1e7, 2e7))
     ],
-    "tube_burst.wall_as_tube": {"layers": [LINER, HOOP], "inner_radius": 16e-3},
     "tube_burst.burst_of_tube": [
         {"layers": [HOOP, HELICAL], **WALL}, {"layers": [LINER, HOOP, HELICAL], **WALL},
     ],

@@ -75,7 +75,7 @@ class Faces:
 def closed(
     xp: Any,
     transfer: Array,
-    forcing: Array | None,
+    driven: Array | None,
     *,
     inner_pressure: Array,
     outer_pressure: Array,
@@ -85,8 +85,8 @@ def closed(
     """Carry unit unknowns and the loads through all layers, and close the system.
 
     Columns of one march: bore hoop strain 1, axial strain 1, (twist 1,) and the loads. `transfer`
-    is a `LayeredTube`'s, `forcing` (outputs, layers, ...) what held stresses add; all of one number
-    of batch axes.
+    is a `LayeredTube`'s, `driven` (outputs, layers, ...) from `forcing`, or None; all of one number of
+    batch axes.
     """
     outputs, count, dims = transfer.shape[1], transfer.shape[2], transfer.ndim - 3
     ones = (1,) * dims
@@ -103,8 +103,8 @@ def closed(
         out = t[0, ...] * hoop + t[1, ...] * radial + t[2, ...] * unit[1]
         if outputs == 4:
             out = out + t[4, ...] * unit[2]
-        if forcing is not None:
-            out = out + forcing[:, None, i, ...] * last
+        if driven is not None:
+            out = out + driven[:, None, i, ...] * last
         hoop, radial = out[0, ...], out[1, ...]
         rows.append(out[:2, ...])
         total = total + out[2:, ...]
@@ -141,17 +141,14 @@ def _unknowns(
     )
 
 
-def _forcing(xp: Any, tube: LayeredTube, held: tuple[Array, ...] | None) -> Array | None:
-    """What held stresses z, t, r, s add to the outputs of every layer."""
-    if held is None:
-        return None
-    held_z, held_t, held_r, held_s = held
-    square_a, square_b = tube.inner * tube.inner, tube.outer * tube.outer
-    start, odd = tube.transfer[1, ...], tube.transfer[3, ...]
-    own = [0 * held_r, held_r, held_z * ((square_b - square_a) / 2)]
-    if tube.twisting:
-        own.append(held_s * ((square_b * tube.outer - square_a * tube.inner) / 3))
-    return start * held_r + odd * (held_r - held_t) - xp.stack(xp.broadcast_arrays(*own))
+def forcing(xp: Any, transfer: Array, inner: Array, outer: Array, held: tuple[Array, ...]) -> Array:
+    """What held stresses z, t, r (and s) add to the outputs of every layer."""
+    square_a, square_b = inner * inner, outer * outer
+    own = [0 * held[2], held[2], held[0] * ((square_b - square_a) / 2)]
+    if transfer.shape[1] == 4:
+        own.append(held[3] * ((square_b * outer - square_a * inner) / 3))
+    driven = transfer[1, ...] * held[2] + transfer[3, ...] * (held[2] - held[1])
+    return driven - xp.stack(xp.broadcast_arrays(*own))
 
 
 def tube_state(
@@ -207,7 +204,7 @@ def tube_state(
     faces = closed(
         xp,
         tube.transfer,
-        _forcing(xp, tube, held),
+        None if held is None else forcing(xp, tube.transfer, tube.inner, tube.outer, held),
         inner_pressure=inner_pressure,
         outer_pressure=outer_pressure,
         axial_force=axial_force,
@@ -228,9 +225,13 @@ def _held(
     tube: LayeredTube, change: Array, frozen: tuple[Array, Array, Array] | None
 ) -> tuple[Array, ...] | None:
     """Stresses z, t, r, s that the layers hold back at zero strain; None where there are none."""
-    if isinstance(change, (float, int)) and change == 0.0 and frozen is None:
+    still = tube.hold is None or (isinstance(change, (float, int)) and change == 0.0)
+    if still and frozen is None:
         return None
-    held = [value * change for value in tube.hold]
+    zero = 0 * tube.inner
+    held = [zero] * 4
+    if tube.hold is not None and not still:
+        held = [value * change for value in tube.hold]
     if frozen is not None:
         dims = tube.inner.ndim - 1
         held[:3] = [a - lifted(b, dims) for a, b in zip(held[:3], frozen, strict=True)]

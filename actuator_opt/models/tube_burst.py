@@ -7,8 +7,8 @@ layer, so that the bore's fibres and the liner's bore govern where they are the 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, cast
 
 from ..numeric import Array, namespace, where
 from .burst_ladder import (
@@ -19,11 +19,12 @@ from .burst_ladder import (
     inverse_strengths,
     metals_first,
 )
-from .layered_tube import LayeredTube, TubeLayer, layered_tube, ply_stresses_at_faces, tube_state
-from .solid_ply import solid_stiffness
+from .layered_tube import closed, forcing
+from .solid_ply import Solid, solid_stiffness
 from .strength_modes import PlyStrength
+from .tube_elements import LayeredTube, TubeLayer, layered_tube
 
-__all__ = ["PlyStrength", "WallLayer", "burst_of_tube", "wall_as_tube"]
+__all__ = ["PlyStrength", "WallLayer", "burst_of_tube"]
 
 TRANSVERSE_RATIO = 0.4
 """nu23 of a ply where none is stated (PHYSICS_DETAIL section 2: usual for carbon epoxy)."""
@@ -60,96 +61,88 @@ def _isotropic(modulus: Array, ratio: Array) -> dict[str, Array]:
     }
 
 
-def wall_as_tube(
-    *, layers: Sequence[WallLayer], inner_radius: Array, residual: float = 1.0
-) -> LayeredTube:
-    """The exact tube of a wall, intact or with every layer failed.
-
-    Failed plies keep `residual` of E2, G12, nu12 and nu23; flowing metals keep `residual` of their
-    shear modulus and all of their bulk modulus.
-
-    Parameters
-    ----------
-    layers : the wall from the bore outwards
-    inner_radius : bore radius [m]
-    residual : stiffness left [-]; 1 is the intact wall
-
-    Returns
-    -------
-    the tube
-
-    Notes
-    -----
-    Valid: balanced pairs and isotropic layers.
-
-    References
-    ----------
-    [Jones1999] ply discount; plastic flow keeps its volume [derived]
-
-    Examples
-    --------
-    >>> steel = WallLayer(youngs_modulus_1=210e9, youngs_modulus_2=210e9, poissons_ratio_12=0.3,
-    ...                   shear_modulus_12=80.8e9, thickness=4e-3)
-    >>> print(f"{wall_as_tube(layers=[steel], inner_radius=16e-3).ply[0][0] / 1e9:.1f}")
-    282.7
-    """
-    return layered_tube(
-        layers=[
-            TubeLayer(
-                stiffness=solid_stiffness(**_constants(layer, residual)),
-                thickness=layer.thickness,
-                angle=0.0 if layer.strength is None else layer.angle,
+def _recovery(xp: Any, tube: LayeredTube) -> Array:
+    """Stresses 1, 2, 12 of a ply per hoop strain, radial stress and axial strain at a face."""
+    c11, c12, c13, c22, c23, _, c66 = tube.ply
+    _, _, zr, _, tr, rr, *_ = tube.wall
+    along, slip = (1 + xp.cos(2 * tube.angle)) / 2, xp.sin(2 * tube.angle) * c66
+    across = 1 - along
+    rows = []
+    for first, second, third in ((c11, c12, c13), (c12, c22, c23)):
+        depth = third / rr
+        rows.append(
+            (
+                first * across + second * along - depth * tr,
+                depth,
+                first * along + second * across - depth * zr,
             )
-            for layer in layers
-        ],
-        inner_radius=inner_radius,
-    )
+        )
+    rows.append((slip, 0 * slip, -slip))
+    by_input = [[row[k] for row in rows] for k in range(3)]
+    return xp.stack([xp.stack(xp.broadcast_arrays(*row)) for row in by_input])
 
 
 @dataclass(frozen=True, slots=True)
 class _Tube:
-    """The exact wall: two faces a layer; yielded metals hold the deviator of their mean stress."""
+    """The exact wall: two faces a layer; yielded metals hold the deviator of their mean stress.
 
-    intact: LayeredTube
-    softened: LayeredTube
+    `transfer` and `recovery` have the intact and the failed layers on their last axis but the
+    batch's, (.., layers, 2, ...).
+    """
+
+    transfer: Array
+    recovery: Array
+    inner: Array
+    outer: Array
     axial: Array
     kept: float
     order: tuple[int, ...]
     metals: int
     faces: int = 2
 
-    def _chosen(self, soft: Array | None) -> LayeredTube:
-        """The tube with its soft layers; `soft` is in the ladder's order."""
+    def _chosen(self, table: Array, soft: Array | None) -> Array:
+        """The table with its soft layers; `soft` is in the ladder's order."""
+        intact = table[:, :, :, 0, ...]
         if soft is None:
-            return self.intact
-        dims, xp = soft.ndim - 1, namespace(self.axial)
+            return intact
+        xp = namespace(self.axial)
         places = [self.order.index(i) for i in range(len(self.order))]
-        mask = xp.stack([soft[i, ...] for i in places])
-        a, b = self.softened.lifted(dims), self.intact.lifted(dims)
-
-        def choose(first: Any, second: Any) -> Any:
-            return tuple(where(mask, x, y) for x, y in zip(first, second, strict=True))
-
-        return replace(
-            b,
-            ply=choose(a.ply, b.ply),
-            wall=choose(a.wall, b.wall),
-            transfer=where(mask, a.transfer, b.transfer),
-        )
+        return where(xp.stack([soft[i, ...] for i in places]), table[:, :, :, 1, ...], intact)
 
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
         """Stresses per pressure, and those that the metals' held stresses leave."""
-        tube = self._chosen(soft)
-        rate = self._stress(tube, 1.0, self.axial, None)
-        return rate, None if held is None else self._stress(tube, 0.0, 0.0 * self.axial, held)
-
-    def _stress(self, tube: LayeredTube, pressure: float, axial: Array, held: Any) -> Array:
         xp = namespace(self.axial)
-        state = tube_state(tube=tube, inner_pressure=pressure, axial_force=axial, frozen=held)
-        first, second, third, slip = ply_stresses_at_faces(tube=tube, state=state)
+        transfer, recovery = self._chosen(self.transfer, soft), self._chosen(self.recovery, soft)
+        rate = self._stress(xp, transfer, recovery, 1.0, self.axial, None)
+        if held is None:
+            return rate, None
+        return rate, self._stress(xp, transfer, recovery, 0.0, 0.0 * self.axial, held)
+
+    def _stress(
+        self, xp: Any, transfer: Array, recovery: Array, pressure: float, axial: Array, held: Any
+    ) -> Array:
+        driven = None
         if held is not None:
-            first, second, third = first + held[0], second + held[1], third + held[2]
-        each = xp.stack(xp.broadcast_arrays(first, second, slip, third))
+            back = tuple(-part for part in held)
+            driven = forcing(xp, transfer, self.inner, self.outer, back)
+        state = closed(
+            xp,
+            transfer,
+            driven,
+            inner_pressure=pressure,
+            outer_pressure=0.0,
+            axial_force=axial,
+            torque=0.0,
+        )
+        radial = state.radial_stress
+        lead = radial if held is None else radial - held[2]
+        plane = recovery[0, :, None, ...] * state.hoop_strain[None, ...]
+        plane = plane + recovery[1, :, None, ...] * lead[None, ...]
+        plane = plane + recovery[2, :, None, ...] * state.axial_strain
+        if held is not None:
+            still = xp.stack([held[0], held[1], 0 * held[0]])
+            plane = plane + still[:, None, ...]
+        each = xp.concat([plane, radial[None, ...] + 0 * plane[:1, ...]])
         if self.order == tuple(range(len(self.order))):
             return each
         return xp.stack([each[:, :, i, ...] for i in self.order], axis=2)
@@ -158,19 +151,42 @@ class _Tube:
         """Deviatoric stresses z, t, r at zero strain of every layer, from the bore."""
         xp = namespace(stress)
         mean = xp.sum(stress, axis=1) / 2
-        normal = [mean[0, ...], mean[1, ...], mean[3, ...]]
-        middle = (normal[0] + normal[1] + normal[2]) / 3
-        own = [where(yielded, (one - middle) * self.kept, 0 * middle) for one in normal]
-        nothing = 0 * middle[0, ...]
-        rows = []
-        for one in own:
-            placed = [nothing] * len(self.order)
-            for i in range(self.metals):
-                placed[self.order[i]] = one[i, ...]
-            rows.append(xp.stack(placed))
-        if held is None:
-            return tuple(rows)
-        return tuple(a + b for a, b in zip(held, rows, strict=True))
+        normal = xp.stack([mean[0, ...], mean[1, ...], mean[3, ...]])
+        own = where(yielded, (normal - xp.sum(normal, axis=0) / 3) * self.kept, 0 * normal)
+        placed = [0 * own[:, 0, ...]] * len(self.order)
+        for i in range(self.metals):
+            placed[self.order[i]] = own[:, i, ...]
+        more = xp.stack(placed, axis=1)
+        if held is not None:
+            more = more + xp.stack(list(held))
+        return tuple(more[k, ...] for k in range(3))
+
+
+def _both_states(
+    xp: Any, layers: Sequence[WallLayer], inner_radius: Array, residual: float, dims: int
+) -> LayeredTube:
+    """The tube with intact and failed layers on a batch axis before the designs'."""
+
+    def spread(value: Array) -> Array:
+        """A number of the batch on the designs' axes, the states' axis before it."""
+        value = xp.asarray(value)
+        return xp.reshape(value, (1,) * (dims + 1 - value.ndim) + value.shape)
+
+    plies = []
+    for layer in layers:
+        states = [solid_stiffness(**_constants(layer, share)) for share in (1.0, residual)]
+        stiffness = [
+            xp.concat(xp.broadcast_arrays(spread(intact), spread(failed)))
+            for intact, failed in zip(*states, strict=True)
+        ]
+        plies.append(
+            TubeLayer(
+                stiffness=cast(Solid, tuple(stiffness)),
+                thickness=spread(layer.thickness),
+                angle=spread(0.0 if layer.strength is None else layer.angle),
+            )
+        )
+    return layered_tube(layers=plies, inner_radius=spread(inner_radius))
 
 
 def burst_of_tube(
@@ -225,16 +241,20 @@ def burst_of_tube(
     >>> print(step.layer, step.mode, f"{step.pressure / 1e6:.2f}")
     1 matrix tension 52.51
     """
-    intact = wall_as_tube(layers=layers, inner_radius=inner_radius)
-    softened = wall_as_tube(layers=layers, inner_radius=inner_radius, residual=residual)
-    strengths = [v for layer in layers for v in inverse_strengths(layer)]
-    shape = 0 * intact.transfer[0, 0, 0, ...] + 0 * axial_force_per_pressure
-    shape = shape + batch_zero(strengths)
-    xp = namespace(shape)
+    numbers = [inner_radius, axial_force_per_pressure]
+    for layer in layers:
+        numbers += [*_constants(layer, 1.0).values(), *inverse_strengths(layer)]
+        numbers += [layer.thickness, layer.angle]
+    zero = batch_zero(numbers)
+    xp = namespace(zero)
+    shape = xp.asarray(zero)
     order = metals_first(layers)
+    tube = _both_states(xp, layers, inner_radius, residual, shape.ndim)
     mechanics = _Tube(
-        intact=intact,
-        softened=softened,
+        transfer=tube.transfer,
+        recovery=_recovery(xp, tube),
+        inner=tube.inner[:, 0, ...],
+        outer=tube.outer[:, 0, ...],
         axial=axial_force_per_pressure + 0 * shape,
         kept=(1 - residual) * liner_share,
         order=order,

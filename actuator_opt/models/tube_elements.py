@@ -55,7 +55,7 @@ class LayeredTube:
     free : expansions 1, 2, 3 of each layer [1/K]
     balanced : 1 for a pair, 0 for a single ply
     wall : stiffness of each layer in tube axes; couplings of balanced pairs are zero [Pa]
-    hold : K_z, K_t, K_r, K_s of each layer [Pa/K]
+    hold : K_z, K_t, K_r, K_s of each layer [Pa/K]; None where nothing expands
     inner, outer : radii of each layer [m]
     transfer : (inputs, outputs, layers, ...): outer hoop strain, outer radial stress, integral of
         sigma_z r (and of tau_zt r^2) per inner hoop strain, inner radial stress, axial strain,
@@ -68,7 +68,7 @@ class LayeredTube:
     free: tuple[Array, Array, Array]
     balanced: Array
     wall: TubeStiffness
-    hold: tuple[Array, Array, Array, Array]
+    hold: tuple[Array, Array, Array, Array] | None
     inner: Array
     outer: Array
     transfer: Array
@@ -84,6 +84,9 @@ class LayeredTube:
             return tuple(lifted(value, dims) for value in values)
 
         table = (*shape[:3], *(1,) * missing, *shape[3:])
+        hold = None
+        if self.hold is not None:
+            hold = cast(tuple[Array, Array, Array, Array], lift(self.hold))
         angle, balanced, inner, outer = lift((self.angle, self.balanced, self.inner, self.outer))
         return LayeredTube(
             ply=cast(Solid, lift(self.ply)),
@@ -91,7 +94,7 @@ class LayeredTube:
             free=cast(tuple[Array, Array, Array], lift(self.free)),
             balanced=balanced,
             wall=cast(TubeStiffness, lift(self.wall)),
-            hold=cast(tuple[Array, Array, Array, Array], lift(self.hold)),
+            hold=hold,
             inner=inner,
             outer=outer,
             transfer=namespace(self.inner).reshape(self.transfer, table),
@@ -197,6 +200,12 @@ def _twist(
     ]
 
 
+def _expands(layer: TubeLayer) -> bool:
+    """Whether a layer has any thermal expansion."""
+    own = (layer.expansion_1, layer.expansion_2, layer.expansion_3)
+    return any(not isinstance(value, (float, int)) or value != 0.0 for value in own)
+
+
 def layered_tube(*, layers: Sequence[TubeLayer], inner_radius: Array) -> LayeredTube:
     """Prepare a tube of bonded layers for `tube_state`.
 
@@ -245,15 +254,17 @@ def layered_tube(*, layers: Sequence[TubeLayer], inner_radius: Array) -> Layered
     c11, c12, c13, c22, c23, c33, c66, angle, first, second, third, inner, outer = values
     ply = (c11, c12, c13, c22, c23, c33, c66)
     wall = solid_rotated(stiffness=ply, angle=angle)
-    hold = solid_expansion_load(
-        stiffness=ply, angle=angle, expansion_1=first, expansion_2=second, expansion_3=third
-    )
+    hold = None
+    if any(_expands(layer) for layer in layers):
+        hold = solid_expansion_load(
+            stiffness=ply, angle=angle, expansion_1=first, expansion_2=second, expansion_3=third
+        )
     single = [0.0 if layer.balanced else 1.0 for layer in layers]
     twisting = any(single)
     mask = lifted(xp.asarray(single), c11.ndim - 1)
     if not all(single):
         wall = (*wall[:6], wall[6] * mask, wall[7] * mask, wall[8] * mask, wall[9])
-        hold = (*hold[:3], hold[3] * mask)
+        hold = None if hold is None else (*hold[:3], hold[3] * mask)
     basis = _basis(xp, wall, inner, outer)
     table = _transfer(basis, wall, inner, outer)
     if twisting:

@@ -1,0 +1,218 @@
+"""Liner duty between rest and pressure, and the thickness that holds a tube's bore strain."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..numeric import STEP, Array, absolute, namespace, real, where
+from .layered_tube import TubeLayer, layered_tube, tube_state
+from .strength_modes import Stress
+from .yielding import mises_product
+
+_STEPS = 60
+"""Most steps of the search: halving alone would then reach 1e-18 of the largest thickness."""
+
+_SETTLED = 1e-9
+"""Relative step that ends the search: the Newton step after it doubles the digits."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinerCycle:
+    """A liner between rest and pressure.
+
+    Parameters
+    ----------
+    strain_range : equivalent elastic strain between both [-]
+    shakedown : that range over twice the yield strain [-]; above 1 every cycle yields both ways
+    at_rest, at_pressure : equivalent stress over yield [-]; above 1 the next cycle yields
+    """
+
+    strain_range: Array
+    shakedown: Array
+    at_rest: Array
+    at_pressure: Array
+
+
+def liner_cycle(
+    *,
+    stress: Stress,
+    yield_strength: Array,
+    youngs_modulus: Array,
+    residual: Stress = (0.0, 0.0, 0.0, 0.0),
+) -> LinerCycle:
+    """Elastic strain range of an isotropic liner against yield, by von Mises.
+
+    range = s(sigma)/E, shakedown = s(sigma)/(2 Y), s(residual)/Y at rest, s(residual + sigma)/Y
+    at pressure.
+
+    Parameters
+    ----------
+    stress : elastic stresses 1, 2, 3 and 12 from rest to pressure [Pa]
+    yield_strength : Y [Pa]
+    youngs_modulus : E [Pa]
+    residual : stresses at rest, of cooling and autofrettage [Pa]
+
+    Returns
+    -------
+    strain range and utilisations [-]
+
+    Notes
+    -----
+    Valid: isotropic liner, elastic wrap, load in proportion; no creep.
+
+    Residual stress does not change the range: it decides whether the first cycles yield. Shakedown
+    below 1 is necessary at each place; it suffices for a thin liner on an elastic wrap.
+
+    References
+    ----------
+    [Johnson1985] Melan's theorem; [derived] von Mises of a stress range
+
+    Examples
+    --------
+    >>> cycle = liner_cycle(stress=(60e6, 330e6, -20e6, 0.0), yield_strength=240e6,
+    ...                     youngs_modulus=71.7e9, residual=(-20e6, -140e6, 0.0, 0.0))
+    >>> print(f"{cycle.strain_range * 100:.3f} % {cycle.shakedown:.3f} {cycle.at_pressure:.3f}")
+    0.443 % 0.662 0.781
+    """
+    one, two, three, slip = (a + b for a, b in zip(stress, residual, strict=True))
+    squares = [
+        mises_product(first=s, second=s) for s in (stress, residual, (one, two, three, slip))
+    ]
+    span, rest, peak = (namespace(square).sqrt(square) for square in squares)
+    return LinerCycle(
+        strain_range=span / youngs_modulus,
+        shakedown=span / (2 * yield_strength),
+        at_rest=rest / yield_strength,
+        at_pressure=peak / yield_strength,
+    )
+
+
+def layer_thickness_for_strain(
+    *,
+    layers: Sequence[TubeLayer],
+    index: int,
+    inner_radius: Array,
+    strain: Array,
+    pressure: Array,
+    axial_force_per_pressure: Array,
+    largest_thickness: Array,
+) -> Array:
+    """Thickness of one layer that holds the bore's hoop strain to a value.
+
+    u(t)/r_i = strain: Newton on 1/strain, nearly a straight line of t, halving where it would
+    leave the bracket; a complex step at the end makes every derivative exact.
+
+    Parameters
+    ----------
+    layers : from the bore outwards; the thickness of the one sought is not read
+    index : of that layer, 0 is the innermost [-]
+    inner_radius : bore radius [m]
+    strain : allowed hoop strain of the bore, u/r_i [-]
+    pressure : internal gauge pressure [Pa]
+    axial_force_per_pressure : N/p in the wall [m^2]; 0 is open, pi r_i^2 closed
+    largest_thickness : beyond which no thickness is sought [m]
+
+    Returns
+    -------
+    thickness [m]; 0 where the other layers hold the strain alone
+
+    Raises
+    ------
+    ValueError
+        Where no thickness up to the largest holds the strain.
+
+    Notes
+    -----
+    Valid: as `tube_state`; where the strain does not fall steadily, one of several answers.
+
+    References
+    ----------
+    [derived] inverse of `tube_state`
+
+    Examples
+    --------
+    >>> aluminium = (106.2e9, 52.3e9, 52.3e9, 106.2e9, 52.3e9, 106.2e9, 26.95e9)
+    >>> t = layer_thickness_for_strain(
+    ...     layers=[TubeLayer(stiffness=aluminium, thickness=0.0)], index=0, inner_radius=16e-3,
+    ...     strain=0.0015, pressure=25e6, axial_force_per_pressure=0.0, largest_thickness=30e-3)
+    >>> print(f"{t * 1e3:.3f} mm")
+    4.696 mm
+    """
+    loads = (inner_radius, pressure, axial_force_per_pressure * pressure)
+    wall, plain, aim = [_plain(layer) for layer in layers], [real(v) for v in loads], real(strain)
+    numbers = [v for layer in layers for v in (*layer.stiffness, layer.angle, layer.thickness)]
+    xp = namespace(*numbers, inner_radius, strain, pressure, axial_force_per_pressure)
+
+    def trial(thickness: Array) -> tuple[Array, Array]:
+        """Bore strain and its slope."""
+        step = xp.asarray(thickness, dtype=xp.complex128) + 1j * STEP
+        value = _bore_strain(_with(wall, index, step), *plain)
+        return xp.real(value), xp.imag(value) / STEP
+
+    others = [*wall]
+    del others[index]
+    highest = real(largest_thickness)
+    value, slope = trial(highest)
+    start = highest + 0 * value
+    spare = _bore_strain(others, *plain) <= aim if others else start < 0
+    if np.any(np.asarray(((value > aim) & ~spare) | (aim <= 0))):
+        message = "no thickness of this layer up to the largest holds the bore strain"
+        raise ValueError(message)
+    thickness, slope = _search(xp, trial, aim, (start, value, slope), spare)
+    rest = _bore_strain(_with(layers, index, thickness), *loads) - strain
+    return where(spare, 0 * thickness, thickness - rest / slope)
+
+
+def _plain(layer: TubeLayer) -> TubeLayer:
+    """The layer without imaginary steps."""
+    c11, c12, c13, c22, c23, c33, c66 = (real(value) for value in layer.stiffness)
+    return TubeLayer(
+        stiffness=(c11, c12, c13, c22, c23, c33, c66),
+        thickness=real(layer.thickness),
+        angle=real(layer.angle),
+        balanced=layer.balanced,
+    )
+
+
+def _with(layers: Sequence[TubeLayer], index: int, thickness: Array) -> list[TubeLayer]:
+    """The layers with another thickness of one."""
+    changed = list(layers)
+    changed[index] = replace(changed[index], thickness=thickness)
+    return changed
+
+
+def _bore_strain(
+    layers: Sequence[TubeLayer], inner_radius: Array, pressure: Array, axial_force: Array
+) -> Array:
+    """Hoop strain of the bore."""
+    tube = layered_tube(layers=layers, inner_radius=inner_radius)
+    state = tube_state(tube=tube, inner_pressure=pressure, axial_force=axial_force)
+    return state.hoop_strain[0, 0, ...]
+
+
+def _search(
+    xp: Any,
+    trial: Callable[[Array], tuple[Array, Array]],
+    aim: Array,
+    start: tuple[Array, Array, Array],
+    spare: Array,
+) -> tuple[Array, Array]:
+    """Thickness near the answer, and the slope of the bore strain there."""
+    thickness, value, slope = start
+    low, high = 0 * thickness, thickness
+    for _ in range(_STEPS):
+        thin = value > aim
+        low, high = where(thin, thickness, low), where(thin, high, thickness)
+        newton = thickness - value / aim * (value - aim) / slope
+        inside = (newton > low) & (newton < high)
+        following = where(inside, newton, (low + high) / 2)
+        settled = absolute(following - thickness) <= _SETTLED * thickness
+        thickness = following
+        value, slope = trial(thickness)
+        if bool(xp.all(settled | spare)):
+            break
+    return thickness, slope
