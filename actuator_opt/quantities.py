@@ -220,10 +220,14 @@ METRICS = _table("""
  liner_mismatch_factor| S_th   | ratio       | -    | | | liner yield over thermal mismatch stress
  liner_bond_factor    | S_bd   | ratio       | -    | | | strength over the pull of the liner on its plies after cool-down
  liner_range_factor   | S_dl   | ratio       | -    | | | twice yield over the liner's stress range
+ reverse_yield_factor | S_rev  | ratio       | -    | | | yield over the liner's residual stress after autofrettage
  joint_factor         | S_j    | ratio       | -    | | | tie-rod preload over its loss at supply pressure
  local_buckling_factor| S_w    | ratio       | -    | | | wall buckling load of the rod over largest push load
  rod_factor           | S_ro   | ratio       | -    | | | strength of the rod's plies over their stress
  fitting_factor       | S_ft   | ratio       | -    | | | strength of the bonded rod fittings over their load
+ bond_thermal_factor  | S_bt   | ratio       | -    | | | bond strength over thermal edge shear without load
+ winding_margin       | -      | angle       | deg  | | | winding angle less the smallest that can be wound
+ ply_thickness_margin | -      | ratio       | %    | | | layer thickness over the least that can be laid, less one
  growth_at_seal       | u_s    | length      | um   | | | radial bore growth at the piston seal
  decay_length         | 1/beta | length      | mm   | | | length over which growth settles beside a pressure step
  temperature_margin   | dT     | temperature_difference | K | | | distance to the service limits of every material
@@ -238,6 +242,7 @@ METRICS = _table("""
  closed_length        | L_0    | length      | mm   | | | length pin to pin, retracted
  geometry_rod_in_bore | -      | length      | mm   | | | radial room between rod and bore
  geometry_rod_wall    | -      | length      | mm   | | | rod wall thickness
+ geometry_rod_bore    | -      | length      | mm   | | | bore left inside the layers of the rod
  geometry_piston_groove | -    | length      | mm   | | | wall left beside the grooves of the piston
  geometry_piston_core | -      | length      | mm   | | | wall left under the piston groove
  geometry_head_groove | -      | length      | mm   | | | wall left beside the grooves of the head

@@ -399,6 +399,7 @@ SAMPLES = {
         "membrane_stiffness_free": 50e6,
     },
     "retention.tie_rod_stress": {"force": 2e4, "count": 4.0, "diameter": 6e-3, "pitch": 1e-3},
+    "retention.bolt_endurance_amplitude": {"diameter": 8e-3},
     "retention.pin_shear_stress": {"force": 1e4, "diameter": 1e-2},
     "retention.guide_forces": {"side_force": 100.0, "overhang": 0.2, "span": 0.1},
     "retention.bearing_pressure": {"force": 300.0, "diameter": 12e-3, "length": 1e-2},

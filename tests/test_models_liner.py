@@ -131,6 +131,33 @@ def test_wrap_of_the_same_metal_is_the_monoblock(ratio, cut, depth, pull):
     assert found.axial_strain == pytest.approx(0, abs=1e-12)
 
 
+@given(
+    st.floats(1.02, 20.0),
+    st.floats(0.01, 0.99),
+    st.floats(0.0, 0.49),
+    st.floats(8.0, 13.0),
+    st.floats(0.01, 2.0),
+)
+def test_partly_yielded_liner_is_in_equilibrium(ratio, depth, poisson, stiff, thick):
+    """Under any wrap, soft or all but rigid, to b/a = 20: p = q + Y [ln(c/a) + (1 - c^2/b^2)/2].
+
+    q is the interface pressure of the elastic tube plus the residual one: the plastic radius is
+    settled for every wrap.
+    """
+    outer = ratio * RADIUS
+    layers = [of_ply(70e9, poisson, outer - RADIUS), of_ply(10**stiff, 0.3, thick * RADIUS)]
+    ends = residual(layers, 0.0)
+    pressure = ends.yield_pressure + depth * (ends.full_pressure - ends.yield_pressure)
+    found = residual(layers, pressure)
+    tube = layered_tube(layers=[model_layer(layer) for layer in layers], inner_radius=RADIUS)
+    elastic = -tube_state(tube=tube, inner_pressure=pressure).radial_stress[1, 0]
+    border = found.plastic_radius
+    held = log(border / RADIUS) + (1 - (border / outer) ** 2) / 2
+    held = held + (elastic + found.interface_pressure) / YIELD
+    assert RADIUS < border < outer
+    assert held == pytest.approx(pressure / YIELD, rel=1e-9)
+
+
 def test_collapse_and_reverse_yield_of_a_bare_liner():
     """Beyond Y ln k there is no equilibrium: NaN. At twice the yield pressure unloading flows back.
 
@@ -197,12 +224,12 @@ def test_thin_rings_by_statics(poisson, area):
 
 
 CASES = {
-    "partly": (6e-3, 0.0, 90e6, 0.0, 2e-5),
-    "partly, closed": (6e-3, CLOSED, 95e6, 0.0, 2e-5),
+    "partly": (6e-3, 0.0, 90e6, 0.0, 5e-5),
+    "partly, closed": (6e-3, CLOSED, 95e6, 0.0, 5e-5),
     "through": (6e-3, CLOSED, 120e6, 0.0, 1e-7),
     "through, open": (6e-3, 0.0, 150e6, 0.0, 1e-7),
     "cold": (6e-3, 0.0, 100e6, -60.0, 1e-7),
-    "cold, partly": (9e-3, CLOSED, 100e6, -60.0, 2e-5),
+    "cold, partly": (9e-3, CLOSED, 100e6, -60.0, 5e-5),
     "thin": (1e-3, CLOSED, 50e6, 0.0, 1e-7),
 }
 
@@ -211,7 +238,8 @@ CASES = {
 def test_incremental_solution(case):
     """Growth, axial strain and interface pressure agree with yielding finite elements.
 
-    To 1e-7 once yielded through, to 2e-5 with the border inside an element; the stresses at the
+    To 1e-7 once yielded through, to 5e-5 with the border inside an
+    element (1e-6 with eight times as many); the stresses at the
     liner's faces, extrapolated by the oracle, to 1e-3 of Y. The oracle flows on the whole prism of
     Tresca and unloads step by step, so superposition, the face of the prism and elastic unloading
     are shown, not assumed. Loaded again it stays elastic up to the same pressure, no further.
@@ -265,7 +293,7 @@ def test_flags_where_the_solution_ends():
     for pressure, holds in ((50e6, True), (60e6, False), (90e6, False)):
         found = residual(layers, pressure, area=CLOSED)
         assert (found.axial_margin > 0) == holds
-        tube = PlasticTube(layers, RADIUS, YIELD).way(0.0, pressure, CLOSED)
+        tube = PlasticTube(layers, RADIUS, YIELD, elements=20).way(0.0, pressure, CLOSED)
         values, faces = tube.way(pressure, 0.0, CLOSED, steps=8).outcome()
         assert (found.axial_strain == pytest.approx(values[1], rel=1e-6)) == holds
         back = found.reverse_yield > 1
@@ -274,14 +302,16 @@ def test_flags_where_the_solution_ends():
             assert faces[0, 1] == pytest.approx(-YIELD, rel=1e-3)
         else:
             assert found.stresses[1][0, 0] == pytest.approx(faces[0, 1], abs=1e-3 * YIELD)
+            assert holds or found.axial_strain < 0.7 * values[1]
 
 
 @pytest.mark.parametrize("thickness", [1e-3, 3e-3, 6e-3])
-@pytest.mark.parametrize("factor", [1.2, 1.5])
+@pytest.mark.parametrize("factor", [1.2, 1.4])
 def test_von_mises_lies_between(thickness, factor):
     """Open tube: a metal of von Mises keeps a bore stress between those of Y and of 2 Y/sqrt(3).
 
-    The difference of the criteria, stated: up to 15 % of Y.
+    So the criteria differ by at most 15 % of Y; the second is met to 1 % of Y at 1.4 times the
+    pressure that yields the liner through.
     """
     layers = lined(thickness)
     pressure = factor * residual(layers, 0.0).full_pressure
@@ -291,8 +321,8 @@ def test_von_mises_lies_between(thickness, factor):
     )
     tube = PlasticTube(layers, RADIUS, YIELD, flow=mises, elements=20).way(0.0, pressure, 0.0)
     _, faces = tube.way(pressure, 0.0, 0.0, steps=4).outcome()
-    assert low < faces[0, 1] < high + 0.05 * YIELD
-    assert high - low < 0.2 * YIELD
+    assert low < faces[0, 1] < high + 0.01 * YIELD
+    assert high - low < 0.155 * YIELD
 
 
 def numbers(found):

@@ -5,15 +5,15 @@ Also how its growth settles beside the pressure step under the piston seal. Floa
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import exp, isfinite, pi, sqrt
+from math import e, exp, isfinite, pi
 
 import numpy as np
 
 from ..design.materials import load_library
-from ..models import barrel, barrel_ends, laminate, liner, ply, yielding
-from ..models.layered_tube import TubeLayer, layered_tube, tube_state
+from ..models import barrel, barrel_ends, laminate, liner, ply
+from ..models.layered_tube import layered_tube, tube_state
 from ..numeric import Array
 from . import wall_laminate
 from .allow import Stock, allowances, extremes
@@ -26,7 +26,7 @@ from .wall import Wall
 METALS = ("steel_e355", "al_7075_t6")
 """The metal barrels set beside every wall: the usual honed steel tube, the usual light one."""
 
-FACTORS = (0.8, 1.0, 1.25)
+FACTORS = (0.8, 1.25)
 """Bore growths for which a thickness is sought, over the present one."""
 
 LARGEST = 2.0
@@ -72,25 +72,36 @@ class Settling:
 
 @dataclass(frozen=True, slots=True)
 class MetalTube:
-    """A barrel of the same bore for the same pressure; the first row is the design's own.
+    """A barrel of the same bore for the same pressure; without a material, the design's own.
 
-    Walls [m] that hold the growth and the burst pressure, None where none does; `thickness` is the
-    larger one; `yield_factor` yield over supply pressure under the worse axial force.
+    `for_growth` and `for_burst` are the walls [m] that hold either, None where none does or none
+    is asked; `thickness` is the larger. Growth [m] is at supply pressure without axial force,
+    burst and yield pressures [Pa] are those of the worse axial force, mass is per length [kg/m].
     """
 
     material: str
     for_growth: float | None
     for_burst: float | None
-    thickness: float | None
-    mass_per_length: float | None
-    yield_factor: float | None
+    thickness: float | None = None
+    growth: float | None = None
+    burst_pressure: float | None = None
+    yield_pressure: float | None = None
+    mass_per_length: float | None = None
 
 
-def least(values: dict[str, Array]) -> float | None:
-    """The smallest of some pressures; None where there is none."""
-    found = [float(np.min(np.real(value))) for value in values.values()]
-    usable = [value for value in found if isfinite(value)]
-    return min(usable, default=None)
+def single(value: Array) -> float:
+    """The only number of a design's array."""
+    return float(np.squeeze(np.real(value)))
+
+
+def least(pressures: Mapping[str, Array]) -> tuple[float | None, str]:
+    """The smallest finite one of some pressures, and its place; None where there is none."""
+    found = {place: single(value) for place, value in pressures.items()}
+    usable = {place: value for place, value in found.items() if isfinite(value)}
+    if not usable:
+        return None, ""
+    place = min(usable, key=lambda name: usable[name])
+    return usable[place], place
 
 
 def governing_force(wall: Wall) -> float:
@@ -130,37 +141,36 @@ def thicknesses(
 ) -> tuple[Thickness, ...]:
     """Thickness of layer `index` for bore growths around the present one, by the exact tube."""
     inner = float(g.inner_radius)
-    wall: list[TubeLayer] = [layer.as_tube() for layer in layers]
-    present = tube_state(
-        tube=layered_tube(layers=wall, inner_radius=inner),
-        inner_pressure=pressure,
-        axial_force=force,
-    )
-    growth = float(present.bore_displacement)
-    rows = []
-    for factor in FACTORS:
-        row = Thickness(factor, factor * growth, None, None)
+    wall = [layer.as_tube() for layer in layers]
+    tube = layered_tube(layers=wall, inner_radius=inner)
+    state = tube_state(tube=tube, inner_pressure=pressure, axial_force=force)
+    growth = float(state.bore_displacement)
+
+    def solved(factors: Sequence[float]) -> list[float | None]:
         try:
-            found = float(
-                liner.layer_thickness_for_strain(
-                    layers=wall,
-                    index=index,
-                    inner_radius=inner,
-                    strain=factor * growth / inner,
-                    pressure=pressure,
-                    axial_force_per_pressure=force / pressure,
-                    largest_thickness=LARGEST * inner,
-                )
+            found = liner.layer_thickness_for_strain(
+                layers=wall,
+                index=index,
+                inner_radius=inner,
+                strain=np.array(factors) * growth / inner,
+                pressure=pressure,
+                axial_force_per_pressure=force / pressure,
+                largest_thickness=LARGEST * inner,
             )
-        except ValueError:  # no thickness reaches it: the row says so
-            found = float("nan")
-        if isfinite(found):
+        except ValueError:  # one of them is out of reach: find out which
+            return [x for one in factors for x in solved([one])] if len(factors) > 1 else [None]
+        return [float(value) for value in found]
+
+    rows = []
+    known = (float(layers[index].thickness), *solved(FACTORS))
+    for factor, found in zip((1.0, *FACTORS), known, strict=True):
+        mass = None
+        if found is not None:
             changed = list(layers)
             changed[index] = replace(layers[index], thickness=found)
             mass = mass_per_length(changed, densities, inner)
-            row = replace(row, thickness=found, mass_per_length=mass)
-        rows.append(row)
-    return tuple(rows)
+        rows.append(Thickness(factor, factor * growth, found, mass))
+    return tuple(sorted(rows, key=lambda row: row.factor))
 
 
 def differences(
@@ -171,18 +181,13 @@ def differences(
         v, subject.design, stock, done.geometry, done.state, exact=not exact
     )
     pair = (done.wall, other) if exact else (other, done.wall)
-    rows = [
-        [float(np.max(np.real(wall.growth))) for wall in pair],
-        [least(wall.yield_pressure) for wall in pair],
-        [least(wall.first_ply_pressure) for wall in pair],
-        [least(wall.burst_pressure) for wall in pair],
-    ]
-    names = ("bore_growth", "yield_pressure", "first_ply_pressure", "burst_pressure")
-    return tuple(
-        Difference(name, first, second)
-        for name, (first, second) in zip(names, rows, strict=True)
-        if first is not None or second is not None
-    )
+    growths = [float(np.max(np.real(wall.growth))) for wall in pair]
+    rows = [Difference("bore_growth", *growths)]
+    for name in ("yield_pressure", "first_ply_pressure", "burst_pressure"):
+        pressures = [least(getattr(wall, name))[0] for wall in pair]
+        if pressures != [None, None]:
+            rows.append(Difference(name, *pressures))
+    return tuple(rows)
 
 
 def settling(layers: Sequence[Layer], g: Geometry) -> Settling:
@@ -220,27 +225,44 @@ def settling(layers: Sequence[Layer], g: Geometry) -> Settling:
 
 
 def metal_tubes(
-    subject: Subject,
-    layers: Sequence[Layer],
-    densities: Sequence[float],
-    done: Pass,
-    *,
-    pressure: float,
+    subject: Subject, v: Values, layers: Sequence[Layer], densities: Sequence[float], done: Pass
 ) -> tuple[MetalTube, ...]:
-    """The design's wall, and a barrel of each of `METALS` for its growth and its burst pressure.
+    """The design's wall, and the thinnest barrel of each of `METALS` for the same duty.
 
-    Growth is compared without axial force; burst under every load path of the design.
+    The duty is its bore growth without axial force, and the burst pressure it must have (its own
+    where that is lower, or where the burst check is waived) under every load path.
     """
-    inner = float(done.geometry.inner_radius)
-    strain = pressure * float(np.squeeze(np.real(done.wall.swelling.growth))) / inner
-    burst, flowing = least(done.wall.burst_pressure), least(done.wall.yield_pressure)
-    whole = sum(float(layer.thickness) for layer in layers)
-    mass = mass_per_length(layers, densities, inner)
-    factor = None if flowing is None else flowing / pressure
-    rows = [MetalTube(subject.design.name, None, None, whole, mass, factor)]
-    for name in METALS:
-        rows.append(_metal_tube(subject, name, done.wall, inner, pressure, strain, burst))
-    return tuple(rows)
+    wall, inner, pressure = done.wall, float(done.geometry.inner_radius), v["supply.pressure"]
+    burst = least(wall.burst_pressure)[0]
+    own = MetalTube(
+        material="",
+        for_growth=None,
+        for_burst=None,
+        thickness=sum(float(layer.thickness) for layer in layers),
+        growth=pressure * single(wall.swelling.growth),
+        burst_pressure=burst,
+        yield_pressure=least(wall.yield_pressure)[0],
+        mass_per_length=mass_per_length(layers, densities, inner),
+    )
+    if burst is not None and "burst_factor" not in subject.design.waivers:
+        burst = min(burst, pressure * v["requirements.burst_factor.min"])
+    strain = pressure * single(wall.swelling.growth) / inner
+    forces = [single(area) for area in wall.path.per_pressure.values()]
+    return (
+        own,
+        *(
+            metal_tube(
+                _stock_of(subject, name),
+                name,
+                inner_radius=inner,
+                pressure=pressure,
+                strain=strain,
+                burst_pressure=burst,
+                axial_forces_per_pressure=forces,
+            )
+            for name in METALS
+        ),
+    )
 
 
 def _stock_of(subject: Subject, name: str) -> Stock:
@@ -258,46 +280,57 @@ def _stock_of(subject: Subject, name: str) -> Stock:
     return Stock(Values(numbers, ()), {name: material}, factors, {})
 
 
-def _metal_tube(
-    subject: Subject,
+def metal_tube(
+    stock: Stock,
     name: str,
-    wall: Wall,
-    inner: float,
+    *,
+    inner_radius: float,
     pressure: float,
     strain: float,
-    burst: float | None,
+    burst_pressure: float | None,
+    axial_forces_per_pressure: Sequence[float],
 ) -> MetalTube:
-    """The thinnest tube of one metal for a bore strain and a burst pressure."""
-    stock = _stock_of(subject, name)
+    """The thinnest tube of one metal for a bore strain (no axial force) and a burst pressure."""
+    inner, density = inner_radius, stock.get(name, "density")
+    elastic = {
+        "youngs_modulus": stock.get(name, "youngs_modulus"),
+        "poissons_ratio": stock.get(name, "poissons_ratio"),
+    }
     strength = stock.allowable(name, "yield_strength")
-    ultimate = stock.allowable(name, "ultimate_strength")
-    forces = [float(np.squeeze(np.real(area))) for area in wall.path.per_pressure.values()]
+    strengths = {
+        "yield_strength": strength,
+        "ultimate_strength": stock.allowable(name, "ultimate_strength"),
+    }
+    ratios = [force / (pi * inner * inner) for force in axial_forces_per_pressure]
+    held = None
+    if burst_pressure is not None:  # Faupel's pressure is proportional to the logarithm of k
+        unit = {"inner_radius": 1.0, "outer_radius": e} | strengths
+        least_flow = min(
+            float(barrel.burst_pressure_thick(**unit, axial_force_ratio=ratio)) for ratio in ratios
+        )
+        held = inner * (exp(burst_pressure / least_flow) - 1)
     try:
-        growth = inner * (
-            barrel.wall_ratio_for_strain(
-                strain=strain,
-                pressure=pressure,
-                youngs_modulus=stock.get(name, "youngs_modulus"),
-                poissons_ratio=stock.get(name, "poissons_ratio"),
-                closed=False,
-            )
-            - 1
+        stiff = barrel.wall_ratio_for_strain(
+            strain=strain, pressure=pressure, closed=False, **elastic
         )
     except ValueError:  # no wall of this metal is stiff enough
-        return MetalTube(name, None, None, None, None, None)
-    held = None
-    if burst is not None:
-        flow = strength * (2 - strength / ultimate)
-        halves = [force / (2 * pi * inner * inner) for force in forces]
-        worst = max(sqrt(1 - half + half * half) for half in halves)
-        held = inner * (exp(burst * worst / flow) - 1)
-    outer = inner + max(growth, held or 0.0)
-    used = []
-    for force in forces:
-        hoop, radial, axial = barrel.bore_stresses(
-            pressure=pressure, inner_radius=inner, outer_radius=outer, axial_force=pressure * force
-        )
-        stress = (hoop, radial, axial, 0.0)
-        used.append(yielding.yield_utilisation(stress=stress, yield_strength=strength))
-    mass = stock.get(name, "density") * pi * (outer * outer - inner * inner)
-    return MetalTube(name, float(growth), held, outer - inner, mass, 1 / float(max(used)))
+        return MetalTube(name, None, held)
+    growth = float(inner * (stiff - 1))
+    size = {"inner_radius": inner, "outer_radius": inner + max(growth, held or 0.0)}
+    yields, bursts = [], []
+    for force, ratio in zip(axial_forces_per_pressure, ratios, strict=True):
+        hoop, radial, axial = barrel.bore_stresses(pressure=1.0, axial_force=force, **size)
+        used = barrel.von_mises(hoop=hoop, radial=radial, axial=axial)
+        yields.append(float(strength / used))
+        bursts.append(barrel.burst_pressure_thick(**size, **strengths, axial_force_ratio=ratio))
+    area = pi * (size["outer_radius"] * size["outer_radius"] - inner * inner)
+    return MetalTube(
+        material=name,
+        for_growth=growth,
+        for_burst=held,
+        thickness=size["outer_radius"] - inner,
+        growth=float(barrel.bore_growth(pressure=pressure, **size, **elastic)),
+        burst_pressure=float(min(bursts)),
+        yield_pressure=min(yields),
+        mass_per_length=float(density * area),
+    )

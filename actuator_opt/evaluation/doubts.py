@@ -100,6 +100,16 @@ def _wall_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:
             f"stresses from cooling are left out of first ply and yield: "
             f"{done.wall.why_no_mismatch}",
         )
+    worked = done.wall.autofrettage
+    if subject.design.barrel.autofrettage_pressure is not None:
+        if worked is None:
+            yield "", "autofrettage is left out: it needs the exact tube and a metal liner"
+        elif float(np.min(np.real(worked.axial_margin))) < 0:
+            yield (
+                "reverse_yield_factor",
+                "autofrettage yields the liner along its axis too: the axial residual strain is "
+                "understated, up to a third; hoop residuals hold",
+            )
     retention = subject.design.retention
     if done.wall.path.tie_rods is not None and retention is not None and retention.preload is None:
         force = float(np.max(np.real(done.wall.path.tie_rods.preload)))

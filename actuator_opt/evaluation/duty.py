@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..design.model import Design
-from ..models import density, endurance, rod
+from ..models import density, endurance, retention, rod
 from ..numeric import Array, maximum, where
 from .allow import Stock
 from .geometry import Geometry
@@ -48,26 +48,23 @@ def _endurance(
 ) -> None:
     """Pressure-cycle life of metal parts: wall layers, rod (push/pull) and thread root."""
     area = rod.section_area(outer_diameter=g.rod_diameter, inner_diameter=g.rod_inner_diameter)
-    loads: list[tuple[str, str, Array, Array]] = []
-    for place, pressure in wall.yield_pressure.items():
-        name = wall.yields[place]
-        strength = stock.allowable(name, "yield_strength", "ultimate_strength")
-        if strength is not None:  # a ply has no yield: its fatigue is a check of its own
-            loads.append((place, name, strength * supply / pressure, 0.0))
-    reversed_stress = (push + pull) / 2 / area  # its compressive mean earns no credit
-    loads.append(("rod", design.rod.material, reversed_stress, -1.0))
+    loads = [(place, c.material, c.span, c.mean) for place, c in wall.cycles.items()]
+    reversed_stress = (push + pull) / area  # its compressive mean earns no credit
+    loads.append(("rod", design.rod.material, reversed_stress, 0.0))
     if design.rod.thread is not None:
         stress = THREAD_NOTCH * rod.thread_stress(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
         )
-        loads.append(("rod thread", design.rod.material, stress, 0.0))
+        loads.append(("rod thread", design.rod.material, stress, stress / 2))
     life, factor, lacking = {}, {}, []
-    for place, name, peak, ratio in loads:
+    for place, name, span, mean in loads:
         ultimate, limit = stock.get(name, "ultimate_strength"), stock.get(name, "fatigue_strength")
         if ultimate is None or limit is None:
             lacking.append(name)
             continue
         cycles = stock.get(name, "fatigue_cycles", default=1e6)
+        peak = mean + span / 2
+        ratio = (mean - span / 2) / peak
         life[place] = endurance.cycles_to_failure(
             peak_stress=peak,
             ultimate_strength=ultimate,
@@ -81,6 +78,16 @@ def _endurance(
             amplitude_strength=limit,
             stress_ratio=ratio,
         )
+    rods = wall.path.tie_rods
+    if rods is not None:
+        span = retention.tie_rod_stress(
+            force=rods.largest - rods.preload,
+            count=v["retention.count"],
+            diameter=v["retention.thread.diameter"],
+            pitch=v["retention.thread.pitch"],
+        )
+        bears = retention.bolt_endurance_amplitude(diameter=v["retention.thread.diameter"])
+        factor["tie rods"] = 2 * bears / span
     for metric, values in (("cycle_life", life), ("fatigue_factor", factor)):
         if values:
             out.put(metric, values)
@@ -157,13 +164,23 @@ def _thermal(
     for metric, values, why in (
         ("liner_mismatch_factor", wall.mismatch, wall.why_no_mismatch),
         ("liner_bond_factor", wall.bond, wall.why_no_mismatch),
-        ("liner_range_factor", wall.strain_range, "the wall has no metal layer under plies"),
     ):
         if values:
-            scale = supply if metric == "liner_range_factor" else 1.0
-            out.put(metric, {place: value / scale for place, value in values.items()})
+            out.put(metric, values)
         else:
             out.skip(metric, why)
+    if wall.autofrettage is None:
+        out.skip("reverse_yield_factor", "no autofrettage stated: add barrel.autofrettage_pressure")
+    else:
+        out.put("reverse_yield_factor", 1 / wall.autofrettage.reverse_yield)
+    ranges = {}
+    for place, cycle in wall.cycles.items():
+        strength = stock.allowable(cycle.material, "yield_strength", "ultimate_strength")
+        ranges[place] = 2 * strength / cycle.span
+    if len(design.barrel.layup) > 1 and ranges:
+        out.put("liner_range_factor", ranges)
+    else:
+        out.skip("liner_range_factor", "the wall has no metal layer under plies")
     if environment is None:
         out.skip("temperature_margin", "no temperature range stated: add environment")
         return

@@ -7,16 +7,18 @@ barrel's outside (bond or thread), or are clamped by tie rods.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from ..design.model import Design
+from ..design.material import Material
+from ..design.model import Design, Ply
 from ..models import forces, gland, mass
-from ..numeric import Array
+from ..numeric import Array, absolute
 from .values import Values
 
 LAND = 1e-3
-"""Least wall beside or under a groove, least rod wall and least room between rod and bore (m):
-a choice for turned parts in this size range."""
+"""Least wall beside or under a groove, least rod wall, bore of a laminated rod and room between
+rod and bore (m): a choice for turned parts in this size range."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +44,7 @@ class Geometry:
     area_b: Array
     rod_diameter: Array
     rod_inner_diameter: Array
+    rod_thicknesses: tuple[Array, ...]
     rod_extension: Array
     rod_length: Array
     piston_length: Array
@@ -72,11 +75,17 @@ def _groove(v: Values, seal: str) -> Groove:
     )
 
 
+def _thicknesses(v: Values, part: str, layup: tuple[Ply, ...]) -> tuple[Array, ...]:
+    return tuple(v[f"{part}.layup[{i}].thickness"] for i in range(len(layup)))
+
+
 def derive(v: Values, design: Design) -> Geometry:
     """All derived dimensions of a design."""
     bore, stroke = v["cylinder.bore"], v["cylinder.stroke"]
-    rod, rod_inner = v["rod.outer_diameter"], v["rod.inner_diameter"]
-    thicknesses = tuple(v[f"barrel.layup[{i}].thickness"] for i in range(len(design.barrel.layup)))
+    rod = v["rod.outer_diameter"]
+    thicknesses = _thicknesses(v, "barrel", design.barrel.layup)
+    rod_thicknesses = _thicknesses(v, "rod", design.rod.layup)
+    rod_inner = rod - 2 * sum(rod_thicknesses) if rod_thicknesses else v["rod.inner_diameter"]
     inner_radius = bore / 2
     outer_radius = inner_radius + sum(thicknesses)
     piston_length, head_length = v["piston.length"], v["head.length"]
@@ -105,6 +114,7 @@ def derive(v: Values, design: Design) -> Geometry:
         area_b=forces.annulus_area(bore=bore, rod_diameter=rod),
         rod_diameter=rod,
         rod_inner_diameter=rod_inner,
+        rod_thicknesses=rod_thicknesses,
         rod_extension=extension,
         rod_length=barrel_length - piston_length + plate + extension,
         piston_length=piston_length,
@@ -129,7 +139,8 @@ def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
     """Walls that must not vanish: every one is a constraint of the optimiser."""
     g = geometry
     piston, rod = g.piston_groove, g.rod_groove
-    return {
+    bore = {"geometry_rod_bore": g.rod_inner_diameter} if g.rod_thicknesses else {}
+    return bore | {
         "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,
         "geometry_rod_wall": (g.rod_diameter - g.rod_inner_diameter) / 2,
         "geometry_piston_groove": (g.piston_length - piston.count * piston.width)
@@ -138,3 +149,30 @@ def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
         "geometry_head_groove": (g.head_length - rod.count * rod.width) / (rod.count + 1),
         "geometry_head_wall": g.inner_radius - g.rod_diameter / 2 - rod.gland_depth,
     }
+
+
+def makeable(
+    v: Values, design: Design, materials: Mapping[str, Material]
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """What is left of the process's limits, by layer of barrel and rod.
+
+    Winding angle less the smallest that can be wound [rad], and layer thickness over the least
+    that can be laid, less one. A layer at exactly 0 deg is laid along the mandrel, not wound.
+    """
+    angles: dict[str, Array] = {}
+    spare: dict[str, Array] = {}
+    for path, entry in _layers(design):
+        known, at = materials[entry.material].numbers, f"materials.{entry.material}."
+        laid = entry.angle == 0 and f"{path}.angle" not in (*design.variables, *v.varied)
+        if known.get("minimum_angle", 0.0) > 0 and not laid:
+            angles[path] = absolute(v[f"{path}.angle"]) - v[f"{at}minimum_angle"]
+        if known.get("minimum_thickness", 0.0) > 0:
+            spare[path] = v[f"{path}.thickness"] / v[f"{at}minimum_thickness"] - 1
+    return angles, spare
+
+
+def _layers(design: Design) -> Iterator[tuple[str, Ply]]:
+    """Every layer of barrel and rod by PATH."""
+    for part, layup in (("barrel", design.barrel.layup), ("rod", design.rod.layup)):
+        for i, entry in enumerate(layup):
+            yield f"{part}.layup[{i}]", entry

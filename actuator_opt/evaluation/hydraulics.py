@@ -8,9 +8,10 @@ from math import pi
 from typing import NamedTuple
 
 from ..design.model import Design
-from ..models import damping, dynamics, forces, lines, rod, stiffness
+from ..models import damping, dynamics, forces, lines, stiffness
 from ..numeric import Array
 from .geometry import Geometry
+from .rods import Rod
 from .rows import Computed
 from .sealing import Friction
 from .state import State
@@ -45,6 +46,7 @@ class Springs:
     rod: Array
     mount: Array | None
     geometry: Geometry
+    rod_place: str = ""
 
     def total(self, causes: Sequence[str] = CAUSES) -> Give:
         """Compliance of some causes together."""
@@ -97,7 +99,9 @@ def _stretch(design: Design, g: Geometry, wall: Wall) -> Give:
     return Give(a0=own, a1=twice, c0=once * g.stroke, c1=-once)
 
 
-def springs(v: Values, design: Design, geometry: Geometry, state: State, wall: Wall) -> Springs:
+def springs(
+    v: Values, design: Design, geometry: Geometry, state: State, wall: Wall, rod: Rod
+) -> Springs:
     """Compliance of chambers, lines, rod and mount."""
     g = geometry
     volume = {"a": v["cylinder.dead_volume_a"], "b": v["cylinder.dead_volume_b"]}
@@ -117,7 +121,6 @@ def springs(v: Values, design: Design, geometry: Geometry, state: State, wall: W
         )
     swelling = 2 * pi * g.inner_radius * (wall.growth / v["supply.pressure"])
     oil_a, oil_b = state.bulk_modulus_a, state.bulk_modulus_b
-    modulus = v[f"materials.{design.rod.material}.youngs_modulus"]
     return Springs(
         chambers={
             "oil": Give(
@@ -130,14 +133,10 @@ def springs(v: Values, design: Design, geometry: Geometry, state: State, wall: W
             "stretch": _stretch(design, g, wall),
             "lines": Give(a0=give["a"], b0=give["b"]),
         },
-        rod=rod.axial_stiffness(
-            youngs_modulus=modulus,
-            outer_diameter=g.rod_diameter,
-            inner_diameter=g.rod_inner_diameter,
-            length=g.rod_length,
-        ),
+        rod=rod.axial_stiffness / g.rod_length,
         mount=v.get("cylinder.mount_stiffness", None),
         geometry=g,
+        rod_place=rod.place,
     )
 
 
@@ -164,7 +163,7 @@ def compute_stiffness(s: Springs, moving_mass: Array, out: Computed) -> Array:
     out.put("stiffness_min", total)
     out.put("stiffness_oil", 1 / parts["oil"])
     out.put("stiffness_barrel", 1 / parts["barrel"])
-    out.put("stiffness_rod", s.rod)
+    out.put("stiffness_rod", {s.rod_place: s.rod})
     out.put("natural_frequency", dynamics.natural_frequency(stiffness=total, mass=moving_mass))
     return total
 

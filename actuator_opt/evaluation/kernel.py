@@ -13,11 +13,14 @@ from ..models import forces
 from ..numeric import Array, minimum, where
 from ..quantities import METRICS, Quantity
 from . import barrel as barrel_module
-from . import duty, hydraulics, sealing, state, strength, weight
+from . import beam as beam_module
+from . import duty, hydraulics, rods, sealing, state, strength, weight
 from . import geometry as geometry_module
 from .allow import Stock
+from .beam import Beam
 from .geometry import Geometry
 from .plugin import Plugin
+from .rods import Rod
 from .rows import Computed
 from .state import State
 from .values import Values
@@ -64,6 +67,8 @@ class Pass:
     geometry: Geometry
     state: State
     wall: Wall
+    rod: Rod
+    beam: Beam
     springs: hydraulics.Springs
     mass_parts: dict[str, Array]
 
@@ -80,25 +85,41 @@ def compute(subject: Subject, v: Values) -> Pass:
         out.put("bore_growth", barrel.growth)
         friction = sealing.compute(v, design, stock, g, case_state, barrel, out)
         net = _forces(g, case_state, friction, out)
-        parts = weight.parts(v, design, g)
+        rod = rods.derive(v, design, stock, g)
+        parts = weight.parts(v, design, g, rod)
         out.put("mass", sum(parts.values()))
         out.put("mass_oil", weight.oil(v, design, g))
-        springs = hydraulics.springs(v, design, g, case_state, barrel)
+        springs = hydraulics.springs(v, design, g, case_state, barrel, rod)
         moving = v["load.mass"] + parts["rod"] + parts["piston"] + parts["fastening"]
         least = hydraulics.compute_stiffness(springs, moving, out)
         hydraulics.compute_damping(v, g, case_state, friction, least, moving, out)
         hydraulics.compute_flow(v, design, g, case_state, out)
-        strength.compute(v, design, stock, g, case_state, barrel, out)
+        beam = beam_module.derive(v, design, g, case_state, barrel, rod, parts)
+        strength.compute(v, design, stock, g, case_state, barrel, rod, beam, out)
         duty.compute(v, design, stock, g, case_state, barrel, moving, net, out)
         thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
         for name, value in geometry_module.lands(g, thread / 2).items():
             out.put(name, value)
+        _manufacture(v, subject, out)
         out.put("barrel_length", g.barrel_length)
         out.put("closed_length", g.closed_length)
         out.skip("leakage", "needs the film of the running seal; static O-rings hold")
         for plugin in subject.plugins:
             out.put(plugin.name, plugin.call(v, out.metrics))
-    return Pass(out, g, case_state, barrel, springs, parts)
+    return Pass(out, g, case_state, barrel, rod, beam, springs, parts)
+
+
+def _manufacture(v: Values, subject: Subject, out: Computed) -> None:
+    """Margins of the process that lays the plies."""
+    angles, spare = geometry_module.makeable(v, subject.design, subject.materials)
+    for name, values, limit in (
+        ("winding_margin", angles, "smallest angle"),
+        ("ply_thickness_margin", spare, "smallest thickness"),
+    ):
+        if values:
+            out.put(name, values)
+        else:
+            out.skip(name, f"no layer states a {limit} that can be made")
 
 
 def _forces(g: Geometry, s: State, friction: sealing.Friction, out: Computed) -> Array:

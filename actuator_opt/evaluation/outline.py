@@ -11,6 +11,7 @@ from ..design.material import Material
 from ..design.model import Design
 from .geometry import Geometry, Groove
 from .result import Outline
+from .rods import end_material
 
 _Polygon: TypeAlias = tuple[tuple[float, float], ...]
 _Part: TypeAlias = tuple[str, str, list[_Polygon]]
@@ -129,10 +130,9 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         at.start, at.piston_end, 0.0, radius, g.piston_groove, at.piston_floor, outside=True
     )
     plug = _grooved(at.head, at.end, at.hole, at.bore, g.rod_groove, at.head_floor, outside=False)
-    rod = _rectangle(at.piston_end, at.tip, float(g.rod_inner_diameter) / 2, at.rod)
     yield "piston", design.piston.material, [piston]
     yield "glands", design.head.material, [plug]
-    yield "rod", design.rod.material, [rod]
+    yield from _rod(design, g, at)
     yield (
         "piston seal",
         design.seals.piston.compound,
@@ -143,6 +143,31 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         design.seals.rod.compound,
         _rings(at.head, g.head_length, g.rod_groove, at.rod, at.head_floor),
     )
+
+
+def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """The rod: a bar or tube, or its layers with the fittings inside both ends."""
+    bore = float(g.rod_inner_diameter) / 2
+    if not design.rod.layup:
+        yield "rod", design.rod.material, [_rectangle(at.piston_end, at.tip, bore, at.rod)]
+        return
+    radius = bore
+    for i, (ply, thickness) in enumerate(zip(design.rod.layup, g.rod_thicknesses, strict=True)):
+        outer = radius + float(thickness)
+        shape = _rectangle(at.piston_end, at.tip, radius, outer)
+        yield f"rod.layup[{i}]", ply.material, [shape]
+        radius = outer
+    fitting = design.rod.fitting
+    if fitting is not None:
+        hole = 0.0 if fitting.wall is None else max(bore - fitting.wall, 0.0)
+        yield (
+            "rod.fitting",
+            end_material(design),
+            [
+                _rectangle(at.piston_end, at.piston_end + fitting.length, hole, bore),
+                _rectangle(at.tip - fitting.length, at.tip, hole, bore),
+            ],
+        )
 
 
 def _rings(start: float, length: float, groove: Groove, low: float, high: float) -> list[_Polygon]:

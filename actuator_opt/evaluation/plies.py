@@ -7,7 +7,7 @@ of its own temperature.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,7 @@ from ..models.criteria import CRITERIA
 from ..models.layered_tube import TubeLayer
 from ..models.solid_ply import Solid, solid_stiffness
 from ..models.strength_modes import PlyRatios, PlyStrength, Stress
-from ..numeric import Array, real
+from ..numeric import Array, maximum, real
 from .allow import Stock
 from .values import Values
 
@@ -183,6 +183,15 @@ def worst(values: Array, axes: tuple[int, ...]) -> Array:
         return moved[0]
     pick = np.argmax(real(moved), axis=0)
     return np.take_along_axis(moved, pick[None], axis=0)[0]
+
+
+def grouped(modes: Mapping[str, Array]) -> dict[str, Array]:
+    """Utilisations of modes that exclude each other, as one: both fibre modes as "fibre"."""
+    groups: dict[str, Array] = {}
+    for mode, used in modes.items():
+        group = mode.partition(" ")[0]
+        groups[group] = maximum(groups[group], used) if group in groups else used
+    return groups
 
 
 def utilisations(

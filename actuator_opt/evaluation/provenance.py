@@ -10,8 +10,10 @@ from types import MappingProxyType
 from typing import cast
 
 from ..models import (
+    autofrettage,
     barrel,
     barrel_ends,
+    beam_column,
     damping,
     dynamics,
     end_plate,
@@ -28,6 +30,7 @@ from ..models import (
     retention,
     rod,
     seals,
+    shell_buckling,
     stepped,
     stiffness,
     strength_modes,
@@ -107,7 +110,10 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "burst_factor": barrel.burst_pressure_thick,
         "first_ply_factor": strength_modes.max_stress_modes,
         "buckling_factor": stepped.stepped_column_load,
+        "local_buckling_factor": shell_buckling.local_shell_force,
         "thread_factor": rod.thread_stress_area,
+        "fitting_factor": retention.bond_edge_shear,
+        "bond_thermal_factor": retention.bond_thermal_shear,
         "retention_factor": retention.bond_edge_shear,
         "cap_factor": end_plate.hub_plate_stress,
         "pin_factor": retention.pin_shear_stress,
@@ -123,6 +129,7 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "trapped_factor": oil_density.thermal_pressure_slope,
         "liner_mismatch_factor": laminate.thermal_line_forces,
         "joint_factor": barrel_ends.tie_rod_forces,
+        "reverse_yield_factor": autofrettage.autofrettage,
         "flow": forces.chamber_flow,
         "port_velocity": lines.port_velocity,
         "line_velocity": lines.line_velocity,
@@ -167,7 +174,8 @@ AT_PLACE: MappingProxyType[tuple[str, str], Callable[..., object]] = MappingProx
         ("cap_factor", "head"): end_plate.end_plate_stress,
         ("retention_factor", "thread"): rod.thread_shear_stress,
         ("retention_factor", "tie rods"): retention.tie_rod_stress,
-        ("yield_factor", "rod"): rod.rod_stress,
+        ("yield_factor", "rod"): beam_column.amplified_moment,
+        ("stiffness_rod", "layered tube"): layered_tube.tube_state,
     }
 )
 """What replaces both where another part of the actuator governs."""
@@ -180,7 +188,10 @@ def model_of(
 
     `wall` is the barrel's model, `criterion` that of its plies.
     """
-    if metric in ("first_ply_factor", "proof_factor") and wall in WALL_MODELS:
+    if metric == "rod_factor" and " yield, " in (place or ""):
+        return describe(yielding.yield_utilisation)
+    laminated = metric in ("first_ply_factor", "proof_factor") and wall in WALL_MODELS
+    if laminated or metric == "rod_factor":
         return describe(cast(Callable[..., object], CRITERIA[criterion]))
     own = WALL_MODELS[wall].get(metric) if wall in WALL_MODELS else None
     function = AT_PLACE.get((metric, place or "")) or own or METRIC_MODELS.get(metric)

@@ -10,6 +10,7 @@ from .. import quantities
 from ..design.model import Design
 from ..numeric import Array
 from ..tables import aligned
+from .wall_study import WallStudy
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +140,8 @@ class Evaluation:
     outlines: tuple[Outline, ...]
     lengths: Mapping[str, float]
     """Dimensions for the drawing (m): bore, rod, barrel outer diameter, stroke, closed length…"""
+    wall: WallStudy | None = None
+    """The barrel through its thickness; None where its model is the paper's own."""
 
     @property
     def met(self) -> bool:
@@ -194,6 +197,7 @@ class Evaluation:
             "requirements": [asdict(row) for row in self.requirements],
             "warnings": list(self.warnings),
             "unverified": [asdict(value) for value in self.unverified],
+            "wall": None if self.wall is None else self.wall.to_dict(),
         }
 
     def columns(self) -> dict[str, list[Any]]:

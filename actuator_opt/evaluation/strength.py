@@ -9,11 +9,13 @@ from __future__ import annotations
 from math import pi, sqrt
 
 from ..design.model import Design
-from ..models import column, end_plate, retention, rod, stepped
+from ..models import end_plate, retention, rod
 from ..numeric import Array, real, where
-from . import load_path
+from . import bonds, load_path, rod_strength
 from .allow import Stock
+from .beam import Beam, overhang
 from .geometry import Geometry
+from .rods import Rod
 from .rows import Computed
 from .state import State
 from .values import Values
@@ -21,9 +23,6 @@ from .wall import Wall
 
 HOLE = 2.0
 """Stress at the edge of a small central hole over that of the solid plate [Timoshenko1959]."""
-
-FIXED_PINNED = 0.6992
-"""Effective length factor of a column fixed at one end, pinned at the other: pi/4.4934."""
 
 
 def compute(
@@ -33,32 +32,36 @@ def compute(
     g: Geometry,
     state: State,
     wall: Wall,
+    section: Rod,
+    beam: Beam,
     out: Computed,
 ) -> None:
     """Every strength metric."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     through = supply * load_path.largest_area(design, g)
-    _pressure_factors(v, stock, design, g, wall, supply, through, state, out)
-    _buckling(stock, design, g, state, wall, push, out)
-    _rod_end(v, stock, design, pull, out)
-    _retention(v, stock, design, g, wall, through, out)
+    _pressure_factors(v, wall, supply, out)
+    parts = {place: p / supply for place, p in wall.yield_pressure.items()}
+    parts |= rod_strength.yields(stock, design, g, state, section, beam)
+    parts |= _metal_ends(v, stock, design, g, section, through, push)
+    out.put("yield_factor", parts)
+    out.put("buckling_factor", beam.critical / push)
+    rod_strength.compute(design, section, beam, supply, push, pull, out)
+    _rod_end(v, stock, design, section, pull, out)
+    laps = {
+        "caps": bonds.caps(stock, design, g, wall),
+        "rod fittings": bonds.fittings(v, stock, design, section),
+    }
+    _retention(v, stock, design, g, wall, laps["caps"], through, out)
+    _fittings(stock, laps["rod fittings"], push, out)
+    bonds.thermal(v, stock, design, laps, out)
     _caps(stock, design, g, supply, out)
     _pins(v, stock, design, push, out)
     _guides(stock, design, g, state, out)
 
 
-def _pressure_factors(
-    v: Values,
-    stock: Stock,
-    design: Design,
-    g: Geometry,
-    wall: Wall,
-    supply: Array,
-    through: Array,
-    state: State,
-    out: Computed,
-) -> None:
+def _pressure_factors(v: Values, wall: Wall, supply: Array, out: Computed) -> None:
+    """What the barrel bears over working and proof pressure."""
     proof = v["supply.proof_ratio"] * supply
     yields = {place: p / supply for place, p in wall.yield_pressure.items()}
     why = wall.missing[0] if wall.missing else "the wall has no metal layer"
@@ -76,68 +79,37 @@ def _pressure_factors(
         out.put("proof_factor", {place: p / proof for place, p in both.items()})
     else:
         out.skip("proof_factor", why)
-    parts = dict(yields)
-    strength = stock.allowable(design.rod.material, "yield_strength", "strength_1_compression")
-    if strength is not None:
-        axial = rod.rod_stress(
-            force=state.driven_pressure * where(state.push, g.area_a, g.area_b),
-            outer_diameter=g.rod_diameter,
-            inner_diameter=g.rod_inner_diameter,
-        )
-        bending = rod.bending_stress(
-            bending_moment=state.side_load * overhang(g, state),
-            outer_diameter=g.rod_diameter,
-            inner_diameter=g.rod_inner_diameter,
-        )
-        parts["rod"] = strength / (axial + bending)
-    skirt = stock.allowable(design.caps.material, "yield_strength")
-    if skirt is not None and design.retention is not None and not load_path.tied(design):
-        parts["cap skirt"] = skirt * (2 * pi * g.outer_radius * g.skirt_wall) / through
-    out.put("yield_factor", parts)
 
 
-def overhang(g: Geometry, state: State) -> Array:
-    """Distance of the rod eye from the middle of the head bearing, at the case's position."""
-    return state.reach + g.rod_extension + g.eye_offset + (g.head_length + g.plate) / 2
-
-
-def _buckling(
+def _metal_ends(
+    v: Values,
     stock: Stock,
     design: Design,
     g: Geometry,
-    state: State,
-    wall: Wall,
+    section: Rod,
+    through: Array,
     push: Array,
-    out: Computed,
+) -> dict[str, Array]:
+    """Yield over working stress of what hangs on the ends: the caps' skirts, rod fittings."""
+    factors = {}
+    strength = stock.allowable(design.caps.material, "yield_strength")
+    if strength is not None and design.retention is not None and not load_path.tied(design):
+        factors["cap skirt"] = strength * (2 * pi * g.outer_radius * g.skirt_wall) / through
+    strength = stock.allowable(section.end_material, "yield_strength")
+    if strength is not None and design.rod.fitting is not None:
+        factors["rod fitting"] = strength * bonds.fitting_area(v, design, section) / push
+    return factors
+
+
+def _rod_end(
+    v: Values, stock: Stock, design: Design, section: Rod, pull: Array, out: Computed
 ) -> None:
-    """Column of barrel and rod under the stall force, at the position of every case."""
-    modulus = stock.get(design.rod.material, "youngs_modulus", "youngs_modulus_1")
-    bending = modulus * rod.second_moment(
-        outer_diameter=g.rod_diameter, inner_diameter=g.rod_inner_diameter
-    )
-    exposed = state.reach + g.rod_extension + g.eye_offset
-    mount = design.cylinder.mount
-    if mount.startswith("head"):
-        factor = FIXED_PINNED if mount == "head_flange" else 1.0
-        load = column.euler_load(bending_stiffness=bending, effective_length=factor * exposed)
-    else:
-        load = stepped.stepped_column_load(
-            bending_stiffness_1=wall.bending_stiffness,
-            length_1=g.eye_offset + 2 * g.plate + g.barrel_length,
-            bending_stiffness_2=bending,
-            length_2=exposed,
-            ends=("fixed" if mount == "cap_flange" else "pinned", "pinned"),
-        )
-    out.put("buckling_factor", load / push)
-
-
-def _rod_end(v: Values, stock: Stock, design: Design, pull: Array, out: Computed) -> None:
-    strength = stock.allowable(design.rod.material, "yield_strength")
+    strength = stock.allowable(section.end_material, "yield_strength")
     if design.rod.thread is None or strength is None:
         why = (
             "no thread stated: add rod.thread"
             if design.rod.thread is None
-            else f"{design.rod.material} states no yield strength"
+            else f"{section.end_material} states no yield strength"
         )
         out.skip("thread_factor", why)
         return
@@ -153,6 +125,7 @@ def _retention(
     design: Design,
     g: Geometry,
     wall: Wall,
+    lap: bonds.Lap | str,
     load: Array,
     out: Computed,
 ) -> None:
@@ -162,7 +135,11 @@ def _retention(
     if held is None:
         found = "no retention stated: add retention"
     elif held.type == "bond":
-        found = _bond(stock, design, g, wall, load)
+        found = (
+            lap
+            if isinstance(lap, str)
+            else (bonds.edge_factors(stock, lap, load), bonds.mean_factor(stock, lap, load))
+        )
     else:
         found = _screwed(v, stock, design, g, wall, load)
     if isinstance(found, str):
@@ -177,37 +154,12 @@ def _retention(
         out.put("joint_factor", wall.path.tie_rods.closed)
 
 
-def _bond(
-    stock: Stock, design: Design, g: Geometry, wall: Wall, load: Array
-) -> tuple[dict[str, Array], Array] | str:
-    """Elastic edge shear of the bond, and its mean shear at break; or why not."""
-    adhesive = None if design.retention is None else design.retention.material
-    if adhesive is None:
-        return "a bond needs its adhesive: add retention.material"
-    strength = stock.allowable(adhesive, "bond_strength")
-    shear = stock.get(adhesive, "shear_modulus")
-    modulus = stock.get(design.caps.material, "youngs_modulus")
-    if strength is None or modulus is None or shear is None:
-        return "adhesive or caps lack bond strength or a modulus"
-    common = {
-        "force": load,
-        "diameter": 2 * g.outer_radius,
-        "length": g.skirt_length,
-        "shear_modulus": shear,
-        "bond_thickness": stock.get(adhesive, "bond_thickness", default=0.15e-3),
-    }
-    skirt, barrel = modulus * g.skirt_wall, wall.axial_line_stiffness
-    edges = {
-        "bond at the skirt's edge": (barrel, skirt),
-        "bond at the barrel's edge": (skirt, barrel),
-    }
-    factors = {}
-    for place, (loaded, free) in edges.items():
-        stress = retention.bond_edge_shear(
-            **common, membrane_stiffness_loaded=loaded, membrane_stiffness_free=free
-        )
-        factors[place] = strength / stress
-    return factors, strength * (2 * pi * g.outer_radius * g.skirt_length) / load
+def _fittings(stock: Stock, lap: bonds.Lap | str, push: Array, out: Computed) -> None:
+    """Bond of the rod's fittings under the push, which is larger than any pull."""
+    if isinstance(lap, str):
+        out.skip("fitting_factor", lap)
+    else:
+        out.put("fitting_factor", bonds.edge_factors(stock, lap, push))
 
 
 def _screwed(

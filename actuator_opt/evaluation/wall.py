@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from ..models.autofrettage import Autofrettage
 from ..numeric import Array
 from .load_path import LoadPath
 
@@ -26,12 +27,23 @@ class Swelling:
     growth_by_force: Array
 
 
+@dataclass(frozen=True, slots=True)
+class Cycle:
+    """Equivalent stress of a metal under pressure, per pressure pulse [Pa]: range, and its mean."""
+
+    material: str
+    span: Array
+    mean: Array
+
+
 @dataclass(slots=True)
 class Wall:
     """The wall of a design. Pressures by place (part, mode, load path), Pa, (designs,).
 
-    `growth` is at supply pressure, the worse of the cases' own axial force and none; `yields` names
-    the material behind each yield pressure, `missing` the strengths nobody states;
+    `cycles` are the stresses of metals while pressure comes and goes, by place.
+
+    `growth` is at supply pressure, the worse of the cases' own axial force and none; `missing` the
+    strengths nobody states;
     `axial_line_stiffness` is E t of the wall along the axis, N/m; `mismatch` yield over the liner's
     stress and `bond` strength over its pull on the plies, after cooling from the cure.
     """
@@ -47,9 +59,9 @@ class Wall:
     yield_pressure: dict[str, Array] = field(default_factory=dict)
     first_ply_pressure: dict[str, Array] = field(default_factory=dict)
     burst_pressure: dict[str, Array] = field(default_factory=dict)
-    yields: dict[str, str] = field(default_factory=dict)
     mismatch: dict[str, Array] = field(default_factory=dict)
     bond: dict[str, Array] = field(default_factory=dict)
-    strain_range: dict[str, Array] = field(default_factory=dict)
+    cycles: dict[str, Cycle] = field(default_factory=dict)
+    autofrettage: Autofrettage | None = None
     why_no_mismatch: str = "the wall is of one material"
     missing: list[str] = field(default_factory=list)

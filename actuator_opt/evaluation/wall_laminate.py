@@ -6,7 +6,7 @@ cure stresses and the clamp of tie rods stand as residual stresses that do not g
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import pi
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from ..design.model import Design
 from ..models import column, laminate, ply, ply_discount, rod, tube_burst, yielding
+from ..models.autofrettage import Autofrettage, autofrettage
 from ..models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
 from ..models.strength_modes import Stress, load_multiplier
 from ..numeric import Array, maximum, real, where
@@ -24,7 +25,7 @@ from .load_path import LoadPath
 from .plies import Climate, Layer
 from .state import State
 from .values import Values
-from .wall import Swelling, Wall
+from .wall import Cycle, Swelling, Wall
 
 PRESSURE, FORCE, WARMTH = range(3)
 """Unit loads of an `_Answer`."""
@@ -84,8 +85,11 @@ def compute(
         states = tuple(Climate(state.name, 0.0, cold=state.cold) for state in states)
     else:
         wall.expansion = (answer.axial[WARMTH], answer.warm_hoop)
-    _cooling(layers, answer, states, path, wall)
-    _strengths(design, layers, answer, states, path, wall)
+    if exact:
+        wall.autofrettage = _autofrettage(v, design, layers, g)
+    rest = _Rest(answer, states, path, wall.autofrettage)
+    _cooling(layers, rest, wall)
+    _strengths(design, layers, rest, v["supply.pressure"], wall)
     _ladder(layers, g, path, wall, exact=exact)
     return wall
 
@@ -170,21 +174,55 @@ def _thin(layers: Sequence[Layer], g: Geometry) -> _Answer:
     )
 
 
-def _residual(
-    answer: _Answer, rows: list[int], states: Sequence[Climate], path: LoadPath
-) -> Stress | None:
-    """Cure stress and clamp of some layers, (faces, layers, climates, 1, designs)."""
-    clamped = path.tie_rods is not None
-    if not clamped and not any(np.any(real(state.change)) for state in states):
+@dataclass(frozen=True, slots=True)
+class _Rest:
+    """What holds the wall without pressure: cooling from the cure, tie rods, autofrettage."""
+
+    answer: _Answer
+    states: Sequence[Climate]
+    path: LoadPath
+    autofrettage: Autofrettage | None
+
+    def cured(self) -> bool:
+        """Whether any state is away from the stress-free temperature."""
+        return any(bool(np.any(real(state.change))) for state in self.states)
+
+    def of(self, rows: list[int]) -> Stress | None:
+        """Residual stress of some layers, (faces, layers, climates, 1, designs)."""
+        clamped = self.path.tie_rods is not None
+        if not clamped and self.autofrettage is None and not self.cured():
+            return None
+        change = np.stack([np.atleast_1d(state.change) for state in self.states])
+        parts = []
+        for k, part in enumerate(self.answer.stress):
+            some = part[:, rows]  # in two steps: a list beside an integer would move the axes
+            own = some[:, :, WARMTH, None] * change
+            if clamped:
+                own = own + some[:, :, FORCE, None] * self.path.held
+            if self.autofrettage is not None:
+                own = own + self.autofrettage.stresses[k][:, rows][:, :, None]
+            parts.append(own[:, :, :, None])
+        return (parts[0], parts[1], parts[2], parts[3])
+
+
+def _autofrettage(
+    v: Values, design: Design, layers: Sequence[Layer], g: Geometry
+) -> Autofrettage | None:
+    """One overpressure of the open barrel at assembly temperature, before it is machined."""
+    if design.barrel.autofrettage_pressure is None or not layers[0].yields:
         return None
-    change = np.stack([np.atleast_1d(state.change) for state in states])
-    parts = []
-    for part in answer.stress:
-        own = part[:, rows, None, WARMTH] * change
-        if clamped:
-            own = own + part[:, rows, None, FORCE] * path.held
-        parts.append(own[:, :, :, None])
-    return (parts[0], parts[1], parts[2], parts[3])
+    change: Array = 0.0
+    if design.environment is not None and design.environment.cure_temperature is not None:
+        change = v["environment.assembly_temperature"] - v["environment.cure_temperature"]
+    none = 0.0 * np.atleast_1d(np.asarray(g.inner_radius))
+    return autofrettage(
+        layers=[layer.as_tube() for layer in layers],
+        yield_strength=layers[0].yield_strength,
+        inner_radius=g.inner_radius + none,
+        pressure=v["barrel.autofrettage_pressure"] + none,
+        axial_force_per_pressure=none,
+        temperature_change=change,
+    )
 
 
 def _load(answer: _Answer, rows: list[int], axial: Array) -> Stress:
@@ -192,11 +230,11 @@ def _load(answer: _Answer, rows: list[int], axial: Array) -> Stress:
 
     `axial` is the axial force per pressure, (paths, designs).
     """
-    one, two, three, slip = (
-        (part[:, rows, None, PRESSURE] + part[:, rows, None, FORCE] * axial)[:, :, None]
-        for part in answer.stress
-    )
-    return one, two, three, slip
+    parts = []
+    for part in answer.stress:
+        some = part[:, rows]
+        parts.append((some[:, :, PRESSURE, None] + some[:, :, FORCE, None] * axial)[:, :, None])
+    return (parts[0], parts[1], parts[2], parts[3])
 
 
 def _by_climate(values: Sequence[Array]) -> Array:
@@ -206,58 +244,85 @@ def _by_climate(values: Sequence[Array]) -> Array:
 
 
 def _strengths(
-    design: Design,
-    layers: Sequence[Layer],
-    answer: _Answer,
-    states: Sequence[Climate],
-    path: LoadPath,
-    wall: Wall,
+    design: Design, layers: Sequence[Layer], rest: _Rest, supply: Array, wall: Wall
 ) -> None:
     """First-ply and yield pressures of every layer, mode and load path."""
-    paths, axial = tuple(path.per_pressure), np.stack(list(path.per_pressure.values()))
+    paths, axial = tuple(wall.path.per_pressure), np.stack(list(wall.path.per_pressure.values()))
     brittle = [i for i, layer in enumerate(layers) if layer.strengths]
     if brittle:
         modes = plies.utilisations(
             design.barrel.criterion,
             [layers[i] for i in brittle],
-            _load(answer, brittle, axial),
-            _residual(answer, brittle, states, path),
+            _load(rest.answer, brittle, axial),
+            rest.of(brittle),
         )
-        for mode, used in modes.items():
-            pressures = load_multiplier(plies.worst(used, (0, 2)))
+        for group, used in plies.grouped(modes).items():
+            pressures = load_multiplier(plies.worst(used, (0,)))
             for k, i in enumerate(brittle):
-                for p, place in enumerate(paths):
-                    label = f"{layers[i].label} {mode}, {place}"
-                    wall.first_ply_pressure[label] = pressures[k, p]
+                for place, pressure in _rows(rest.states, paths, pressures[k]):
+                    wall.first_ply_pressure[f"{layers[i].label} {group}, {place}"] = pressure
     for i, layer in enumerate(layers):
-        if not layer.yields:
-            continue
-        load, residual = _load(answer, [i], axial), _residual(answer, [i], states, path)
-        strength = _by_climate(layer.yields)
-        used = yielding.yield_utilisation(stress=load, yield_strength=strength, residual=residual)
-        pressures = 1 / plies.worst(used, (0, 1, 2))
-        own = yielding.yield_utilisation(stress=load, yield_strength=2 * strength)
-        ranges = 1 / plies.worst(own, (0, 1, 2))
+        if layer.yields:
+            load = _load(rest.answer, [i], axial)
+            _metal(layer, load, rest.of([i]), rest.states, supply, paths, wall)
+
+
+def _rows(
+    states: Sequence[Climate], paths: tuple[str, ...], values: Array
+) -> Iterator[tuple[str, Array]]:
+    """Climate and load path by name, with their (designs,) of values (climates, paths, designs).
+
+    Each is a smooth limit of its own: an optimum may well stand where two of them meet.
+    """
+    for t in range(values.shape[0]):
         for p, place in enumerate(paths):
-            wall.yield_pressure[f"{layer.label}, {place}"] = pressures[p]
-            wall.yields[f"{layer.label}, {place}"] = layer.name
-            wall.strain_range[f"{layer.label}, {place}"] = ranges[p]
+            yield ", ".join(x for x in (states[t].name, place) if x), values[t, p]
 
 
-def _cooling(
-    layers: Sequence[Layer],
-    answer: _Answer,
+def _metal(
+    layer: Layer,
+    load: Stress,
+    residual: Stress | None,
     states: Sequence[Climate],
-    path: LoadPath,
+    supply: Array,
+    paths: tuple[str, ...],
     wall: Wall,
 ) -> None:
+    """Yield pressure of a metal layer, and its stress while pressure comes and goes.
+
+    The pulse runs from the residual stress to that of supply pressure; its mean is the larger
+    equivalent stress of its ends less half the range, and never below zero (no credit).
+    """
+    strength = _by_climate(layer.yields)
+    used = yielding.yield_utilisation(stress=load, yield_strength=strength, residual=residual)
+    for place, pressure in _rows(states, paths, 1 / plies.worst(used, (0, 1))):
+        wall.yield_pressure[f"{layer.label}, {place}"] = pressure
+    span = supply * yielding.yield_utilisation(stress=load, yield_strength=1.0)
+    full = (supply * load[0], supply * load[1], supply * load[2], supply * load[3])
+    peak = span
+    if residual is not None:
+        full = (
+            full[0] + residual[0],
+            full[1] + residual[1],
+            full[2] + residual[2],
+            full[3] + residual[3],
+        )
+        start = yielding.yield_utilisation(stress=residual, yield_strength=1.0)
+        peak = maximum(start, yielding.yield_utilisation(stress=full, yield_strength=1.0))
+    mean = plies.worst(maximum(peak - span / 2, 0.0 * peak), (0, 1, 2))
+    span = plies.worst(span, (0, 1, 2))
+    for p, place in enumerate(paths):
+        wall.cycles[f"{layer.label}, {place}"] = Cycle(layer.name, span[p], mean[p])
+
+
+def _cooling(layers: Sequence[Layer], rest: _Rest, wall: Wall) -> None:
     """Liner yield over its stress after cooling from the cure, and its pull on the plies."""
     liners = [i for i, layer in enumerate(layers) if layer.yields]
     if not liners or len(liners) == len(layers):
         wall.why_no_mismatch = "the wall has no liner under plies"
         return
-    residual = _residual(answer, liners, states, path)
-    if residual is None:
+    residual = rest.of(liners)
+    if residual is None or not rest.cured():
         if "thermal expansion" not in wall.why_no_mismatch:
             wall.why_no_mismatch = "no cure temperature stated: add environment.cure_temperature"
         return

@@ -13,7 +13,7 @@ from .geometry import Geometry
 from .load_path import LoadPath
 from .state import State
 from .values import Values
-from .wall import Swelling, Wall
+from .wall import Cycle, Swelling, Wall
 
 
 def compute(
@@ -55,12 +55,14 @@ def compute(
     alpha = stock.get(name, "thermal_expansion", "thermal_expansion_2")
     if alpha is not None:
         wall.expansion = (alpha, alpha)
-    _strengths(stock, name, g, path, wall)
+    _strengths(stock, name, g, path, supply, wall)
     return wall
 
 
-def _strengths(stock: Stock, name: str, g: Geometry, path: LoadPath, wall: Wall) -> None:
-    """Yield and burst pressures of every load path."""
+def _strengths(
+    stock: Stock, name: str, g: Geometry, path: LoadPath, supply: Array, wall: Wall
+) -> None:
+    """Yield and burst pressures of every load path, and the stress of a pressure pulse."""
     size = {"inner_radius": g.inner_radius, "outer_radius": g.outer_radius}
     strength = stock.allowable(name, "yield_strength", "strength_1_tension")
     ultimate = stock.allowable(name, "ultimate_strength", "strength_1_tension")
@@ -70,7 +72,8 @@ def _strengths(stock: Stock, name: str, g: Geometry, path: LoadPath, wall: Wall)
     for place, axial in path.per_pressure.items():
         used = _used(axial, path, size, strength)
         wall.yield_pressure[f"barrel, {place}"] = 1 / used
-        wall.yields[f"barrel, {place}"] = name
+        span = supply * strength * _used(axial, path, size, strength, clamped=False)
+        wall.cycles[f"barrel, {place}"] = Cycle(name, span, span / 2)
         if ultimate is not None:
             wall.burst_pressure[place] = barrel.burst_pressure_thick(
                 **size,
@@ -80,12 +83,19 @@ def _strengths(stock: Stock, name: str, g: Geometry, path: LoadPath, wall: Wall)
             )
 
 
-def _used(axial: Array, path: LoadPath, size: dict[str, Array], strength: Array) -> Array:
+def _used(
+    axial: Array,
+    path: LoadPath,
+    size: dict[str, Array],
+    strength: Array,
+    *,
+    clamped: bool = True,
+) -> Array:
     """1/yield pressure at the bore; with preload the way to yield does not start at zero."""
     hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
     none = 0.0 * hoop
     residual = None
-    if path.tie_rods is not None:
+    if clamped and path.tie_rods is not None:
         _, _, clamp = barrel.bore_stresses(pressure=0.0, axial_force=path.held, **size)
         residual = (none, none, clamp, none)
     stress = (hoop, radial, along, none)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from ..design.model import Design
 from ..models import mass
 from ..numeric import Array
+from .bonds import fitting_hole
 from .geometry import Geometry
+from .rods import Rod
 from .values import Values
 
 PARTS = ("barrel", "rod", "piston", "caps", "glands", "seals", "fastening", "clevises")
@@ -79,15 +81,31 @@ def _seals(v: Values, design: Design, g: Geometry) -> Array:
     return rings
 
 
-def _fastening(v: Values, design: Design, g: Geometry) -> Array:
-    """Rod-end stud with the plugs of a hollow rod, and tie rods."""
-    total: Array = 0.0
-    if design.rod.thread is not None:
-        density = v[f"materials.{design.rod.material}.density"]
-        diameter, pitch = v["rod.thread.diameter"], v["rod.thread.pitch"]
-        stud = mass.stud_mass(density=density, diameter=diameter, pitch=pitch, length=diameter)
-        plug = mass.disc_mass(density=density, diameter=g.rod_inner_diameter, thickness=diameter)
-        total = total + stud + 2 * plug
+def _rod_ends(v: Values, design: Design, rod: Rod) -> Array:
+    """Stud and plugs of a hollow rod, one thread diameter long, and its bonded fittings.
+
+    A plug closes either end; a fitting is a plug already, or a sleeve around one.
+    """
+    density = v[f"materials.{rod.end_material}.density"]
+    hole, total = rod.inner_diameter, 0.0
+    if design.rod.fitting is not None:
+        hole = fitting_hole(v, design, rod)
+        total = 2 * mass.tube_mass(
+            density=density,
+            inner_diameter=hole,
+            outer_diameter=rod.inner_diameter,
+            length=v["rod.fitting.length"],
+        )
+    if design.rod.thread is None:
+        return total
+    diameter, pitch = v["rod.thread.diameter"], v["rod.thread.pitch"]
+    stud = mass.stud_mass(density=density, diameter=diameter, pitch=pitch, length=diameter)
+    return total + stud + 2 * mass.disc_mass(density=density, diameter=hole, thickness=diameter)
+
+
+def _fastening(v: Values, design: Design, g: Geometry, rod: Rod) -> Array:
+    """Ends of the rod, and tie rods."""
+    total = _rod_ends(v, design, rod)
     retention = design.retention
     if retention is not None and retention.type == "tie_rods":
         total = total + mass.tie_rod_mass(
@@ -99,7 +117,7 @@ def _fastening(v: Values, design: Design, g: Geometry) -> Array:
     return total
 
 
-def parts(v: Values, design: Design, geometry: Geometry) -> dict[str, Array]:
+def parts(v: Values, design: Design, geometry: Geometry, rod: Rod) -> dict[str, Array]:
     """Mass of every dry part, kg."""
     g = geometry
     caps = v[f"materials.{design.caps.material}.density"]
@@ -108,32 +126,27 @@ def parts(v: Values, design: Design, geometry: Geometry) -> dict[str, Array]:
     if design.clevis is not None:
         density = v[f"materials.{design.clevis.material}.density"]
         clevises = 2 * density * mass.eye_volume(pin_diameter=g.pin_diameter)
-    rod = mass.tube_mass(
-        density=v[f"materials.{design.rod.material}.density"],
-        inner_diameter=g.rod_inner_diameter,
-        outer_diameter=g.rod_diameter,
-        length=g.rod_length,
-    )
     values = (
         _barrel(v, design, g),
-        rod,
+        rod.mass_per_length * g.rod_length,
         _piston(v, design, g),
         _plate(caps, g, 0.0) + _plate(caps, g, hole),
         _gland(v, design, g),
         _seals(v, design, g),
-        _fastening(v, design, g),
+        _fastening(v, design, g, rod),
         clevises,
     )
     return dict(zip(PARTS, values, strict=True))
 
 
-def oil(v: Values, design: Design, geometry: Geometry) -> Array:
-    """Mass of the oil inside with the piston at the cap end, lines not counted."""
+def oil(v: Values, design: Design, geometry: Geometry, position: Array = 0.0) -> Array:
+    """Mass of the oil inside with the piston at a distance from the cap end, lines not counted."""
     g = geometry
     volume = (
         v["cylinder.dead_volume_a"]
         + v["cylinder.dead_volume_b"]
-        + g.area_b * (g.barrel_length - g.piston_length - g.head_length)
+        + g.area_a * position
+        + g.area_b * (g.barrel_length - g.piston_length - g.head_length - position)
     )
     density = v[f"materials.{design.fluid.material}.density"]
     return mass.oil_mass(density=density, volume=volume)

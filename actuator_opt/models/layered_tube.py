@@ -177,7 +177,7 @@ def tube_state(
 
     Returns
     -------
-    the state; loads may carry leading axes before the tube's batch
+    the state (see `TubeState` for units, [m], [Pa], [-]); loads may carry axes before the batch
 
     Notes
     -----
@@ -242,7 +242,7 @@ def _state(
     xp: Any, tube: LayeredTube, held: tuple[Array, ...] | None, faces: Faces, change: Array
 ) -> TubeState:
     """The radial strain at the faces, and what else follows from the unknowns."""
-    radius = xp.stack([tube.inner, tube.outer])
+    radius = xp.stack(xp.broadcast_arrays(tube.inner, tube.outer))
     shear = radius * faces.twist
     _, _, zr, _, tr, rr, _, _, rs, _ = tube.wall
     strain = faces.radial_stress - zr * faces.axial_strain - tr * faces.hoop_strain

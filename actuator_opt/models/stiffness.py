@@ -145,7 +145,7 @@ def weakest_position(
     compliance_a0, compliance_b0 : chamber compliance at zero chamber length [m^3/Pa]
     compliance_a_per_length, compliance_b_per_length : growth with chamber length [m^2/Pa]
     stroke : [m]
-    compliance_ab0, compliance_ab_per_length : coupling at x = 0, and its growth with x
+    compliance_ab0, compliance_ab_per_length : coupling at x = 0 [m^3/Pa], its growth [m^2/Pa]
 
     Returns
     -------

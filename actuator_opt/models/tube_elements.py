@@ -219,7 +219,7 @@ def layered_tube(*, layers: Sequence[TubeLayer], inner_radius: Array) -> Layered
 
     Returns
     -------
-    the tube
+    the tube (see `LayeredTube` for units, [m], [Pa])
 
     Notes
     -----

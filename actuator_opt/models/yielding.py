@@ -28,7 +28,7 @@ def mises_product(*, first: Stress, second: Stress) -> Array:
 
     References
     ----------
-    [Shigley2011] distortion energy, polarised [derived]
+    [Shigley2011] distortion energy; [derived] polarised quadratic form
 
     Examples
     --------

@@ -34,7 +34,7 @@ def ticks(low: float, high: float, count: int = 5) -> list[float]:
     return [round(k * step, 12) + 0.0 for k in range(first, last + 1)]
 
 
-class _Axes:
+class Axes:
     """A plot frame on ink with linear axes."""
 
     def __init__(
@@ -123,7 +123,7 @@ def _stiffness_panel(
     limit = None if requirement is None else requirement.limit / 1e6
     floor = max(weakest, limit or 0.0)
     top = min(max(*ys, 1.15 * floor), 3.0 * floor) * 1.06
-    axes = _Axes(ink, box, (xs[0], xs[-1]), (0.0, top))
+    axes = Axes(ink, box, (xs[0], xs[-1]), (0.0, top))
     axes.frame("Axial stiffness, kN/mm", "piston position from the cap end, mm")
     ink.path(axes.clipped(xs, ys), stroke=BLUE, pen=0.45)
     x, y = axes.x(place), axes.y(weakest)
@@ -155,7 +155,7 @@ def _compliance_panel(
     if not parts:
         return
     totals = [sum(column) for column in zip(*parts.values(), strict=True)]
-    axes = _Axes(ink, box, (positions[0], positions[-1]), (0.0, max(totals) * 1.06))
+    axes = Axes(ink, box, (positions[0], positions[-1]), (0.0, max(totals) * 1.06))
     axes.frame("Compliance, µm/kN, stacked", "piston position from the cap end, mm")
     below = [0.0] * len(positions)
     weakest = max(range(len(totals)), key=totals.__getitem__)

@@ -1,0 +1,137 @@
+"""The actuator as a slender beam: its critical load, and the bending moment in the rod.
+
+A moment that is there without the push (side load, own weight) grows with it towards the critical
+load: `Beam.under`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ..design.model import Design
+from ..models import beam_column, column, stepped
+from ..numeric import Array, maximum, minimum
+from . import weight
+from .geometry import Geometry
+from .rods import Rod
+from .state import State
+from .values import Values
+from .wall import Wall
+
+FIXED_PINNED = 0.6992
+"""Effective length factor of a column fixed at one end, pinned at the other: pi/4.4934."""
+
+GRAVITY = 9.80665
+"""Standard gravity, m/s^2 (3rd CGPM, 1901)."""
+
+NEAR = 0.75
+"""Share of the critical load beyond which a moment goes on growing along its tangent: a choice, so
+that designs far beyond buckling, which the buckling check rejects, keep finite numbers."""
+
+LEAST = 1e-6
+"""Least length outside the head (m), so that a rod that shows nothing has no pole."""
+
+
+@dataclass(frozen=True, slots=True)
+class Beam:
+    """Critical load [N] and largest moment in the rod without push [N m], by case."""
+
+    critical: Array
+    moment: Array
+
+    def under(self, push: Array) -> Array:
+        """The moment under a push [N]; beyond `NEAR` of the critical load along its tangent."""
+        share = push / self.critical
+        near = minimum(share, NEAR)
+        bent = beam_column.amplified_moment(
+            bending_moment=self.moment, axial_force=near, critical_load=1.0
+        )
+        return bent + self.moment * (share - near) / (1 - NEAR) ** 2
+
+
+def overhang(g: Geometry, state: State) -> Array:
+    """Distance of the rod eye from the middle of the head bearing, at the case's position."""
+    return state.reach + g.rod_extension + g.eye_offset + (g.head_length + g.plate) / 2
+
+
+def derive(
+    v: Values,
+    design: Design,
+    g: Geometry,
+    state: State,
+    wall: Wall,
+    rod: Rod,
+    parts: Mapping[str, Array],
+) -> Beam:
+    """Column and beam at the position of every case; the actuator lies horizontally (a choice)."""
+    cylinder = g.eye_offset + 2 * g.plate + g.barrel_length
+    exposed = maximum(state.reach + g.rod_extension + g.eye_offset, LEAST)
+    own = _weight(v, design, g, state, rod, parts, (cylinder, exposed))
+    return Beam(
+        critical=_critical_load(design, wall, rod, (cylinder, exposed)),
+        moment=own + state.side_load * overhang(g, state),
+    )
+
+
+def _critical_load(design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]) -> Array:
+    """Column of barrel and rod, or of the rod alone where the head is held; gives in shear too."""
+    mount = design.cylinder.mount
+    if mount.startswith("head"):
+        factor = FIXED_PINNED if mount == "head_flange" else 1.0
+        return column.engesser_load(
+            critical_load=column.euler_load(
+                bending_stiffness=rod.bending_stiffness, effective_length=factor * lengths[1]
+            ),
+            shear_stiffness=rod.shear_stiffness,
+        )
+    segments = {
+        "bending_stiffness_1": wall.bending_stiffness,
+        "length_1": lengths[0],
+        "bending_stiffness_2": rod.bending_stiffness,
+        "length_2": lengths[1],
+    }
+    ends: stepped.Ends = ("fixed" if mount == "cap_flange" else "pinned", "pinned")
+    load = stepped.stepped_column_load(**segments, ends=ends)
+    shear = stepped.mode_shear_stiffness(
+        critical_load=load,
+        shear_stiffness_1=wall.shear_stiffness,
+        shear_stiffness_2=rod.shear_stiffness,
+        **segments,
+        ends=ends,
+    )
+    return column.engesser_load(critical_load=load, shear_stiffness=shear)
+
+
+def _weight(
+    v: Values,
+    design: Design,
+    g: Geometry,
+    state: State,
+    rod: Rod,
+    parts: Mapping[str, Array],
+    lengths: tuple[Array, Array],
+) -> Array:
+    """Largest moment of the own weight in the rod.
+
+    Pinned at both eyes for every cap mount (a fixed cap only helps). Held at the head the rod
+    spans to its eye: w L^2/8, pinned or fixed there; on trunnions the barrel hangs behind.
+    """
+    outside = rod.mass_per_length * (state.reach + g.rod_extension)
+    inside = sum(parts.values()) - parts["clevises"] - outside
+    inside = inside + weight.oil(v, design, g, position=state.reach)
+    heavy = GRAVITY * inside / lengths[0]
+    light = GRAVITY * rod.mass_per_length
+    mount = design.cylinder.mount
+    if not mount.startswith("head"):
+        *_, largest = beam_column.self_weight_moments(
+            weight_1=heavy, length_1=lengths[0], weight_2=light, length_2=lengths[1]
+        )
+        return largest
+    half = lengths[1] / 2
+    span, *_ = beam_column.self_weight_moments(
+        weight_1=light, length_1=half, weight_2=light, length_2=half
+    )
+    if mount == "head_flange":
+        return span
+    return maximum(span, heavy * lengths[0] * lengths[0] / 2)

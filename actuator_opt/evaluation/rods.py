@@ -1,0 +1,209 @@
+"""The rod's section, the one place that chooses between a bar of one metal and a layered tube.
+
+Everything after it works with a `Rod`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..design.model import Design
+from ..models import column, laminate, mass, rod, yielding
+from ..models.layered_tube import LayeredTube, layered_tube, ply_stresses_at_faces, tube_state
+from ..models.shell_buckling import shell_modulus
+from ..models.strength_modes import Stress
+from ..numeric import Array
+from ..numeric import sqrt as root
+from . import plies
+from .allow import Stock
+from .geometry import Geometry
+from .plies import Climate, Layer
+from .values import Values
+
+OUTSIDE, FORCE, WARMTH = range(3)
+"""Unit loads of `Rod.unit`: pressure on its outside, axial force, warming."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rod:
+    """The rod's section, (designs,).
+
+    EA [N], EI [N m^2], kappa G A [N] and kg/m; `shell_modulus` and `shell_ratio` are those of an
+    isotropic wall that buckles like its own; `expansion` along the axis [1/K], None where not
+    stated; `metals` names the material and the equivalent stress per axial force [1/m^2] of every
+    metal in it. A rod of layers adds its plies: `unit` holds their stresses per unit load,
+    (faces, layers, loads, designs).
+    """
+
+    outer_diameter: Array
+    inner_diameter: Array
+    hollow: bool
+    axial_stiffness: Array
+    bending_stiffness: Array
+    shear_stiffness: Array
+    mass_per_length: Array
+    shell_modulus: Array
+    shell_ratio: Array
+    expansion: Array
+    metals: dict[str, tuple[str, Array]]
+    end_material: str
+    layers: Sequence[Layer] = ()
+    climates: Sequence[Climate] = ()
+    unit: Stress | None = None
+    missing: Sequence[str] = field(default_factory=list)
+
+    @property
+    def wall(self) -> Array:
+        """Wall thickness of a hollow rod."""
+        return (self.outer_diameter - self.inner_diameter) / 2
+
+    @property
+    def middle(self) -> Array:
+        """Mid-radius of its wall."""
+        return (self.outer_diameter + self.inner_diameter) / 4
+
+    @property
+    def place(self) -> str:
+        """Names the model behind the section, where it is not a plain bar."""
+        return "layered tube" if self.layers else ""
+
+
+def end_material(design: Design) -> str:
+    """The metal that carries the rod's threads."""
+    fitting = design.rod.fitting
+    return (fitting.material if fitting is not None else None) or design.rod.material
+
+
+def derive(v: Values, design: Design, stock: Stock, g: Geometry) -> Rod:
+    """The section of a design's rod."""
+    return _tube(v, design, stock, g) if design.rod.layup else _bar(v, design, stock, g)
+
+
+def _bar(v: Values, design: Design, stock: Stock, g: Geometry) -> Rod:
+    """A bar or tube of one material."""
+    name = design.rod.material
+    modulus = stock.get(name, "youngs_modulus", "youngs_modulus_1")
+    ratio = stock.get(name, "poissons_ratio", "poissons_ratio_12")
+    size = {"outer_diameter": g.rod_diameter, "inner_diameter": g.rod_inner_diameter}
+    area = rod.section_area(**size)
+    shear = modulus / (2 * (1 + ratio)) * area
+    path = "rod.inner_diameter"
+    return Rod(
+        **size,
+        hollow=design.rod.inner_diameter > 0 or path in design.variables or path in v.varied,
+        axial_stiffness=modulus * area,
+        bending_stiffness=modulus * rod.second_moment(**size),
+        shear_stiffness=shear
+        * column.cowper_tube(
+            poissons_ratio=ratio, radius_ratio=g.rod_inner_diameter / g.rod_diameter
+        ),
+        mass_per_length=mass.tube_mass(density=v[f"materials.{name}.density"], length=1.0, **size),
+        shell_modulus=modulus,
+        shell_ratio=ratio,
+        expansion=stock.get(name, "thermal_expansion"),
+        metals={"rod": (name, 1 / area)},
+        end_material=end_material(design),
+    )
+
+
+def _tube(v: Values, design: Design, stock: Stock, g: Geometry) -> Rod:
+    """The exact layered tube."""
+    missing: list[str] = []
+    states = plies.climates(v, design)
+    layers = plies.layers(v, stock, design.rod.layup, "rod.layup", states, missing)
+    known = all(layer.expansions is not None for layer in layers)
+    if not known:
+        states = tuple(replace(state, change=0.0) for state in states)
+    tube = layered_tube(
+        layers=[layer.as_tube() for layer in layers], inner_radius=g.rod_inner_diameter / 2
+    )
+    loads = np.eye(3)
+    state = tube_state(
+        tube=tube,
+        outer_pressure=loads[OUTSIDE][:, None],
+        axial_force=loads[FORCE][:, None],
+        temperature_change=loads[WARMTH][:, None],
+    )
+    walls = [[part[i] for part in tube.wall] for i in range(len(layers))]
+    bending, shear = rod.layered_section(
+        walls=walls,
+        thicknesses=[layer.thickness for layer in layers],
+        inner_diameter=g.rod_inner_diameter,
+    )
+    stretch = state.axial_strain[FORCE]
+    contraction = -state.hoop_strain[0, 0, FORCE] / stretch
+    unit = ply_stresses_at_faces(tube=tube, state=state)
+    modulus, ratio = _shell(tube, layers)
+    return Rod(
+        outer_diameter=g.rod_diameter,
+        inner_diameter=g.rod_inner_diameter,
+        hollow=True,
+        axial_stiffness=1 / stretch,
+        bending_stiffness=bending,
+        shear_stiffness=shear
+        * column.cowper_tube(
+            poissons_ratio=contraction, radius_ratio=g.rod_inner_diameter / g.rod_diameter
+        ),
+        mass_per_length=_mass(v, design, g),
+        shell_modulus=modulus,
+        shell_ratio=ratio,
+        expansion=state.axial_strain[WARMTH] if known else None,
+        metals=_metals(layers, unit),
+        end_material=end_material(design),
+        layers=layers,
+        climates=states,
+        unit=unit,
+        missing=missing,
+    )
+
+
+def _shell(tube: LayeredTube, layers: Sequence[Layer]) -> tuple[Array, Array]:
+    """Modulus and Poisson's ratio of the isotropic wall that buckles like the layers."""
+    zz, zt, zr, tt, tr, rr, *_, ss = tube.wall
+    sheet = [zz - zr * zr / rr, zt - zr * tr / rr, tt - tr * tr / rr]
+    thicknesses = [layer.thickness for layer in layers]
+    total = sum(thicknesses)
+    axial, hoop, product = laminate.effective_moduli(
+        membrane=laminate.membrane(
+            plies=[[part[i] for part in sheet] for i in range(len(layers))],
+            thicknesses=thicknesses,
+        ),
+        thickness=total,
+    )
+    ratio = root(product)
+    modulus = shell_modulus(
+        axial_modulus=axial,
+        hoop_modulus=hoop,
+        shear_modulus=sum(ss[i] * thickness for i, thickness in enumerate(thicknesses)) / total,
+        poissons_ratio=ratio,
+    )
+    return modulus, ratio
+
+
+def _mass(v: Values, design: Design, g: Geometry) -> Array:
+    """Mass per length of the layers."""
+    total: Array = 0.0
+    bore = g.rod_inner_diameter
+    for entry, thickness in zip(design.rod.layup, g.rod_thicknesses, strict=True):
+        total = total + mass.tube_mass(
+            density=v[f"materials.{entry.material}.density"],
+            inner_diameter=bore,
+            outer_diameter=bore + 2 * thickness,
+            length=1.0,
+        )
+        bore = bore + 2 * thickness
+    return total
+
+
+def _metals(layers: Sequence[Layer], unit: Stress) -> dict[str, tuple[str, Array]]:
+    """Material and largest equivalent stress per axial force of the metal layers."""
+    found = {}
+    for i, layer in enumerate(layers):
+        if layer.isotropic:
+            one, two, three, slip = (part[:, i, FORCE] for part in unit)
+            stress = yielding.yield_utilisation(stress=(one, two, three, slip), yield_strength=1.0)
+            found[f"rod, {layer.label}"] = (layer.name, plies.worst(stress, (0,)))
+    return found
