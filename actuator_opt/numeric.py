@@ -23,7 +23,9 @@ STEP = 1e-30
 def namespace(*values: Array) -> Any:
     """The array-API namespace of the arguments: NumPy unless an array brings its own."""
     for value in values:
-        if not isinstance(value, (np.ndarray, float, int, complex, np.generic)):
+        if type(value) is np.ndarray:  # arrays of one call share their namespace
+            return np
+        if not isinstance(value, (float, int, complex, np.generic)):
             return value.__array_namespace__()
     return np
 
@@ -86,6 +88,14 @@ def expm1_quotient(value: Array) -> Array:
     return where(small, 1 + value / 2 + value * value / 6, xp.expm1(safe) / safe)
 
 
+def together(values: Sequence[Array], axis: int = 0) -> Array:
+    """Arrays of one namespace on a new axis, broadcast to one shape where they differ."""
+    xp = namespace(*values)
+    if len({value.shape for value in values}) > 1:
+        values = xp.broadcast_arrays(*values)
+    return xp.stack(values, axis=axis)
+
+
 def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
     """Each row of layer values as an array (layers, ...); batches stand on one number of axes."""
     xp = namespace(*(value for row in rows for value in row))
@@ -94,7 +104,7 @@ def stacked(rows: Sequence[Sequence[Array]]) -> list[Array]:
         if all(isinstance(value, (float, int)) for value in row):
             result.append(xp.asarray([float(value) for value in row]))
         else:
-            result.append(xp.stack(xp.broadcast_arrays(*[xp.asarray(value) for value in row])))
+            result.append(together([xp.asarray(value) for value in row]))
     dims = max(value.ndim for value in result) - 1
     return [lifted(value, dims) for value in result]
 
@@ -104,7 +114,10 @@ def lifted(value: Array, dims: int) -> Array:
     missing = dims + 1 - value.ndim
     if missing <= 0:
         return value
-    return namespace(value).reshape(value, (value.shape[0], *(1,) * missing, *value.shape[1:]))
+    shape = (value.shape[0], *(1,) * missing, *value.shape[1:])
+    if type(value) is np.ndarray:
+        return value.reshape(shape)
+    return namespace(value).reshape(value, shape)
 
 
 def jacobian(function: Callable[[Array], Array], point: Array) -> tuple[Array, Array]:

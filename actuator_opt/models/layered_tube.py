@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
 
-from ..numeric import Array, lifted, namespace
+from ..numeric import Array, lifted, namespace, together
 from .solid_ply import solid_ply_stresses
 from .tube_elements import (
     LayeredTube,
@@ -109,9 +109,9 @@ def closed(
         rows.append(out[:2, ...])
         total = total + out[2:, ...]
     amounts = _unknowns(rows[-1][1, ...], total, outer_pressure, axial_force, torque)
-    weights = xp.stack(xp.broadcast_arrays(*amounts, 0 * amounts[0] + 1))
-    states = xp.stack([xp.sum(row * weights, axis=1) for row in rows], axis=1)
-    first = xp.stack(xp.broadcast_arrays(amounts[0], 0 * amounts[0] - inner_pressure))
+    weights = together([*amounts, 0 * amounts[0] + 1])
+    states = xp.sum(xp.stack(rows, axis=2) * weights[:, None, ...], axis=1)
+    first = together([amounts[0], 0 * amounts[0] - inner_pressure])
     inner = xp.concat([first[:, None, ...], states[:, :-1, ...]], axis=1)
     faces = xp.stack([inner, states])
     twist = amounts[2] if outputs == 4 else 0.0
@@ -148,7 +148,7 @@ def forcing(xp: Any, transfer: Array, inner: Array, outer: Array, held: tuple[Ar
     if transfer.shape[1] == 4:
         own.append(held[3] * ((square_b * outer - square_a * inner) / 3))
     driven = transfer[1, ...] * held[2] + transfer[3, ...] * (held[2] - held[1])
-    return driven - xp.stack(xp.broadcast_arrays(*own))
+    return driven - together(own)
 
 
 def tube_state(
@@ -242,7 +242,7 @@ def _state(
     xp: Any, tube: LayeredTube, held: tuple[Array, ...] | None, faces: Faces, change: Array
 ) -> TubeState:
     """The radial strain at the faces, and what else follows from the unknowns."""
-    radius = xp.stack(xp.broadcast_arrays(tube.inner, tube.outer))
+    radius = together([tube.inner, tube.outer])
     shear = radius * faces.twist
     _, _, zr, _, tr, rr, _, _, rs, _ = tube.wall
     strain = faces.radial_stress - zr * faces.axial_strain - tr * faces.hoop_strain

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
-from ..numeric import Array, namespace, where
+from ..numeric import Array, namespace, together, where
 from .burst_ladder import (
     BurstLadder,
     WallLayer,
@@ -79,7 +79,7 @@ def _recovery(xp: Any, tube: LayeredTube) -> Array:
         )
     rows.append((slip, 0 * slip, -slip))
     by_input = [[row[k] for row in rows] for k in range(3)]
-    return xp.stack([xp.stack(xp.broadcast_arrays(*row)) for row in by_input])
+    return xp.stack([together(row) for row in by_input])
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,31 +100,54 @@ class _Tube:
     metals: int
     faces: int = 2
 
-    def _chosen(self, table: Array, soft: Array | None) -> Array:
-        """The table with its soft layers; `soft` is in the ladder's order."""
+    @property
+    def sorted(self) -> bool:
+        """Whether the ladder's order is the wall's."""
+        return self.order == tuple(range(len(self.order)))
+
+    def _chosen(self, table: Array, mask: Array | None) -> Array:
+        """The table with its soft layers; `mask` is in the wall's order."""
         intact = table[:, :, :, 0, ...]
-        if soft is None:
-            return intact
-        xp = namespace(self.axial)
-        places = [self.order.index(i) for i in range(len(self.order))]
-        return where(xp.stack([soft[i, ...] for i in places]), table[:, :, :, 1, ...], intact)
+        return intact if mask is None else where(mask, table[:, :, :, 1, ...], intact)
 
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
-        """Stresses per pressure, and those that the metals' held stresses leave."""
+        """Stresses per pressure, and those that the metals' held stresses leave.
+
+        Both in one march: the loads stand on an axis before the batch's.
+        """
         xp = namespace(self.axial)
-        transfer, recovery = self._chosen(self.transfer, soft), self._chosen(self.recovery, soft)
-        rate = self._stress(xp, transfer, recovery, 1.0, self.axial, None)
+        mask = soft
+        if soft is not None and not self.sorted:
+            mask = xp.stack([soft[self.order.index(i), ...] for i in range(len(self.order))])
+        transfer, recovery = self._chosen(self.transfer, mask), self._chosen(self.recovery, mask)
         if held is None:
-            return rate, None
-        return rate, self._stress(xp, transfer, recovery, 0.0, 0.0 * self.axial, held)
+            return self._stress(xp, transfer, recovery, 1.0, self.axial, None), None
+        driven = forcing(
+            xp, transfer, self.inner, self.outer, tuple(-held[k, ...] for k in (0, 1, 2))
+        )
+        none = 0 * self.axial
+        loads = xp.stack([none + 1, none])
+        both = self._stress(
+            xp,
+            transfer[:, :, :, None, ...],
+            recovery[:, :, :, None, ...],
+            loads,
+            loads * self.axial,
+            xp.stack([0 * driven, driven], axis=2),
+            xp.stack([0 * held, held], axis=2),
+        )
+        return both[:, :, :, 0, ...], both[:, :, :, 1, ...]
 
     def _stress(
-        self, xp: Any, transfer: Array, recovery: Array, pressure: float, axial: Array, held: Any
+        self,
+        xp: Any,
+        transfer: Array,
+        recovery: Array,
+        pressure: Any,
+        axial: Array,
+        driven: Array | None,
+        held: Array | None = None,
     ) -> Array:
-        driven = None
-        if held is not None:
-            back = tuple(-part for part in held)
-            driven = forcing(xp, transfer, self.inner, self.outer, back)
         state = closed(
             xp,
             transfer,
@@ -135,31 +158,28 @@ class _Tube:
             torque=0.0,
         )
         radial = state.radial_stress
-        lead = radial if held is None else radial - held[2]
+        lead = radial if held is None else radial - held[2, ...]
         plane = recovery[0, :, None, ...] * state.hoop_strain[None, ...]
         plane = plane + recovery[1, :, None, ...] * lead[None, ...]
         plane = plane + recovery[2, :, None, ...] * state.axial_strain
         if held is not None:
-            still = xp.stack([held[0], held[1], 0 * held[0]])
-            plane = plane + still[:, None, ...]
+            plane = plane + xp.concat([held[:2, ...], 0 * held[:1, ...]])[:, None, ...]
         each = xp.concat([plane, radial[None, ...] + 0 * plane[:1, ...]])
-        if self.order == tuple(range(len(self.order))):
+        if self.sorted:
             return each
         return xp.stack([each[:, :, i, ...] for i in self.order], axis=2)
 
     def frozen(self, held: Any, yielded: Array, stress: Array) -> Any:
         """Deviatoric stresses z, t, r at zero strain of every layer, from the bore."""
         xp = namespace(stress)
-        mean = xp.sum(stress, axis=1) / 2
+        mean = (stress[:, 0, ...] + stress[:, 1, ...]) / 2
         normal = xp.stack([mean[0, ...], mean[1, ...], mean[3, ...]])
-        own = where(yielded, (normal - xp.sum(normal, axis=0) / 3) * self.kept, 0 * normal)
+        own = where(yielded, (normal - xp.sum(normal, axis=0) / 3) * self.kept, 0.0)
         placed = [0 * own[:, 0, ...]] * len(self.order)
         for i in range(self.metals):
             placed[self.order[i]] = own[:, i, ...]
         more = xp.stack(placed, axis=1)
-        if held is not None:
-            more = more + xp.stack(list(held))
-        return tuple(more[k, ...] for k in range(3))
+        return more if held is None else more + held
 
 
 def _both_states(
@@ -176,7 +196,7 @@ def _both_states(
     for layer in layers:
         states = [solid_stiffness(**_constants(layer, share)) for share in (1.0, residual)]
         stiffness = [
-            xp.concat(xp.broadcast_arrays(spread(intact), spread(failed)))
+            xp.concat([spread(intact), spread(failed)])
             for intact, failed in zip(*states, strict=True)
         ]
         plies.append(

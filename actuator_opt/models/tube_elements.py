@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, cast
 
-from ..numeric import Array, expm1_quotient, lifted, namespace, stacked
+from ..numeric import Array, expm1_quotient, lifted, namespace, stacked, together
 from .solid_ply import Solid, TubeStiffness, solid_expansion_load, solid_rotated
 
 
@@ -269,6 +269,6 @@ def layered_tube(*, layers: Sequence[TubeLayer], inner_radius: Array) -> Layered
     table = _transfer(basis, wall, inner, outer)
     if twisting:
         table = _twist(basis, table, wall, inner, outer)
-    transfer = xp.stack([xp.stack(xp.broadcast_arrays(*row)) for row in table])
+    transfer = xp.stack([together(row) for row in table])
     free, balanced = (first, second, third), 1 - mask
     return LayeredTube(ply, angle, free, balanced, wall, hold, inner, outer, transfer, twisting)
