@@ -198,6 +198,7 @@ METRICS = _table("""
  first_ply_factor     | S_fpf  | ratio       | -    | | | first-ply pressure over working pressure
  yield_factor         | S_y    | ratio       | -    | | | yield over working stress of metal parts
  fatigue_factor       | S_f    | ratio       | -    | | | fatigue strength over stress amplitude
+ ply_fatigue_factor   | S_pf   | ratio       | -    | | | fatigue strength of the wall's fibres over their stress amplitude
  cycle_life           | N      | ratio       | -    | | | pressure cycles to failure
  buckling_factor      | S_k    | ratio       | -    | | | buckling load over largest push load
  thread_factor        | S_t    | ratio       | -    | | | yield over stress at the rod thread root

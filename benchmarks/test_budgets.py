@@ -16,6 +16,15 @@ import pytest
 
 from actuator_opt.design import read_design
 from actuator_opt.evaluation import compute, prepare
+from actuator_opt.models.layered_tube import (
+    TubeLayer,
+    layered_tube,
+    ply_stresses_at_faces,
+    tube_state,
+)
+from actuator_opt.models.solid_ply import solid_stiffness
+from actuator_opt.models.strength import tsai_wu_modes
+from actuator_opt.models.strength_modes import PlyStrength
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.run import sensitivities
@@ -93,3 +102,33 @@ def test_prices(benchmark, knee):
     solution = solve(knee.problem)
     rows = benchmark.pedantic(lambda: sensitivities(knee, solution), rounds=3)
     print(f"\n{2 * len(rows)} re-solves")
+
+
+def test_layered_rate(benchmark):
+    """Growth and Tsai-Wu ratios of 8192 closed three-layer tubes; budget 1 million/s, two cores."""
+    rng = np.random.default_rng(0)
+    solid = solid_stiffness(
+        youngs_modulus_1=138e9,
+        youngs_modulus_2=9e9,
+        youngs_modulus_3=9e9,
+        poissons_ratio_12=0.28,
+        poissons_ratio_13=0.28,
+        poissons_ratio_23=0.42,
+        shear_modulus_12=5e9,
+    )
+    strength = PlyStrength(1900e6, 1300e6, 55e6, 190e6, 85e6)
+    layers = [
+        TubeLayer(stiffness=solid, thickness=rng.uniform(1e-4, 3e-3, 8192), angle=angle)
+        for angle in (1.5, rng.uniform(0.3, 1.2, 8192), 0.2)
+    ]
+    radius = rng.uniform(8e-3, 30e-3, 8192)
+
+    def tubes():
+        tube = layered_tube(layers=layers, inner_radius=radius)
+        state = tube_state(tube=tube, inner_pressure=1.0, axial_force=np.pi * radius * radius)
+        stress = ply_stresses_at_faces(tube=tube, state=state)
+        return state.bore_displacement, tsai_wu_modes(stress=stress, strength=strength)
+
+    benchmark(tubes)
+    rate = 8192 / benchmark.stats["min"]
+    print(f"\n{rate / 1e6:.2f} million tubes/s on one core")

@@ -88,6 +88,10 @@ def _endurance(
         )
         bears = retention.bolt_endurance_amplitude(diameter=v["retention.thread.diameter"])
         factor["tie rods"] = 2 * bears / span
+    if wall.ply_fatigue:
+        out.put("ply_fatigue_factor", wall.ply_fatigue)
+    else:
+        out.skip("ply_fatigue_factor", "no plies, or none with a known fatigue strength")
     for metric, values in (("cycle_life", life), ("fatigue_factor", factor)):
         if values:
             out.put(metric, values)

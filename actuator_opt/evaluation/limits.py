@@ -215,6 +215,13 @@ CHECK_LIST: tuple[CheckLine, ...] = (
     ),
     CheckLine("fatigue strength", "fatigue_factor", "min"),
     CheckLine(
+        "fibre fatigue of the wall",
+        "ply_fatigue_factor",
+        "min",
+        1.0,
+        "the material's own fatigue strength at its cycles, after knock-downs (rule of thumb)",
+    ),
+    CheckLine(
         "temperature range",
         "temperature_margin",
         "min",

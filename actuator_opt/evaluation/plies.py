@@ -54,6 +54,8 @@ class Layer:
     thickness: Array
     strengths: tuple[PlyStrength, ...]
     yields: tuple[Array, ...]
+    fatigue: Array = None
+    """Fibre stress amplitude the ply stands for its stated cycles; None where unknown."""
 
     @property
     def strength(self) -> PlyStrength | None:
@@ -163,6 +165,7 @@ def layers(
                 thickness=v[f"{at}[{i}].thickness"],
                 strengths=tuple(strengths),
                 yields=tuple(yields),
+                fatigue=None if isotropic else stock.allowable(name, "fatigue_strength"),
             )
         )
     return found

@@ -122,6 +122,7 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "bearing_factor": retention.guide_forces,
         "fatigue_factor": endurance.fatigue_factor,
         "cycle_life": endurance.cycles_to_failure,
+        "ply_fatigue_factor": layered_tube.ply_stresses_at_faces,
         "end_stop_energy": endurance.end_stop_energy,
         "end_stop_pressure": endurance.end_stop_peak_pressure,
         "end_stop_factor": endurance.end_stop_peak_pressure,

@@ -40,7 +40,8 @@ class Cycle:
 class Wall:
     """The wall of a design. Pressures by place (part, mode, load path), Pa, (designs,).
 
-    `cycles` are the stresses of metals while pressure comes and goes, by place.
+    `cycles` are the stresses of metals while pressure comes and goes, by place; `ply_fatigue` the
+    fatigue strength of fibres over their stress amplitude.
 
     `growth` is at supply pressure, the worse of the cases' own axial force and none; `missing` the
     strengths nobody states;
@@ -62,6 +63,7 @@ class Wall:
     mismatch: dict[str, Array] = field(default_factory=dict)
     bond: dict[str, Array] = field(default_factory=dict)
     cycles: dict[str, Cycle] = field(default_factory=dict)
+    ply_fatigue: dict[str, Array] = field(default_factory=dict)
     autofrettage: Autofrettage | None = None
     why_no_mismatch: str = "the wall is of one material"
     missing: list[str] = field(default_factory=list)

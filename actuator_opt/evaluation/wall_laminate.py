@@ -250,17 +250,21 @@ def _strengths(
     paths, axial = tuple(wall.path.per_pressure), np.stack(list(wall.path.per_pressure.values()))
     brittle = [i for i, layer in enumerate(layers) if layer.strengths]
     if brittle:
+        load = _load(rest.answer, brittle, axial)
         modes = plies.utilisations(
-            design.barrel.criterion,
-            [layers[i] for i in brittle],
-            _load(rest.answer, brittle, axial),
-            rest.of(brittle),
+            design.barrel.criterion, [layers[i] for i in brittle], load, rest.of(brittle)
         )
+        amplitude = plies.worst(load[0], (0, 2)) * supply / 2
         for group, used in plies.grouped(modes).items():
             pressures = load_multiplier(plies.worst(used, (0,)))
             for k, i in enumerate(brittle):
                 for place, pressure in _rows(rest.states, paths, pressures[k]):
                     wall.first_ply_pressure[f"{layers[i].label} {group}, {place}"] = pressure
+        for k, i in enumerate(brittle):
+            if layers[i].fatigue is not None:
+                factors = load_multiplier(amplitude[k] / layers[i].fatigue)
+                for p, place in enumerate(paths):
+                    wall.ply_fatigue[f"{layers[i].label}, {place}"] = factors[p]
     for i, layer in enumerate(layers):
         if layer.yields:
             load = _load(rest.answer, [i], axial)
