@@ -28,6 +28,7 @@ from .options import (
     Seed,
     Set,
     Starts,
+    WholePlies,
     Write,
 )
 from .version import VERSION
@@ -235,6 +236,7 @@ def optimise(
     sets: Set = None,
     algorithm: Algorithm = "auto",
     starts: Starts = 6,
+    whole_plies: WholePlies = False,
     write: Write = None,
     out: Out = REPORTS,
     report: Annotated[
@@ -252,20 +254,26 @@ def optimise(
     reporting = report or not as_json
     _check_targets(out if reporting else None, date, write)
     actuator = _read(design, sets, plugin)
-    result = verbs.optimise(actuator, algorithm=algorithm, starts=starts, seed=seed)
+    result = verbs.optimise(
+        actuator, algorithm=algorithm, starts=starts, seed=seed, whole_plies=whole_plies
+    )
     good = _outcome(result) == ExitCode.MET
     if write is not None and good:
-        verbs.save(result.design, write, source=actuator.source)
+        verbs.save(result.best, write, source=actuator.source)
     files = _write_report(result, actuator, out, date) if reporting else []
     if as_json:
         streams.out_json(result.to_dict() | ({"files": files} if files else {}))
     elif not quiet:
+        from .optimisation.rounding import unrounded
         from .reporting.terminal import optimisation_text
 
         streams.out(optimisation_text(result, **streams.style()), end="")
+        if remark := unrounded(result):
+            streams.err(remark)
         _say_files(([{"path": write}] if write is not None and good else []) + files)
     if write is not None and not good:
-        streams.err(f"{write}: not written, there is no design to save: {result.sentence}")
+        why = (result.rounding or result).sentence
+        streams.err(f"{write}: not written, there is no design to save: {why}")
     raise typer.Exit(_outcome(result))
 
 
@@ -274,7 +282,8 @@ def _outcome(result: Optimisation) -> ExitCode:
     if result.status == "undefined":
         return ExitCode.SOLVER_FAILED
     infeasible = result.status == "infeasible" or result.status.startswith("limit_inf")
-    return ExitCode.MISSED if infeasible or not result.evaluation.met else ExitCode.MET
+    missed = not result.evaluation.met or (result.rounding is not None and not result.rounding.met)
+    return ExitCode.MISSED if infeasible or missed else ExitCode.MET
 
 
 app.command("optimize", hidden=True)(optimise)

@@ -55,5 +55,12 @@ Write = Annotated[
     Path | None,
     typer.Option("--write", metavar="FILE", help="Save the best design as a design file."),
 ]
+WholePlies = Annotated[
+    bool,
+    typer.Option(
+        "--whole-plies",
+        help="Also find the best design of whole plies and allowed angles; --write saves that.",
+    ),
+]
 Report = Annotated[bool, typer.Option("--report", help="Write the report (PDF and PNG) too.")]
 REPORTS = Path("reports")

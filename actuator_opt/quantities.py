@@ -230,7 +230,8 @@ METRICS = _table("""
  winding_margin       | -      | angle       | deg  | | | winding angle less the smallest that can be wound
  ply_thickness_margin | -      | ratio       | %    | | | layer thickness over the least that can be laid, less one
  growth_at_seal       | u_s    | length      | um   | | | radial bore growth at the piston seal
- decay_length         | 1/beta | length      | mm   | | | length over which growth settles beside a pressure step
+ clearance_min        | c_min  | length      | um   | | | smallest radial clearance of piston and head over the temperature range
+ blocked_port_factor  | S_bl   | ratio       | -    | | | proof pressure over rod-side pressure with its port blocked
  temperature_margin   | dT     | temperature_difference | K | | | distance to the service limits of every material
  oil_viscosity        | nu     | kinematic_viscosity | mm^2/s | | | oil viscosity at the case temperature
  extrusion_factor     | g_max/g| ratio       | -    | | | allowed over present extrusion gap

@@ -159,6 +159,7 @@ def optimise(
     plugins: Plugins = (),
     prices: bool = True,
     max_seconds: float | None = None,
+    whole_plies: bool = False,
 ) -> Optimisation:
     """The best design; parameters as `optimise.run.optimise`."""
     from .optimisation.run import optimise as run
@@ -176,6 +177,7 @@ def optimise(
         seed=seed,
         prices=prices,
         max_seconds=max_seconds,
+        whole_plies=whole_plies,
     )
 
 

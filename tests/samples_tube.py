@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 
 from actuator_opt.models.burst_ladder import WallLayer
@@ -88,5 +89,12 @@ SAMPLES: dict = {
     ],
     "tube_burst.burst_of_tube": [
         {"layers": [HOOP, HELICAL], **WALL}, {"layers": [LINER, HOOP, HELICAL], **WALL},
+        {
+            "layers": [
+                replace(LINER, expansion_1=23e-6, expansion_2=23e-6),
+                replace(HOOP, expansion_1=1e-6, expansion_2=28e-6),
+            ],
+            "temperature_change": -60.0, **WALL,
+        },
     ],
 }  # fmt: skip

@@ -1,14 +1,17 @@
 """A second reader's calculation of a whole actuator, in plain numbers, against `evaluate`.
 
 Nothing here comes from the package's models: every formula is written out from its source or a
-short derivation. The design and all material numbers it uses are fixed in this file. Where a
-package model is simpler than the part deserves, only the safe side is tested.
+short derivation, and the wall's stresses from `tube_oracle`. The design and all material numbers
+it uses are fixed in this file. Where a package model is simpler than the part deserves, only the
+safe side is tested. `test_second_reader_wall` goes on with the strength of the wall, with other
+walls and with other mounts.
 """
 
 from math import cos, exp, log, log10, pi, radians, sin, sqrt, tanh
 
 import numpy as np
 import pytest
+import tube_oracle as oracle
 
 from actuator_opt import verbs
 
@@ -31,7 +34,6 @@ cylinder:
   port_diameter: 6.5 mm
   stop_travel: 0.9 mm
 barrel:
-  model: thin_laminate
   layup:
     - {material: al_7075_t6, thickness: 0.7 mm}
     - {material: t700_epoxy, angle: 87 deg, thickness: 1.1 mm}
@@ -64,9 +66,11 @@ materials:
     yield_strength: 503 MPa, ultimate_strength: 572 MPa, fatigue_strength: 159 MPa,
     thermal_expansion: 23.6 ppm/K, bearing_strength: 10 MPa}
   t700_epoxy: {density: 1570 kg/m^3, youngs_modulus_1: 135 GPa, youngs_modulus_2: 8.5 GPa,
-    shear_modulus_12: 4.3 GPa, poissons_ratio_12: 0.3, strength_1_tension: 2550 MPa,
+    youngs_modulus_3: 8.5 GPa, shear_modulus_12: 4.3 GPa, poissons_ratio_12: 0.3,
+    poissons_ratio_13: 0.3, poissons_ratio_23: 0.45, strength_1_tension: 2550 MPa,
     strength_1_compression: 1470 MPa, strength_2_tension: 69 MPa,
-    strength_2_compression: 170 MPa, strength_12: 80 MPa}
+    strength_2_compression: 170 MPa, strength_12: 80 MPa,
+    thermal_expansion_1: -0.5 ppm/K, thermal_expansion_2: 30 ppm/K}
   steel_42crmo4: {density: 7850 kg/m^3, youngs_modulus: 210 GPa, yield_strength: 750 MPa,
     ultimate_strength: 1000 MPa, fatigue_strength: 450 MPa}
   epoxy_structural: {shear_modulus: 1.2 GPa, bond_strength: 28.2 MPa}
@@ -94,15 +98,24 @@ CASES = {  # direction, force, speed, temperature
 }
 
 # Allowable = stated x temperature x basis x process. The temperature share falls linearly from 1
-# at 23 degC; the hottest state is 75 degC. Library: 0.9 at 100 degC and basis 0.9 (aluminium),
-# 0.95 at 150 degC, minimum values (steel); T700 at 80 degC 0.95 fibre, 0.75 matrix, basis 0.88,
-# process 0.75 on fibre tension; adhesive 0.855 at 80 degC, basis 0.8.
-YIELD_AL = 503e6 * 0.9 * (1 - 0.1 * 52 / 77)
-YIELD_STEEL = 750e6 * (1 - 0.05 * 52 / 127)
-HOT_F, HOT_M = 1 - 0.05 * 52 / 57, 1 - 0.25 * 52 / 57
-X_T, X_C = 2550e6 * HOT_F * 0.88 * 0.75, 1470e6 * HOT_F * 0.88
-Y_T, Y_C, S_12 = (x * HOT_M * 0.88 for x in (69e6, 170e6, 80e6))
-BOND = 28.2e6 * (1 - 0.145 * 52 / 57) * 0.8
+# at 23 degC and is 1 below. Library: 0.9 at 100 degC and basis 0.9 (aluminium), 0.95 at 150 degC,
+# minimum values (steel); T700 at 80 degC 0.95 fibre, 0.75 matrix, basis 0.88, process 0.75 on
+# fibre tension; adhesive 0.855 at 80 degC, basis 0.8.
+COLD, HOT, CURE = -5.0, 75.0, 120.0
+
+
+def share(left, at, degrees):
+    """What a temperature leaves of a strength that keeps the share `left` at `at` degC."""
+    return 1 - (1 - left) * max(degrees - 23, 0) / (at - 23)
+
+
+def al_yield(degrees):
+    """Yield allowable of the aluminium."""
+    return 503e6 * 0.9 * share(0.9, 100, degrees)
+
+
+YIELD_AL, YIELD_STEEL = al_yield(HOT), 750e6 * share(0.95, 150, HOT)
+BOND = 28.2e6 * share(0.855, 80, HOT) * 0.8
 
 
 @pytest.fixture(scope="module")
@@ -127,46 +140,39 @@ def near(expected, rel=1e-6):
     return pytest.approx(expected, rel=rel)
 
 
-# --- laminate, by matrices -----------------------------------------------------------------------
+# --- the wall under unit loads -------------------------------------------------------------------
+
+METAL = oracle.Ply.isotropic(E_AL, NU_AL, 23.6e-6)
+T700 = oracle.Ply(
+    youngs=(135e9, 8.5e9, 8.5e9),
+    poisson=(0.3, 0.3, 0.45),
+    shear=4.3e9,
+    expansion=(-0.5e-6, 30e-6, 30e-6),
+)
+WALL = [
+    oracle.Layer(ply=ply, thickness=t, angle=a)
+    for ply, (t, a) in zip((METAL, T700, T700), PLIES, strict=True)
+]
 
 
-def reduced(e1, e2, nu12, g12):
-    """Plane-stress stiffness Q of a ply [Jones1999]."""
-    k = 1 - nu12**2 * e2 / e1
-    return np.array([[e1 / k, nu12 * e2 / k, 0], [nu12 * e2 / k, e2 / k, 0], [0, 0, g12]])
+class Unit:
+    """A wall under unit pressure, unit axial force and unit warming."""
+
+    def __init__(self, layers):
+        """Solve the three loads."""
+        self.layers = layers
+        self.pressure = oracle.solve(layers, R_I, inner_pressure=1.0)
+        self.force = oracle.solve(layers, R_I, axial_force=1.0)
+        self.warmth = oracle.solve(layers, R_I, temperature_change=1.0)
+        self.u_p, self.e_p = self.pressure.u(0, R_I), self.pressure.axial_strain
+        self.u_n, self.e_n = self.force.u(0, R_I), self.force.axial_strain
 
 
-def turn(a):
-    """Engineering strain (z, theta, z-theta) to (1, 2, 12); angle from the tube axis."""
-    c, s = cos(a), sin(a)
-    return np.array(
-        [[c * c, s * s, c * s], [s * s, c * c, -c * s], [-2 * c * s, 2 * c * s, c * c - s * s]]
-    )
-
-
-def pair(q, a):
-    """Stiffness of a balanced +-pair in tube axes."""
-    return (turn(a).T @ q @ turn(a) + turn(-a).T @ q @ turn(-a)) / 2
-
-
-Q_AL = reduced(E_AL, E_AL, NU_AL, E_AL / 2 / (1 + NU_AL))
-Q_PLY = reduced(135e9, 8.5e9, 0.3, 4.3e9)
-QS = (Q_AL, Q_PLY, Q_PLY)
-MEMBRANE = sum(pair(q, a) * t for q, (t, a) in zip(QS, PLIES, strict=True))
-FLEX = np.linalg.inv(MEMBRANE)
+UNIT = Unit(WALL)
 # The cap-mounted barrel carries p_B A_B or, pushing, nearly nothing; tension shrinks the bore, so
-# zero axial load governs: u = r_i (A^-1)_tt p r_i (hoop force p r_i at the bore, a stated choice).
-GROWTH = FLEX[1, 1] * SUPPLY * R_I**2
+# zero axial force governs.
+GROWTH = UNIT.u_p * SUPPLY
 AT_SEAL = GROWTH / 2  # pressure step at the ring: half the far growth (shell on both sides)
-
-
-def expansion():
-    """Free thermal strain of the wall per kelvin, axial and hoop."""
-    force = Q_AL @ np.array([23.6e-6, 23.6e-6, 0]) * PLIES[0][0]
-    for t, a in PLIES[1:]:
-        for sign in (1, -1):
-            force += turn(sign * a).T @ Q_PLY @ np.array([-0.5e-6, 30e-6, 0]) * t / 2
-    return FLEX @ force
 
 
 # --- fluid ---------------------------------------------------------------------------------------
@@ -329,121 +335,123 @@ def test_seal_geometry_and_contact(value):
         assert value("contact_pressure", case) == near(max(peaks))
 
 
+# --- stiffness, by counting volumes --------------------------------------------------------------
+
+
+def compliance(unit, x, head=False, tie_rods=0.0, beyond=0.0, barrel=BARREL):
+    """What each chamber takes up at piston position x by the wall, per pressure: (a, b) x (a, b).
+
+    The volume of a chamber grows by the wall's swelling over its length and, where its end is
+    not the one that is held, by the stretch of the whole barrel over its piston area. Wall force
+    of a barrel held at the cap: what p_B pulls on the head, less what tie rods of a stiffness
+    take of it by stretching as much as the barrel. Chamber B is `beyond` longer than the stroke.
+    """
+    matrix = np.zeros((2, 2, *np.shape(x)))
+    y = S - x + beyond
+    for j, (p_a, p_b) in enumerate(((1.0, 0.0), (0.0, 1.0))):
+        torn = p_a * A_A if head else p_b * A_B
+        free = unit.e_p * (x * p_a + y * p_b)
+        stretch = (unit.e_n * barrel * torn + free) / (1 + tie_rods * unit.e_n * barrel)
+        force = torn - tie_rods * stretch
+        swell_a, swell_b = (2 * pi * R_I * (unit.u_p * p + unit.u_n * force) for p in (p_a, p_b))
+        matrix[0, j] = swell_a * x + (A_A * stretch if head else 0)
+        matrix[1, j] = swell_b * y + (0 if head else A_B * stretch)
+    return matrix
+
+
+def stiffness(matrix):
+    """Stiffness a C^-1 a, a = (A_A, -A_B): oil volume is kept, C p = -a dx, and F = -a p."""
+    (aa, ab), (ba, bb) = matrix
+    return (A_A**2 * bb + A_A * A_B * (ab + ba) + A_B**2 * aa) / (aa * bb - ab * ba)
+
+
+def oil_compliance(case, x, beyond=0.0):
+    """V/K of both chambers at holding pressures: p_A + p_B = p_s + p_r, p_A A_A - p_B A_B = F."""
+    direction, force, _, temperature = CASES[case]
+    p_a = (direction * force + (SUPPLY + DRAIN) * A_B) / (A_A + A_B)  # [Merritt1967]
+    p_b = SUPPLY + DRAIN - p_a
+    assert DRAIN < p_a < SUPPLY
+    matrix = np.zeros((2, 2, *np.shape(x)))
+    matrix[0, 0] = (3e-6 + A_A * x) / oil_modulus(p_a, temperature)
+    matrix[1, 1] = (2e-6 + A_B * (S - x + beyond)) / oil_modulus(p_b, temperature)
+    return matrix
+
+
+ROD_STIFFNESS = E_STEEL * pi / 4 * (ROD**2 - HOLE**2) / (S + HEAD + PLATE + EXTENSION)
+STROKE = np.linspace(0, S, 100001)
+
+
+def least(case, unit, rod=ROD_STIFFNESS, beyond=0.0, **how):
+    """Least stiffness over the stroke by brute force: of all, place, of oil, of chambers."""
+    oil = oil_compliance(case, STROKE, beyond)
+    chambers = stiffness(oil + compliance(unit, STROKE, beyond=beyond, **how))
+    i = int(np.argmin(chambers))
+    return 1 / (1 / chambers[i] + 1 / rod), STROKE[i], stiffness(oil)[i], chambers[i]
+
+
+def test_compliance_matrix_is_an_energy():
+    """Counted volumes give a symmetric matrix: 2 pi r u_N = e_p (Betti), for every mount.
+
+    Closed form, cap-mounted: C_AA = a x, C_BB = a y + 2 e_p y A_B + e_N L A_B^2, C_AB = e_p x A_B.
+    """
+    assert 2 * pi * R_I * UNIT.u_n == near(UNIT.e_p, 1e-9)
+    x, y, swell = 0.04, S - 0.04, 2 * pi * R_I * UNIT.u_p
+    for how in ({}, {"head": True}, {"tie_rods": 1e8}, {"head": True, "tie_rods": 1e8}):
+        matrix = compliance(UNIT, x, **how)
+        assert matrix[0, 1] == near(matrix[1, 0], 1e-9)
+        assert np.linalg.det(matrix) > 0
+    (aa, ab), (_, bb) = compliance(UNIT, x)
+    assert aa == near(swell * x, 1e-9)
+    assert ab == near(UNIT.e_p * x * A_B, 1e-9)
+    assert bb == near(swell * y + 2 * UNIT.e_p * y * A_B + UNIT.e_n * BARREL * A_B**2, 1e-9)
+
+
 def test_stiffness_and_frequency(value):
-    """Closed ports at holding pressures: the weakest position by brute force, never stiffer."""
-    x = np.linspace(0, S, 100001)
-    swell = 2 * pi * R_I * GROWTH / SUPPLY  # dV/dp per length
-    rod = E_STEEL * pi / 4 * (ROD**2 - HOLE**2) / (S + HEAD + PLATE + EXTENSION)
-    assert value("stiffness_rod") == near(rod)
-    for case, (direction, force, _, temperature) in CASES.items():
-        # Critical centre: p_A + p_B = p_s + p_r, p_A A_A - p_B A_B = F [Merritt1967].
-        p_a = (direction * force + (SUPPLY + DRAIN) * A_B) / (A_A + A_B)
-        p_b = SUPPLY + DRAIN - p_a
-        assert DRAIN < p_a < SUPPLY
-        oil_a = (3e-6 + A_A * x) / oil_modulus(p_a, temperature)
-        oil_b = (2e-6 + A_B * (S - x)) / oil_modulus(p_b, temperature)
-        hydraulic = A_A**2 / (oil_a + swell * x) + A_B**2 / (oil_b + swell * (S - x))
-        i = int(np.argmin(hydraulic))
-        oil = A_A**2 / oil_a[i] + A_B**2 / oil_b[i]
-        assert value("stiffness_oil", case) == near(oil, 1e-4)
-        assert value("stiffness_barrel", case) == near(1 / (1 / hydraulic[i] - 1 / oil), 1e-4)
-        # Parts added to the load path later (ends, barrel stretch) may only soften it.
-        bound = 1 / (1 / hydraulic[i] + 1 / rod)
-        assert 0.85 * bound < value("stiffness_min", case) < bound * (1 + 1e-6)
+    """Closed ports at holding pressures: weakest position by brute force, axial stretch once."""
+    assert value("stiffness_rod") == near(ROD_STIFFNESS)
+    for case in CASES:
+        total, x, oil, chambers = least(case, UNIT)
+        assert value("stiffness_min", case) == near(total)
+        assert value("stiffness_oil", case) == near(oil, 1e-5)
+        # The barrel's own row is its swelling; stretch stands apart and only softens.
+        swelling = np.diag(2 * pi * R_I * UNIT.u_p * np.array([x, S - x]))
+        swollen = stiffness(oil_compliance(case, x) + swelling)
+        assert value("stiffness_barrel", case) == near(1 / (1 / swollen - 1 / oil), 1e-5)
+        assert chambers < swollen
         frequency = sqrt(value("stiffness_min", case) / MOVING) / (2 * pi)
         assert value("natural_frequency", case) == near(frequency)
 
 
-def wall_stress(layer, axial_per_pressure):
-    """Stress in layer axes per unit pressure, thin laminate at mid-radius."""
-    strain = FLEX @ np.array([axial_per_pressure / (2 * pi * R_M), R_M, 0])
-    t = turn(PLIES[layer][1])
-    return QS[layer] @ t @ strain
+# --- strength ------------------------------------------------------------------------------------
 
 
-def wall_pressures():
-    """Elastic liner yield and first matrix, shear or fibre failure: no load and p A_A axially."""
-    yields, plies = [], []
-    for axial in (0.0, A_A):
-        z, h, _ = wall_stress(0, axial)
-        yields.append(YIELD_AL / sqrt(z * z - z * h + h * h))
-        for layer in (1, 2):
-            one, two, shear = wall_stress(layer, axial)
-            plies.append((X_T if one > 0 else X_C) / abs(one))
-            plies.append((Y_T if two > 0 else Y_C) / abs(two))
-            plies.append(S_12 / abs(shear))
-    return yields, plies
+def mises(s):
+    """Equivalent stress of (z, theta, r, z-theta) or any other axes."""
+    return sqrt(((s[0] - s[1]) ** 2 + (s[1] - s[2]) ** 2 + (s[2] - s[0]) ** 2) / 2 + 3 * s[3] ** 2)
 
 
-def burst_pressure(axial):
-    """Ply discount by hand: yielded liner keeps its line force, a cracked pair its fibres."""
-    soft = [False, False, False]
-    held, highest = np.zeros(3), 0.0
-    for _ in range(4):
-        cracked = reduced(135e9, 8.5e6, 0.3e-3, 4.3e6)
-        q = [
-            1e-3 * Q_AL if soft[0] else Q_AL,
-            *(cracked if soft[k] else Q_PLY for k in (1, 2)),
-        ]
-        a = sum(pair(m, ang) * t for m, (t, ang) in zip(q, PLIES, strict=True))
-        rate = np.linalg.solve(a, [axial / (2 * pi * R_M), R_M, 0])
-        base = np.linalg.solve(a, -held)
-        reached = []
-        if not soft[0]:
-            z, h, _ = Q_AL @ rate
-            reached.append((YIELD_AL / sqrt(z * z - z * h + h * h), 0, "yield"))
-        for k in (1, 2):
-            now, at = q[k] @ turn(PLIES[k][1]) @ rate, q[k] @ turn(PLIES[k][1]) @ base
-            limits = [("fibre", 0, X_T, X_C)]
-            if not soft[k]:
-                limits += [("matrix", 1, Y_T, Y_C), ("matrix", 2, S_12, S_12)]
-            for mode, i, tension, compression in limits:
-                sign = 1 if now[i] > 0 else -1
-                strength = tension if sign > 0 else compression
-                reached.append(((strength - sign * at[i]) / abs(now[i]), k, mode))
-        p, k, mode = min(reached)
-        highest = max(highest, p)
-        if mode == "fibre":
-            return highest
-        soft[k] = True
-        if mode == "yield":
-            held = Q_AL @ rate * p * PLIES[0][0] * 0.999
-    raise AssertionError("the ladder has no end")
-
-
-def test_wall_strength(value):
-    """Burst equals the hand ladder; yield and first ply are never above the stress-free wall."""
-    burst = min(burst_pressure(0.0), burst_pressure(A_A)) / SUPPLY
-    assert value("burst_factor") == near(burst, 1e-4)
-    yields, plies = wall_pressures()
-    assert min(plies) > min(yields)  # so the liner governs proof here
-    # Cure stress, moisture or the exact tube may only lower these (thin laminate: no sigma_r).
-    assert 0.4 < value("liner_yield_factor") * SUPPLY / min(yields) < 1 + 1e-6
-    assert 0.4 < value("first_ply_factor") * SUPPLY / min(plies) < 1 + 1e-6
+def test_factors_that_follow_from_others(value):
+    """Proof is the worse of liner and ply at 1.5 p; yield is that of liner, rod and cap skirt."""
     lower = min(value("liner_yield_factor"), value("first_ply_factor"))
     assert value("proof_factor") == near(lower / 1.5)
     area = pi / 4 * (ROD**2 - HOLE**2)
     bending = 40 * (S + EXTENSION + EYE + (HEAD + PLATE) / 2) * ROD / 2
     bending /= pi / 64 * (ROD**4 - HOLE**4)
-    rod = YIELD_STEEL / (SUPPLY * A_A / area + bending)
+    rod = YIELD_STEEL / (SUPPLY * A_A / area + bending)  # a bent column only has more
     skirt = YIELD_AL * 2 * pi * R_O * 2e-3 / (SUPPLY * A_A)
-    assert value("yield_factor") == near(min(value("liner_yield_factor"), rod, skirt))
-
-
-def test_liner_mismatch(value):
-    """Cool-down from cure to the coldest state stretches the aluminium liner."""
-    z, h, _ = Q_AL @ (expansion() - np.array([23.6e-6, 23.6e-6, 0])) * (268.15 - 393.15)
-    assert z > 0
-    assert h > 0
-    assert value("liner_mismatch_factor") == near(YIELD_AL / sqrt(z * z - z * h + h * h))
+    assert value("yield_factor") <= min(value("liner_yield_factor"), rod, skirt) * (1 + 1e-6)
+    assert value("yield_factor") >= min(value("liner_yield_factor"), 0.7 * rod, skirt) * (1 - 1e-6)
 
 
 def test_buckling(value):
-    """Stepped pinned column: first root of tan(k1 L1)/k1 + tan(k2 L2)/k2 = 0, pole-free form."""
+    """Stepped pinned column: first root of tan(k1 L1)/k1 + tan(k2 L2)/k2 = 0, pole-free form.
+
+    Shear, self-weight and side load only lower it.
+    """
     radii = [R_I, R_I + 0.7e-3, R_I + 1.8e-3, R_O]
     ei_1 = 0.0
-    for k in range(3):
-        e_z = 1 / np.linalg.inv(pair(QS[k], PLIES[k][1]))[0, 0]
+    for k, layer in enumerate(WALL):
+        e_z = 1 / np.linalg.inv(oracle.layer_stiffness(layer)[0])[0, 0]
         ei_1 += e_z * pi / 4 * (radii[k + 1] ** 4 - radii[k] ** 4)
     ei_2 = E_STEEL * pi / 64 * (ROD**4 - HOLE**4)
     l_1, l_2 = EYE + 2 * PLATE + BARREL, S + EXTENSION + EYE
@@ -458,7 +466,7 @@ def test_buckling(value):
     for _ in range(60):
         middle = (low + high) / 2
         low, high = (middle, high) if mismatch(middle) > 0 else (low, middle)
-    assert value("buckling_factor") == near(low / (SUPPLY * A_A))
+    assert 0.8 < value("buckling_factor") * SUPPLY * A_A / low < 1 + 1e-6
 
 
 def test_rod_end_pins_and_guides(value):
@@ -480,7 +488,7 @@ def test_rod_end_pins_and_guides(value):
 
 def test_retention_and_cap_stay_on_the_safe_side(value):
     """Bond: not above dry Volkersen; cap: not above the plate simply supported at the bore."""
-    skirt, barrel = E_AL * 2e-3, MEMBRANE[0, 0] - MEMBRANE[0, 1] ** 2 / MEMBRANE[1, 1]
+    skirt, barrel = E_AL * 2e-3, 1 / (UNIT.e_n * 2 * pi * R_M)
     length, stiffer = 18e-3, max(skirt, barrel)
     psi = stiffer / min(skirt, barrel)
     w = sqrt(1.2e9 * length**2 / 0.15e-3 * (1 / skirt + 1 / barrel))
@@ -492,16 +500,25 @@ def test_retention_and_cap_stay_on_the_safe_side(value):
 
 
 def test_fatigue(value):
-    """Goodman at the liner, the rod (push to pull) and the thread root with notch factor 3."""
-    yields, _ = wall_pressures()
+    """Goodman at the liner, the rod (push to pull) and the thread root with notch factor 3.
+
+    The liner's pulse stands on its cure stress: mean = larger end less half the range.
+    """
     root = pi / 4 * (10e-3 - 0.9382 * 1.25e-3) ** 2
     area = pi / 4 * (ROD**2 - HOLE**2)
-    stresses = [(YIELD_AL * SUPPLY / p, 0.0, 159e6, 572e6) for p in yields]
-    stresses.append((SUPPLY * A_B / area, -SUPPLY * A_A / area, 450e6, 1000e6))
-    stresses.append((3 * SUPPLY * A_B / root, 0.0, 450e6, 1000e6))
-    used = [(a - b) / 2 / s + (a + b) / 2 / u for a, b, s, u in stresses]
-    # More parts, or a lower limit, may only lower it.
-    assert 0.4 < value("fatigue_factor") * max(used) < 1 + 1e-6
+    used = [
+        (A_B + A_A) * SUPPLY / area / 2 / 450e6 - (A_A - A_B) * SUPPLY / area / 2 / 1000e6,
+        3 * SUPPLY * A_B / root / 2 * (1 / 450e6 + 1 / 1000e6),
+    ]
+    for axial in (0.0, A_B, A_A):
+        for degrees in (COLD, HOT):
+            for r in (R_I, R_I + PLIES[0][0]):
+                at_rest = UNIT.warmth.stresses(0, r) * (degrees - CURE)
+                full = UNIT.pressure.stresses(0, r) + axial * UNIT.force.stresses(0, r)
+                span = mises(full * SUPPLY)
+                mean = max(mises(at_rest), mises(at_rest + full * SUPPLY)) - span / 2
+                used.append(span / 2 / 159e6 + max(mean, 0) / 572e6)
+    assert value("fatigue_factor") == near(1 / max(used))
     assert value("cycle_life") > 20000
 
 
@@ -522,7 +539,7 @@ def test_end_stop(value):
 
 def test_trapped_oil(value):
     """Oil locked in and warmed: between the holding modulus and a rigid chamber at proof."""
-    z, h, _ = expansion()
+    z, h = UNIT.warmth.axial_strain, UNIT.warmth.u(0, R_I) / R_I
     jumps = []
     for direction, force, _, temperature in CASES.values():
         p_a = (direction * force + (SUPPLY + DRAIN) * A_B) / (A_A + A_B)
@@ -544,64 +561,3 @@ def test_extrusion_and_walls(value):
     assert value("geometry_rod_wall") == near((ROD - HOLE) / 2)
     # Service limits: oil and T700 to 80 degC; nothing colder than the oil's -20 degC matters.
     assert value("temperature_margin") == near(5.0)
-
-
-# --- how far the thin laminate is from the exact tube --------------------------------------------
-
-
-def solid(q_constants, a):
-    """3-D stiffness over (z, theta, r) of a pair; the shear couplings cancel in the pair."""
-    e1, e2, nu12, nu23, g12 = q_constants
-    s = np.array(
-        [
-            [1 / e1, -nu12 / e1, -nu12 / e1],
-            [-nu12 / e1, 1 / e2, -nu23 / e2],
-            [-nu12 / e1, -nu23 / e2, 1 / e2],
-        ]
-    )
-    c = np.linalg.inv(s)
-    m, n = cos(a) ** 2, sin(a) ** 2
-    mix = m * n
-    zz = m * m * c[0, 0] + n * n * c[1, 1] + 2 * mix * (c[0, 1] + 2 * g12)
-    tt = n * n * c[0, 0] + m * m * c[1, 1] + 2 * mix * (c[0, 1] + 2 * g12)
-    zt = mix * (c[0, 0] + c[1, 1] - 4 * g12) + (m * m + n * n) * c[0, 1]
-    zr, tr = m * c[0, 2] + n * c[1, 2], n * c[0, 2] + m * c[1, 2]
-    return np.array([[zz, zt, zr], [zt, tt, tr], [zr, tr, c[2, 2]]])
-
-
-def exact_growth(n=400):
-    """Bore growth of the layered tube at zero axial force, by shooting u and sigma_r outwards.
-
-    u' = (s_r - C_zr e_z - C_tr u/r)/C_rr and s_r' = (s_t - s_r)/r through every layer (Runge
-    and Kutta), for (u_0, e_z) one and none; s_r(r_o) = 0 and the axial force zero give both.
-    """
-    metal = (E_AL, E_AL, NU_AL, NU_AL, E_AL / 2 / (1 + NU_AL))
-    ply = (135e9, 8.5e9, 0.3, 0.45, 4.3e9)
-
-    def end(u, strain, pressure):
-        state, r = np.array([u, -pressure, 0.0]), R_I
-        for constants, (t, a) in zip((metal, ply, ply), PLIES, strict=True):
-            c, h = solid(constants, a), t / n
-
-            def rate(r, y, c=c):
-                slope = (y[1] - c[0, 2] * strain - c[1, 2] * y[0] / r) / c[2, 2]
-                z, hoop, _ = c @ np.array([strain, y[0] / r, slope])
-                return np.array([slope, (hoop - y[1]) / r, 2 * pi * r * z])
-
-            for _ in range(n):
-                k1 = rate(r, state)
-                k2 = rate(r + h / 2, state + h / 2 * k1)
-                k3 = rate(r + h / 2, state + h / 2 * k2)
-                k4 = rate(r + h, state + h * k3)
-                state, r = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4), r + h
-        return state[1:]
-
-    columns = np.column_stack([end(1e-5, 0.0, 0.0), end(0.0, 1e-4, 0.0)])
-    share = np.linalg.solve(columns, -end(0.0, 0.0, SUPPLY))
-    return 1e-5 * share[0]
-
-
-def test_thin_laminate_is_on_the_unsafe_side_at_the_bore(evaluation, value):
-    """At t/r of 0.2 the membrane shows 80 to 90 % of the exact bore growth, and says so."""
-    assert 0.80 < value("bore_growth") / exact_growth(40) < 0.90
-    assert not evaluation.metrics["bore_growth"].in_range

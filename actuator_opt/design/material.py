@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from ..numeric import Array, maximum, real, where
@@ -174,6 +174,19 @@ class Material:
     def viscosity_points(self) -> tuple[tuple[float, float], ...]:
         """Temperature (K) and kinematic viscosity (m^2/s) of a fluid's table."""
         return self.properties["kinematic_viscosity"].points
+
+    def stating(self, stated: Mapping[str, float]) -> Material:
+        """The material with properties that a design states beyond the library's; SI."""
+        new = {name: value for name, value in stated.items() if name not in self.properties}
+        if not new:
+            return self
+        properties = dict(self.properties)
+        for name, value in new.items():
+            properties[name] = Property(
+                MATERIAL_PROPERTIES[name], value, "the design file", "not stated", "secondary",
+                "nominal", "stated in the design",
+            )  # fmt: skip
+        return replace(self, properties=properties)
 
     def completed(self) -> dict[str, Property]:
         """Stated properties and the ply constants that follow from them, marked ``derived``."""

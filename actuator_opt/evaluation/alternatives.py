@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import e, exp, isfinite, pi
+from math import e, isfinite, pi
 
 import numpy as np
 
@@ -297,10 +297,10 @@ def metal_tube(
         "poissons_ratio": stock.get(name, "poissons_ratio"),
     }
     strength = stock.allowable(name, "yield_strength")
-    strengths = {
-        "yield_strength": strength,
-        "ultimate_strength": stock.allowable(name, "ultimate_strength"),
-    }
+    ultimate = stock.allowable(name, "ultimate_strength")
+    if strength is None or ultimate is None:  # a person's own entry of that name
+        return MetalTube(name, None, None)
+    strengths = {"yield_strength": strength, "ultimate_strength": ultimate}
     ratios = [force / (pi * inner * inner) for force in axial_forces_per_pressure]
     held = None
     if burst_pressure is not None:  # Faupel's pressure is proportional to the logarithm of k
@@ -308,7 +308,7 @@ def metal_tube(
         least_flow = min(
             float(barrel.burst_pressure_thick(**unit, axial_force_ratio=ratio)) for ratio in ratios
         )
-        held = inner * (exp(burst_pressure / least_flow) - 1)
+        held = float(inner * np.expm1(burst_pressure / least_flow))
     try:
         stiff = barrel.wall_ratio_for_strain(
             strain=strain, pressure=pressure, closed=False, **elastic
@@ -316,7 +316,8 @@ def metal_tube(
     except ValueError:  # no wall of this metal is stiff enough
         return MetalTube(name, None, held)
     growth = float(inner * (stiff - 1))
-    size = {"inner_radius": inner, "outer_radius": inner + max(growth, held or 0.0)}
+    thickness = max(growth, held or 0.0)
+    size = {"inner_radius": inner, "outer_radius": inner + thickness}
     yields, bursts = [], []
     for force, ratio in zip(axial_forces_per_pressure, ratios, strict=True):
         hoop, radial, axial = barrel.bore_stresses(pressure=1.0, axial_force=force, **size)
@@ -328,7 +329,7 @@ def metal_tube(
         material=name,
         for_growth=growth,
         for_burst=held,
-        thickness=size["outer_radius"] - inner,
+        thickness=thickness,
         growth=float(barrel.bore_growth(pressure=pressure, **size, **elastic)),
         burst_pressure=float(min(bursts)),
         yield_pressure=min(yields),

@@ -78,7 +78,10 @@ def prepare(
     if materials is None:
         materials = load_library()
     get = materials.get if isinstance(materials, Library) else materials.__getitem__
-    materials = {name: get(name) for name in names_of_materials(design)}
+    materials = {
+        name: get(name).stating(design.materials.get(name, {}))
+        for name in names_of_materials(design)
+    }
     numbers = default_limits()
     for name, material in materials.items():
         numbers |= {f"materials.{name}.{key}": value for key, value in material.numbers.items()}

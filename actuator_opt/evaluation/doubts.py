@@ -10,6 +10,7 @@ from ..design.material import compatible
 from ..design.model import PLAIN_CAP
 from ..models import laminate, seals
 from .barrel import LAMINATES, kind
+from .beam import NEAR
 from .kernel import Pass, Subject
 from .provenance import model_of
 from .result import Metric, ModelUse, Unverified
@@ -55,6 +56,8 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
         for metric in GROWTH_FED:
             yield metric, text
     yield from _wall_warnings(subject, done)
+    yield from _rod_warnings(subject, done)
+    yield from _bond_warnings(done)
     for part, what in (
         ("head", "of the piston's material and length"),
         ("caps", f"of the piston's material, {PLAIN_CAP:g} bore thick"),
@@ -117,6 +120,48 @@ def _wall_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:
             "joint_factor",
             f"no tie-rod preload stated: taken {force / 1e3:.1f} kN, which keeps the joint closed "
             "at proof pressure",
+        )
+
+
+def _rod_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:
+    """What the strength of the rod leaves out."""
+    rod = done.rod
+    if rod.layers and not rod.cured:
+        why = "no cure temperature stated"
+        if rod.expansion is None:
+            name = next(layer.name for layer in rod.layers if layer.expansions is None)
+            why = f"{name} states no thermal expansion"
+        yield "rod_factor", f"stresses from cooling are left out of the rod's layers: {why}"
+    if rod.missing:
+        yield "rod_factor", f"rod: {rod.missing[0]}"
+    factors = done.computed.metrics["buckling_factor"][""]
+    if float(np.min(np.real(factors))) < 1 / NEAR:
+        for metric in ("yield_factor", "rod_factor", "local_buckling_factor"):
+            yield (
+                metric,
+                f"the push is above {NEAR:.0%} of the buckling load: bending of the rod is "
+                "continued from there, not computed",
+            )
+
+
+def _bond_warnings(done: Pass) -> Iterable[tuple[str, str]]:
+    """The bond that force and temperature together load most, where they exceed its strength."""
+    metrics = done.computed.metrics
+    sums = {}
+    for place, metric in (("caps", "retention_factor"), ("rod fittings", "fitting_factor")):
+        heat = [x for at, x in metrics.get("bond_thermal_factor", {}).items() if place in at]
+        force = list(metrics.get(metric, {}).values())
+        if heat and force:
+            sums[place] = sum(
+                max(float(np.max(1 / np.real(row))) for row in rows) for rows in (heat, force)
+            )
+    if sums and max(sums.values()) > 1:
+        place = max(sums, key=lambda name: sums[name])
+        yield (
+            "",
+            f"bond of the {place}: the elastic edge shears of force and of temperature add up to "
+            f"{sums[place]:.2f} times the strength; each is checked alone, as a ductile adhesive "
+            "yields and levels both",
         )
 
 

@@ -33,6 +33,8 @@ def compute(
     _endurance(v, stock, design, g, wall, supply, push, pull, out)
     _end_stop(v, design, g, state, supply, moving, net, out)
     _thermal(v, stock, design, g, state, wall, supply, out)
+    _clearance(v, stock, design, g, wall, out)
+    out.put("blocked_port_factor", v["supply.proof_ratio"] * g.area_b / g.area_a)
 
 
 def _endurance(
@@ -58,7 +60,8 @@ def _endurance(
         loads.append(("rod thread", design.rod.material, stress, stress / 2))
     life, factor, lacking = {}, {}, []
     for place, name, span, mean in loads:
-        ultimate, limit = stock.get(name, "ultimate_strength"), stock.get(name, "fatigue_strength")
+        ultimate = stock.allowable(name, "ultimate_strength")
+        limit = stock.allowable(name, "fatigue_strength")
         if ultimate is None or limit is None:
             lacking.append(name)
             continue
@@ -160,7 +163,7 @@ def _thermal(
             wall_expansion_axial=wall.expansion[0],
             wall_expansion_hoop=wall.expansion[1],
             bulk_modulus=maximum(state.bulk_modulus_a, state.bulk_modulus_b),
-            wall_compliance_per_volume=2 * wall.growth / (supply * g.inner_radius),
+            wall_compliance_per_volume=2 * wall.swelling.growth / g.inner_radius,
         )
         jump = slope * v["environment.trapped_rise"]
         out.put("trapped_pressure", jump)
@@ -180,7 +183,8 @@ def _thermal(
     ranges = {}
     for place, cycle in wall.cycles.items():
         strength = stock.allowable(cycle.material, "yield_strength", "ultimate_strength")
-        ranges[place] = 2 * strength / cycle.span
+        if strength is not None:
+            ranges[place] = 2 * strength / cycle.span
     if len(design.barrel.layup) > 1 and ranges:
         out.put("liner_range_factor", ranges)
     else:
@@ -196,3 +200,33 @@ def _thermal(
         if high is not None:
             margins[f"{name}, hot"] = high - v["environment.temperature_max"]
     out.put("temperature_margin", margins)
+
+
+def _clearance(
+    v: Values, stock: Stock, design: Design, g: Geometry, wall: Wall, out: Computed
+) -> None:
+    """Radial clearance of piston in barrel and rod in head, coldest and hottest.
+
+    c + r (alpha_outside - alpha_inside) dT from the temperature of assembly.
+    """
+    if design.environment is None:
+        out.skip("clearance_min", "no temperature range stated: add environment")
+        return
+    rod = stock.get(design.rod.material, "thermal_expansion", "thermal_expansion_2")
+    head = stock.get(design.head.material, "thermal_expansion", "thermal_expansion_2")
+    piston = stock.get(design.piston.material, "thermal_expansion", "thermal_expansion_2")
+    fits = []
+    if wall.expansion is not None and piston is not None:
+        fits.append(("piston", g.piston_clearance, g.inner_radius, wall.expansion[1] - piston))
+    if rod is not None and head is not None and not design.rod.layup:
+        fits.append(("head", g.head_clearance, g.rod_diameter / 2, head - rod))
+    if not fits:
+        out.skip("clearance_min", "thermal expansion of barrel or piston is not known")
+        return
+    values = {}
+    for name in ("temperature_min", "temperature_max"):
+        change = v[f"environment.{name}"] - v["environment.assembly_temperature"]
+        climate = "cold" if name.endswith("min") else "hot"
+        for part, clearance, radius, mismatch in fits:
+            values[f"{part}, {climate}"] = clearance + radius * mismatch * change
+    out.put("clearance_min", values)

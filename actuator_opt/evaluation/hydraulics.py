@@ -82,11 +82,12 @@ class Springs:
         return parts
 
 
-def _stretch(design: Design, g: Geometry, wall: Wall) -> Give:
+def _stretch(design: Design, g: Geometry, wall: Wall, extra: Array) -> Give:
     """Axial stretch of the barrel under the pressure of the chamber that pulls on it.
 
     Cap-mounted, N = p_B A_B over the whole length: the head moves by e_N L N + e_p (x p_A +
-    (s - x) p_B), and N narrows both chambers by e_p N per length; e_p is the strain per pressure.
+    y p_B), and N narrows both chambers by e_p N per length; e_p is the strain per pressure, y the
+    wetted length of chamber B, the rest of the stroke and what the barrel is longer (`extra`).
     Head-mounted, the same with p_A A_A. Tie rods take their share of N.
     """
     shortening = wall.swelling.shortening * wall.path.share
@@ -95,8 +96,8 @@ def _stretch(design: Design, g: Geometry, wall: Wall) -> Give:
     own = area * area * wall.swelling.stretch * wall.path.share * g.barrel_length
     twice, once = 2 * shortening * area, shortening * area
     if cap:
-        return Give(b0=own, b1=twice, c1=once)
-    return Give(a0=own, a1=twice, c0=once * g.stroke, c1=-once)
+        return Give(b0=own + twice * extra, b1=twice, c1=once)
+    return Give(a0=own, a1=twice, c0=once * (g.stroke + extra), c1=-once)
 
 
 def springs(
@@ -105,9 +106,8 @@ def springs(
     """Compliance of chambers, lines, rod and mount."""
     g = geometry
     volume = {"a": v["cylinder.dead_volume_a"], "b": v["cylinder.dead_volume_b"]}
-    volume["b"] = volume["b"] + g.area_b * (
-        g.barrel_length - g.piston_length - g.head_length - g.stroke
-    )
+    extra = g.barrel_length - g.piston_length - g.head_length - g.stroke
+    volume["b"] = volume["b"] + g.area_b * extra
     give: dict[str, Array] = {"a": 0.0, "b": 0.0}
     for i, line in enumerate(design.lines):
         at, material = f"lines[{i}].", f"materials.{line.material}."
@@ -119,7 +119,7 @@ def springs(
             youngs_modulus=v[material + "youngs_modulus"],
             poissons_ratio=v[material + "poissons_ratio"],
         )
-    swelling = 2 * pi * g.inner_radius * (wall.growth / v["supply.pressure"])
+    swelling = 2 * pi * g.inner_radius * wall.swelling.growth
     oil_a, oil_b = state.bulk_modulus_a, state.bulk_modulus_b
     return Springs(
         chambers={
@@ -129,8 +129,8 @@ def springs(
                 b0=volume["b"] / oil_b,
                 b1=g.area_b / oil_b,
             ),
-            "barrel": Give(a1=swelling, b1=swelling),
-            "stretch": _stretch(design, g, wall),
+            "barrel": Give(a1=swelling, b0=swelling * extra, b1=swelling),
+            "stretch": _stretch(design, g, wall, extra),
             "lines": Give(a0=give["a"], b0=give["b"]),
         },
         rod=rod.axial_stiffness / g.rod_length,

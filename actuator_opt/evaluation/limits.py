@@ -105,13 +105,7 @@ CHECK_LIST: tuple[CheckLine, ...] = (
         3.5,
         "ISO/TS 13725 idealisation, safety factor 3.5",
     ),
-    CheckLine(
-        "rod plies",
-        "rod_factor",
-        "min",
-        1.5,
-        "choice: 1.5 on the first ply or yield, cure stress held",
-    ),
+    CheckLine("rod plies", "rod_factor", "min", 1.5, "choice: 1.5 on first ply or yield"),
     CheckLine(
         "local buckling of the rod's wall",
         "local_buckling_factor",
@@ -197,6 +191,21 @@ CHECK_LIST: tuple[CheckLine, ...] = (
     ),
     CheckLine("end-stop energy", "end_stop_energy", "max"),
     CheckLine(
+        "rod-side pressure with its port blocked",
+        "blocked_port_factor",
+        "min",
+        1.0,
+        "advice: supply on the cap side alone makes p A_A/A_B; a relief valve bounds it",
+        advice=True,
+    ),
+    CheckLine(
+        "clearance over the temperature range",
+        "clearance_min",
+        "min",
+        5e-6,
+        "choice: 5 um of oil film left where piston and barrel expand unequally",
+    ),
+    CheckLine(
         "bearing overlap", "bearing_overlap", "min", 1.0, "span of at least one rod diameter"
     ),
     CheckLine(
@@ -271,18 +280,10 @@ CHECK_LIST: tuple[CheckLine, ...] = (
         "preload over what supply pressure takes from it",
     ),
     CheckLine(
-        "winding angles the process can lay",
-        "winding_margin",
-        "min",
-        0.0,
-        "manufacture: smallest angle of the material",
+        "winding angles", "winding_margin", "min", 0.0, "manufacture: least angle of the ply"
     ),
     CheckLine(
-        "layer thicknesses the process can lay",
-        "ply_thickness_margin",
-        "min",
-        0.0,
-        "manufacture: smallest thickness of the material",
+        "layer thicknesses", "ply_thickness_margin", "min", 0.0, "manufacture: least of the ply"
     ),
     CheckLine("mass", "mass", "max"),
     CheckLine(

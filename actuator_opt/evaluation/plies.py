@@ -7,8 +7,9 @@ of its own temperature.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -87,10 +88,12 @@ class Layer:
             expansion_3=second,
         )
 
-    def as_wall(self) -> WallLayer:
-        """The layer as the burst models take it."""
-        c = self.constants
+    def as_wall(self, climate: int | None = None) -> WallLayer:
+        """The layer as the burst models take it, in one climate or in all, (climates, 1, 1)."""
+        c, (first, second) = self.constants, self.expansions or (0.0, 0.0)
         return WallLayer(
+            expansion_1=first,
+            expansion_2=second,
             youngs_modulus_1=c["youngs_modulus_1"],
             youngs_modulus_2=c["youngs_modulus_2"],
             youngs_modulus_3=c["youngs_modulus_3"],
@@ -100,10 +103,41 @@ class Layer:
             shear_modulus_12=c["shear_modulus_12"],
             thickness=self.thickness,
             angle=self.angle,
-            strength=self.strength,
-            yield_strength=self.yield_strength,
+            strength=_of_one(self.strengths, climate, _of_all),
+            yield_strength=_of_one(self.yields, climate, _axis),
             material=self.name,
         )
+
+
+def _of_one(values: Sequence[Any], climate: int | None, every: Callable[..., Any]) -> Any:
+    """The value of a climate; where none is named, all of them, or the only one; None of none."""
+    if not values:
+        return None
+    if climate is not None:
+        return values[climate]
+    return values[0] if len(values) == 1 else every(values)
+
+
+def _axis(values: Sequence[Array]) -> Array:
+    """One value per climate on an axis before load paths and designs."""
+    return np.stack(np.broadcast_arrays(*[np.atleast_1d(value) for value in values]))[:, None, :]
+
+
+def _of_all(strengths: Sequence[PlyStrength]) -> PlyStrength:
+    """Ply strengths of all climates."""
+
+    def one(name: str) -> Array:
+        return _axis([getattr(strength, name) for strength in strengths])
+
+    known = all(strength.shear_23 is not None for strength in strengths)
+    return PlyStrength(
+        one("tension_1"),
+        one("compression_1"),
+        one("tension_2"),
+        one("compression_2"),
+        one("shear_12"),
+        one("shear_23") if known else None,
+    )
 
 
 def climates(v: Values, design: Design) -> tuple[Climate, ...]:

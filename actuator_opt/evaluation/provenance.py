@@ -90,7 +90,6 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "damping_ratio": dynamics.friction_damping_ratio,
         "bore_growth": barrel.bore_growth,
         "growth_at_seal": barrel_ends.pressure_step_factor,
-        "decay_length": barrel_ends.shell_decay_length,
         "seal_gap": gland.extrusion_gap,
         "extrusion_factor": gland.extrusion_gap,
         "seal_squeeze": gland.squeeze_in_place,

@@ -6,12 +6,15 @@ grown by the push; the part of the rod inside chamber B bears its pressure while
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
+
 import numpy as np
 
 from ..design.model import Design
 from ..models import beam_column, rod, shell_buckling, yielding
 from ..models.strength_modes import Stress, load_multiplier
-from ..numeric import Array, real, where
+from ..numeric import Array, maximum, where
 from . import plies
 from .allow import Stock
 from .beam import Beam
@@ -19,6 +22,7 @@ from .geometry import Geometry
 from .rods import FORCE, OUTSIDE, WARMTH, Rod
 from .rows import Computed
 from .state import State
+from .wall import Cycle
 
 
 def yields(
@@ -79,35 +83,26 @@ def _layers(
         )
         for moment in moments
     )
-    none = 0.0 * drawn
-    factors: dict[str, Array] = {}
-    for direction, loads in (
-        ("push", [(-push - pressed, none), (pressed - push, none)]),
-        (
-            "pull",
-            [
-                (pull + side * drawn, none + pressure)
-                for side in (1, -1)
-                for pressure in (0.0, supply)
-            ],
-        ),
-    ):
-        forces, pressures = (
-            np.stack(np.broadcast_arrays(*[np.atleast_2d(load[k]) for load in loads]))
-            for k in (0, 1)
-        )
-        factors |= _direction(design, section, direction, forces, pressures)
+    loads = [(side * pressed - push, 0.0) for side in (1, -1)]
+    loads += [(pull + side * drawn, outside) for side in (1, -1) for outside in (0.0, supply)]
+    forces, pressures = (
+        np.stack(np.broadcast_arrays(*[np.atleast_2d(load[k] + 0.0 * drawn) for load in loads]))
+        for k in (0, 1)
+    )
+    factors = _factors(design, section, forces, pressures)
     if factors:
         out.put("rod_factor", factors)
     else:
         out.skip("rod_factor", section.missing[0])
 
 
-def _direction(
-    design: Design, section: Rod, direction: str, forces: Array, pressures: Array
-) -> dict[str, Array]:
-    """Factors of one direction; forces and outside pressures are (sides, cases, designs)."""
-    factors = {}
+DIRECTIONS = {"push": slice(0, 2), "pull": slice(2, 6)}
+"""Sides of the bent rod in either direction; pulling, each without and with outside pressure."""
+
+
+def _factors(design: Design, section: Rod, forces: Array, pressures: Array) -> dict[str, Array]:
+    """Every layer's factors; forces and outside pressures are (sides, cases, designs)."""
+    factors: dict[str, Array] = {}
     brittle = [i for i, layer in enumerate(section.layers) if layer.strengths]
     if brittle:
         modes = plies.utilisations(
@@ -116,21 +111,66 @@ def _direction(
             _load(section, brittle, forces, pressures),
             _residual(section, brittle),
         )
-        for mode, used in modes.items():
-            multiple = load_multiplier(plies.worst(used, (0, 2, 3)))
+        for group, used in plies.grouped(modes).items():
             for k, i in enumerate(brittle):
-                factors[f"{section.layers[i].label} {mode}, {direction}"] = multiple[k]
+                factors |= _rows(section, f"{section.layers[i].label} {group}", used[:, k])
     for i, layer in enumerate(section.layers):
         if layer.yields:
-            rows = np.stack(np.broadcast_arrays(*[np.atleast_1d(one) for one in layer.yields]))
+            strengths = np.broadcast_arrays(*[np.atleast_1d(one) for one in layer.yields])
             used = yielding.yield_utilisation(
                 stress=_load(section, [i], forces, pressures),
-                yield_strength=rows[None, None, :, None, None],
+                yield_strength=np.stack(strengths)[None, None, :, None, None],
                 residual=_residual(section, [i]),
             )
-            label = f"{layer.label} yield, {direction}"
-            factors[label] = load_multiplier(plies.worst(used, (0, 1, 2, 3)))
+            factors |= _rows(section, f"{layer.label} yield", used[:, 0])
     return factors
+
+
+def _rows(section: Rod, label: str, used: Array) -> dict[str, Array]:
+    """A factor for each climate and direction of (faces, climates, sides, cases, designs)."""
+    rows = {}
+    for direction, sides in DIRECTIONS.items():
+        multiple = load_multiplier(plies.worst(used[:, :, sides], (0, 2)))
+        for i, state in enumerate(section.climates):
+            place = ", ".join(x for x in (state.name, direction) if x)
+            rows[f"{label}, {place}"] = multiple[i]
+    return rows
+
+
+def cycles(
+    design: Design, section: Rod, supply: Array, push: Array, pull: Array
+) -> dict[str, Cycle]:
+    """Stress of the rod's metals between push and pull; a compressive mean earns no credit.
+
+    A metal layer works around its cure stress, and bears the pressure of chamber B while it pulls;
+    its mean is the equivalent stress of the pull less half the range.
+    """
+    if not section.layers:
+        size = {"outer_diameter": section.outer_diameter, "inner_diameter": section.inner_diameter}
+        return {"rod": Cycle(design.rod.material, (push + pull) / rod.section_area(**size), 0.0)}
+    found = {}
+    for i, layer in enumerate(section.layers):
+        if not layer.isotropic:
+            continue
+        forces = np.stack(np.broadcast_arrays(*[np.atleast_2d(x) for x in (-push, pull, pull)]))
+        pressures = np.stack(
+            np.broadcast_arrays(*[np.atleast_2d(x + 0.0 * supply) for x in (0.0, 0.0, supply)])
+        )
+        ends = [part[:, 0, :, :, 0] for part in _load(section, [i], forces, pressures)]
+        rest = _residual(section, [i])
+        equivalent = partial(yielding.yield_utilisation, yield_strength=1.0)
+        span = equivalent(stress=_stress([part[:, :, 1:] - part[:, :, :1] for part in ends]))
+        if rest is not None:
+            ends = [part + own[:, 0, :, :, 0] for part, own in zip(ends, rest, strict=True)]
+        drawn = equivalent(stress=_stress([part[:, :, 1:] for part in ends]))
+        mean = plies.worst(maximum(drawn - span / 2, 0.0 * span), (0, 1, 2))
+        found[f"rod, {layer.label}"] = Cycle(layer.name, plies.worst(span, (0, 1, 2)), mean)
+    return found
+
+
+def _stress(parts: Sequence[Array]) -> Stress:
+    one, two, three, slip = parts
+    return one, two, three, slip
 
 
 def _unit(section: Rod, rows: list[int], load: int) -> list[Array]:
@@ -141,21 +181,15 @@ def _unit(section: Rod, rows: list[int], load: int) -> list[Array]:
 
 def _load(section: Rod, rows: list[int], forces: Array, pressures: Array) -> Stress:
     """Stresses of the load, (faces, layers, 1, sides, cases, designs)."""
-    one, two, three, slip = (
-        pulled * forces + pressed * pressures
-        for pulled, pressed in zip(
-            _unit(section, rows, FORCE), _unit(section, rows, OUTSIDE), strict=True
-        )
-    )
-    return one, two, three, slip
+    units = (_unit(section, rows, load) for load in (FORCE, OUTSIDE))
+    return _stress([f * forces + p * pressures for f, p in zip(*units, strict=True)])
 
 
 def _residual(section: Rod, rows: list[int]) -> Stress | None:
     """Cure stresses, (faces, layers, climates, 1, 1, designs)."""
-    if not any(np.any(real(state.change)) for state in section.climates):
+    if not section.cured:
         return None
     change = np.stack(
         np.broadcast_arrays(*[np.atleast_1d(state.change) for state in section.climates])
     )[:, None, None]
-    one, two, three, slip = (part * change for part in _unit(section, rows, WARMTH))
-    return one, two, three, slip
+    return _stress([part * change for part in _unit(section, rows, WARMTH)])

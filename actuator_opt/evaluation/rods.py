@@ -11,11 +11,17 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..design.model import Design
-from ..models import column, laminate, mass, rod, yielding
-from ..models.layered_tube import LayeredTube, layered_tube, ply_stresses_at_faces, tube_state
+from ..models import column, laminate, mass, rod
+from ..models.layered_tube import (
+    LayeredTube,
+    TubeState,
+    layered_tube,
+    ply_stresses_at_faces,
+    tube_state,
+)
 from ..models.shell_buckling import shell_modulus
 from ..models.strength_modes import Stress
-from ..numeric import Array
+from ..numeric import Array, real
 from ..numeric import sqrt as root
 from . import plies
 from .allow import Stock
@@ -33,8 +39,7 @@ class Rod:
 
     EA [N], EI [N m^2], kappa G A [N] and kg/m; `shell_modulus` and `shell_ratio` are those of an
     isotropic wall that buckles like its own; `expansion` along the axis [1/K], None where not
-    stated; `metals` names the material and the equivalent stress per axial force [1/m^2] of every
-    metal in it. A rod of layers adds its plies: `unit` holds their stresses per unit load,
+    stated. A rod of layers adds its plies: `unit` holds their stresses per unit load,
     (faces, layers, loads, designs).
     """
 
@@ -48,7 +53,6 @@ class Rod:
     shell_modulus: Array
     shell_ratio: Array
     expansion: Array
-    metals: dict[str, tuple[str, Array]]
     end_material: str
     layers: Sequence[Layer] = ()
     climates: Sequence[Climate] = ()
@@ -64,6 +68,11 @@ class Rod:
     def middle(self) -> Array:
         """Mid-radius of its wall."""
         return (self.outer_diameter + self.inner_diameter) / 4
+
+    @property
+    def cured(self) -> bool:
+        """Whether its layers hold stresses of cooling from the cure."""
+        return any(np.any(real(state.change)) for state in self.climates)
 
     @property
     def place(self) -> str:
@@ -89,7 +98,7 @@ def _bar(v: Values, design: Design, stock: Stock, g: Geometry) -> Rod:
     ratio = stock.get(name, "poissons_ratio", "poissons_ratio_12")
     size = {"outer_diameter": g.rod_diameter, "inner_diameter": g.rod_inner_diameter}
     area = rod.section_area(**size)
-    shear = modulus / (2 * (1 + ratio)) * area
+    shear = stock.get(name, "shear_modulus", default=modulus / (2 * (1 + ratio))) * area
     path = "rod.inner_diameter"
     return Rod(
         **size,
@@ -104,7 +113,6 @@ def _bar(v: Values, design: Design, stock: Stock, g: Geometry) -> Rod:
         shell_modulus=modulus,
         shell_ratio=ratio,
         expansion=stock.get(name, "thermal_expansion"),
-        metals={"rod": (name, 1 / area)},
         end_material=end_material(design),
     )
 
@@ -135,7 +143,6 @@ def _tube(v: Values, design: Design, stock: Stock, g: Geometry) -> Rod:
     )
     stretch = state.axial_strain[FORCE]
     contraction = -state.hoop_strain[0, 0, FORCE] / stretch
-    unit = ply_stresses_at_faces(tube=tube, state=state)
     modulus, ratio = _shell(tube, layers)
     return Rod(
         outer_diameter=g.rod_diameter,
@@ -151,13 +158,22 @@ def _tube(v: Values, design: Design, stock: Stock, g: Geometry) -> Rod:
         shell_modulus=modulus,
         shell_ratio=ratio,
         expansion=state.axial_strain[WARMTH] if known else None,
-        metals=_metals(layers, unit),
         end_material=end_material(design),
         layers=layers,
         climates=states,
-        unit=unit,
+        unit=_unit(tube, state),
         missing=missing,
     )
+
+
+def _unit(tube: LayeredTube, state: TubeState) -> Stress:
+    """Ply stresses at the faces; of a tube that twists those of both plies of its pairs."""
+    plus = ply_stresses_at_faces(tube=tube, state=state)
+    if not tube.twisting:
+        return plus
+    minus = ply_stresses_at_faces(tube=tube, state=state, opposite=True)
+    one, two, three, slip = (np.concatenate(both) for both in zip(plus, minus, strict=True))
+    return one, two, three, slip
 
 
 def _shell(tube: LayeredTube, layers: Sequence[Layer]) -> tuple[Array, Array]:
@@ -196,14 +212,3 @@ def _mass(v: Values, design: Design, g: Geometry) -> Array:
         )
         bore = bore + 2 * thickness
     return total
-
-
-def _metals(layers: Sequence[Layer], unit: Stress) -> dict[str, tuple[str, Array]]:
-    """Material and largest equivalent stress per axial force of the metal layers."""
-    found = {}
-    for i, layer in enumerate(layers):
-        if layer.isotropic:
-            one, two, three, slip = (part[:, i, FORCE] for part in unit)
-            stress = yielding.yield_utilisation(stress=(one, two, three, slip), yield_strength=1.0)
-            found[f"rod, {layer.label}"] = (layer.name, plies.worst(stress, (0,)))
-    return found

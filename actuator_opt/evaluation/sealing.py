@@ -129,7 +129,8 @@ def compute(
     """Gland, contact and friction metrics of both seals; returns the cylinder's friction."""
     supply = v["supply.pressure"]
     full_growth = SEAL_STEP * wall.growth
-    case_growth = full_growth * (state.driven_pressure / supply)
+    clamp = SEAL_STEP * wall.swelling.growth_by_force * wall.path.held  # of tie rods: constant
+    case_growth = clamp + (full_growth - clamp) * (state.driven_pressure / supply)
     parts = _both(v, design, geometry, state, case_growth)
     places: dict[str, dict[str, Array]] = {}
     total = Friction(0.0, 0.0, 0.0)

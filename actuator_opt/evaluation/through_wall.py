@@ -9,14 +9,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isnan
+from math import isnan, pi
 from typing import Literal
 
 import numpy as np
 
 from ..models import ply_discount, tube_burst, yielding
+from ..models.autofrettage import Autofrettage
 from ..models.criteria import CRITERIA
-from ..models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state, tube_stresses
+from ..models.layered_tube import (
+    TubeLayer,
+    layered_tube,
+    ply_stresses_at_faces,
+    tube_state,
+    tube_stresses,
+)
 from ..models.strength_modes import Stress, load_multiplier
 from ..numeric import Array
 from . import alternatives, plies
@@ -124,7 +131,7 @@ def study(subject: Subject, v: Values, done: Pass) -> WallStudy | None:
         rest=_at_rest(sight),
         ratios=ratios,
         shares=_shares(layers, sight, [r for r in ratios if r.criterion in (criterion, YIELD)]),
-        ladder=_ladder(v, layers, done, criterion, exact=model != "thin_laminate"),
+        ladder=_ladder(v, layers, states, done, criterion, exact=model != "thin_laminate"),
         differences=alternatives.differences(subject, v, stock, done, exact=model == "layered")
         if laminated
         else (),
@@ -164,16 +171,23 @@ def _layer_rows(
     return tuple(rows)
 
 
+def _sublayers(layers: Sequence[Layer]) -> list[TubeLayer]:
+    """Equal parts of every layer, which leave the tube as it is."""
+    whole = [layer.as_tube() for layer in layers for _ in range(PARTS)]
+    return [replace(part, thickness=part.thickness / PARTS) for part in whole]
+
+
+def _points(values: Array) -> Array:
+    """Values at both faces of all sublayers, (2, sublayers, ...), as (layers, points, ...)."""
+    shaped = values.reshape(2, -1, PARTS, *values.shape[2:])
+    return np.concatenate([shaped[0], shaped[1][:, -1:]], axis=1)
+
+
 def _look(
     layers: Sequence[Layer], states: tuple[Climate, ...], pressure: float, g: Geometry, wall: Wall
 ) -> _Sight:
-    """Stresses at the faces of equal sublayers, which leave the tube as it is."""
-    parts = [
-        replace(layer.as_tube(), thickness=layer.thickness / PARTS)
-        for layer in layers
-        for _ in range(PARTS)
-    ]
-    tube = layered_tube(layers=parts, inner_radius=float(g.inner_radius))
+    """Stresses of all loads at all points; what autofrettage left stands in every climate."""
+    tube = layered_tube(layers=_sublayers(layers), inner_radius=float(g.inner_radius))
     pulls = [pressure * alternatives.single(area) for area in wall.path.per_pressure.values()]
     clamp = alternatives.single(wall.path.held)
     state = tube_state(
@@ -182,18 +196,50 @@ def _look(
         axial_force=np.array(pulls + [clamp] * len(states)),
         temperature_change=np.array([0.0] * len(pulls) + [float(one.change) for one in states]),
     )
+    radius = _points(state.radius.reshape(2, -1))
+    around = [_points(part) for part in tube_stresses(tube=tube, state=state)[:3]]
+    own = [_points(part) for part in ply_stresses_at_faces(tube=tube, state=state)]
+    if wall.autofrettage is not None:
+        resting = np.array([0.0] * len(pulls) + [1.0] * len(states))
+        left = _overpressed(layers, wall.autofrettage, radius)
+        around = [a + b[..., None] * resting for a, b in zip(around, left[:3], strict=True)]
+        own = [a + b[..., None] * resting for a, b in zip(own, left[3:], strict=True)]
+    return _Sight(tuple(wall.path.per_pressure), states, radius, tuple(around), tuple(own))
 
-    def points(values: Array) -> Array:
-        shaped = values.reshape(2, len(layers), PARTS, *values.shape[2:])
-        return np.concatenate([shaped[0], shaped[1][:, -1:]], axis=1)
 
-    return _Sight(
-        paths=tuple(wall.path.per_pressure),
-        states=states,
-        radius=points(np.squeeze(state.radius, axis=tuple(range(2, state.radius.ndim)))),
-        tube=tuple(points(part) for part in tube_stresses(tube=tube, state=state)[:3]),
-        ply=tuple(points(part) for part in ply_stresses_at_faces(tube=tube, state=state)),
-    )
+def _overpressed(layers: Sequence[Layer], left: Autofrettage, radius: Array) -> list[Array]:
+    """Residual stresses z, t, r and 1, 2, 3, 12 of autofrettage at all points.
+
+    The wrap is elastic under the pressure and the axial force that the liner leaves on it. In the
+    liner sigma_t - sigma_r is Y out to c and Y c^2/r^2 beyond, less the elastic part ~ 1/r^2;
+    sigma_r follows from equilibrium, sigma_z - nu (sigma_r + sigma_t) is constant.
+    """
+    liner, ratio = layers[0], float(layers[0].constants["poissons_ratio_12"])
+    strength, edge = float(liner.yield_strength), alternatives.single(left.plastic_radius)
+    press = alternatives.single(left.interface_pressure)
+    axial, hoop = (alternatives.single(part[0, 0]) for part in left.stresses[:2])
+    r, start, end = radius[0], radius[0, 0], radius[0, -1]
+    flowed = np.minimum(r, edge)
+    unloaded = (strength - hoop) * start * start if edge > start else 0.0
+    spread = strength * (edge / r) ** 2 if edge > start else 0.0 * r
+    difference = np.where(r < edge, strength, spread) - unloaded / (r * r)
+    inside = strength * np.log(flowed / start) + (strength - spread) / 2 * (r > edge)
+    radial = inside - unloaded / 2 * (1 / (start * start) - 1 / (r * r))
+    stretch = axial - ratio * hoop
+    own = [stretch + ratio * (2 * radial + difference), radial + difference, radial, 0 * radial]
+    if len(layers) == 1:
+        parts = [part[None] for part in own]
+        return [*parts[:3], *parts]
+    wrap = layered_tube(layers=_sublayers(layers[1:]), inner_radius=end)
+    pull = 2 * pi * (ratio * end * end * press - stretch * (end * end - start * start) / 2)
+    state = tube_state(tube=wrap, inner_pressure=press, axial_force=pull)
+    outside = [*tube_stresses(tube=wrap, state=state)[:3]]
+    outside += ply_stresses_at_faces(tube=wrap, state=state)
+    inner = [*own[:3], *own]
+    return [
+        np.concatenate([one[None], _points(two.reshape(2, -1))])
+        for one, two in zip(inner, outside, strict=True)
+    ]
 
 
 def _used(layers: Sequence[Layer], sight: _Sight) -> list[_Used]:
@@ -256,9 +302,10 @@ def _profiles(sight: _Sight, used: Sequence[_Used]) -> tuple[Profile, ...]:
 def _at_rest(sight: _Sight) -> tuple[Profile, ...]:
     """Stresses of every climate without pressure."""
     found = []
+    noise = 1e-6 * max(np.max(np.abs(part[..., : len(sight.paths)])) for part in sight.tube)
     for s, state in enumerate(sight.states, len(sight.paths)):
         axial, hoop, radial = (part[..., s] for part in sight.tube)
-        if np.any(hoop) or np.any(axial):
+        if np.max(np.abs(hoop)) > noise or np.max(np.abs(axial)) > noise:
             found.append(Profile(state.name, hoop, axial, radial))
     return tuple(found)
 
@@ -288,7 +335,13 @@ def _shares(layers: Sequence[Layer], sight: _Sight, ratios: Sequence[Ratio]) -> 
 
 
 def _ladder(
-    v: Values, layers: Sequence[Layer], done: Pass, criterion: str, *, exact: bool
+    v: Values,
+    layers: Sequence[Layer],
+    states: Sequence[Climate],
+    done: Pass,
+    criterion: str,
+    *,
+    exact: bool,
 ) -> Ladder:
     """The levels as the metrics have them, and the steps of the weakest load path."""
     wall, g = done.wall, done.geometry
@@ -297,11 +350,16 @@ def _ladder(
     burst, path = alternatives.least(wall.burst_pressure)
     steps: tuple[Step, ...] = ()
     if burst is not None and any(not layer.isotropic for layer in layers):
-        load = alternatives.single(wall.path.per_pressure[path])
-        stack = [layer.as_wall() for layer in layers]
+        areas = wall.path.per_pressure.items()
+        load = next(alternatives.single(area) for name, area in areas if path.endswith(name))
+        climate = next(i for i, state in enumerate(states) if path.startswith(state.name))
+        stack = [layer.as_wall(climate) for layer in layers]
         ladder = (
             tube_burst.burst_of_tube(
-                layers=stack, inner_radius=float(g.inner_radius), axial_force_per_pressure=load
+                layers=stack,
+                inner_radius=float(g.inner_radius),
+                axial_force_per_pressure=load,
+                temperature_change=float(states[climate].change),
             )
             if exact
             else ply_discount.burst_by_ply_discount(

@@ -7,7 +7,7 @@ cure stresses and the clamp of tie rods stand as residual stresses that do not g
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -88,9 +88,9 @@ def compute(
     if exact:
         wall.autofrettage = _autofrettage(v, design, layers, g)
     rest = _Rest(answer, states, path, wall.autofrettage)
-    _cooling(layers, rest, wall)
+    _cooling(layers, rest.alone(), wall, exact=exact)
     _strengths(design, layers, rest, v["supply.pressure"], wall)
-    _ladder(layers, g, path, wall, exact=exact)
+    _ladder(layers, states, g, path, wall, exact=exact)
     return wall
 
 
@@ -186,6 +186,10 @@ class _Rest:
     def cured(self) -> bool:
         """Whether any state is away from the stress-free temperature."""
         return any(bool(np.any(real(state.change))) for state in self.states)
+
+    def alone(self) -> _Rest:
+        """Cooling from the cure only, before anything else is done to the wall."""
+        return replace(self, path=replace(self.path, tie_rods=None), autofrettage=None)
 
     def of(self, rows: list[int]) -> Stress | None:
         """Residual stress of some layers, (faces, layers, climates, 1, designs)."""
@@ -319,17 +323,18 @@ def _metal(
         wall.cycles[f"{layer.label}, {place}"] = Cycle(layer.name, span[p], mean[p])
 
 
-def _cooling(layers: Sequence[Layer], rest: _Rest, wall: Wall) -> None:
+def _cooling(layers: Sequence[Layer], rest: _Rest, wall: Wall, *, exact: bool) -> None:
     """Liner yield over its stress after cooling from the cure, and its pull on the plies."""
     liners = [i for i, layer in enumerate(layers) if layer.yields]
     if not liners or len(liners) == len(layers):
         wall.why_no_mismatch = "the wall has no liner under plies"
         return
     residual = rest.of(liners)
-    if residual is None or not rest.cured():
-        if "thermal expansion" not in wall.why_no_mismatch:
+    if residual is None:
+        if wall.expansion is not None:
             wall.why_no_mismatch = "no cure temperature stated: add environment.cure_temperature"
         return
+    wall.why_no_mismatch = "the thin laminate has no radial stress at the liner"
     for k, i in enumerate(liners):
         own = tuple(part[:, [k]] for part in residual)
         used = yielding.yield_utilisation(
@@ -337,7 +342,7 @@ def _cooling(layers: Sequence[Layer], rest: _Rest, wall: Wall) -> None:
         )
         wall.mismatch[layers[i].label] = 1 / plies.worst(used, (0, 1, 2, 3))
         for near, face in ((i - 1, 0), (i + 1, -1)):
-            if not 0 <= near < len(layers) or not layers[near].strengths:
+            if not exact or not 0 <= near < len(layers) or not layers[near].strengths:
                 continue
             pull = own[2][face, 0, :, 0]
             allowed = np.stack([np.atleast_1d(one.tension_2) for one in layers[near].strengths])
@@ -349,19 +354,29 @@ def _cooling(layers: Sequence[Layer], rest: _Rest, wall: Wall) -> None:
 
 
 def _ladder(
-    layers: Sequence[Layer], g: Geometry, path: LoadPath, wall: Wall, *, exact: bool
+    layers: Sequence[Layer],
+    states: Sequence[Climate],
+    g: Geometry,
+    path: LoadPath,
+    wall: Wall,
+    *,
+    exact: bool,
 ) -> None:
-    """Burst of every load path, and the first ply where the liner yields before it."""
+    """Burst of every climate and load path, and the first ply where the liner yields before it."""
     if wall.missing:
         return
     if all(layer.isotropic for layer in layers):
         wall.missing.append("burst of a wall of several metals is not modelled")
         return
-    axial = np.stack(list(path.per_pressure.values()))
+    axial = np.stack(list(path.per_pressure.values()))[None]
     stack = [layer.as_wall() for layer in layers]
     if exact:
+        change = np.stack([np.atleast_1d(state.change) for state in states])[:, None]
         ladder = tube_burst.burst_of_tube(
-            layers=stack, inner_radius=g.inner_radius, axial_force_per_pressure=axial
+            layers=stack,
+            inner_radius=g.inner_radius,
+            axial_force_per_pressure=axial,
+            temperature_change=change if np.any(real(change)) else 0.0,
         )
     else:
         ladder = ply_discount.burst_by_ply_discount(
@@ -369,9 +384,9 @@ def _ladder(
             radius=(g.inner_radius + g.outer_radius) / 2,
             axial_force_per_pressure=axial,
         )
-    lined = any(layer.isotropic for layer in layers)
-    for p, place in enumerate(path.per_pressure):
-        wall.burst_pressure[place] = ladder.burst_pressure[p]
-        if lined:
-            label = f"first ply with the liner yielding, {place}"
-            wall.first_ply_pressure[label] = ladder.first_ply_pressure[p]
+    paths = tuple(path.per_pressure)
+    for place, pressure in _rows(states, paths, ladder.burst_pressure):
+        wall.burst_pressure[place] = pressure
+    if any(layer.isotropic for layer in layers):
+        for place, pressure in _rows(states, paths, ladder.first_ply_pressure):
+            wall.first_ply_pressure[f"first ply with the liner yielding, {place}"] = pressure

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from math import isfinite
 from typing import Any, Literal
 
 from ..numeric import Array
@@ -125,13 +126,25 @@ class WallStudy:
 
     def to_dict(self) -> dict[str, Any]:
         """The `wall` object of `evaluate --json` (SI); profiles stand in the report only."""
-        return {
-            "layers": [asdict(row) for row in self.layers],
-            "ratios": [asdict(row) for row in self.ratios],
-            "ladder": asdict(self.ladder),
-            "models": [asdict(row) for row in self.differences],
-            "main_layer": self.main_layer,
-            "thicknesses": [asdict(row) for row in self.thicknesses],
-            "settling": asdict(self.settling),
-            "metals": [asdict(row) for row in self.metals],
-        }
+        found: dict[str, Any] = _finite(
+            {
+                "layers": [asdict(row) for row in self.layers],
+                "ratios": [asdict(row) for row in self.ratios],
+                "ladder": asdict(self.ladder),
+                "models": [asdict(row) for row in self.differences],
+                "main_layer": self.main_layer,
+                "thicknesses": [asdict(row) for row in self.thicknesses],
+                "settling": asdict(self.settling),
+                "metals": [asdict(row) for row in self.metals],
+            }
+        )
+        return found
+
+
+def _finite(value: Any) -> Any:
+    """The same records with None for what has no finite value."""
+    if isinstance(value, dict):
+        return {key: _finite(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(one) for one in value]
+    return None if isinstance(value, float) and not isfinite(value) else value

@@ -52,6 +52,7 @@ class WallLayer:
     strength : ply strengths of a composite; None for a metal
     yield_strength : yield strength of a metal [Pa]; None for a composite
     material : identity of the material: plies of one material and one |angle| soften together
+    expansion_1, expansion_2 : thermal expansions along and across the fibre [1/K]
     youngs_modulus_3, poissons_ratio_13, poissons_ratio_23 : radial constants [Pa], [-]; None takes
         E2, nu12 and 0.4 for a ply, E and nu for a metal
     """
@@ -65,6 +66,8 @@ class WallLayer:
     strength: PlyStrength | None = None
     yield_strength: Array | None = None
     material: Hashable = None
+    expansion_1: Array = 0.0
+    expansion_2: Array = 0.0
     youngs_modulus_3: Array | None = None
     poissons_ratio_13: Array | None = None
     poissons_ratio_23: Array | None = None
@@ -136,6 +139,10 @@ class Mechanics(Protocol):
     def order(self) -> tuple[int, ...]:
         """Index from the bore of each layer, metals first."""
 
+    @property
+    def stressed(self) -> bool:
+        """Whether the wall holds stresses before any load (cooling from the cure)."""
+
     def answer(self, soft: Array | None, held: Any) -> tuple[Array, Array | None]:
         """Stresses 1, 2, 12, 3 at every face and layer: per pressure, and of frozen metal."""
 
@@ -187,7 +194,7 @@ def _above(value: Array) -> Array:
 
 
 def _yields(rate: Array, base: Array | None, inverse: Array) -> Array:
-    """1/p at which the metals yield; a single metal layer yields free of frozen stress."""
+    """1/p at which the metals yield."""
 
     def stress(values: Array) -> Stress:
         return values[0, ...], values[1, ...], values[3, ...], 0 * values[2, ...]
@@ -199,8 +206,13 @@ def _yields(rate: Array, base: Array | None, inverse: Array) -> Array:
     )
 
 
-def _utilisations(xp: Any, metals: int, inverse: Array, rate: Array, base: Array | None) -> Array:
-    """1/p of every mode: rows of modes, faces, layers, then the metals' yield."""
+def _utilisations(
+    xp: Any, metals: int, inverse: Array, rate: Array, base: Array | None, *, free: bool
+) -> Array:
+    """1/p of every mode: rows of modes, faces, layers, then the metals' yield.
+
+    `free`: no metal holds a stress before its own yield.
+    """
     modes = xp.concat([rate[:3, ...], -rate[:3, ...]]) * inverse[:6, ...]
     if base is not None:
         used = xp.concat([base[:3, ...], -base[:3, ...]]) * inverse[:6, ...]
@@ -208,7 +220,7 @@ def _utilisations(xp: Any, metals: int, inverse: Array, rate: Array, base: Array
     rows = xp.reshape(modes, (-1, *modes.shape[3:]))
     if not metals:
         return rows
-    held = None if base is None or metals == 1 else base[:, :, :metals, ...]
+    held = None if base is None or free else base[:, :, :metals, ...]
     yields = _yields(rate[:, :, :metals, ...], held, inverse[6, :, :metals, ...])
     return xp.concat([rows, xp.reshape(yields, (-1, *yields.shape[2:]))])
 
@@ -262,11 +274,12 @@ def climb(xp: Any, mechanics: Mechanics, layers: Sequence[WallLayer], shape: Arr
     highest, first, liner_yield = shape, shape + inf, shape + inf
     climbing = untouched = real(shape) == 0
     held, soft, intact = None, None, None
+    free = metals == 1 and not mechanics.stressed
     record = []
     for _ in range(count + 1):
         rate, base = mechanics.answer(soft, held)
         inverse = strengths if soft is None else where(soft[None, ...], left, strengths)
-        values = _utilisations(xp, metals, inverse[:, None, ...], rate, base)
+        values = _utilisations(xp, metals, inverse[:, None, ...], rate, base, free=free)
         if intact is None:
             intact = values
             if metals:

@@ -72,6 +72,7 @@ class _Membrane:
     order: tuple[int, ...]
     metals: int
     faces: int = 1
+    stressed: bool = False
 
     def _stress(self, xp: Any, table: Array, axial_line: Array, hoop_line: Array) -> Array:
         stiff = xp.sum(table[6:9, ...], axis=1)

@@ -256,10 +256,12 @@ def equivalent_stiffness_as_published(
 
     Examples
     --------
-    >>> k, growth = equivalent_stiffness_as_published(pressure=5e6, bore=0.025, stroke=0.11,
+    >>> import numpy as np
+    >>> record = 5e6 * np.sin(np.linspace(0.0, math.pi, 5)) ** 2  # or the columns of a measurement
+    >>> k, growth = equivalent_stiffness_as_published(pressure=record, bore=0.025, stroke=0.11,
     ...     outer_diameter=0.03, youngs_modulus=3.48e9, poissons_ratio=0.3, oil=2480e3, rod=13430e3)
-    >>> print(f"{k / 1e3:.2f} N/mm, {growth * 1e6:.1f} um")
-    22.52 N/mm, 126.0 um
+    >>> print(np.round(k / 1e3, 2), "N/mm", np.round(growth * 1e6, 1), "um")
+    [ 0.   11.21 22.52 11.21  0.  ] N/mm [  0.  63. 126.  63.   0.] um
     """
     growth = bore_growth_as_published(
         pressure=pressure,

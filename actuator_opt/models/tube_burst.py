@@ -6,7 +6,7 @@ layer, so that the bore's fibres and the liner's bore govern where they are the 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -86,12 +86,13 @@ def _recovery(xp: Any, tube: LayeredTube) -> Array:
 class _Tube:
     """The exact wall: two faces a layer; yielded metals hold the deviator of their mean stress.
 
-    `transfer` and `recovery` have the intact and the failed layers on their last axis but the
-    batch's, (.., layers, 2, ...).
+    `transfer`, `recovery` and `hold` (thermal stresses held back, in tube axes z, t, r and in ply
+    axes 1, 2, 3) have intact and failed layers on an axis before the batch's, (.., layers, 2, ...).
     """
 
     transfer: Array
     recovery: Array
+    hold: Array | None
     inner: Array
     outer: Array
     axial: Array
@@ -99,6 +100,11 @@ class _Tube:
     order: tuple[int, ...]
     metals: int
     faces: int = 2
+
+    @property
+    def stressed(self) -> bool:
+        """Whether the wall is away from its stress-free temperature."""
+        return self.hold is not None
 
     @property
     def sorted(self) -> bool:
@@ -120,10 +126,12 @@ class _Tube:
         if soft is not None and not self.sorted:
             mask = xp.stack([soft[self.order.index(i), ...] for i in range(len(self.order))])
         transfer, recovery = self._chosen(self.transfer, mask), self._chosen(self.recovery, mask)
-        if held is None:
+        back = self._held_back(mask, held)
+        if back is None:
             return self._stress(xp, transfer, recovery, 1.0, self.axial, None), None
+        tube, ply = back
         driven = forcing(
-            xp, transfer, self.inner, self.outer, tuple(-held[k, ...] for k in (0, 1, 2))
+            xp, transfer, self.inner, self.outer, tuple(tube[k, ...] for k in range(3))
         )
         none = 0 * self.axial
         loads = xp.stack([none + 1, none])
@@ -134,9 +142,20 @@ class _Tube:
             loads,
             loads * self.axial,
             xp.stack([0 * driven, driven], axis=2),
-            xp.stack([0 * held, held], axis=2),
+            xp.stack([0 * ply, ply], axis=2),
         )
         return both[:, :, :, 0, ...], both[:, :, :, 1, ...]
+
+    def _held_back(self, mask: Array | None, frozen: Any) -> tuple[Array, Array] | None:
+        """Stresses held back at zero strain, in tube and in ply axes; None where there are none.
+
+        Thermal ones, less what yielded metals have frozen (their axes are the tube's).
+        """
+        if self.hold is None:
+            return None if frozen is None else (-frozen, -frozen)
+        hold = self._chosen(self.hold[None, ...], mask)[0, ...]
+        tube, ply = hold[:3, ...], hold[3:, ...]
+        return (tube, ply) if frozen is None else (tube - frozen, ply - frozen)
 
     def _stress(
         self,
@@ -146,7 +165,7 @@ class _Tube:
         pressure: Any,
         axial: Array,
         driven: Array | None,
-        held: Array | None = None,
+        back: Array | None = None,
     ) -> Array:
         state = closed(
             xp,
@@ -158,12 +177,12 @@ class _Tube:
             torque=0.0,
         )
         radial = state.radial_stress
-        lead = radial if held is None else radial - held[2, ...]
+        lead = radial if back is None else radial + back[2, ...]
         plane = recovery[0, :, None, ...] * state.hoop_strain[None, ...]
         plane = plane + recovery[1, :, None, ...] * lead[None, ...]
         plane = plane + recovery[2, :, None, ...] * state.axial_strain
-        if held is not None:
-            plane = plane + xp.concat([held[:2, ...], 0 * held[:1, ...]])[:, None, ...]
+        if back is not None:
+            plane = plane - xp.concat([back[:2, ...], 0 * back[:1, ...]])[:, None, ...]
         each = xp.concat([plane, radial[None, ...] + 0 * plane[:1, ...]])
         if self.sorted:
             return each
@@ -204,9 +223,31 @@ def _both_states(
                 stiffness=cast(Solid, tuple(stiffness)),
                 thickness=spread(layer.thickness),
                 angle=spread(0.0 if layer.strength is None else layer.angle),
+                expansion_1=_spread_or_zero(spread, layer.expansion_1),
+                expansion_2=_spread_or_zero(spread, layer.expansion_2),
+                expansion_3=_spread_or_zero(spread, layer.expansion_2),
             )
         )
     return layered_tube(layers=plies, inner_radius=spread(inner_radius))
+
+
+def _spread_or_zero(spread: Callable[[Array], Array], value: Array) -> Array:
+    """An expansion on the batch's axes; a plain zero stays one: no thermal part is built."""
+    return 0.0 if isinstance(value, (float, int)) and value == 0.0 else spread(value)
+
+
+def _thermal(xp: Any, tube: LayeredTube, change: Array) -> Array | None:
+    """Stresses held back by cooling, z, t, r of the tube and 1, 2, 3 of the ply; None without."""
+    if tube.hold is None or (isinstance(change, (float, int)) and change == 0.0):
+        return None
+    c11, c12, c13, c22, c23, c33, _ = tube.ply
+    first, second, third = tube.free
+    own = (
+        c11 * first + c12 * second + c13 * third,
+        c12 * first + c22 * second + c23 * third,
+        c13 * first + c23 * second + c33 * third,
+    )
+    return together([value * change for value in (*tube.hold[:3], *own)])
 
 
 def burst_of_tube(
@@ -214,6 +255,7 @@ def burst_of_tube(
     layers: Sequence[WallLayer],
     inner_radius: Array,
     axial_force_per_pressure: Array,
+    temperature_change: Array = 0.0,
     residual: float = 1e-3,
     liner_share: float = 1.0,
 ) -> BurstLadder:
@@ -229,6 +271,7 @@ def burst_of_tube(
     layers : the wall from the bore outwards
     inner_radius : bore radius [m]
     axial_force_per_pressure : N/p [m^2]; 0 is open, pi r_i^2 closed
+    temperature_change : from the stress-free state; needs the layers' expansions [K]
     residual : stiffness left in a failed ply, shear stiffness left in a flowing metal [-]
     liner_share : stress a yielded metal keeps [-]: 1 perfectly plastic, 0 as if it were gone
 
@@ -241,8 +284,8 @@ def burst_of_tube(
     Valid: walls with fibres; the first fibre to fail, at the most stressed face, is burst.
 
     A wall of metals only returns its yield (use `barrel.burst_pressure_thick`). The flowing
-    metal's held stress is its mean over the layer. Cure stresses are left out: yield and cracks
-    have released them before burst.
+    metal's held stress is its mean over the layer. Cure stresses are in the intact wall and leave
+    with what fails: a cracked matrix no longer pulls, a flowing liner no longer holds back.
 
     References
     ----------
@@ -261,10 +304,10 @@ def burst_of_tube(
     >>> print(step.layer, step.mode, f"{step.pressure / 1e6:.2f}")
     1 matrix tension 52.51
     """
-    numbers = [inner_radius, axial_force_per_pressure]
+    numbers = [inner_radius, axial_force_per_pressure, temperature_change]
     for layer in layers:
         numbers += [*_constants(layer, 1.0).values(), *inverse_strengths(layer)]
-        numbers += [layer.thickness, layer.angle]
+        numbers += [layer.thickness, layer.angle, layer.expansion_1, layer.expansion_2]
     zero = batch_zero(numbers)
     xp = namespace(zero)
     shape = xp.asarray(zero)
@@ -273,6 +316,7 @@ def burst_of_tube(
     mechanics = _Tube(
         transfer=tube.transfer,
         recovery=_recovery(xp, tube),
+        hold=_thermal(xp, tube, temperature_change),
         inner=tube.inner[:, 0, ...],
         outer=tube.outer[:, 0, ...],
         axial=axial_force_per_pressure + 0 * shape,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from math import isfinite
 from typing import Any
 
@@ -75,6 +75,97 @@ class Infeasibility:
 
 
 @dataclass(frozen=True, slots=True)
+class RoundedVariable:
+    """A variable before and after rounding (SI); `discrete` ones only take listed values.
+
+    `plies` counts those of a layer's thickness.
+    """
+
+    path: str
+    quantity: str
+    continuous: float
+    value: float
+    discrete: bool
+    plies: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class RunnerUp:
+    """Another rounded design that meets every requirement: its listed variables by PATH."""
+
+    objective: float
+    cost: float
+    percent: float | None
+    values: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Rounding:
+    """The best design of whole plies and allowed angles, and what the rounding costs.
+
+    `cost` is how much worse the objective gets (≥ 0, in its SI unit), `percent` over the
+    continuous one; None, with `design` and `evaluation`, where nothing tried meets every
+    requirement. `plies` counts those of every layer that states its ply thickness, `tried` and
+    `feasible` count rounded designs, `solves` re-optimisations; `complete` tells that the search
+    did not stop at a limit. Bounds of the search are local optima: the best found, no proof.
+    """
+
+    met: bool
+    sentence: str
+    remedy: str
+    objective_before: float
+    tried: int
+    feasible: int
+    solves: int
+    complete: bool
+    notes: tuple[str, ...] = ()
+    objective_after: float | None = None
+    cost: float | None = None
+    percent: float | None = None
+    variables: tuple[RoundedVariable, ...] = ()
+    plies: Mapping[str, int] = field(default_factory=dict)
+    runners_up: tuple[RunnerUp, ...] = ()
+    design: Design | None = None
+    evaluation: Evaluation | None = None
+
+    def __str__(self) -> str:
+        """Outcome, cost and the rounded variables as a table."""
+        rows = [["variable", "continuous", "rounded", "plies"]]
+        for v in self.variables:
+            quantity = INPUTS[v.quantity]
+            numbers = [quantity.text(x, 6) for x in (v.continuous, v.value)]
+            rows.append([v.path, *numbers, "" if v.plies is None else str(v.plies)])
+        cost = "" if self.percent is None else f"; rounding costs {self.percent:.3g} %"
+        table = ["", aligned(rows, right=(1, 2, 3))] if self.variables else []
+        return "\n".join([self.sentence + cost, *self.notes, *table])
+
+    def to_dict(self) -> dict[str, Any]:
+        """The "rounding" of `optimise --json` (SI)."""
+        kept = {
+            name: getattr(self, name)
+            for name in ("met", "remedy", "cost", "percent", "tried", "feasible", "solves")
+        }
+        return kept | {
+            "outcome": self.sentence,
+            "complete": self.complete,
+            "objective": {"continuous": self.objective_before, "rounded": self.objective_after},
+            "variables": {
+                v.path: {
+                    "continuous": v.continuous,
+                    "value": v.value,
+                    "discrete": v.discrete,
+                    "plies": v.plies,
+                }
+                for v in self.variables
+            },
+            "plies": dict(self.plies),
+            "runners_up": [asdict(row) for row in self.runners_up],
+            "notes": list(self.notes),
+            "evaluation": None if self.evaluation is None else self.evaluation.to_dict(),
+        }
+
+
+@dataclass(frozen=True, slots=True)
 class Optimisation:
     """The best design found, how good it is, and what each requirement costs."""
 
@@ -101,6 +192,14 @@ class Optimisation:
     seed: int
     seconds: float
     certificate: None = None
+    rounding: Rounding | None = None
+    """The best design of whole plies, where it was asked for and a continuous one exists."""
+
+    @property
+    def best(self) -> Design:
+        """The design to build: that of whole plies, where there is one."""
+        rounded = None if self.rounding is None else self.rounding.design
+        return rounded or self.design
 
     def __str__(self) -> str:
         """Outcome, variables and the evaluation of the best design as tables."""
@@ -110,7 +209,8 @@ class Optimisation:
             numbers = [quantity.text(x, 6) for x in (v.value, v.lower, v.upper)]
             rows.append([v.path, *numbers, f"at {v.at_bound} bound" if v.at_bound else ""])
         table = aligned(rows, right=(1, 2, 3))
-        return "\n".join([self.sentence, "", table, "", str(self.evaluation)])
+        parts = [self.sentence, "", table, "", str(self.evaluation)]
+        return "\n".join(parts if self.rounding is None else [*parts, "", str(self.rounding)])
 
     def columns(self) -> dict[str, list[Any]]:
         """The sensitivity table as columns: SI, but `limit` in its display `unit`."""
@@ -161,6 +261,7 @@ class Optimisation:
                     for row in self.sensitivities
                 ],
                 "certificate": self.certificate,
+                "rounding": None if self.rounding is None else self.rounding.to_dict(),
                 "evaluations": self.evaluations,
                 "algorithm": self.algorithm,
                 "seed": self.seed,

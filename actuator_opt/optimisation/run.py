@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from .. import quantities
-from ..design import quantity_of, with_values
-from ..evaluation import Subject, evaluate, prepare
+from ..design import quantity_of
+from ..evaluation import Subject, evaluate
 from ..evaluation.rows import Row
 from ..numeric import STEP
 from ..quantities import Quantity
@@ -21,7 +21,8 @@ from .actuator import ActuatorProblem, Fault, build
 from .infeasibility import Infeasibility as Explanation
 from .infeasibility import explain
 from .outcome import Outcome, Solution
-from .result import Infeasibility, Kkt, Optimisation, Sensitivity, VariableResult
+from .result import Infeasibility, Kkt, Optimisation, Rounding, Sensitivity, VariableResult
+from .rounding import design_at, listed_variables, rounded
 from .solver import solve
 
 MOST_PARAMETERS = 10
@@ -42,6 +43,7 @@ def optimise(
     seed: int = 0,
     prices: bool = True,
     max_seconds: float | None = None,
+    whole_plies: bool = False,
 ) -> Optimisation:
     """The best design of a subject.
 
@@ -54,20 +56,20 @@ def optimise(
     seed : of sweep and stochastic algorithms; the same seed gives the same result
     prices : whether to price requirements and parameters (and re-solve at ±10 %)
     max_seconds : time limit of the search; the best design so far is kept
+    whole_plies : whether to look for the best design of whole plies and allowed angles too
     """
     began = time.perf_counter()
     actuator = build(subject, fault)
+    listed = listed_variables(subject.design, fault) if whole_plies else ()
     solution = solve(
         actuator.problem, algorithm=algorithm, starts=starts, seed=seed, max_seconds=max_seconds
     )
+    rounding: Rounding | None = None
+    if listed and solution.feasible:
+        until = None if max_seconds is None else began + max_seconds
+        rounding, solution = rounded(actuator, solution, listed, until=until, seed=seed)
     why, solution = _explained(actuator, solution)
-    design = with_values(
-        subject.design,
-        dict(zip(actuator.paths, solution.x.tolist(), strict=True)),
-        metrics=subject.quantities,
-        contradictions=False,
-    )
-    best = prepare(design, subject.materials, subject.plugins)
+    design, evaluation = design_at(actuator, solution.x)
     rows: tuple[Sensitivity, ...] = ()
     if prices and solution.outcome is Outcome.OPTIMUM:
         rows = sensitivities(actuator, solution)
@@ -78,7 +80,7 @@ def optimise(
         objective_metric=actuator.goal.single or "weighted",
         objective_value=actuator.goal.shown(solution.objective),
         design=design,
-        evaluation=evaluate(best),
+        evaluation=evaluation,
         start=evaluate(subject),
         variables=_variables(actuator, solution),
         kkt=_kkt(solution),
@@ -93,6 +95,7 @@ def optimise(
         + tuple(f"variable without effect: {name}" for name in solution.without_effect),
         seed=seed,
         seconds=time.perf_counter() - began,
+        rounding=rounding,
     )
 
 

@@ -26,13 +26,15 @@ _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2
 class ExtraTable:
     """A table the caller adds to the report, such as published numbers beside ours.
 
-    A cell may be text or a number; `note` stands under the table.
+    A cell may be text or a number; `note` stands under the table, a `drawing` (as `figure` makes
+    it) after it.
     """
 
     title: str
     columns: Sequence[str]
     rows: Sequence[Sequence[object]]
     note: str = ""
+    drawing: Block | None = None
 
 
 def clean(text: str) -> str:

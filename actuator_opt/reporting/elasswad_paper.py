@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..models import damping, forces, rod
+from ..models import barrel, bending_test, damping, forces, friction, rod
 from ..models import stiffness_published as published
+
+POISSONS_RATIO = 0.3
+"""Of the barrel in eq. 12; the paper prints none. Assumed, as usual for its isotropic form."""
 
 
 def root(function: Callable[[float], float], low: float, high: float) -> float:
@@ -74,6 +77,40 @@ class Paper:
         return root(
             lambda volume: self.oil(line_volume=volume, bore=bore) - self.oil_stiffness, 0.0, 1e-3
         )
+
+    def wall(self, thickness: float) -> dict[str, float]:
+        """The barrel as eq. 12 takes it: the published bore and modulus, an assumed thickness."""
+        return {
+            "inner_radius": self.bore / 2,
+            "outer_radius": self.bore / 2 + thickness,
+            "youngs_modulus": self.bending_modulus,
+            "poissons_ratio": POISSONS_RATIO,
+        }
+
+    def hoop_modulus(self, *, growth: float, pressure: float, thickness: float) -> float:
+        """Modulus at which eq. 12, with the inner radius, gives a growth of the bore."""
+        correct = barrel.bore_growth(pressure=pressure, **self.wall(thickness))
+        return self.bending_modulus * float(correct) / growth
+
+    def bending_slope(self, *, span: float, second_moment: float) -> float:
+        """Force over deflection behind the published modulus by eq. 13."""
+        return float(
+            bending_test.bending_slope(
+                youngs_modulus=self.bending_modulus, span=span, second_moment=second_moment
+            )
+        )
+
+    def pressure(self, *, force: float, contact_width: float) -> float:
+        """Pressure at which eq. 15 to 20 give a friction force, both rings under all of it."""
+        unit = friction.coulomb_as_published(
+            pressure=1.0,
+            friction_coefficient=self.friction_coefficient,
+            piston_contact_width=contact_width,
+            rod_contact_width=contact_width,
+            bore=self.bore,
+            rod_diameter=self.rod_diameter,
+        )
+        return force / float(unit)
 
     def total(self, barrel_stiffness: float) -> float:
         """Eq. 7 with the published oil and rod stiffness."""

@@ -12,40 +12,29 @@ from functools import partial
 from .. import units
 from ..design.materials import load_library
 from ..evaluation import Evaluation
-from ..models import barrel, damping, fluid, forces, friction, laminate, ply, rod, seals
+from ..models import barrel, damping, fluid, forces, rod
 from ..models import stiffness_published as published
-from . import text
-from .blocks import ExtraTable
-from .elasswad_paper import PAPER, root
-
-COLUMNS = ("quantity", "published", "its own formula", "ours")
-
-
-def _text(value: float, unit: str, dimension: str) -> str:
-    return text.with_unit(
-        text.trimmed(float(units.unit(unit, dimension).from_si(value))), text.unit_text(unit)
-    )
-
-
-_length = partial(_text, unit="mm", dimension="length")
-_growth = partial(_text, unit="um", dimension="length")
-_area = partial(_text, unit="mm^2", dimension="area")
-_volume = partial(_text, unit="ml", dimension="volume")
-_force = partial(_text, unit="N", dimension="force")
-_stiffness = partial(_text, unit="N/mm", dimension="stiffness")
-_pressure = partial(_text, unit="MPa", dimension="pressure")
-_modulus = partial(_text, unit="GPa", dimension="pressure")
-_damping = partial(_text, unit="N*s/m", dimension="damping")
-_viscosity = partial(_text, unit="mPa*s", dimension="dynamic_viscosity")
-
-
-def _percent(share: float) -> str:
-    return f"{text.trimmed(100 * share, 3)} %"
-
-
-def _value(evaluation: Evaluation, name: str) -> float:
-    value = evaluation.metrics[name].value
-    return float("nan") if value is None else value
+from ..numeric import Array
+from . import elasswad_bending, elasswad_friction, elasswad_record, text
+from .blocks import ExtraTable, figure
+from .elasswad_figures import record_figure
+from .elasswad_paper import PAPER, POISSONS_RATIO, root
+from .elasswad_text import (
+    COLUMNS,
+    in_gpa,
+    in_ml,
+    in_mm,
+    in_mpa,
+    in_mpas,
+    in_n,
+    in_n_per_mm,
+    in_ns_per_m,
+    in_um,
+    percent,
+    properties,
+    value,
+    wall_thickness,
+)
 
 
 def _sizes(evaluation: Evaluation) -> ExtraTable:
@@ -56,27 +45,27 @@ def _sizes(evaluation: Evaluation) -> ExtraTable:
     rows = (
         (
             "piston diameter",
-            _length(PAPER.piston_diameter),
+            in_mm(PAPER.piston_diameter),
             text.DASH,
-            _length(cylinder.bore - 2 * piston.clearance),
+            in_mm(cylinder.bore - 2 * piston.clearance),
         ),
         (
             "stroke",
-            f"{_length(PAPER.stroke)}; {_length(PAPER.damping_stroke)}",
+            f"{in_mm(PAPER.stroke)}; {in_mm(PAPER.damping_stroke)}",
             text.DASH,
-            _length(cylinder.stroke),
+            in_mm(cylinder.stroke),
         ),
         (
             "force at mid-stroke",
             text.DASH,
-            f"{_force(spring)} (eq. 1, k_eq x)",
-            f"{_force(_value(evaluation, 'push_force'))} (net push)",
+            f"{in_n(spring)} (eq. 1, k_eq x)",
+            f"{in_n(value(evaluation, 'push_force'))} (net push)",
         ),
     )
     note = (
-        f"Table 1 lists a {_length(PAPER.piston_diameter)} piston in a {_length(PAPER.bore)} "
-        f"cylinder: a radial gap of {_length(gap)} that no ring of this size closes. "
-        f"The stroke is {_length(PAPER.stroke)} in table 1 and {_length(PAPER.damping_stroke)} in "
+        f"Table 1 lists a {in_mm(PAPER.piston_diameter)} piston in a {in_mm(PAPER.bore)} "
+        f"cylinder: a radial gap of {in_mm(gap)} that no ring of this size closes. "
+        f"The stroke is {in_mm(PAPER.stroke)} in table 1 and {in_mm(PAPER.damping_stroke)} in "
         "the damping text. "
         "Eq. 1 takes k_eq x as a spring to ground, which no cylinder is: an external load belongs "
         "there."
@@ -104,29 +93,29 @@ def _oil(evaluation: Evaluation) -> ExtraTable:
     rows = (
         (
             "bulk modulus",
-            _pressure(PAPER.bulk_modulus),
+            in_mpa(PAPER.bulk_modulus),
             text.DASH,
-            f"{_pressure(aerated(usual))} (VG 32, {_percent(usual)} air)",
+            f"{in_mpa(aerated(usual))} (VG 32, {percent(usual)} air)",
         ),
-        ("entrained air behind it", text.DASH, text.DASH, _percent(air)),
+        ("entrained air behind it", text.DASH, text.DASH, percent(air)),
         (
             "oil stiffness k_oil",
-            _stiffness(PAPER.oil_stiffness),
-            f"{_stiffness(bare)} (eq. 9, no lines)",
-            _stiffness(_value(evaluation, "stiffness_oil")),
+            in_n_per_mm(PAPER.oil_stiffness),
+            f"{in_n_per_mm(bare)} (eq. 9, no lines)",
+            f"{in_n_per_mm(value(evaluation, 'stiffness_oil'))} (weakest position)",
         ),
         (
             "line volume per side",
             text.DASH,
-            f"{_volume(volume)}; {_volume(narrow)} if the bore is {_length(PAPER.piston_diameter)}",
-            f"{_volume(dead[0])}; {_volume(dead[1])}",
+            f"{in_ml(volume)}; {in_ml(narrow)} if the bore is {in_mm(PAPER.piston_diameter)}",
+            f"{in_ml(dead[0])}; {in_ml(dead[1])}",
         ),
     )
     note = (
         f"Eq. 9 at mid-stroke gives {text.trimmed(bare / PAPER.oil_stiffness, 2)} times the "
-        f"published k_oil unless {_volume(volume)} of line stand on each side, of which the paper "
-        f"says nothing. The bulk modulus is that of a mineral oil with {_percent(air)} of entrained"
-        f" air at the {_pressure(design.supply.pressure)} of this design."
+        f"published k_oil unless {in_ml(volume)} of line stand on each side, of which the paper "
+        f"says nothing. The bulk modulus is that of a mineral oil with {percent(air)} of entrained"
+        f" air at the {in_mpa(design.supply.pressure)} of this design."
     )
     return ExtraTable("El Asswad 2018: oil stiffness", COLUMNS, rows, note)
 
@@ -141,18 +130,18 @@ def _rod(evaluation: Evaluation) -> ExtraTable:
         length=PAPER.stroke,
     )
     fabric = load_library().get("woven_cfrp").numbers["youngs_modulus_1"]
-    known = load_library().get(design.rod.material).numbers
-    ours = known.get("youngs_modulus", known.get("youngs_modulus_1", float("nan")))
-    stiff = _value(evaluation, "stiffness_rod")
+    known = {} if design.rod.layup else properties(evaluation, design.rod.material)
+    ours = known.get("youngs_modulus", float("nan"))
+    stiff = value(evaluation, "stiffness_rod")
     length = ours * rod.section_area(
         outer_diameter=design.rod.outer_diameter, inner_diameter=design.rod.inner_diameter
     )
     rows = (
         (
             "rod stiffness k_rod",
-            _stiffness(PAPER.rod_stiffness),
-            f"{_stiffness(float(bent))} (eq. 8 with {_modulus(PAPER.bending_modulus)})",
-            f"{_stiffness(stiff)} (rod of {_length(float(length) / stiff)})",
+            in_n_per_mm(PAPER.rod_stiffness),
+            f"{in_n_per_mm(float(bent))} (eq. 8 with {in_gpa(PAPER.bending_modulus)})",
+            f"{in_n_per_mm(stiff)} (rod of {in_mm(float(length) / stiff)})",
         ),
         (
             "E/L behind it",
@@ -163,34 +152,17 @@ def _rod(evaluation: Evaluation) -> ExtraTable:
         (
             "Young's modulus of the rod",
             text.DASH,
-            f"{_modulus(short)} over {_length(PAPER.stroke)}; "
-            f"{_modulus(long)} over {_length(PAPER.damping_stroke)}",
-            f"{_modulus(ours)}; woven carbon {_modulus(fabric)}",
+            f"{in_gpa(short)} over {in_mm(PAPER.stroke)}; "
+            f"{in_gpa(long)} over {in_mm(PAPER.damping_stroke)}",
+            f"{in_gpa(ours)}; woven carbon {in_gpa(fabric)}",
         ),
     )
     note = (
-        f"k_rod means {_modulus(short)} or {_modulus(long)}, by which of its two strokes the paper "
-        f"divided; neither is the measured {_modulus(PAPER.bending_modulus)} nor what woven carbon "
+        f"k_rod means {in_gpa(short)} or {in_gpa(long)}, by which of its two strokes the paper "
+        f"divided; neither is the measured {in_gpa(PAPER.bending_modulus)} nor what woven carbon "
         "has along its warp."
     )
     return ExtraTable("El Asswad 2018: rod stiffness", COLUMNS, rows, note)
-
-
-def _hoop_modulus(evaluation: Evaluation) -> float:
-    """Hoop modulus of the design's wall."""
-    plies, thicknesses = [], []
-    for layer in evaluation.design.barrel.layup:
-        known = load_library().get(layer.material).numbers
-        constants = ply.ply_stiffness(
-            youngs_modulus_1=known["youngs_modulus_1"],
-            youngs_modulus_2=known["youngs_modulus_2"],
-            poissons_ratio_12=known["poissons_ratio_12"],
-            shear_modulus_12=known["shear_modulus_12"],
-        )
-        plies.append(ply.rotated(stiffness=constants, angle=layer.angle))
-        thicknesses.append(layer.thickness)
-    membrane = laminate.membrane(plies=plies, thicknesses=thicknesses)
-    return float(laminate.effective_moduli(membrane=membrane, thickness=sum(thicknesses))[1])
 
 
 def _eq_10(pressure: float, *, growth_per_pressure: float) -> float:
@@ -201,51 +173,55 @@ def _eq_10(pressure: float, *, growth_per_pressure: float) -> float:
     )
 
 
+def _stretch(evaluation: Evaluation) -> str:
+    """What the barrel's axial stretch adds, as a stiffness at the weakest position."""
+    curve = evaluation.curve
+    place = min(range(len(curve.stiffness)), key=lambda k: float(curve.stiffness[k]))
+    share = curve.contributions.get("stretch")
+    if share is None or not float(share[place]) > 0:
+        return text.DASH
+    return in_n_per_mm(1 / float(share[place]))
+
+
 def _barrel(evaluation: Evaluation) -> ExtraTable:
-    design = evaluation.design
-    supply = design.supply.pressure
-    inner = design.cylinder.bore / 2
-    outer = inner + sum(layer.thickness for layer in design.barrel.layup)
-    wall = {
-        "inner_radius": inner,
-        "outer_radius": outer,
-        "youngs_modulus": PAPER.bending_modulus,
-        "poissons_ratio": 0.3,
-    }
+    supply, ours = evaluation.design.supply.pressure, value(evaluation, "bore_growth")
+    thickness = wall_thickness(evaluation)
+    wall = PAPER.wall(thickness)
     printed = float(barrel.bore_growth_as_published(pressure=supply, **wall))
     correct = float(barrel.bore_growth(pressure=supply, **wall))
-    area = forces.piston_area(bore=design.cylinder.bore)
+    hoop = PAPER.hoop_modulus(growth=ours, pressure=supply, thickness=thickness)
     give = barrel.chamber_compliance(
-        inner_radius=inner, growth_per_pressure=correct / supply, length=PAPER.stroke
+        inner_radius=PAPER.bore / 2, growth_per_pressure=correct / supply, length=PAPER.stroke
     )
-    spring = float(barrel.barrel_stiffness(area=area, compliance=give))
+    spring = float(barrel.barrel_stiffness(area=PAPER.area, compliance=give))
     eq_10 = partial(_eq_10, growth_per_pressure=printed / supply)
     rows = (
         (
             "modulus of the barrel",
-            f"{_modulus(PAPER.bending_modulus)} (bending)",
+            f"{in_gpa(PAPER.bending_modulus)} (bending)",
             text.DASH,
-            f"{_modulus(_hoop_modulus(evaluation))} (hoop)",
+            f"{in_gpa(hoop)} (hoop, behind our growth)",
         ),
         (
-            f"bore growth at {_pressure(supply)}",
+            f"bore growth at {in_mpa(supply)}",
             text.DASH,
-            f"{_growth(printed)} (eq. 12); {_growth(correct)} with the inner radius",
-            _growth(_value(evaluation, "bore_growth")),
+            f"{in_um(printed)} (eq. 12); {in_um(correct)} with the inner radius",
+            in_um(ours),
         ),
         (
             "barrel stiffness k_cyl",
             text.DASH,
-            f"{_stiffness(eq_10(1e6))} at 1 MPa; "
-            f"{_stiffness(eq_10(supply))} at {_pressure(supply)} (eq. 10)",
-            f"{_stiffness(spring)} with {_modulus(PAPER.bending_modulus)}; "
-            f"{_stiffness(_value(evaluation, 'stiffness_barrel'))} as designed",
+            f"{in_n_per_mm(eq_10(1e6))} at 1 MPa; "
+            f"{in_n_per_mm(eq_10(supply))} at {in_mpa(supply)} (eq. 10)",
+            f"{in_n_per_mm(spring)} (cap side, whole stroke, {in_gpa(PAPER.bending_modulus)}); "
+            f"{in_n_per_mm(value(evaluation, 'stiffness_barrel'))} (as designed, both chambers)",
         ),
+        ("stretch of the barrel", text.DASH, "not in eq. 7", _stretch(evaluation)),
         (
             "total stiffness k_eq",
             text.DASH,
-            f"{_stiffness(PAPER.total(eq_10(1e6)))} at 1 MPa (eq. 7)",
-            _stiffness(_value(evaluation, "stiffness_min")),
+            f"{in_n_per_mm(PAPER.total(eq_10(1e6)))} at 1 MPa (eq. 7)",
+            f"{in_n_per_mm(value(evaluation, 'stiffness_min'))} (weakest position)",
         ),
     )
     note = (
@@ -254,9 +230,8 @@ def _barrel(evaluation: Evaluation) -> ExtraTable:
         "Eq. 11 lost its divisor 4, which is restored here. "
         "Eq. 12 is the isotropic open-ended tube, but with R as the outer radius it over-states "
         f"the growth by the wall ratio, {text.trimmed(printed / correct, 3)} times; the inner "
-        "radius is right. "
-        "Eq. 13 yields a bending modulus, uncorrected for shear and section, where eq. 12 needs "
-        "the hoop modulus. Wall thickness (and ν = 0.3 of its formula) are assumed."
+        "radius is right, and turns our growth into the hoop modulus beside it. Wall thickness "
+        f"(and ν = {text.trimmed(POISSONS_RATIO)} of the formula) are assumed."
     )
     return ExtraTable("El Asswad 2018: barrel", COLUMNS, rows, note)
 
@@ -268,118 +243,83 @@ def _viscous(evaluation: Evaluation) -> ExtraTable:
     rows = (
         (
             "oil damping c",
-            _damping(PAPER.damping),
-            f"{_damping(float(by_table))} over {_length(PAPER.stroke)} (eq. 6)",
-            f"{_damping(_value(evaluation, 'damping_pipe'))} (pipe form); "
-            f"{_damping(_value(evaluation, 'damping_annular'))} (annular gaps)",
+            in_ns_per_m(PAPER.damping),
+            f"{in_ns_per_m(float(by_table))} over {in_mm(PAPER.stroke)} (eq. 6)",
+            f"{in_ns_per_m(value(evaluation, 'damping_pipe'))} (pipe form); "
+            f"{in_ns_per_m(value(evaluation, 'damping_annular'))} (annular gaps)",
         ),
         (
             "dynamic viscosity",
             text.DASH,
-            f"{_viscosity(PAPER.viscosity)} (eq. 6, {_length(PAPER.damping_stroke)})",
+            f"{in_mpas(PAPER.viscosity)} (eq. 6, {in_mm(PAPER.damping_stroke)})",
             text.DASH,
         ),
         (
             f"seal damping F/v, {text.trimmed(case.speed)} m/s",
             text.DASH,
             text.DASH,
-            _damping(seal),
+            f"{in_ns_per_m(seal)} ({case.name})",
         ),
     )
     note = (
-        f"c was computed with {_length(PAPER.damping_stroke)}; the stroke of table 1 gives "
-        f"{_damping(float(by_table))}. Eq. 6 is the wall shear on the barrel, not on the piston, "
-        f"and the seals' secant damping is {text.number(seal / PAPER.damping, 2)} times as large: "
-        "two quantities, never one."
+        f"c was computed with {in_mm(PAPER.damping_stroke)}; the stroke of table 1 gives "
+        f"{in_ns_per_m(float(by_table))}. Eq. 6 is the wall shear on the barrel, not on the "
+        f"piston, and the seals' secant damping is {text.number(seal / PAPER.damping, 2)} times as "
+        "large: two quantities, never one."
     )
     return ExtraTable("El Asswad 2018: viscous damping", COLUMNS, rows, note)
 
 
-def _friction(evaluation: Evaluation) -> ExtraTable:
-    rows = []
-    for name, force, loss, metric in (
-        ("average", PAPER.friction_average, PAPER.loss_average, "friction_running"),
-        ("largest", PAPER.friction_largest, PAPER.loss_largest, "friction_breakaway"),
-    ):
-        own = float(forces.pressure_loss(friction=force, area=PAPER.area))
-        rows += [
-            (f"{name} friction", _force(force), text.DASH, _force(_value(evaluation, metric))),
-            (f"{name} pressure loss", _pressure(loss), f"{_pressure(own)} (F/A)", text.DASH),
-            (f"{name}: area F/Δp", text.DASH, _area(force / loss), f"{_area(PAPER.area)} (bore)"),
-        ]
-    first = PAPER.friction_average / PAPER.loss_average
-    second = PAPER.friction_largest / PAPER.loss_largest
-    note = (
-        f"Force and pressure loss together mean a piston of {_area(first)} or {_area(second)}, "
-        f"{text.number(first / PAPER.area, 2)} and {text.number(second / PAPER.area, 2)} times the "
-        f"{_area(PAPER.area)} of the bore: forces and pressure losses cannot both be of this "
-        f"cylinder. Our forces are no check of the paper's: they hold at the "
-        f"{_pressure(evaluation.design.supply.pressure)} assumed in the design."
-    )
-    return ExtraTable("El Asswad 2018: friction force", COLUMNS, rows, note)
+def _range(values: Array, unit: str) -> str:
+    scale = units.unit(unit, "stiffness")
+    least, most = (text.number(float(scale.from_si(f(values))), 3) for f in (min, max))
+    return f"{least} to {most} {unit}"
 
 
-def _coefficient(evaluation: Evaluation) -> ExtraTable:
-    ring = evaluation.design.seals.piston
-    hardness = load_library().get(ring.compound).numbers["hardness"]
-    modulus = seals.MODULUS_LAWS[ring.hardness_model].modulus(hardness=hardness)
-    ours = seals.LAWS["plane_strain"]
-    size = {"section": ring.section, "youngs_modulus": modulus}
-    height = ring.section * (1 - ring.squeeze)
-    chord = float(seals.width_as_published(section=ring.section, gland_height=height))
-    width = float(ours.contact_width(squeeze=ring.squeeze, pressure=0.0, **size))
-    unit = friction.coulomb_as_published(
-        pressure=1.0,
-        friction_coefficient=PAPER.friction_coefficient,
-        piston_contact_width=chord,
-        rod_contact_width=chord,
-        bore=PAPER.bore,
-        rod_diameter=PAPER.rod_diameter,
-    )
-
-    def coefficient(pressure: float) -> float:
-        load = ours.line_load(squeeze=ring.squeeze, pressure=pressure, **size)
-        force = friction.seal_friction(
-            line_load=load, diameter=PAPER.bore + PAPER.rod_diameter, friction_coefficient=1.0
+def _record(evaluation: Evaluation) -> ExtraTable:
+    record = elasswad_record.own_record(evaluation)
+    found = elasswad_record.along(evaluation, record)
+    average, largest = (
+        f"{in_mpa(pressure)} ({in_n(force)} by eq. 15–20)"
+        for pressure, force in (
+            (float(record.pressure[:-1].mean()), PAPER.friction_average),
+            (float(max(record.pressure)), PAPER.friction_largest),
         )
-        return PAPER.friction_average / float(force)
-
-    def wider(squeeze: float) -> float:
-        at = {"squeeze": squeeze, "pressure": 0.0} | size
-        printed = seals.LAWS["chord"].contact_width(**at)
-        return float(printed / ours.contact_width(**at)) - 1
-
-    average = _force(PAPER.friction_average)
+    )
     rows = (
+        ("pressure difference, average", text.DASH, average, text.DASH),
+        ("pressure difference, largest", text.DASH, largest, text.DASH),
         (
-            "friction coefficient µ",
-            text.trimmed(PAPER.friction_coefficient),
-            f"{average} at {_pressure(PAPER.friction_average / float(unit))} (eq. 15–20)",
-            f"{text.number(coefficient(2e6), 3)} at 2 MPa; "
-            f"{text.number(coefficient(7e6), 3)} at 7 MPa",
+            "radial expansion, largest",
+            text.DASH,
+            f"{in_um(float(max(found.growth_published)))} (eq. 12)",
+            f"{in_um(float(max(found.growth_inner)))} with the inner radius; "
+            f"{in_um(float(max(found.growth_designed)))} as designed",
         ),
         (
-            f"contact width at {_percent(ring.squeeze)} squeeze",
+            "equivalent stiffness k_eq",
             text.DASH,
-            f"{_length(chord)} (eq. 19)",
-            _length(width),
-        ),
-        (
-            "eq. 19 over ours",
-            text.DASH,
-            f"+{_percent(wider(0.10))} at 10 %; +{_percent(wider(0.20))} at 20 %",
-            text.DASH,
+            f"{_range(found.stiffness_published, 'N/mm')} (eq. 7, 10–12)",
+            f"{_range(found.stiffness_chambers, 'kN/mm')} per chamber with the paper's numbers; "
+            f"{_range(found.stiffness_designed, 'kN/mm')} as designed",
         ),
     )
     note = (
-        f"µ cannot be identified alone: with preload and energised rings {average} fits "
-        f"{text.number(coefficient(2e6), 3)} at 2 MPa as well as {text.number(coefficient(7e6), 3)}"
-        " at 7 MPa, and eq. 16 has no friction at all without pressure. "
-        "Eq. 19 is the chord of the unsqueezed circle: at 10 % squeeze 38 %, at 20 % 15 % wider "
-        "than the plane-strain finite elements that ours follows within 5 %. "
-        "Ring section, squeeze and both rings under the full pressure are assumed."
+        "The text of the paper gives no pressure and no value of its figure 10. This record is our "
+        "own: one stroke out and back, with the pressure differences at which eq. 15–20, "
+        f"µ = {text.trimmed(PAPER.friction_coefficient)} and the assumed rings give the published "
+        "average and largest friction."
     )
-    return ExtraTable("El Asswad 2018: friction coefficient", COLUMNS, rows, note)
+    drawn = figure(
+        "El Asswad 2018: k_eq and radial expansion along a record, as its figure 10",
+        record_figure(record, found),
+        "A record of our own with the pressures behind the paper's friction, not its measured "
+        "one. Eq. 7 with eq. 10 follows the pressure and leaves no stiffness where there is none. "
+        "Per chamber it follows the place of the piston: with the paper's numbers "
+        f"({in_gpa(PAPER.bending_modulus)}, k_rod, its constant K and the line volume behind its "
+        f"k_oil), and as designed (case {evaluation.curve.case}, ports closed).",
+    )
+    return ExtraTable("El Asswad 2018: pressure record", COLUMNS, rows, note, drawn)
 
 
 TABLES: tuple[Callable[[Evaluation], ExtraTable], ...] = (
@@ -387,8 +327,10 @@ TABLES: tuple[Callable[[Evaluation], ExtraTable], ...] = (
     _oil,
     _rod,
     _barrel,
+    elasswad_bending.table,
     _viscous,
-    _friction,
-    _coefficient,
+    elasswad_friction.force_table,
+    elasswad_friction.coefficient_table,
+    _record,
 )
-"""Every table, in the order of the paper."""
+"""Every table, in the order of the paper but for the record, which needs them all."""

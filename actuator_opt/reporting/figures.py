@@ -49,10 +49,12 @@ class Axes:
         self.x_range, self.y_range = x_range, y_range
 
     def x(self, value: float) -> float:
+        """Millimetres from the left of the paper."""
         low, high = self.x_range
         return self.left + (value - low) / (high - low) * self.width
 
     def y(self, value: float) -> float:
+        """Millimetres from the top of the paper."""
         low, high = self.y_range
         return self.top + (high - value) / (high - low) * self.height
 

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
 from ..evaluation.result import Evaluation
 from ..optimisation.result import Optimisation
-from . import optimum, tables, text
+from . import optimum, tables, text, wall
 from .blocks import Block, ExtraTable, clean, figure, listing, notes, short, soft
 from .drawing import section
-from .figures import stiffness_figure, wall_figure
+from .figures import stiffness_figure
 
 KEY_FIGURES = (
     "mass",
@@ -134,14 +133,16 @@ def page(
         blocks.append(optimum.variables(optimisation))
     else:
         blocks.append(tables.masses(evaluation))
-    blocks += [_curve(evaluation), _wall(evaluation)]
+    blocks.append(_curve(evaluation))
     if optimisation is not None and optimisation.sensitivities:
         blocks.append(optimum.sensitivities(optimisation))
     if optimisation is not None and optimisation.variables:
         blocks.append(tables.masses(evaluation))
+    blocks += wall.blocks(evaluation)
     blocks += [tables.checks(evaluation), tables.models(evaluation)]
     blocks += _remarks(evaluation, optimisation)
-    blocks += [tables.extra(table) for table in extra_tables]
+    for given in extra_tables:
+        blocks += [tables.extra(given)] + ([given.drawing] if given.drawing is not None else [])
     blocks.append(listing(f"Input: {source_name}", source_text))
     sentence = "" if optimisation is None else optimisation.sentence
     remedy = "" if optimisation is None else optimisation.remedy
@@ -173,17 +174,6 @@ def _curve(evaluation: Evaluation) -> Block:
     required = next((r for r in rows if r.metric == "stiffness_min" and r.sense == "min"), None)
     note = f"Case {evaluation.curve.case}, ports closed; the contributions add up to 1/k."
     return figure("Stiffness over the stroke", stiffness_figure(evaluation.curve, required), note)
-
-
-def _wall(evaluation: Evaluation) -> Block:
-    kinds = {o.material: o.kind for o in evaluation.outlines}
-    layers = []
-    for index, ply in enumerate(evaluation.design.barrel.layup, 1):
-        kind = kinds.get(ply.material, "metal")
-        angle = text.trimmed(math.degrees(ply.angle))
-        turn = f", ±{angle}° from the tube axis" if kind == "composite" else ""
-        layers.append((clean(f"{index}  {ply.material}{turn}"), ply.thickness, kind))
-    return figure("Barrel wall, from the bore outwards", wall_figure(layers))
 
 
 def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> list[Block]:

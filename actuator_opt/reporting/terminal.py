@@ -10,7 +10,7 @@ from typing import TypedDict
 
 from ..evaluation.result import Evaluation, Requirement, StrokeCurve
 from ..optimisation.result import Infeasibility, Optimisation
-from . import optimum, page, plot, text
+from . import optimum, page, plot, text, whole_plies
 from .console import Column, Console
 from .text import DASH
 
@@ -384,6 +384,7 @@ def optimisation_text(
         sensitivity_table(optimisation, **style) if optimisation.sensitivities else "",
         checks_table(optimisation.evaluation, **style),
         notes(optimisation.evaluation, **style),
+        whole_plies.terminal(optimisation, **style),
         "\n".join(console.wrap(s, "dim") for s in optimum.convergence(optimisation)),
     ]
     return "\n\n".join(part for part in parts if part) + "\n"
