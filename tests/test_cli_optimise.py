@@ -232,7 +232,6 @@ def test_any_dimension_may_move():
         ("barrel.layup[7].angle", "lower: 0 deg\n    upper: 90 deg"),
         ("cylinder.bor", "lower: 20 mm\n    upper: 30 mm"),
         ("barrel.length", "lower: 150 mm\n    upper: 200 mm"),
-        ("environment.assembly_temperature", "lower: 10 degC\n    upper: 30 degC"),
     ],
 )
 def test_what_cannot_move(path, bounds):

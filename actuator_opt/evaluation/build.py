@@ -18,8 +18,9 @@ from ..design.model import Design
 from ..version import VERSION
 from . import doubts, outline, through_wall
 from .allow import allowances, extremes
+from .check_list import CHECK_LIST, CheckLine, Sense
 from .kernel import Pass, Subject, compute
-from .limits import CHECK_LIST, CheckLine, Limit, Sense, all_limits, check_limits, default_limits
+from .limits import Limit, all_limits, check_limits, default_limits
 from .plugin import Plugin
 from .provenance import model_of
 from .result import (

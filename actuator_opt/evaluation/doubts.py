@@ -103,10 +103,15 @@ def _wall_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:
             f"stresses from cooling are left out of first ply and yield: "
             f"{done.wall.why_no_mismatch}",
         )
+    if laminated and not all(ply.balanced for ply in subject.design.barrel.layup):
+        yield (
+            "burst_factor",
+            "burst by ply discount, bending and buckling take single plies as balanced pairs",
+        )
     worked = done.wall.autofrettage
     if subject.design.barrel.autofrettage_pressure is not None:
         if worked is None:
-            yield "", "autofrettage is left out: it needs the exact tube and a metal liner"
+            yield "", "autofrettage is left out: it needs the exact tube, a metal liner and pairs"
         elif float(np.min(np.real(worked.axial_margin))) < 0:
             yield (
                 "reverse_yield_factor",

@@ -5,8 +5,10 @@ from __future__ import annotations
 from ..design.model import Design
 from ..models import density, endurance, retention, rod
 from ..numeric import Array, maximum, where
+from . import rod_strength
 from .allow import Stock
 from .geometry import Geometry
+from .rods import Rod
 from .rows import Computed
 from .state import State
 from .values import Values
@@ -23,6 +25,7 @@ def compute(
     g: Geometry,
     state: State,
     wall: Wall,
+    section: Rod,
     moving: Array,
     net: Array,
     out: Computed,
@@ -30,7 +33,7 @@ def compute(
     """Every life and service metric; `net` is the force of every case, `moving` the mass."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
-    _endurance(v, stock, design, g, wall, supply, push, pull, out)
+    _endurance(v, stock, design, wall, section, supply, push, pull, out)
     _end_stop(v, design, g, state, supply, moving, net, out)
     _thermal(v, stock, design, g, state, wall, supply, out)
     _clearance(v, stock, design, g, wall, out)
@@ -41,23 +44,21 @@ def _endurance(
     v: Values,
     stock: Stock,
     design: Design,
-    g: Geometry,
     wall: Wall,
+    section: Rod,
     supply: Array,
     push: Array,
     pull: Array,
     out: Computed,
 ) -> None:
     """Pressure-cycle life of metal parts: wall layers, rod (push/pull) and thread root."""
-    area = rod.section_area(outer_diameter=g.rod_diameter, inner_diameter=g.rod_inner_diameter)
-    loads = [(place, c.material, c.span, c.mean) for place, c in wall.cycles.items()]
-    reversed_stress = (push + pull) / area  # its compressive mean earns no credit
-    loads.append(("rod", design.rod.material, reversed_stress, 0.0))
+    cycles = wall.cycles | rod_strength.cycles(design, section, supply, push, pull)
+    loads = [(place, c.material, c.span, c.mean) for place, c in cycles.items()]
     if design.rod.thread is not None:
         stress = THREAD_NOTCH * rod.thread_stress(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
         )
-        loads.append(("rod thread", design.rod.material, stress, stress / 2))
+        loads.append(("rod thread", section.end_material, stress, stress / 2))
     life, factor, lacking = {}, {}, []
     for place, name, span, mean in loads:
         ultimate = stock.allowable(name, "ultimate_strength")
@@ -65,14 +66,14 @@ def _endurance(
         if ultimate is None or limit is None:
             lacking.append(name)
             continue
-        cycles = stock.get(name, "fatigue_cycles", default=1e6)
+        known = stock.get(name, "fatigue_cycles", default=1e6)
         peak = mean + span / 2
         ratio = (mean - span / 2) / peak
         life[place] = endurance.cycles_to_failure(
             peak_stress=peak,
             ultimate_strength=ultimate,
             fatigue_limit=limit,
-            limit_cycles=cycles,
+            limit_cycles=known,
             stress_ratio=ratio,
         )
         factor[place] = endurance.fatigue_factor(

@@ -96,7 +96,7 @@ def compute(subject: Subject, v: Values) -> Pass:
         hydraulics.compute_flow(v, design, g, case_state, out)
         beam = beam_module.derive(v, design, g, case_state, barrel, rod, parts)
         strength.compute(v, design, stock, g, case_state, barrel, rod, beam, out)
-        duty.compute(v, design, stock, g, case_state, barrel, moving, net, out)
+        duty.compute(v, design, stock, g, case_state, barrel, rod, moving, net, out)
         thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
         for name, value in geometry_module.lands(g, thread / 2).items():
             out.put(name, value)

@@ -104,8 +104,13 @@ def _exact(layers: Sequence[Layer], g: Geometry) -> _Answer:
         axial_force=unit[FORCE][:, None],
         temperature_change=unit[WARMTH][:, None],
     )
+    stress = ply_stresses_at_faces(tube=tube, state=state)
+    if tube.twisting:  # the plies of a pair then differ
+        other = ply_stresses_at_faces(tube=tube, state=state, opposite=True)
+        one, two, three, slip = (np.concatenate([a, b]) for a, b in zip(stress, other, strict=True))
+        stress = (one, two, three, slip)
     return _Answer(
-        stress=ply_stresses_at_faces(tube=tube, state=state),
+        stress=stress,
         growth=state.bore_displacement,
         axial=state.axial_strain,
         warm_hoop=state.hoop_strain[0, 0, WARMTH],
@@ -214,6 +219,8 @@ def _autofrettage(
 ) -> Autofrettage | None:
     """One overpressure of the open barrel at assembly temperature, before it is machined."""
     if design.barrel.autofrettage_pressure is None or not layers[0].yields:
+        return None
+    if not all(layer.balanced for layer in layers):
         return None
     change: Array = 0.0
     if design.environment is not None and design.environment.cure_temperature is not None:

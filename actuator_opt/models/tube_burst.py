@@ -27,7 +27,7 @@ from .tube_elements import LayeredTube, TubeLayer, layered_tube
 __all__ = ["PlyStrength", "WallLayer", "burst_of_tube"]
 
 TRANSVERSE_RATIO = 0.4
-"""nu23 of a ply where none is stated (PHYSICS_DETAIL section 2: usual for carbon epoxy)."""
+"""nu23 of a ply where none is stated: usual for carbon epoxy, as in the library's own default."""
 
 
 def _constants(layer: WallLayer, residual: float) -> dict[str, Array]:

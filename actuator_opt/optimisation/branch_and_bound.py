@@ -17,11 +17,11 @@ from typing import TypeAlias
 import numpy as np
 
 from ..numeric import Array
-from . import elastic, kkt, lockstep
+from . import elastic, kkt, lockstep, nlopt_wrapper
 from .evaluator import Evaluator, Point
 from .newton import polish
 from .problem import ParametricProblem, Problem, Values, Vector
-from .solver import FEASIBLE, RESIDUAL, solve
+from .solver import FEASIBLE, RESIDUAL
 
 MOST_SOLVES = 400
 """Most re-optimisations of one search."""
@@ -29,8 +29,8 @@ MOST_SOLVES = 400
 MOST_NEIGHBOURS = 256
 """Most roundings up and down tried at once: all of them up to eight listed variables."""
 
-SAMPLES = 256
-"""Points of the sweep where Newton does not end on an optimum."""
+MOST_STEPS = 100
+"""Most evaluations of SLSQP where Newton does not end on an optimum."""
 
 ON = 1e-7
 """Distance from a listed value, over that to the next one, that counts as none."""
@@ -92,7 +92,6 @@ def search(
     *,
     most: int = MOST_SOLVES,
     until: float | None = None,
-    seed: int = 0,
 ) -> Found:
     """The best point with every listed variable at one of its choices.
 
@@ -103,9 +102,8 @@ def search(
     x : the continuous optimum (n,)
     most : limit of re-optimisations
     until : time of `time.perf_counter` to stop at
-    seed : of the sweeps
     """
-    run = _Run(problem, listed, x, most, until, seed)
+    run = _Run(problem, listed, x, most, until)
     run.neighbours()
     count = itertools.count()
     whole = tuple((0, len(one.choices) - 1) for one in listed)
@@ -129,7 +127,6 @@ class _Run:
     x: Vector
     most: int
     until: float | None
-    seed: int
     solves: int = 0
     tried: dict[Assignment, float] = field(default_factory=dict)
     points: dict[Assignment, Vector] = field(default_factory=dict)
@@ -302,7 +299,7 @@ class _Run:
         return point, evaluator
 
     def _descended(self, evaluator: Evaluator, start: Point) -> Point | None:
-        """The optimum near a point: Newton, else the solver from a feasible point; or None."""
+        """The optimum near a point: Newton, else SLSQP from a feasible point; else None."""
         self.solves += 1
         if evaluator.space.size == 0:
             return start if _met(start) else None
@@ -319,9 +316,9 @@ class _Run:
         )
         if inside is None:
             return None
-        problem = replace(evaluator.problem, start=inside.x)
-        solution = solve(problem, starts=1, samples=SAMPLES, seed=self.seed)
-        return evaluator.point(evaluator.space.to_z(solution.x)) if solution.feasible else None
+        found = nlopt_wrapper.run(evaluator, inside, "LD_SLSQP", most=MOST_STEPS).point
+        found = polish(evaluator, found, iterations=8, tolerance=1e-10)
+        return found if _met(found) else inside
 
 
 def _met(point: Point) -> bool:

@@ -207,14 +207,14 @@ def rounded(
     seed : of the sweeps
     """
     problem = actuator.problem
-    found = search(problem, listed, solution.x, until=until, seed=seed)
+    found = search(problem, listed, solution.x, until=until)
     better = found.objective is not None and _cost(found.objective, solution) < 0
     if better and found.x is not None:
         again = solve(problem, starts=1, seed=seed, more_starts=[found.x])
         if again.feasible and again.objective < solution.objective:
             starts = (*solution.starts, *again.starts)
             solution = replace(again, samples=solution.samples, starts=starts)
-            found = search(problem, listed, solution.x, until=until, seed=seed)
+            found = search(problem, listed, solution.x, until=until)
     return _rounding(actuator, solution, listed, found), solution
 
 
