@@ -76,7 +76,7 @@ head:
   clearance: 30 um
 
 caps:
-  material: al_7075_t6
+  material: ti_6al4v
   thickness: 8 mm
 
 retention:

@@ -21,7 +21,7 @@ class Names(dict):
 
 
 MATERIALS = Names(
-    iso_vg_32="fluid", iso_vg_46="fluid", al_6061_t6="metal", al_7075_t6="metal",
+    iso_vg_32="fluid", iso_vg_46="fluid", al_6061_t6="metal", al_7075_t6="metal", ti_6al4v="metal",
     steel_42crmo4="metal", steel_e235="metal", t700_epoxy="ply", nbr_70="seal",
     epoxy_structural="adhesive", pa12="polymer",
 )  # fmt: skip

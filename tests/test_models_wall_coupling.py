@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from actuator_opt.models import barrel, retention, stiffness, yielding
 
-stresses = st.tuples(*[st.floats(-300e6, 300e6)] * 4)
+stresses = st.tuples(*[st.integers(-300, 300).map(lambda mpa: mpa * 1e6)] * 4)
 
 
 def _mises(s):

@@ -104,7 +104,7 @@ def test_convex_problems_against_enumeration(weights, middle, coupling, total, f
     assert found.objective >= start.objective - 1e-9
     assert found.complete
     assert all(found.x[k] in values for k, values in enumerate(lists))
-    bottom = [max((v for v in values if v <= x), default=values[0])
+    bottom = [max((v for v in values if v <= x + 1e-6), default=values[0])
               for values, x in zip(lists, start.x, strict=False)]  # fmt: skip
     assert tuple(map(list.index, lists, bottom)) in found.tried  # rounded down is always tried
 

@@ -76,7 +76,7 @@ head:
   clearance: 0.02 mm
 
 caps:
-  material: al_7075_t6
+  material: ti_6al4v           # expands little: bonds to carbon over the temperature range
   thickness: 6 mm
 
 retention:                     # how caps and head are held in the barrel

@@ -299,11 +299,11 @@ class _Run:
         return point, evaluator
 
     def _descended(self, evaluator: Evaluator, start: Point) -> Point | None:
-        """The optimum near a point: Newton, else SLSQP from a feasible point; else None."""
+        """The optimum near a point: Newton from an infeasible one, else SLSQP; None without."""
         self.solves += 1
         if evaluator.space.size == 0:
             return start if _met(start) else None
-        found = polish(evaluator, start, iterations=8, tolerance=1e-10)
+        found = start if _met(start) else polish(evaluator, start, iterations=8, tolerance=1e-10)
         if _met(found) and kkt.check(evaluator, found).residual <= RESIDUAL:
             return found
         inside = next(

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..evaluation.result import Evaluation
 from ..optimisation.result import Optimisation
-from . import optimum, tables, text, wall
+from . import optimum, tables, text, wall, whole_plies
 from .blocks import Block, ExtraTable, clean, figure, listing, notes, short, soft
 from .drawing import section
 from .figures import stiffness_figure
@@ -131,6 +131,9 @@ def page(
     blocks.append(tables.requirements(evaluation))
     if optimisation is not None and optimisation.variables:
         blocks.append(optimum.variables(optimisation))
+        rounding = whole_plies.block(optimisation)
+        if rounding is not None:
+            blocks.append(rounding)
     else:
         blocks.append(tables.masses(evaluation))
     blocks.append(_curve(evaluation))

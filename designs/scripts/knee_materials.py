@@ -2,10 +2,10 @@
 
 Each is brought to its own optimum of mass for the requirements and load cases of knee.yaml. What
 each limit costs there, what a thin laminate would have promised, and how the masses move with the
-gap and the stiffness asked for, are computed too; a report of a table, a figure and a discussion
-(knee_materials.typ) says what decides.
+gap and the stiffness asked for, are computed too. knee_materials.typ makes the report of them: a
+table, a figure and a discussion of what decides.
 
-    python designs/scripts/knee_materials.py            # prints the table
+    python designs/scripts/knee_materials.py            # prints the masses
     python designs/scripts/knee_materials.py reports    # and writes the report there
 """
 
@@ -14,12 +14,19 @@ from __future__ import annotations
 import json
 import sys
 from functools import cache
+from math import inf
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import yaml
 
 import actuator_opt as ao
+from actuator_opt.reporting.figures import AREAS, Axes
+from actuator_opt.reporting.ink import BLUE, GREY, RED, Ink, spread_within
+from actuator_opt.reporting.text import fixed, trimmed
+from actuator_opt.reporting.writer import PIXELS_PER_INCH, TEMPLATE
+from actuator_opt.tables import aligned
 
 DESIGNS = Path(__file__).resolve().parents[1]
 LINER, FIBRE, CLOTH = "al_7075_t6", "t700_epoxy", "woven_cfrp_t700_2510"
@@ -33,6 +40,7 @@ THICKEST = "8 mm"
 """Upper bound of every layer: three quarters of the bore's radius."""
 HUGE_WALL = "30 mm"
 """A wall nobody would make, to show where bore growth settles."""
+ANGLES = {"lower": "20 deg", "upper": "60 deg"}
 
 Data = dict[str, Any]
 
@@ -44,7 +52,6 @@ def layer(material: str, thickness: str, least: str, angle: str = "", free: bool
     return {"ply": ply, "bounds": bounds | ({"angle": ANGLES} if free else {})}
 
 
-ANGLES = {"lower": "20 deg", "upper": "60 deg"}
 HOOP = layer(FIBRE, "1.2 mm", "0.2 mm", "88 deg")
 AXIAL = layer(FIBRE, "0.8 mm", "0.2 mm", "25 deg", free=True)
 WALLS = {
@@ -58,8 +65,8 @@ WALLS = {
 METALS = ("steel", "aluminium")
 METRICS = (
     "bore_growth growth_at_seal seal_gap stiffness_min friction_running proof_factor "
-    "first_ply_factor liner_yield_factor yield_factor burst_factor buckling_factor "
-    "retention_factor bond_thermal_factor bearing_overlap"
+    "first_ply_factor liner_yield_factor burst_factor buckling_factor retention_factor "
+    "bond_thermal_factor"
 ).split()
 CRITERIA = ("max_stress", "max_strain", "tsai_wu", "hashin", "puck")
 
@@ -81,13 +88,15 @@ def variant(
     joint: str = "bond",
     wall: list[Data] | None = None,
     without: tuple[str, ...] = (),
+    asks: dict[str, float] | None = None,
     goal: dict[str, str] | None = None,
     model: str = "auto",
 ) -> ao.Actuator:
     """The knee with another wall and nothing else changed but what is named here.
 
     `joint` "thread" screws the caps on as in steel_baseline.yaml; `without` are requirements and
-    checks to leave out; `goal` replaces the objective; `model` is that of the barrel.
+    checks to leave out, `asks` least values to ask for besides; `goal` replaces the objective,
+    `model` is that of the barrel.
     """
     data, layers = _data("knee.yaml"), wall or WALLS[key]
     data["name"] = f"knee, {key} barrel"
@@ -104,6 +113,7 @@ def variant(
     for metric in without:
         data["requirements"].pop(metric, None)
         data["waivers"][metric] = "left out: see the study"
+    data["requirements"] |= {name: {"min": str(least)} for name, least in (asks or {}).items()}
     data |= {"variables": free, "objective": goal or data["objective"]}
     return ao.read(yaml.safe_dump(data, sort_keys=False))
 
@@ -113,38 +123,44 @@ def best(actuator: ao.Actuator, *, prices: bool = False) -> Any:
     return ao.optimise(actuator, starts=6 if prices else 2, prices=prices)
 
 
-def conflicts(optimum: Any) -> list[Data]:
-    """What an infeasible design would have to give up, the least in all; empty for a good one."""
-    if optimum.infeasibility is None:
-        return []
-    keys = ("requirement", "metric", "sense", "limit", "needed")
-    return [{key: row[key] for key in keys} for row in optimum.infeasibility.joint]
+def least_mass(actuator: ao.Actuator) -> float | None:
+    """Mass of the optimum; None where nothing meets every requirement."""
+    optimum = best(actuator)
+    return None if optimum.infeasibility else optimum.objective_value
 
 
-def solved(key: str, *, prices: bool = False, **changes: Any) -> tuple[Any, list[Data]]:
-    """The optimum of a variant; without the requirements it cannot meet, where there are such."""
-    asked = best(variant(key, **changes), prices=prices)
-    lacks = conflicts(asked)
-    if not lacks:
-        return asked, lacks
-    left_out = tuple(row["metric"] for row in lacks)
-    return best(variant(key, **changes | {"without": left_out}), prices=prices), lacks
+def solved(key: str, *, without: tuple[str, ...] = (), **changes: Any) -> tuple[Any, list[Data]]:
+    """The optimum of a variant; without the requirements it cannot meet, where there are such.
+
+    Those are the least to give up in all, each with the limit that would do.
+    """
+    asked = best(variant(key, without=without, **changes))
+    if asked.infeasibility is None:
+        return asked, []
+    keys = ("metric", "sense", "limit", "needed")
+    lacks = [{name: row[name] for name in keys} for row in asked.infeasibility.joint]
+    left_out = (*without, *(row["metric"] for row in lacks))
+    return best(variant(key, without=left_out, **changes)), lacks
 
 
 def measured(evaluation: Any) -> Data:
     """The numbers of one evaluation, SI."""
     metrics = {name: evaluation.metrics[name] for name in METRICS if name in evaluation.metrics}
-    curve = evaluation.curve
+    curve, design = evaluation.curve, evaluation.design
     weakest = int(curve.stiffness.argmin())
     return {
+        "mass": evaluation.metrics["mass"].value,
         "parts": dict(evaluation.mass_parts),
-        "bore": evaluation.design.cylinder.bore,
-        "layers": [[p.material, p.thickness, p.angle] for p in evaluation.design.barrel.layup],
+        "bore": design.cylinder.bore,
+        "skirt": [design.retention.length, design.retention.wall],
+        "layers": [[p.material, p.thickness, p.angle] for p in design.barrel.layup],
         "metrics": {name: m.value for name, m in metrics.items()},
-        "places": {name: m.place for name, m in metrics.items()},
         "shares": {
             part: float(c[weakest] * curve.stiffness[weakest])
             for part, c in curve.contributions.items()
+        },
+        "missed": {
+            c.metric: [c.value, c.limit] for c in evaluation.checks if c.status == "missed"
         },
         "unverified": len(evaluation.unverified),
     }
@@ -154,143 +170,166 @@ def relaxed(optimum: Any) -> Data:
     """Mass with each limit that binds relaxed by 10 %, and its price in % of mass per %."""
     rows = {}
     for row in optimum.sensitivities:
-        _, metric, sense = (row.parameter.split(".") + ["", ""])[:3]
         if row.active and row.parameter.startswith("requirements."):
+            _, metric, sense = row.parameter.split(".")
             mass = row.resolved_minus10 if sense == "min" else row.resolved_10
             rows[metric] = {"mass": mass, "price": row.percent_per_percent}
     return rows
 
 
-def first_ply(optimum: Any, changes: Data) -> float | None:
-    """First-ply factor of an optimum with other settings of its evaluation."""
-    evaluation = ao.evaluate(ao.Actuator(optimum.design).changed(changes))
-    value: float | None = evaluation.metrics["first_ply_factor"].value
-    return value
-
-
-def gap_curve(key: str, joint: str, lacks: list[Data], limit: float) -> list[list[float]]:
+def gap_curve(key: str, joint: str, found: Any, lacks: list[Data], limit: float) -> list[Any]:
     """(gap allowed, mass), from the least gap this wall allows to where the gap is free."""
-    least = max([limit, *(1.0005 * row["needed"] for row in lacks if row["metric"] == "seal_gap")])
+    needed = [1.0005 * row["needed"] for row in lacks if row["metric"] == "seal_gap"]
     rest = tuple(row["metric"] for row in lacks if row["metric"] != "seal_gap")
-    free = best(variant(key, joint=joint, without=(*rest, "seal_gap")))
-    end = free.evaluation.metrics["seal_gap"].value
-    if end <= least:
-        return [[least, free.objective_value]]
+    free = found if needed else best(variant(key, joint=joint, without=(*rest, "seal_gap")))
+    least, end = max([limit, *needed]), free.evaluation.metrics["seal_gap"].value
     base = variant(key, joint=joint, without=rest)
-    gaps = [least + (end - least) * share for share in (0, 0.12, 0.3, 0.6)]
-    masses = [
-        best(base.changed({"requirements.seal_gap.max": gap})).objective_value for gap in gaps
-    ]
-    return [*map(list, zip(gaps, masses, strict=True)), [end, free.objective_value]]
+
+    def point(gap: float) -> list[float]:
+        return [gap, best(base.changed({"requirements.seal_gap.max": gap})).objective_value]
+
+    first = point(least) if needed else [limit, found.objective_value]
+    if end <= least:
+        return [first]
+    inside = [least + (end - least) * share for share in (0.12, 0.3, 0.6)]
+    return [first, *map(point, inside), [end, free.objective_value]]
 
 
-def stiffness_curve(key: str, joint: str, lacks: list[Data], limit: float) -> list[list[float]]:
+def stiffness_curve(key: str, joint: str, found: Any, lacks: list[Data], limit: float) -> list[Any]:
     """(stiffness asked for, mass), up to the most this wall reaches within its bounds."""
     rest = tuple(row["metric"] for row in lacks)
     goal = {"maximise": "stiffness_min"}
-    most = best(
-        variant(key, joint=joint, without=(*rest, "stiffness_min"), goal=goal)
-    ).objective_value
+    stiffest = best(variant(key, joint=joint, without=(*rest, "stiffness_min"), goal=goal))
+    most = stiffest.objective_value
     base = variant(key, joint=joint, without=rest)
-    asked = [0.65 * limit, 0.8 * limit, 0.9 * limit, limit]
-    asked += [limit + (most - limit) * share for share in (0.35, 0.6, 0.8, 0.93, 0.998)]
-    return [
-        [k, best(base.changed({"requirements.stiffness_min.min": k})).objective_value]
-        for k in asked
-    ]
+    near = base.changed({v.path: v.value for v in stiffest.variables})
+
+    def point(start: ao.Actuator, asked: float) -> list[float]:
+        start = start.changed({"requirements.stiffness_min.min": asked})
+        return [asked, best(start).objective_value]
+
+    soft = [point(base, limit * share) for share in (0.65, 0.8, 0.9)]
+    hard = [point(near, limit + (most - limit) * share) for share in (0.4, 0.7, 0.9, 0.98)]
+    return [*soft, [limit, found.objective_value], *hard]
 
 
-def one(key: str, given: Data) -> Data:
+def one(key: str, limits: Data) -> Data:
     """Everything about one barrel."""
-    found = {"bond": solved(key, prices=key not in METALS)}
-    if key in METALS:
-        found["thread"] = solved(key, joint="thread", prices=True)
-    joint = min(found, key=lambda name: (len(found[name][1]), found[name][0].objective_value))
-    optimum, lacks = found[joint]
-    if key in METALS and joint == "bond":
-        optimum, lacks = solved(key, prices=True)
-    limits = [given["limits"][name] for name in ("seal_gap", "stiffness_min")]
+    joints = ("thread", "bond") if key in METALS else ("bond",)
+    tried = {joint: solved(key, joint=joint) for joint in joints}
+    joint = min(joints, key=lambda name: (len(tried[name][1]), tried[name][0].objective_value))
+    lacks = tried[joint][1]
+    left_out = tuple(row["metric"] for row in lacks)
+    optimum = best(variant(key, joint=joint, without=left_out), prices=True)
     numbers = measured(optimum.evaluation) | {
         "joint": joint,
+        "other_joint": {n: r.objective_value for n, (r, _) in tried.items() if n != joint},
         "conflicts": lacks,
-        "mass": optimum.objective_value,
         "status": optimum.status,
+        "at_bounds": [v.path for v in optimum.variables if v.at_bound],
         "relaxed": relaxed(optimum),
-        "gap_curve": gap_curve(key, joint, lacks, limits[0]),
-        "stiffness_curve": stiffness_curve(key, joint, lacks, limits[1]),
-        "joints": {
-            name: {"mass": other.objective_value, "conflicts": missed}
-            for name, (other, missed) in found.items()
-        },
-        "design": variant(key, joint=joint).source.text,  # type: ignore[union-attr]
+        "gap_curve": gap_curve(key, joint, optimum, lacks, limits["seal_gap"]),
+        "stiffness_curve": stiffness_curve(key, joint, optimum, lacks, limits["stiffness_min"]),
+        "design": getattr(variant(key, joint=joint).source, "text", ""),
     }
-    if lacks:
-        return numbers | composite(key, optimum)
-    caps = best(variant(key, joint=joint).changed({"caps.material": CAPS}))
-    numbers["caps"] = None if caps.infeasibility else caps.objective_value
-    return numbers if key in METALS else numbers | composite(key, optimum)
+    if joint == "bond" and not lacks:
+        numbers["warm_bond"] = warm_bond(key, optimum)
+    return numbers if key in METALS else numbers | composite(key, optimum, left_out)
 
 
-def composite(key: str, optimum: Any) -> Data:
+def warm_bond(key: str, optimum: Any) -> Data:
+    """Masses with and without the edge shear of temperature alone held within the strength."""
+    metric = "bond_thermal_factor"
+    limit = next(c.limit for c in optimum.evaluation.checks if c.metric == metric)
+    held = variant(key, asks={metric: limit})
+    return {
+        "held": least_mass(held),
+        "free": least_mass(variant(key, without=(metric,))),
+        "other_caps": least_mass(held.changed({"caps.material": CAPS})),
+    }
+
+
+def composite(key: str, optimum: Any, left_out: tuple[str, ...]) -> Data:
     """What only a composite wall has: criteria, cure stress, and a thin form of its theory."""
-    thin, lacks = solved(key, model="thin_laminate")
+    here = ao.Actuator(optimum.design)
+
+    def first_ply(changes: dict[str, float | str]) -> Any:
+        return ao.evaluate(here.changed(changes)).metrics["first_ply_factor"].value
+
+    rest = tuple(metric for metric in left_out if metric != "seal_gap")
+    thin, lacks = solved(key, without=rest, model="thin_laminate")
     exact = ao.evaluate(ao.Actuator(thin.design).changed({"barrel.model": "auto"}))
-    room = "20 degC"  # the temperature at which the parts are joined
+    same = ao.evaluate(here.changed({"barrel.model": "thin_laminate"}))
     return {
-        "criteria": {name: first_ply(optimum, {"barrel.criterion": name}) for name in CRITERIA},
-        "uncured": first_ply(optimum, {"environment.cure_temperature": room}),
-        "differences": {row.name: [row.exact, row.thin] for row in _differences(optimum)},
-        "thin": {"mass": thin.objective_value, "conflicts": lacks, "exact": measured(exact)},
-    }
-
-
-def _differences(optimum: Any) -> Any:
-    return optimum.evaluation.wall.differences
-
-
-def given() -> Data:
-    """The numbers of the task itself, from knee.yaml."""
-    design = ao.read(DESIGNS / "knee.yaml").design
-    rows = ao.evaluate(design).requirements
-    return {
-        "limits": {row.metric: row.limit for row in rows},
-        "supply": design.supply.pressure,
-        "proof_ratio": design.supply.proof_ratio,
-        "stroke": design.cylinder.stroke,
-        "clearance": design.piston.clearance,
-        "cases": [[c.name, c.direction, c.force, c.speed] for c in design.load_cases],
-        "friction_coefficient": design.seals.piston.friction_coefficient,
-        "cure": design.environment.cure_temperature,
-        "thickest": 8e-3,
+        "criteria": {name: first_ply({"barrel.criterion": name}) for name in CRITERIA},
+        "uncured": first_ply({"environment.cure_temperature": "20 degC"}),  # as when joined
+        "thin_growth": same.metrics["bore_growth"].value,
+        "thin": {"conflicts": lacks, "mass": thin.objective_value, "exact": measured(exact)},
     }
 
 
 def compute() -> Data:
     """The whole study as plain numbers, SI."""
-    task = given()
-    study = {"given": task, "version": ao.__version__}
-    study["variants"] = {key: one(key, task) for key in WALLS}
-    other = {
-        key: best(ao.read(text.replace(FIBRE, OTHER_FIBRE))).objective_value
-        for key in ("lined", "linerless")
-        if (text := study["variants"][key]["design"])
-    }
-    wrapped = best(variant("lined", wall=WALLS["lined"][:2]))
-    bare = ao.load_library().get(BARE).numbers["friction_coefficient"]
-    linerless = ao.Actuator(best(variant("linerless")).design)
-    rubbing = ao.evaluate(linerless.changed({"seals.piston.friction_coefficient": bare}))
+    design = ao.read(_file("knee.yaml")).design
+    limits = {r.metric: r.limit for r in ao.evaluate(design).requirements}
+    variants = {key: one(key, limits) for key in WALLS}
+    library = ao.load_library()
+    bare = library.get(BARE).numbers["friction_coefficient"]
+    smooth = ao.Actuator(best(variant("linerless")).design)
+    rubbing = smooth.changed({"seals.piston.friction_coefficient": bare})
     huge = variant("cloth", wall=[layer(CLOTH, HUGE_WALL, "") | {"bounds": {}}])
-    huge = huge.changed({"cylinder.bore": study["variants"]["cloth"]["bore"]})
-    return study | {
-        "other_fibre": other,
-        "hoop_only": {"mass": wrapped.objective_value} | measured(wrapped.evaluation),
+    huge = huge.changed({"cylinder.bore": variants["cloth"]["bore"]})
+    moduli = ("youngs_modulus", "youngs_modulus_1", "youngs_modulus_3")
+    return {
+        "version": ao.__version__,
+        "limits": limits,
+        "task": {
+            "supply": design.supply.pressure,
+            "proof_ratio": design.supply.proof_ratio,
+            "clearance": design.piston.clearance,
+            "friction_coefficient": design.seals.piston.friction_coefficient,
+            "cure_temperature": getattr(design.environment, "cure_temperature", None),
+            "cases": [[c.name, c.direction, c.force, c.speed] for c in design.load_cases],
+        },
+        "moduli": {
+            name: [library.get(name).numbers.get(key) for key in moduli]
+            for name in ("steel_e355", LINER, CLOTH)
+        },
+        "variants": variants,
+        "lightest_from": crossing(variants, "aluminium"),
+        "other_fibre": {
+            key: least_mass(ao.read(variants[key]["design"].replace(FIBRE, OTHER_FIBRE)))
+            for key in ("lined", "linerless")
+        },
+        "hoop_only": measured(best(variant("lined", wall=WALLS["lined"][:2])).evaluation),
         "bare": {
             "coefficient": bare,
-            "friction": rubbing.metrics["friction_running"].value,
+            "friction": ao.evaluate(rubbing).metrics["friction_running"].value,
         },
         "huge_wall": {
             "wall": huge.design.barrel.layup[0].thickness,
             "growth": ao.evaluate(huge).metrics["bore_growth"].value,
         },
-        "baseline": best(ao.read(DESIGNS / "steel_baseline.yaml")).objective_value,
+        "thickest": float(THICKEST.removesuffix(" mm")) * 1e-3,
+        "baseline": least_mass(ao.read(_file("steel_baseline.yaml"))),
     }
+
+
+def crossing(variants: Data, key: str) -> float | None:
+    """The gap from which on one barrel is the lightest of all; None where it never is."""
+    gaps = np.linspace(*gap_range(variants), 2001)
+    masses = {
+        name: np.interp(gaps, *np.transpose(row["gap_curve"]), left=inf)
+        for name, row in variants.items()
+    }
+    rest = np.min([mass for name, mass in masses.items() if name != key], axis=0)
+    lighter = masses[key] < rest
+    return float(gaps[np.argmax(lighter)]) if lighter.any() else None
+
+
+def gap_range(variants: Data) -> tuple[float, float]:
+    """Gaps the curves cover, a little beyond where the last of them is free."""
+    gaps = [gap for row in variants.values() for gap, _ in row["gap_curve"]]
+    return min(gaps), max(gaps) + 0.25 * (max(gaps) - min(gaps))
+
+
