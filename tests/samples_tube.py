@@ -94,7 +94,7 @@ SAMPLES: dict = {
                 replace(LINER, expansion_1=23e-6, expansion_2=23e-6),
                 replace(HOOP, expansion_1=1e-6, expansion_2=28e-6),
             ],
-            "temperature_change": -60.0, **WALL,
+            "temperature_change": -60.0, "held_force": -8e3, **WALL,
         },
     ],
 }  # fmt: skip

@@ -237,7 +237,9 @@ def stock(**ply):
     """The start file's materials, its ply with these properties."""
     metal = {"youngs_modulus": 70e9, "poissons_ratio": 0.3}
     names = {"iso_vg_32": "fluid", "nbr_70": "seal", "epoxy_structural": "adhesive"}
-    names |= dict.fromkeys(("al_6061_t6", "al_7075_t6", "ti_6al4v", "steel_42crmo4", "steel_e235"), "metal")
+    names |= dict.fromkeys(
+        ("al_6061_t6", "al_7075_t6", "ti_6al4v", "steel_42crmo4", "steel_e235"), "metal"
+    )
     found = {name: (kind, metal if kind == "metal" else {}) for name, kind in names.items()}
     return Stock(found | {"t700_epoxy": ("ply", ply)})
 

@@ -248,14 +248,11 @@ def test_first_ply_after_the_liner_has_yielded():
     assert 0.95 * min(true.values()) < evaluated()("first_ply_factor") <= min(true.values())
 
 
-@pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="the ladder takes a single ply as a balanced pair"
-)
 def test_burst_of_a_wall_that_twists():
-    """Once its single ply has cracked a wall twists away: burst is 4.4, as a pair it were 6.2."""
+    """Once its single ply has cracked a wall twists away: 4.4 where a pair had 6.2; no number."""
     exact = burst(TWISTED, LINERLESS_STRENGTHS)
     assert exact < 0.8 * burst(LINERLESS, LINERLESS_STRENGTHS)
-    assert evaluated(*TWISTED_WALL)("burst_factor") <= exact * (1 + 1e-6)
+    assert evaluated(*TWISTED_WALL)("burst_factor") is None
 
 
 # --- the thin laminate ---------------------------------------------------------------------------

@@ -167,9 +167,6 @@ def test_first_ply_between_tie_rods(tied):
     assert 0.9 * clamped < tied("first_ply_factor") <= clamped
 
 
-@pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="the ladder leaves the clamp out and pulls the wall"
-)
 def test_burst_between_tie_rods(tied):
     """Plates can press on a barrel, never pull it: burst is not above that at no axial force.
 

@@ -127,10 +127,8 @@ def compute(
     out: Computed,
 ) -> Friction:
     """Gland, contact and friction metrics of both seals; returns the cylinder's friction."""
-    supply = v["supply.pressure"]
     full_growth = SEAL_STEP * wall.growth
-    clamp = SEAL_STEP * wall.swelling.growth_by_force * wall.path.held  # of tie rods: constant
-    case_growth = clamp + (full_growth - clamp) * (state.driven_pressure / supply)
+    case_growth = SEAL_STEP * wall.case_growth
     parts = _both(v, design, geometry, state, case_growth)
     places: dict[str, dict[str, Array]] = {}
     total = Friction(0.0, 0.0, 0.0)

@@ -43,15 +43,16 @@ class Wall:
     `cycles` are the stresses of metals while pressure comes and goes, by place; `ply_fatigue` the
     fatigue strength of fibres over their stress amplitude.
 
-    `growth` is at supply pressure, the worse of the cases' own axial force and none; `missing` the
-    strengths nobody states;
-    `axial_line_stiffness` is E t of the wall along the axis, N/m; `mismatch` yield over the liner's
-    stress and `bond` strength over its pull on the plies, after cooling from the cure.
+    `growth` is at supply pressure, the worse of the cases' own axial force and none, `case_growth`
+    at the pressures of the cases; `missing` the strengths nobody states; `axial_line_stiffness` is
+    E t of the wall along the axis, N/m; `mismatch` yield over the liner's stress and `bond`
+    strength over its pull on the plies, after cooling from the cure.
     """
 
     swelling: Swelling
     path: LoadPath
     growth: Array
+    case_growth: Array
     bending_stiffness: Array
     shear_stiffness: Array
     thin_ratio: Array

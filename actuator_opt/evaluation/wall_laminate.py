@@ -13,9 +13,8 @@ from math import pi
 import numpy as np
 
 from ..design.model import Design
-from ..models import column, laminate, ply, ply_discount, rod, tube_burst, yielding
+from ..models import column, ply_discount, rod, tube_burst, yielding
 from ..models.autofrettage import Autofrettage, autofrettage
-from ..models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
 from ..models.strength_modes import Stress, load_multiplier
 from ..numeric import Array, maximum, real, where
 from . import load_path, plies
@@ -26,23 +25,7 @@ from .plies import Climate, Layer
 from .state import State
 from .values import Values
 from .wall import Cycle, Swelling, Wall
-
-PRESSURE, FORCE, WARMTH = range(3)
-"""Unit loads of an `_Answer`."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Answer:
-    """How the wall answers unit loads: ply stresses (faces, layers, loads, designs) and stiffness.
-
-    `walls` are the layers' stiffness in tube axes, as `rod.layered_section` takes them.
-    """
-
-    stress: Stress
-    growth: Array
-    axial: Array
-    warm_hoop: Array
-    walls: Sequence[Sequence[Array]]
+from .wall_answer import FORCE, PRESSURE, WARMTH, Answer, exact_answer, thin_answer
 
 
 def compute(
@@ -52,7 +35,7 @@ def compute(
     missing: list[str] = []
     states = plies.climates(v, design)
     layers = plies.layers(v, stock, design.barrel.layup, "barrel.layup", states, missing)
-    answer = _exact(layers, g) if exact else _thin(layers, g)
+    answer = exact_answer(layers, g) if exact else thin_answer(layers, g)
     shortening = answer.axial[PRESSURE]
     swelling = Swelling(
         growth=answer.growth[PRESSURE],
@@ -62,6 +45,7 @@ def compute(
     )
     path = load_path.derive(v, design, stock, g, state, swelling)
     free = v["supply.pressure"] * swelling.growth
+    own, pulled = state.driven_pressure * swelling.growth, swelling.growth_by_force * path.cases
     bending, shear = rod.layered_section(
         walls=answer.walls,
         thicknesses=[layer.thickness for layer in layers],
@@ -72,7 +56,8 @@ def compute(
     wall = Wall(
         swelling=swelling,
         path=path,
-        growth=maximum(free + swelling.growth_by_force * path.cases, free),
+        growth=maximum(free + pulled, free),
+        case_growth=maximum(own + pulled, own),
         bending_stiffness=bending,
         shear_stiffness=shear * column.cowper_tube(poissons_ratio=contraction, radius_ratio=ratio),
         thin_ratio=(g.outer_radius - g.inner_radius) / g.inner_radius,
@@ -94,96 +79,11 @@ def compute(
     return wall
 
 
-def _exact(layers: Sequence[Layer], g: Geometry) -> _Answer:
-    """The layered tube under its three unit loads."""
-    tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=g.inner_radius)
-    unit = np.eye(3)
-    state = tube_state(
-        tube=tube,
-        inner_pressure=unit[PRESSURE][:, None],
-        axial_force=unit[FORCE][:, None],
-        temperature_change=unit[WARMTH][:, None],
-    )
-    stress = ply_stresses_at_faces(tube=tube, state=state)
-    if tube.twisting:  # the plies of a pair then differ
-        other = ply_stresses_at_faces(tube=tube, state=state, opposite=True)
-        one, two, three, slip = (np.concatenate([a, b]) for a, b in zip(stress, other, strict=True))
-        stress = (one, two, three, slip)
-    return _Answer(
-        stress=stress,
-        growth=state.bore_displacement,
-        axial=state.axial_strain,
-        warm_hoop=state.hoop_strain[0, 0, WARMTH],
-        walls=[[part[i] for part in tube.wall] for i in range(len(layers))],
-    )
-
-
-def _thin(layers: Sequence[Layer], g: Geometry) -> _Answer:
-    """The membrane at mid-radius for stresses, at the bore for growth."""
-    reduced, turned, loads = [], [], []
-    for layer in layers:
-        c = layer.constants
-        stiffness = ply.ply_stiffness(
-            youngs_modulus_1=c["youngs_modulus_1"],
-            youngs_modulus_2=c["youngs_modulus_2"],
-            poissons_ratio_12=c["poissons_ratio_12"],
-            shear_modulus_12=c["shear_modulus_12"],
-        )
-        first, second = layer.expansions or (0.0, 0.0)
-        reduced.append(stiffness)
-        turned.append(ply.rotated(stiffness=stiffness, angle=layer.angle))
-        loads.append(
-            ply.thermal_ply_load(
-                stiffness=stiffness, angle=layer.angle, expansion_1=first, expansion_2=second
-            )
-        )
-    thicknesses = [layer.thickness for layer in layers]
-    sheet = laminate.membrane(plies=turned, thicknesses=thicknesses)
-    warm = laminate.thermal_line_forces(
-        loads=loads, thicknesses=thicknesses, temperature_change=1.0
-    )
-    middle, none = (g.inner_radius + g.outer_radius) / 2, 0.0 * np.atleast_1d(g.inner_radius)
-
-    def strains(radius: Array) -> tuple[Array, Array]:
-        return laminate.strains(
-            membrane=sheet,
-            axial_line_force=np.stack([none, none + 1 / (2 * pi * radius), none + warm[0]]),
-            hoop_line_force=np.stack([none + radius, none, none + warm[1]]),
-        )
-
-    axial, hoop = strains(middle)
-    unit = np.array([0.0, 0.0, 1.0])[:, None]
-    rows = []
-    for layer, stiffness in zip(layers, reduced, strict=True):
-        first, second = layer.expansions or (0.0, 0.0)
-        one, two, slip = ply.ply_stresses(
-            stiffness=stiffness,
-            angle=layer.angle,
-            axial_strain=axial,
-            hoop_strain=hoop,
-            free_strain_1=first * unit,
-            free_strain_2=second * unit,
-        )
-        pressed = 0.0 * one
-        if layer.isotropic:  # the pressure itself is exact at the liner's bore
-            pressed = pressed - np.array([1.0, 0.0, 0.0])[:, None]
-        rows.append(np.stack(np.broadcast_arrays(one, two, pressed, slip)))
-    stress = np.stack(rows, axis=1)[:, None]
-    near_axial, near_hoop = strains(g.inner_radius)
-    return _Answer(
-        stress=(stress[0], stress[1], stress[2], stress[3]),
-        growth=g.inner_radius * near_hoop,
-        axial=near_axial,
-        warm_hoop=hoop[WARMTH],
-        walls=[(q[0], q[1], 0.0, q[2], 0.0, 1.0, q[5]) for q in turned],
-    )
-
-
 @dataclass(frozen=True, slots=True)
 class _Rest:
     """What holds the wall without pressure: cooling from the cure, tie rods, autofrettage."""
 
-    answer: _Answer
+    answer: Answer
     states: Sequence[Climate]
     path: LoadPath
     autofrettage: Autofrettage | None
@@ -236,7 +136,7 @@ def _autofrettage(
     )
 
 
-def _load(answer: _Answer, rows: list[int], axial: Array) -> Stress:
+def _load(answer: Answer, rows: list[int], axial: Array) -> Stress:
     """Stress per pressure of some layers under every load path, (faces, layers, 1, paths, designs).
 
     `axial` is the axial force per pressure, (paths, designs).
@@ -375,6 +275,9 @@ def _ladder(
     if all(layer.isotropic for layer in layers):
         wall.missing.append("burst of a wall of several metals is not modelled")
         return
+    if not all(layer.balanced for layer in layers):
+        wall.missing.append("burst of a wall with single plies is not modelled: wind pairs")
+        return
     axial = np.stack(list(path.per_pressure.values()))[None]
     stack = [layer.as_wall() for layer in layers]
     if exact:
@@ -384,6 +287,7 @@ def _ladder(
             inner_radius=g.inner_radius,
             axial_force_per_pressure=axial,
             temperature_change=change if np.any(real(change)) else 0.0,
+            held_force=path.held,
         )
     else:
         ladder = ply_discount.burst_by_ply_discount(

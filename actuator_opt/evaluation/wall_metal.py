@@ -40,12 +40,17 @@ def compute(
         growth = barrel.bore_growth_as_published(pressure=supply, **size, **elastic)
     else:
         growth = maximum(free + swelling.growth_by_force * path.cases, free)
+    driven = state.driven_pressure
+    own = swelling.growth * driven
     outer, inner = 2 * g.outer_radius, 2 * g.inner_radius
     shear = modulus / (2 * (1 + ratio)) * area
     wall = Wall(
         swelling=swelling,
         path=path,
         growth=growth,
+        case_growth=growth * (driven / supply)
+        if as_published
+        else maximum(own + swelling.growth_by_force * path.cases, own),
         bending_stiffness=modulus * rod.second_moment(outer_diameter=outer, inner_diameter=inner),
         shear_stiffness=shear
         * column.cowper_tube(poissons_ratio=ratio, radius_ratio=inner / outer),

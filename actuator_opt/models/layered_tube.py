@@ -85,8 +85,8 @@ def closed(
     """Carry unit unknowns and the loads through all layers, and close the system.
 
     Columns of one march: bore hoop strain 1, axial strain 1, (twist 1,) and the loads. `transfer`
-    is a `LayeredTube`'s, `driven` (outputs, layers, ...) from `forcing`, or None; all of one number of
-    batch axes.
+    is a `LayeredTube`'s, `driven` (outputs, layers, ...) from `forcing`, or None; all of one number
+    of batch axes.
     """
     outputs, count, dims = transfer.shape[1], transfer.shape[2], transfer.ndim - 3
     ones = (1,) * dims

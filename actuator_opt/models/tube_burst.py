@@ -96,6 +96,7 @@ class _Tube:
     inner: Array
     outer: Array
     axial: Array
+    clamp: Array | None
     kept: float
     order: tuple[int, ...]
     metals: int
@@ -103,8 +104,8 @@ class _Tube:
 
     @property
     def stressed(self) -> bool:
-        """Whether the wall is away from its stress-free temperature."""
-        return self.hold is not None
+        """Whether the wall is clamped, or away from its stress-free temperature."""
+        return self.hold is not None or self.clamp is not None
 
     @property
     def sorted(self) -> bool:
@@ -140,7 +141,7 @@ class _Tube:
             transfer[:, :, :, None, ...],
             recovery[:, :, :, None, ...],
             loads,
-            loads * self.axial,
+            xp.stack([none + self.axial, none if self.clamp is None else none + self.clamp]),
             xp.stack([0 * driven, driven], axis=2),
             xp.stack([0 * ply, ply], axis=2),
         )
@@ -256,6 +257,7 @@ def burst_of_tube(
     inner_radius: Array,
     axial_force_per_pressure: Array,
     temperature_change: Array = 0.0,
+    held_force: Array = 0.0,
     residual: float = 1e-3,
     liner_share: float = 1.0,
 ) -> BurstLadder:
@@ -272,6 +274,7 @@ def burst_of_tube(
     inner_radius : bore radius [m]
     axial_force_per_pressure : N/p [m^2]; 0 is open, pi r_i^2 closed
     temperature_change : from the stress-free state; needs the layers' expansions [K]
+    held_force : axial force without pressure, the clamp of tie rods being negative [N]
     residual : stiffness left in a failed ply, shear stiffness left in a flowing metal [-]
     liner_share : stress a yielded metal keeps [-]: 1 perfectly plastic, 0 as if it were gone
 
@@ -304,7 +307,7 @@ def burst_of_tube(
     >>> print(step.layer, step.mode, f"{step.pressure / 1e6:.2f}")
     1 matrix tension 52.51
     """
-    numbers = [inner_radius, axial_force_per_pressure, temperature_change]
+    numbers = [inner_radius, axial_force_per_pressure, temperature_change, held_force]
     for layer in layers:
         numbers += [*_constants(layer, 1.0).values(), *inverse_strengths(layer)]
         numbers += [layer.thickness, layer.angle, layer.expansion_1, layer.expansion_2]
@@ -320,6 +323,7 @@ def burst_of_tube(
         inner=tube.inner[:, 0, ...],
         outer=tube.outer[:, 0, ...],
         axial=axial_force_per_pressure + 0 * shape,
+        clamp=None if isinstance(held_force, float) and held_force == 0.0 else held_force + shape,
         kept=(1 - residual) * liner_share,
         order=order,
         metals=sum(layer.strength is None for layer in layers),

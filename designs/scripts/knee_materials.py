@@ -14,7 +14,8 @@ from __future__ import annotations
 import json
 import sys
 from functools import cache
-from math import inf
+from importlib.util import find_spec
+from math import ceil, floor, inf
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +23,8 @@ import numpy as np
 import yaml
 
 import actuator_opt as ao
-from actuator_opt.reporting.figures import AREAS, Axes
-from actuator_opt.reporting.ink import BLUE, GREY, RED, Ink, spread_within
+from actuator_opt.reporting.figures import Axes
+from actuator_opt.reporting.ink import GREY, RED, Ink, spread_within
 from actuator_opt.reporting.text import fixed, trimmed
 from actuator_opt.reporting.writer import PIXELS_PER_INCH, TEMPLATE
 from actuator_opt.tables import aligned
@@ -204,13 +205,13 @@ def stiffness_curve(key: str, joint: str, found: Any, lacks: list[Data], limit: 
     base = variant(key, joint=joint, without=rest)
     near = base.changed({v.path: v.value for v in stiffest.variables})
 
-    def point(start: ao.Actuator, asked: float) -> list[float]:
-        start = start.changed({"requirements.stiffness_min.min": asked})
-        return [asked, best(start).objective_value]
+    def point(start: ao.Actuator, asked: float) -> list[Any]:
+        return [asked, least_mass(start.changed({"requirements.stiffness_min.min": asked}))]
 
     soft = [point(base, limit * share) for share in (0.65, 0.8, 0.9)]
     hard = [point(near, limit + (most - limit) * share) for share in (0.4, 0.7, 0.9, 0.98)]
-    return [*soft, [limit, found.objective_value], *hard]
+    points = [*soft, [limit, found.objective_value], *hard]
+    return [[asked, mass] for asked, mass in points if mass is not None]
 
 
 def one(key: str, limits: Data) -> Data:
@@ -286,6 +287,7 @@ def compute() -> Data:
         "task": {
             "supply": design.supply.pressure,
             "proof_ratio": design.supply.proof_ratio,
+            "stroke": design.cylinder.stroke,
             "clearance": design.piston.clearance,
             "friction_coefficient": design.seals.piston.friction_coefficient,
             "cure_temperature": getattr(design.environment, "cure_temperature", None),
@@ -328,8 +330,150 @@ def crossing(variants: Data, key: str) -> float | None:
 
 
 def gap_range(variants: Data) -> tuple[float, float]:
-    """Gaps the curves cover, a little beyond where the last of them is free."""
+    """Gaps the curves cover, and a little beyond where the last of them is free."""
     gaps = [gap for row in variants.values() for gap, _ in row["gap_curve"]]
-    return min(gaps), max(gaps) + 0.25 * (max(gaps) - min(gaps))
+    return min(gaps), max(gaps) + 0.2 * (max(gaps) - min(gaps))
 
 
+LABELS = {
+    "steel": "steel E355",
+    "aluminium": "aluminium 7075",
+    "cloth": "carbon cloth",
+    "lined": "carbon, aluminium liner",
+    "linerless": "carbon, no liner",
+}
+STROKES: Data = {
+    "steel": {"stroke": "#16202a", "pen": 0.35},
+    "aluminium": {"stroke": "#b98b3e", "pen": 0.5},
+    "cloth": {"stroke": "#a8321a", "pen": 0.4, "dash": (0.6, 0.7)},
+    "lined": {"stroke": "#0b4f83", "pen": 0.5},
+    "linerless": {"stroke": "#4f86a8", "pen": 0.5, "dash": (2.2, 0.9)},
+}
+
+
+def figure(study: Data, *, width: float = 180.0, height: float = 76.0) -> Ink:
+    """Optimal mass over the gap allowed (left) and over the stiffness asked for (right)."""
+    rows, limits = study["variants"], study["limits"]
+    low, high = gap_range(rows)
+    gaps = {key: [*row["gap_curve"], [high, row["gap_curve"][-1][1]]] for key, row in rows.items()}
+    stiffness = {key: row["stiffness_curve"] for key, row in rows.items()}
+    masses = [mass for points in (*gaps.values(), *stiffness.values()) for _, mass in points]
+    marked = [row["mass"] for row in rows.values()]
+    span = (25 * floor(40 * min(masses)), 25 * ceil(40 * 1.12 * max(marked)))
+    ink = Ink(width, height)
+    panel, top, tall = 58.0, 8.0, height - 18.0
+    left = Axes(ink, (9.0, top, panel, tall), (1e6 * low - 0.1, 1e6 * high), span)
+    left.frame("Mass, g", "largest gap at the piston seal allowed, µm")
+    _limit(ink, left, 1e6 * limits["seal_gap"])
+    ends = _curves(left, gaps, 1e6)
+    _names(ink, left, ends)
+    reach = [k for points in stiffness.values() for k, _ in points]
+    box = (9.0 + panel + 50.0, top, panel, tall)
+    right = Axes(ink, box, (1e-6 * min(reach), 1e-6 * max(reach)), span)
+    right.frame("Mass, g", "least stiffness asked for, kN/mm")
+    _limit(ink, right, 1e-6 * limits["stiffness_min"])
+    _curves(right, stiffness, 1e-6)
+    return ink
+
+
+def _limit(ink: Ink, axes: Axes, at: float) -> None:
+    """The requirement of the study, as a vertical line."""
+    x = axes.x(at)
+    bottom = axes.top + axes.height
+    ink.line((x, axes.top), (x, bottom), stroke=RED, pen=0.25, dash=(1.8, 1.0))
+    ink.text(x + 0.8, axes.top + 1.5, f"required: {trimmed(at)}", size=6.0, color=RED, halo=True)
+
+
+def _curves(axes: Axes, curves: Data, scale: float) -> dict[str, float]:
+    """Draw the curves; where each ends, in mm of paper."""
+    ends = {}
+    for key, points in curves.items():
+        xs = [scale * x for x, _ in points]
+        ys = [1e3 * mass for _, mass in points]
+        axes.ink.path(axes.clipped(xs, ys), **STROKES[key])
+        ends[key] = axes.y(ys[-1])
+    return ends
+
+
+def _names(ink: Ink, axes: Axes, ends: dict[str, float]) -> None:
+    """Names beside the curves, with a sample of each line."""
+    order = sorted(ends, key=lambda key: ends[key])
+    bottom = axes.top + axes.height
+    places = spread_within([ends[k] for k in order], [4.0] * len(order), axes.top, bottom)
+    right = axes.left + axes.width
+    for key, y in zip(order, places, strict=True):
+        ink.line((right, ends[key]), (right + 3.0, y), pen=0.13, stroke=GREY)
+        ink.line((right + 3.4, y), (right + 9.4, y), **STROKES[key])
+        ink.text(right + 10.4, y, LABELS[key], size=6.5)
+
+
+def page(study: Data) -> tuple[bytes, list[bytes]]:
+    """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
+    import typst
+
+    shared, mark, _ = TEMPLATE.read_text("utf-8").partition("// ---- sheet ----")
+    assert mark, "the report template no longer says where its definitions end"
+    source = (shared + Path(__file__).with_suffix(".typ").read_text("utf-8")).encode()
+    numbers = json.dumps(_rounded(study), indent=1, sort_keys=True, allow_nan=False)
+    data = json.loads(numbers) | {
+        "labels": LABELS,
+        "figure": figure(study).data(),
+        "numbers": numbers,
+    }
+    fonts = typst.Fonts(
+        include_system_fonts=False, include_embedded_fonts=True, font_paths=FONTS
+    )
+    inputs = {"data": json.dumps(data, ensure_ascii=False, sort_keys=True)}
+    compiler = typst.Compiler(source, font_paths=fonts, sys_inputs=inputs)
+    pdf: Any = compiler.compile(input=source, format="pdf", pdf_standards="a-3b", timestamp=0)
+    images: Any = compiler.compile(input=source, format="png", ppi=PIXELS_PER_INCH, timestamp=0)
+    return bytes(pdf), [images] if isinstance(images, bytes) else list(images)
+
+
+def _rounded(value: Any) -> Any:
+    """Numbers to seven digits, so that the last bits of a machine do not show."""
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_rounded(item) for item in value]
+    return float(f"{value:.7g}") if isinstance(value, float) else value
+
+
+def write(study: Data, folder: Path) -> int:
+    """Write knee_materials.pdf and the PNG of its first sheet; how many sheets there are."""
+    pdf, images = page(study)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "knee_materials.pdf").write_bytes(pdf)
+    (folder / "knee_materials.png").write_bytes(images[0])
+    return len(images)
+
+
+def table(study: Data) -> str:
+    """The masses and what binds, for the terminal."""
+    rows = [["barrel", "mass, g", "barrel, g", "wall, mm", "gap, µm", "limits that cost most"]]
+    for key, row in study["variants"].items():
+        costly = sorted(row["relaxed"], key=lambda name: row["relaxed"][name]["mass"])
+        missed = "".join(f" without {lack['metric']}" for lack in row["conflicts"])
+        rows.append(
+            [
+                LABELS[key] + missed,
+                fixed(1e3 * row["mass"], 1),
+                fixed(1e3 * row["parts"]["barrel"], 1),
+                fixed(1e3 * sum(thickness for _, thickness, _ in row["layers"]), 2),
+                fixed(1e6 * row["metrics"]["seal_gap"], 1),
+                ", ".join(costly[:3]),
+            ]
+        )
+    return aligned(rows, right=(1, 2, 3, 4))
+
+
+def main() -> None:
+    """Print the masses; write the report into the folder named on the command line."""
+    study = compute()
+    print(table(study))
+    if sys.argv[1:]:
+        print(write(study, Path(sys.argv[1])), "sheets")
+
+
+if __name__ == "__main__":
+    main()
