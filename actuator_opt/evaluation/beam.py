@@ -13,11 +13,11 @@ from ..design.model import Design
 from ..models import beam_column, column, stepped
 from ..numeric import Array, maximum, minimum
 from . import weight
+from .barrel import Wall
 from .geometry import Geometry
 from .rods import Rod
 from .state import State
 from .values import Values
-from .wall import Wall
 
 FIXED_PINNED = 0.6992
 """Effective length factor of a column fixed at one end, pinned at the other: pi/4.4934."""

@@ -16,11 +16,11 @@ from ..models.rod import section_area
 from ..models.strength_modes import load_multiplier
 from ..numeric import Array, absolute, maximum
 from .allow import Stock
+from .barrel import Wall
 from .geometry import Geometry
 from .rods import Rod
 from .rows import Computed
 from .values import Values
-from .wall import Wall
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from ..design.material import Material
 from ..design.materials import Library, load_library
 from ..design.model import Design
 from ..version import VERSION
-from . import doubts, outline, through_wall
+from . import doubts, outline, study
 from .allow import allowances, extremes
 from .check_list import CHECK_LIST, CheckLine, Sense
 from .kernel import Pass, Subject, compute
@@ -138,7 +138,7 @@ def evaluate(subject: Subject) -> Evaluation:
         curve=_curve(done, v, metrics["stiffness_min"].case),
         outlines=outline.outlines(design, subject.materials, done.geometry),
         lengths=outline.lengths(design, done.geometry),
-        wall=through_wall.study(subject, v, done),
+        wall=study.study(subject, v, done),
     )
 
 

@@ -7,12 +7,12 @@ from ..models import density, endurance, retention, rod
 from ..numeric import Array, maximum, where
 from . import rod_strength
 from .allow import Stock
+from .barrel import Wall
 from .geometry import Geometry
 from .rods import Rod
 from .rows import Computed
 from .state import State
 from .values import Values
-from .wall import Wall
 
 THREAD_NOTCH = 3.0
 """Fatigue notch factor of a rolled thread root, [Shigley2011] table 8-16."""

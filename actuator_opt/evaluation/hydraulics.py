@@ -10,13 +10,13 @@ from typing import NamedTuple
 from ..design.model import Design
 from ..models import damping, dynamics, forces, lines, stiffness
 from ..numeric import Array
+from .barrel import Wall
 from .geometry import Geometry
 from .rods import Rod
 from .rows import Computed
 from .sealing import Friction
 from .state import State
 from .values import Values
-from .wall import Wall
 
 
 class Give(NamedTuple):

@@ -17,6 +17,7 @@ from . import beam as beam_module
 from . import duty, hydraulics, rods, sealing, state, strength, weight
 from . import geometry as geometry_module
 from .allow import Stock
+from .barrel import Wall
 from .beam import Beam
 from .geometry import Geometry
 from .plugin import Plugin
@@ -24,7 +25,6 @@ from .rods import Rod
 from .rows import Computed
 from .state import State
 from .values import Values
-from .wall import Wall
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from .. import quantities
 from ..design.model import Design
 from ..numeric import Array
 from ..tables import aligned
-from .wall_study import WallStudy
+from .study.record import WallStudy
 
 
 @dataclass(frozen=True, slots=True)

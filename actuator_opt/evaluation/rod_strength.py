@@ -17,12 +17,12 @@ from ..models.strength_modes import Stress, load_multiplier
 from ..numeric import Array, maximum, where
 from . import plies
 from .allow import Stock
+from .barrel import Cycle
 from .beam import Beam
 from .geometry import Geometry
 from .rods import FORCE, OUTSIDE, WARMTH, Rod
 from .rows import Computed
 from .state import State
-from .wall import Cycle
 
 
 def yields(

@@ -8,11 +8,11 @@ from ..design.model import Design
 from ..models import damping, friction, gland, seals
 from ..numeric import Array, absolute, maximum, real, where
 from .allow import Stock
+from .barrel import SEAL_STEP, Wall
 from .geometry import Geometry, Groove
 from .rows import Computed
 from .state import State
 from .values import Values
-from .wall import SEAL_STEP, Wall
 
 STRIBECK_EXPONENT = 2.0
 """Shape of the Stribeck curve where no record says otherwise ([MECE5005], [Huang2017] Table 2)."""

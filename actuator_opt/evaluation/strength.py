@@ -11,15 +11,15 @@ from math import pi, sqrt
 from ..design.model import Design
 from ..models import end_plate, retention, rod
 from ..numeric import Array, real, where
-from . import bonds, load_path, rod_strength
+from . import bonds, rod_strength
 from .allow import Stock
+from .barrel import Wall, load_path
 from .beam import Beam, overhang
 from .geometry import Geometry
 from .rods import Rod
 from .rows import Computed
 from .state import State
 from .values import Values
-from .wall import Wall
 
 HOLE = 2.0
 """Stress at the edge of a small central hole over that of the solid plate [Timoshenko1959]."""

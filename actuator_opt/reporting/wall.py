@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import re
 
-from ..evaluation.alternatives import Difference
 from ..evaluation.result import Evaluation
-from ..evaluation.wall_study import YIELD, Ratio, WallStudy
+from ..evaluation.study.alternatives import Difference
+from ..evaluation.study.record import YIELD, Ratio, WallStudy
 from ..models.criteria import CRITERIA
 from . import text
 from .blocks import Block, Cell, clean, column, figure, short, soft, table

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..evaluation.wall_study import Profile, WallStudy
+from ..evaluation.study.record import Profile, WallStudy
 from .figures import Axes
 from .ink import BLACK, BLUE, GREY, RED, WHITE, Ink, Point, text_width
 from .text import number

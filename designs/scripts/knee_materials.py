@@ -1,4 +1,4 @@
-"""One robot knee, five barrels: steel, aluminium, carbon cloth, wound carbon with and without liner.
+"""One knee, five barrels: steel, aluminium, carbon cloth, wound carbon with and without a liner.
 
 Each is brought to its own optimum of mass for the requirements and load cases of knee.yaml. What
 each limit costs there, what a thin laminate would have promised, and how the masses move with the
@@ -14,7 +14,6 @@ from __future__ import annotations
 import json
 import sys
 from functools import cache
-from importlib.util import find_spec
 from math import ceil, floor, inf
 from pathlib import Path
 from typing import Any
@@ -65,10 +64,19 @@ WALLS = {
 """The walls from the bore outwards; cloth has its two fibre directions along and around."""
 METALS = ("steel", "aluminium")
 METRICS = (
-    "bore_growth growth_at_seal seal_gap stiffness_min friction_running proof_factor "
-    "first_ply_factor liner_yield_factor burst_factor buckling_factor retention_factor "
-    "bond_thermal_factor"
-).split()
+    "bore_growth",
+    "growth_at_seal",
+    "seal_gap",
+    "stiffness_min",
+    "friction_running",
+    "first_ply_factor",
+    "liner_yield_factor",
+    "proof_factor",
+    "burst_factor",
+    "buckling_factor",
+    "retention_factor",
+    "bond_thermal_factor",
+)
 CRITERIA = ("max_stress", "max_strain", "tsai_wu", "hashin", "puck")
 
 
@@ -100,7 +108,8 @@ def variant(
     `model` is that of the barrel.
     """
     data, layers = _data("knee.yaml"), wall or WALLS[key]
-    data["name"] = f"knee, {key} barrel"
+    data["name"] = f"robot knee, {key} barrel"
+    data["notes"] = "A variant of designs/knee.yaml made by designs/scripts/knee_materials.py."
     data["barrel"] |= {"layup": [dict(part["ply"]) for part in layers], "model": model}
     free = {path: b for path, b in data["variables"].items() if not path.startswith("barrel.")}
     for index, part in enumerate(layers):
@@ -160,9 +169,7 @@ def measured(evaluation: Any) -> Data:
             part: float(c[weakest] * curve.stiffness[weakest])
             for part, c in curve.contributions.items()
         },
-        "missed": {
-            c.metric: [c.value, c.limit] for c in evaluation.checks if c.status == "missed"
-        },
+        "missed": {c.metric: [c.value, c.limit] for c in evaluation.checks if c.status == "missed"},
         "unverified": len(evaluation.unverified),
     }
 
@@ -196,8 +203,8 @@ def gap_curve(key: str, joint: str, found: Any, lacks: list[Data], limit: float)
     return [first, *map(point, inside), [end, free.objective_value]]
 
 
-def stiffness_curve(key: str, joint: str, found: Any, lacks: list[Data], limit: float) -> list[Any]:
-    """(stiffness asked for, mass), up to the most this wall reaches within its bounds."""
+def stiffness_curve(key: str, joint: str, found: Any, lacks: list[Data], limit: float) -> Data:
+    """(stiffness asked for, mass), up to near the most this wall reaches within its bounds."""
     rest = tuple(row["metric"] for row in lacks)
     goal = {"maximise": "stiffness_min"}
     stiffest = best(variant(key, joint=joint, without=(*rest, "stiffness_min"), goal=goal))
@@ -211,7 +218,8 @@ def stiffness_curve(key: str, joint: str, found: Any, lacks: list[Data], limit: 
     soft = [point(base, limit * share) for share in (0.65, 0.8, 0.9)]
     hard = [point(near, limit + (most - limit) * share) for share in (0.4, 0.7, 0.9, 0.98)]
     points = [*soft, [limit, found.objective_value], *hard]
-    return [[asked, mass] for asked, mass in points if mass is not None]
+    kept = [[asked, mass] for asked, mass in points if mass is not None]
+    return {"stiffest": most, "stiffness_curve": kept}
 
 
 def one(key: str, limits: Data) -> Data:
@@ -225,14 +233,15 @@ def one(key: str, limits: Data) -> Data:
     numbers = measured(optimum.evaluation) | {
         "joint": joint,
         "other_joint": {n: r.objective_value for n, (r, _) in tried.items() if n != joint},
+        "other_joint_lacks": [c["metric"] for n, (_, m) in tried.items() if n != joint for c in m],
         "conflicts": lacks,
         "status": optimum.status,
         "at_bounds": [v.path for v in optimum.variables if v.at_bound],
         "relaxed": relaxed(optimum),
         "gap_curve": gap_curve(key, joint, optimum, lacks, limits["seal_gap"]),
-        "stiffness_curve": stiffness_curve(key, joint, optimum, lacks, limits["stiffness_min"]),
         "design": getattr(variant(key, joint=joint).source, "text", ""),
     }
+    numbers |= stiffness_curve(key, joint, optimum, lacks, limits["stiffness_min"])
     if joint == "bond" and not lacks:
         numbers["warm_bond"] = warm_bond(key, optimum)
     return numbers if key in METALS else numbers | composite(key, optimum, left_out)
@@ -283,6 +292,7 @@ def compute() -> Data:
     moduli = ("youngs_modulus", "youngs_modulus_1", "youngs_modulus_3")
     return {
         "version": ao.__version__,
+        "fibre": FIBRE,
         "limits": limits,
         "task": {
             "supply": design.supply.pressure,
@@ -409,6 +419,7 @@ def _names(ink: Ink, axes: Axes, ends: dict[str, float]) -> None:
 
 def page(study: Data) -> tuple[bytes, list[bytes]]:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
+    import matplotlib
     import typst
 
     shared, mark, _ = TEMPLATE.read_text("utf-8").partition("// ---- sheet ----")
@@ -420,8 +431,9 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
         "figure": figure(study).data(),
         "numbers": numbers,
     }
+    folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
     fonts = typst.Fonts(
-        include_system_fonts=False, include_embedded_fonts=True, font_paths=FONTS
+        include_system_fonts=False, include_embedded_fonts=True, font_paths=[str(folder)]
     )
     inputs = {"data": json.dumps(data, ensure_ascii=False, sort_keys=True)}
     compiler = typst.Compiler(source, font_paths=fonts, sys_inputs=inputs)

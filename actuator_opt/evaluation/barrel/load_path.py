@@ -9,24 +9,35 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..design.model import Design
-from ..models import barrel_ends
-from ..numeric import Array, maximum
-from .allow import Stock
-from .geometry import Geometry
-from .state import State
-from .values import Values
-
-if TYPE_CHECKING:
-    from .wall import Swelling
+from ...design.model import Design
+from ...models import barrel_ends
+from ...numeric import Array, maximum
+from ..allow import Stock
+from ..geometry import Geometry
+from ..state import State
+from ..values import Values
 
 NONE = "no axial load"
 STOP = "piston at the end stop"
 LARGEST = "largest axial load"
+
+
+@dataclass(frozen=True, slots=True)
+class Swelling:
+    """How the wall answers pressure and axial force, far from its ends, (designs,).
+
+    `growth` and `shortening` are bore growth [m/Pa] and axial strain [1/Pa] per pressure at no
+    axial force, `stretch` the axial strain per axial force [1/N]; growth per axial force is
+    shortening/(2 pi r_i) by reciprocity.
+    """
+
+    growth: Array
+    shortening: Array
+    stretch: Array
+    growth_by_force: Array
 
 
 @dataclass(frozen=True, slots=True)

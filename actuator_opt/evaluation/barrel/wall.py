@@ -4,27 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from ..models.autofrettage import Autofrettage
-from ..numeric import Array
-from .load_path import LoadPath
+from ...models.autofrettage import Autofrettage
+from ...numeric import Array
+from .load_path import LoadPath, Swelling
 
 SEAL_STEP = 0.5
 """Share of the far-field growth that acts at a pressure step, `barrel.pressure_step_factor(0)`."""
-
-
-@dataclass(frozen=True, slots=True)
-class Swelling:
-    """How the wall answers pressure and axial force, far from its ends, (designs,).
-
-    `growth` and `shortening` are bore growth [m/Pa] and axial strain [1/Pa] per pressure at no
-    axial force, `stretch` the axial strain per axial force [1/N]; growth per axial force is
-    shortening/(2 pi r_i) by reciprocity.
-    """
-
-    growth: Array
-    shortening: Array
-    stretch: Array
-    growth_by_force: Array
 
 
 @dataclass(frozen=True, slots=True)

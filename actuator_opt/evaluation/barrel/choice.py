@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..design.material import Material
-from ..design.model import Design
-from . import wall_laminate, wall_metal
-from .allow import Stock
-from .geometry import Geometry
-from .state import State
-from .values import Values
+from ...design.material import Material
+from ...design.model import Design
+from ..allow import Stock
+from ..geometry import Geometry
+from ..state import State
+from ..values import Values
+from . import laminate, metal
 from .wall import Wall
 
 LAMINATES = ("layered", "thin_laminate")
@@ -34,6 +34,6 @@ def compute(v: Values, design: Design, stock: Stock, geometry: Geometry, state: 
     model = kind(design, stock.materials)
     if model in LAMINATES:
         exact = model == "layered"
-        return wall_laminate.compute(v, design, stock, geometry, state, exact=exact)
+        return laminate.compute(v, design, stock, geometry, state, exact=exact)
     published = model == "as_published"
-    return wall_metal.compute(v, design, stock, geometry, state, as_published=published)
+    return metal.compute(v, design, stock, geometry, state, as_published=published)

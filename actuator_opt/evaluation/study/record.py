@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from math import isfinite
 from typing import Any, Literal
 
-from ..numeric import Array
+from ...numeric import Array
 from .alternatives import Difference, MetalTube, Settling, Thickness
 
 YIELD = "yield"

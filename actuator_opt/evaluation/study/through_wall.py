@@ -14,27 +14,27 @@ from typing import Literal
 
 import numpy as np
 
-from ..models import ply_discount, tube_burst, yielding
-from ..models.autofrettage import Autofrettage
-from ..models.criteria import CRITERIA
-from ..models.layered_tube import (
+from ...models import ply_discount, tube_burst, yielding
+from ...models.autofrettage import Autofrettage
+from ...models.criteria import CRITERIA
+from ...models.layered_tube import (
     TubeLayer,
     layered_tube,
     ply_stresses_at_faces,
     tube_state,
     tube_stresses,
 )
-from ..models.strength_modes import Stress, load_multiplier
-from ..numeric import Array
-from . import alternatives, plies
-from .allow import Stock
-from .barrel import LAMINATES, kind
-from .geometry import Geometry
-from .kernel import Pass, Subject
-from .plies import Climate, Layer
-from .values import Values
-from .wall import Wall
-from .wall_study import (
+from ...models.strength_modes import Stress, load_multiplier
+from ...numeric import Array
+from .. import plies
+from ..allow import Stock
+from ..barrel import LAMINATES, Wall, kind
+from ..geometry import Geometry
+from ..kernel import Pass, Subject
+from ..plies import Climate, Layer
+from ..values import Values
+from . import alternatives
+from .record import (
     YIELD,
     Ladder,
     LayerRow,

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from math import pi
 
-from ..design.model import Design
-from ..models import barrel, barrel_ends, column, rod, yielding
-from ..numeric import Array, maximum
+from ...design.model import Design
+from ...models import barrel, barrel_ends, column, rod, yielding
+from ...numeric import Array, maximum
+from ..allow import Stock
+from ..geometry import Geometry
+from ..state import State
+from ..values import Values
 from . import load_path
-from .allow import Stock
-from .geometry import Geometry
-from .load_path import LoadPath
-from .state import State
-from .values import Values
-from .wall import Cycle, Swelling, Wall
+from .load_path import LoadPath, Swelling
+from .wall import Cycle, Wall
 
 
 def compute(

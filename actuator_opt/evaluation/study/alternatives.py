@@ -11,17 +11,17 @@ from math import e, isfinite, pi
 
 import numpy as np
 
-from ..design.materials import load_library
-from ..models import barrel, barrel_ends, laminate, liner, ply
-from ..models.layered_tube import layered_tube, tube_state
-from ..numeric import Array
-from . import wall_laminate
-from .allow import Stock, allowances, extremes
-from .geometry import Geometry
-from .kernel import Pass, Subject
-from .plies import Layer
-from .values import Values
-from .wall import Wall
+from ...design.materials import load_library
+from ...models import barrel, barrel_ends, laminate, liner, ply
+from ...models.layered_tube import layered_tube, tube_state
+from ...numeric import Array
+from ..allow import Stock, allowances, extremes
+from ..barrel import Wall
+from ..barrel import laminate as laminated
+from ..geometry import Geometry
+from ..kernel import Pass, Subject
+from ..plies import Layer
+from ..values import Values
 
 METALS = ("steel_e355", "al_7075_t6")
 """The metal barrels set beside every wall: the usual honed steel tube, the usual light one."""
@@ -177,9 +177,7 @@ def differences(
     subject: Subject, v: Values, stock: Stock, done: Pass, *, exact: bool
 ) -> tuple[Difference, ...]:
     """The wall by both laminate theories; `exact` says which one the design uses."""
-    other = wall_laminate.compute(
-        v, subject.design, stock, done.geometry, done.state, exact=not exact
-    )
+    other = laminated.compute(v, subject.design, stock, done.geometry, done.state, exact=not exact)
     pair = (done.wall, other) if exact else (other, done.wall)
     growths = [float(np.max(np.real(wall.growth))) for wall in pair]
     rows = [Difference("bore_growth", *growths)]

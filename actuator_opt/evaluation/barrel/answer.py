@@ -11,12 +11,12 @@ from math import pi
 
 import numpy as np
 
-from ..models import laminate, ply
-from ..models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
-from ..models.strength_modes import Stress
-from ..numeric import Array
-from .geometry import Geometry
-from .plies import Layer
+from ...models import laminate, ply
+from ...models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
+from ...models.strength_modes import Stress
+from ...numeric import Array
+from ..geometry import Geometry
+from ..plies import Layer
 
 PRESSURE, FORCE, WARMTH = range(3)
 """Unit loads of an `Answer`."""

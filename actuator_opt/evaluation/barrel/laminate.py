@@ -12,20 +12,21 @@ from math import pi
 
 import numpy as np
 
-from ..design.model import Design
-from ..models import column, ply_discount, rod, tube_burst, yielding
-from ..models.autofrettage import Autofrettage, autofrettage
-from ..models.strength_modes import Stress, load_multiplier
-from ..numeric import Array, maximum, real, where
-from . import load_path, plies
-from .allow import Stock
-from .geometry import Geometry
-from .load_path import LoadPath
-from .plies import Climate, Layer
-from .state import State
-from .values import Values
-from .wall import Cycle, Swelling, Wall
-from .wall_answer import FORCE, PRESSURE, WARMTH, Answer, exact_answer, thin_answer
+from ...design.model import Design
+from ...models import column, ply_discount, rod, tube_burst, yielding
+from ...models.autofrettage import Autofrettage, autofrettage
+from ...models.strength_modes import Stress, load_multiplier
+from ...numeric import Array, maximum, real, where
+from .. import plies
+from ..allow import Stock
+from ..geometry import Geometry
+from ..plies import Climate, Layer
+from ..state import State
+from ..values import Values
+from . import load_path
+from .answer import FORCE, PRESSURE, WARMTH, Answer, exact_answer, thin_answer
+from .load_path import LoadPath, Swelling
+from .wall import Cycle, Wall
 
 
 def compute(

@@ -1,0 +1,7 @@
+"""The barrel in an evaluation: its wall by the tube model that suits, and the axial force in it."""
+
+from .choice import LAMINATES, compute, kind
+from .load_path import Swelling
+from .wall import SEAL_STEP, Cycle, Wall
+
+__all__ = ["LAMINATES", "SEAL_STEP", "Cycle", "Swelling", "Wall", "compute", "kind"]
