@@ -17,8 +17,13 @@ def main() -> None:
     for path in sorted((ROOT / "designs").glob("*.yaml")):
         actuator = ao.read(path)
         verb = "optimise" if actuator.design.variables else "report"
-        subject = ao.optimise(actuator) if actuator.design.variables else ao.evaluate(actuator)
         command = f"actuator-opt {verb} designs/{path.name}"
+        if actuator.design.variables:
+            plies = any(ply.ply_thickness is not None for ply in actuator.design.barrel.layup)
+            subject = ao.optimise(actuator, whole_plies=plies)
+            command += " --whole-plies" if plies else ""
+        else:
+            subject = ao.evaluate(actuator)
         files = ao.report(
             subject, folder=ROOT / "reports" / "samples", actuator=actuator, command=command
         )

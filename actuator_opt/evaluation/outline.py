@@ -123,6 +123,17 @@ def _caps(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     yield "caps", design.caps.material, polygons
 
 
+def _tie_rods(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """One tie rod in the plane of the section, between the outer faces of both plates."""
+    retention = design.retention
+    if retention is None or retention.type != "tie_rods" or retention.thread is None:
+        return
+    assert retention.material is not None
+    low, size = float(g.outer_radius), (float(g.plate_radius) - float(g.outer_radius)) / 2
+    shape = _rectangle(at.face, at.end + float(g.plate), low + size / 2, low + 3 * size / 2)
+    yield "tie rods", retention.material, [shape]
+
+
 def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     """Piston, head plug, rod and seals."""
     radius = at.bore - float(g.piston_clearance)
@@ -194,7 +205,7 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
         (_rectangle(at.piston_end, at.head, at.rod, at.bore),),
         "oil",
     )
-    groups = (_barrel, _caps, _inside, _eyes)
+    groups = (_barrel, _caps, _tie_rods, _inside, _eyes)
     parts = [part for group in groups for part in group(design, g, at)]
     return (
         oil,

@@ -250,8 +250,8 @@ def _ladder(evaluation: Evaluation, study: WallStudy) -> Block:
         note = "Red: what the check or the requirement asks for. "
     if steps:
         note += (
-            "Steps: maximum stress without cure stress, which the first cracks release; failed"
-            " plies lose their matrix, yielded metal keeps its stress."
+            "Steps: maximum stress, starting from the cure stress; failed plies lose their matrix,"
+            " yielded metal keeps its stress."
         )
     if left_out:
         note += f" {left_out} steps are left out."

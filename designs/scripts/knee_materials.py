@@ -284,6 +284,7 @@ def compute() -> Data:
     limits = {r.metric: r.limit for r in ao.evaluate(design).requirements}
     variants = {key: one(key, limits) for key in WALLS}
     library = ao.load_library()
+    rubber = library.get(design.seals.piston.compound)
     bare = library.get(BARE).numbers["friction_coefficient"]
     smooth = ao.Actuator(best(variant("linerless")).design)
     rubbing = smooth.changed({"seals.piston.friction_coefficient": bare})
@@ -314,6 +315,7 @@ def compute() -> Data:
             for key in ("lined", "linerless")
         },
         "hoop_only": measured(best(variant("lined", wall=WALLS["lined"][:2])).evaluation),
+        "friction_scatter": rubber.properties["friction_coefficient"].scatter,
         "bare": {
             "coefficient": bare,
             "friction": ao.evaluate(rubbing).metrics["friction_running"].value,
@@ -349,7 +351,7 @@ LABELS = {
     "steel": "steel E355",
     "aluminium": "aluminium 7075",
     "cloth": "carbon cloth",
-    "lined": "carbon, aluminium liner",
+    "lined": "carbon on aluminium liner",
     "linerless": "carbon, no liner",
 }
 STROKES: Data = {
@@ -361,7 +363,7 @@ STROKES: Data = {
 }
 
 
-def figure(study: Data, *, width: float = 180.0, height: float = 76.0) -> Ink:
+def figure(study: Data, *, width: float = 180.0, height: float = 68.0) -> Ink:
     """Optimal mass over the gap allowed (left) and over the stiffness asked for (right)."""
     rows, limits = study["variants"], study["limits"]
     low, high = gap_range(rows)
@@ -391,7 +393,10 @@ def _limit(ink: Ink, axes: Axes, at: float) -> None:
     x = axes.x(at)
     bottom = axes.top + axes.height
     ink.line((x, axes.top), (x, bottom), stroke=RED, pen=0.25, dash=(1.8, 1.0))
-    ink.text(x + 0.8, axes.top + 1.5, f"required: {trimmed(at)}", size=6.0, color=RED, halo=True)
+    beside: Any = ("left", 0.8) if x < axes.left + axes.width / 2 else ("right", -0.8)
+    words = f"required: {trimmed(at)}"
+    y = bottom - 1.8
+    ink.text(x + beside[1], y, words, size=6.0, color=RED, anchor=beside[0], halo=True)
 
 
 def _curves(axes: Axes, curves: Data, scale: float) -> dict[str, float]:

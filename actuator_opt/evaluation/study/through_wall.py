@@ -360,6 +360,7 @@ def _ladder(
                 inner_radius=float(g.inner_radius),
                 axial_force_per_pressure=load,
                 temperature_change=float(states[climate].change),
+                held_force=alternatives.single(wall.path.held),
             )
             if exact
             else ply_discount.burst_by_ply_discount(
