@@ -1,15 +1,17 @@
-"""Write the committed sample reports, one for each shipped design, into reports/samples.
+"""Write the committed reports into reports/samples: one for each shipped design, and the study.
 
 Run from the root of the checkout; the same input gives the same bytes.
 """
 
 from __future__ import annotations
 
+import runpy
 from pathlib import Path
 
 import actuator_opt as ao
 
 ROOT = Path(__file__).resolve().parent.parent
+STUDY = ROOT / "designs" / "scripts" / "knee_materials.py"
 
 
 def main() -> None:
@@ -31,6 +33,9 @@ def main() -> None:
             if file.path.stem != path.stem:  # the PDF holds every sheet; one PNG is enough here
                 file.path.unlink()
         print(files[0].path.relative_to(ROOT), files[0].pages, "sheets")
+    study = runpy.run_path(str(STUDY))
+    sheets = study["write"](study["compute"](), ROOT / "reports" / "samples")
+    print(f"reports/samples/{STUDY.stem}.pdf", sheets, "sheets")
 
 
 if __name__ == "__main__":

@@ -165,6 +165,7 @@ def measured(evaluation: Any) -> Data:
         "skirt": [design.retention.length, design.retention.wall],
         "layers": [[p.material, p.thickness, p.angle] for p in design.barrel.layup],
         "metrics": {name: m.value for name, m in metrics.items()},
+        "places": {name: m.place or "" for name, m in metrics.items()},
         "shares": {
             part: float(c[weakest] * curve.stiffness[weakest])
             for part, c in curve.contributions.items()
@@ -216,7 +217,7 @@ def stiffness_curve(key: str, joint: str, found: Any, lacks: list[Data], limit: 
         return [asked, least_mass(start.changed({"requirements.stiffness_min.min": asked}))]
 
     soft = [point(base, limit * share) for share in (0.65, 0.8, 0.9)]
-    hard = [point(near, limit + (most - limit) * share) for share in (0.4, 0.7, 0.9, 0.98)]
+    hard = [point(near, limit + (most - limit) * share) for share in (0.4, 0.7, 0.92)]
     points = [*soft, [limit, found.objective_value], *hard]
     kept = [[asked, mass] for asked, mass in points if mass is not None]
     return {"stiffest": most, "stiffness_curve": kept}
@@ -236,6 +237,7 @@ def one(key: str, limits: Data) -> Data:
         "other_joint_lacks": [c["metric"] for n, (_, m) in tried.items() if n != joint for c in m],
         "conflicts": lacks,
         "status": optimum.status,
+        "values": {v.path: v.value for v in optimum.variables},
         "at_bounds": [v.path for v in optimum.variables if v.at_bound],
         "relaxed": relaxed(optimum),
         "gap_curve": gap_curve(key, joint, optimum, lacks, limits["seal_gap"]),
@@ -249,12 +251,14 @@ def one(key: str, limits: Data) -> Data:
 
 def warm_bond(key: str, optimum: Any) -> Data:
     """Masses with and without the edge shear of temperature alone held within the strength."""
-    metric = "bond_thermal_factor"
+    metric, mass = "bond_thermal_factor", optimum.objective_value
     limit = next(c.limit for c in optimum.evaluation.checks if c.metric == metric)
     held = variant(key, asks={metric: limit})
+    holds = optimum.evaluation.metrics[metric].value > limit * (1 - 1e-6)
     return {
-        "held": least_mass(held),
-        "free": least_mass(variant(key, without=(metric,))),
+        "required": holds,
+        "held": mass if holds else least_mass(held),
+        "free": least_mass(variant(key, without=(metric,))) if holds else mass,
         "other_caps": least_mass(held.changed({"caps.material": CAPS})),
     }
 
@@ -286,8 +290,10 @@ def compute() -> Data:
     library = ao.load_library()
     rubber = library.get(design.seals.piston.compound)
     bare = library.get(BARE).numbers["friction_coefficient"]
-    smooth = ao.Actuator(best(variant("linerless")).design)
-    rubbing = smooth.changed({"seals.piston.friction_coefficient": bare})
+    smooth = variants["linerless"]
+    rubbing = ao.read(smooth["design"]).changed(
+        smooth["values"] | {"seals.piston.friction_coefficient": bare}
+    )
     huge = variant("cloth", wall=[layer(CLOTH, HUGE_WALL, "") | {"bounds": {}}])
     huge = huge.changed({"cylinder.bore": variants["cloth"]["bore"]})
     moduli = ("youngs_modulus", "youngs_modulus_1", "youngs_modulus_3")
@@ -351,7 +357,7 @@ LABELS = {
     "steel": "steel E355",
     "aluminium": "aluminium 7075",
     "cloth": "carbon cloth",
-    "lined": "carbon on aluminium liner",
+    "lined": "carbon, Al liner",
     "linerless": "carbon, no liner",
 }
 STROKES: Data = {
@@ -363,7 +369,7 @@ STROKES: Data = {
 }
 
 
-def figure(study: Data, *, width: float = 180.0, height: float = 68.0) -> Ink:
+def figure(study: Data, *, width: float = 180.0, height: float = 62.0) -> Ink:
     """Optimal mass over the gap allowed (left) and over the stiffness asked for (right)."""
     rows, limits = study["variants"], study["limits"]
     low, high = gap_range(rows)
@@ -373,14 +379,14 @@ def figure(study: Data, *, width: float = 180.0, height: float = 68.0) -> Ink:
     marked = [row["mass"] for row in rows.values()]
     span = (25 * floor(40 * min(masses)), 25 * ceil(40 * 1.12 * max(marked)))
     ink = Ink(width, height)
-    panel, top, tall = 58.0, 8.0, height - 18.0
+    panel, top, tall = 62.0, 8.0, height - 18.0
     left = Axes(ink, (9.0, top, panel, tall), (1e6 * low - 0.1, 1e6 * high), span)
     left.frame("Mass, g", "largest gap at the piston seal allowed, µm")
     _limit(ink, left, 1e6 * limits["seal_gap"])
     ends = _curves(left, gaps, 1e6)
     _names(ink, left, ends)
     reach = [k for points in stiffness.values() for k, _ in points]
-    box = (9.0 + panel + 50.0, top, panel, tall)
+    box = (9.0 + panel + 47.0, top, panel, tall)
     right = Axes(ink, box, (1e-6 * min(reach), 1e-6 * max(reach)), span)
     right.frame("Mass, g", "least stiffness asked for, kN/mm")
     _limit(ink, right, 1e-6 * limits["stiffness_min"])
