@@ -49,7 +49,11 @@ def _module(name: str) -> ModuleType:
 
 def test_every_script_of_the_folder_is_tested() -> None:
     """No shipped script is left out of this file."""
-    assert {p.name for p in SCRIPTS.glob("*.py")} == {"composite_saving.py", "custom_metric.py", "knee_materials.py"}
+    assert {p.name for p in SCRIPTS.glob("*.py")} == {
+        "composite_saving.py",
+        "custom_metric.py",
+        "knee_materials.py",
+    }
 
 
 @pytest.mark.parametrize("name", ["composite_saving.py", "custom_metric.py"])
