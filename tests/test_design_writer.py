@@ -25,7 +25,8 @@ class Names(dict):
 
 
 MATERIALS = Names(
-    iso_vg_32="fluid", al_6061_t6="metal", al_7075_t6="metal", ti_6al4v="metal", steel_42crmo4="metal",
+    iso_vg_32="fluid", al_6061_t6="metal", al_7075_t6="metal", ti_6al4v="metal",
+    steel_42crmo4="metal",
     steel_e235="metal", t700_epoxy="ply", nbr_70="seal", epoxy_structural="adhesive",
 )  # fmt: skip
 TEXT = init_text("test")
