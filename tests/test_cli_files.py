@@ -226,6 +226,11 @@ HARD = bench(("min: 6 kN/mm", "min: 600 kN/mm"))
 """Infeasible, so that the search takes a while."""
 
 
+def _hears_interrupts():
+    """A process started behind a shell's `&` ignores SIGINT, and its children with it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
 def test_an_interrupt(tmp_path):
     """Ctrl-C during a search: exit 130, one word, no file."""
@@ -238,6 +243,7 @@ def test_an_interrupt(tmp_path):
         stderr=subprocess.PIPE,
         env=surroundings(),
         text=True,
+        preexec_fn=_hears_interrupts,
     )
     time.sleep(0.8)
     process.send_signal(signal.SIGINT)
