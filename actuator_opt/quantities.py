@@ -36,7 +36,10 @@ class Quantity:
 
     def text(self, value: float, digits: int = 4) -> str:
         """SI value as text with its display unit, ``"25 mm"``."""
-        return f"{self.to_display(value):.{digits}g} {self.unit}".rstrip()
+        short = f"{self.to_display(value):.{digits}g}"
+        if "e" in short and 1 <= abs(float(short)) < 1e7:  # 20000, not 2e+04
+            short = f"{float(short):.0f}"
+        return f"{short} {self.unit}".rstrip()
 
     def range_text(self) -> str:
         """The valid range as text with units, ``"0.5 mm to 2000 mm"``."""
@@ -222,7 +225,8 @@ METRICS = _table("""
  liner_bond_factor    | S_bd   | ratio       | -    | | | strength over the pull of the liner on its plies after cool-down
  liner_range_factor   | S_dl   | ratio       | -    | | | twice yield over the liner's stress range
  reverse_yield_factor | S_rev  | ratio       | -    | | | yield over the liner's residual stress after autofrettage
- joint_factor         | S_j    | ratio       | -    | | | tie-rod preload over its loss at supply pressure
+ liner_strain_range   | d_eps  | ratio       | %    | | | equivalent elastic strain range of the liner under a pressure pulse
+ joint_factor         | S_j    | ratio       | -    | | | tie-rod preload over its loss at proof pressure
  local_buckling_factor| S_w    | ratio       | -    | | | wall buckling load of the rod over largest push load
  rod_factor           | S_ro   | ratio       | -    | | | strength of the rod's plies over their stress
  fitting_factor       | S_ft   | ratio       | -    | | | strength of the bonded rod fittings over their load

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from actuator_opt.models import barrel, retention, stiffness, yielding
+from actuator_opt.models import barrel, endurance, stiffness, yielding
 
 stresses = st.tuples(*[st.integers(-300, 300).map(lambda mpa: mpa * 1e6)] * 4)
 
@@ -55,8 +55,14 @@ def test_yield_ends_where_the_total_stress_yields(load, held):
 
 def test_bolt_endurance_amplitude_by_hand():
     """M10: 0.85 (150/10 + 45) = 51 MPa; M5: 63.75 MPa; a larger bolt stands less."""
-    assert retention.bolt_endurance_amplitude(diameter=10e-3) == pytest.approx(51e6)
-    assert retention.bolt_endurance_amplitude(diameter=5e-3) == pytest.approx(63.75e6)
+    assert endurance.bolt_endurance_amplitude(diameter=10e-3) == pytest.approx(51e6)
+    assert endurance.bolt_endurance_amplitude(diameter=5e-3) == pytest.approx(63.75e6)
+
+
+def test_bolt_cycles_by_hand():
+    """Twice the endurance amplitude stands 2e6/8 cycles; the endurance amplitude itself 2e6."""
+    assert endurance.bolt_cycles(amplitude=102e6, diameter=10e-3) == pytest.approx(250e3)
+    assert endurance.bolt_cycles(amplitude=51e6, diameter=10e-3) == pytest.approx(2e6)
 
 
 SIZES = {"area_a": 8e-4, "area_b": 5e-4}

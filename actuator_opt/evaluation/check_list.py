@@ -245,7 +245,7 @@ CHECK_LIST: tuple[CheckLine, ...] = (
         "joint_factor",
         "min",
         1.0,
-        "preload over what supply pressure takes from it",
+        "preload over what proof pressure takes from it",
     ),
     CheckLine(
         "winding angles", "winding_margin", "min", 0.0, "manufacture: least angle of the ply"

@@ -68,8 +68,8 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
     if lives and np.isfinite(min(lives)) and min(lives) > LONGEST_LIFE:
         yield (
             "cycle_life",
-            f"pressure-cycle life beyond {LONGEST_LIFE:.0e} cycles is extrapolated: read it as "
-            "longer than that; adhesive and plies are not in it",
+            f"pressure-cycle life beyond {LONGEST_LIFE / 1e6:.0f} million cycles is extrapolated: "
+            "read it as longer than that; adhesive and plies are not in it",
         )
     yield from _oil_warnings(subject, v)
     yield from _seal_warnings(subject, v, done)

@@ -35,7 +35,9 @@ def compute(
     push, pull = supply * g.area_a, supply * g.area_b
     _endurance(v, stock, design, wall, section, supply, push, pull, out)
     _end_stop(v, design, g, state, supply, moving, net, out)
-    _thermal(v, stock, design, g, state, wall, supply, out)
+    _trapped(v, stock, design, g, state, wall, supply, out)
+    _layers(stock, wall, out)
+    _service(v, stock, design, out)
     _clearance(v, stock, design, g, wall, out)
     out.put("blocked_port_factor", v["supply.proof_ratio"] * g.area_b / g.area_a)
 
@@ -84,18 +86,15 @@ def _endurance(
         )
     rods = wall.path.tie_rods
     if rods is not None:
-        span = retention.tie_rod_stress(
-            force=rods.largest - rods.preload,
+        diameter = v["retention.thread.diameter"]
+        amplitude = retention.tie_rod_stress(
+            force=(rods.largest - rods.preload) / 2,
             count=v["retention.count"],
-            diameter=v["retention.thread.diameter"],
+            diameter=diameter,
             pitch=v["retention.thread.pitch"],
         )
-        bears = retention.bolt_endurance_amplitude(diameter=v["retention.thread.diameter"])
-        factor["tie rods"] = 2 * bears / span
-    if wall.ply_fatigue:
-        out.put("ply_fatigue_factor", wall.ply_fatigue)
-    else:
-        out.skip("ply_fatigue_factor", "no plies, or none with a known fatigue strength")
+        life["tie rods"] = endurance.bolt_cycles(amplitude=amplitude, diameter=diameter)
+        factor["tie rods"] = endurance.bolt_endurance_amplitude(diameter=diameter) / amplitude
     for metric, values in (("cycle_life", life), ("fatigue_factor", factor)):
         if values:
             out.put(metric, values)
@@ -138,7 +137,7 @@ def _end_stop(
     out.put("end_stop_factor", v["supply.proof_ratio"] * supply / peak)
 
 
-def _thermal(
+def _trapped(
     v: Values,
     stock: Stock,
     design: Design,
@@ -148,6 +147,7 @@ def _thermal(
     supply: Array,
     out: Computed,
 ) -> None:
+    """Pressure of oil that warms between blocked ports."""
     environment = design.environment
     rise = None if environment is None else environment.trapped_rise
     oil = design.fluid.material
@@ -169,28 +169,43 @@ def _thermal(
         jump = slope * v["environment.trapped_rise"]
         out.put("trapped_pressure", jump)
         out.put("trapped_factor", v["supply.proof_ratio"] * supply / (supply + jump))
+
+
+def _layers(stock: Stock, wall: Wall, out: Computed) -> None:
+    """What only a wall of several layers has: liner and fibres, cold and in service."""
+    ranges, strains = {}, {}
+    for place, cycle in wall.cycles.items():
+        strength = stock.allowable(cycle.material, "yield_strength", "ultimate_strength")
+        if wall.layered and strength is not None:
+            ranges[place] = 2 * strength / cycle.span
+            strains[place] = cycle.span / stock.get(cycle.material, "youngs_modulus")
+    reverse = {} if wall.autofrettage is None else {"": 1 / wall.autofrettage.reverse_yield}
+    no_liner = "the wall has no metal layer under plies"
     for metric, values, why in (
         ("liner_mismatch_factor", wall.mismatch, wall.why_no_mismatch),
         ("liner_bond_factor", wall.bond, wall.why_no_mismatch),
+        ("liner_range_factor", ranges, no_liner),
+        ("liner_strain_range", strains, no_liner),
+        (
+            "reverse_yield_factor",
+            reverse,
+            "no autofrettage stated: add barrel.autofrettage_pressure",
+        ),
+        (
+            "ply_fatigue_factor",
+            wall.ply_fatigue,
+            "no plies, or none with a known fatigue strength",
+        ),
     ):
         if values:
             out.put(metric, values)
         else:
             out.skip(metric, why)
-    if wall.autofrettage is None:
-        out.skip("reverse_yield_factor", "no autofrettage stated: add barrel.autofrettage_pressure")
-    else:
-        out.put("reverse_yield_factor", 1 / wall.autofrettage.reverse_yield)
-    ranges = {}
-    for place, cycle in wall.cycles.items():
-        strength = stock.allowable(cycle.material, "yield_strength", "ultimate_strength")
-        if strength is not None:
-            ranges[place] = 2 * strength / cycle.span
-    if len(design.barrel.layup) > 1 and ranges:
-        out.put("liner_range_factor", ranges)
-    else:
-        out.skip("liner_range_factor", "the wall has no metal layer under plies")
-    if environment is None:
+
+
+def _service(v: Values, stock: Stock, design: Design, out: Computed) -> None:
+    """Distance of the temperature range to what every material bears."""
+    if design.environment is None:
         out.skip("temperature_margin", "no temperature range stated: add environment")
         return
     margins = {}

@@ -255,36 +255,6 @@ def tie_rod_stress(*, force: Array, count: Array, diameter: Array, pitch: Array)
     return thread_stress(force=force / count, diameter=diameter, pitch=pitch)
 
 
-def bolt_endurance_amplitude(*, diameter: Array) -> Array:
-    """Stress amplitude that a bolt's thread stands for two million cycles and more.
-
-    sigma_A = 0.85 (150 mm/d + 45) MPa on the stress area, rolled before heat treatment, whatever
-    the mean stress.
-
-    Parameters
-    ----------
-    diameter : nominal diameter [m]
-
-    Returns
-    -------
-    amplitude [Pa]
-
-    Notes
-    -----
-    Valid: property classes 8.8 to 12.9, d from 5 to 40 mm.
-
-    References
-    ----------
-    [VDI2230] endurance limit of bolts
-
-    Examples
-    --------
-    >>> print(f"{bolt_endurance_amplitude(diameter=10e-3) / 1e6:.1f} MPa")
-    51.0 MPa
-    """
-    return 0.85e6 * (0.150 / diameter + 45)
-
-
 def pin_shear_stress(*, force: Array, diameter: Array) -> Array:
     """Mean shear stress of a clevis pin in double shear.
 

@@ -155,16 +155,20 @@ def _render(data: Mapping[str, Any], timestamp: int) -> tuple[bytes, list[bytes]
         from .fallback import render
 
         return render(data, timestamp)
+    return sheets(TEMPLATE.read_bytes(), data, timestamp)
+
+
+def sheets(source: bytes, data: Mapping[str, Any], timestamp: int) -> tuple[bytes, list[bytes]]:
+    """A Typst source with its data as PDF/A and as an image of every sheet; no font but ours."""
     import typst
 
     compiler = typst.Compiler(
-        TEMPLATE.read_bytes(),
+        source,
         font_paths=typst.Fonts(
             include_system_fonts=False, include_embedded_fonts=True, font_paths=_font_folders()
         ),
         sys_inputs={"data": json.dumps(data, ensure_ascii=False, sort_keys=True)},
     )
-    source = TEMPLATE.read_bytes()
     pdf: Any = compiler.compile(
         input=source, format="pdf", pdf_standards="a-3b", timestamp=timestamp
     )

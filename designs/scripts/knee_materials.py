@@ -25,7 +25,7 @@ import actuator_opt as ao
 from actuator_opt.reporting.figures import Axes
 from actuator_opt.reporting.ink import GREY, RED, Ink, spread_within
 from actuator_opt.reporting.text import fixed, trimmed
-from actuator_opt.reporting.writer import PIXELS_PER_INCH, TEMPLATE
+from actuator_opt.reporting.writer import TEMPLATE, sheets
 from actuator_opt.tables import aligned
 
 DESIGNS = Path(__file__).resolve().parents[1]
@@ -430,9 +430,6 @@ def _names(ink: Ink, axes: Axes, ends: dict[str, float]) -> None:
 
 def page(study: Data) -> tuple[bytes, list[bytes]]:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
-    import matplotlib
-    import typst
-
     shared, mark, _ = TEMPLATE.read_text("utf-8").partition("// ---- sheet ----")
     assert mark, "the report template no longer says where its definitions end"
     source = (shared + Path(__file__).with_suffix(".typ").read_text("utf-8")).encode()
@@ -442,15 +439,7 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
         "figure": figure(study).data(),
         "numbers": numbers,
     }
-    folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
-    fonts = typst.Fonts(
-        include_system_fonts=False, include_embedded_fonts=True, font_paths=[str(folder)]
-    )
-    inputs = {"data": json.dumps(data, ensure_ascii=False, sort_keys=True)}
-    compiler = typst.Compiler(source, font_paths=fonts, sys_inputs=inputs)
-    pdf: Any = compiler.compile(input=source, format="pdf", pdf_standards="a-3b", timestamp=0)
-    images: Any = compiler.compile(input=source, format="png", ppi=PIXELS_PER_INCH, timestamp=0)
-    return bytes(pdf), [images] if isinstance(images, bytes) else list(images)
+    return sheets(source, data, timestamp=0)
 
 
 def _rounded(value: Any) -> Any:

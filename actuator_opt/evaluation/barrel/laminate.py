@@ -13,7 +13,7 @@ from math import pi
 import numpy as np
 
 from ...design.model import Design
-from ...models import column, ply_discount, rod, tube_burst, yielding
+from ...models import column, liner, ply_discount, rod, tube_burst, yielding
 from ...models.autofrettage import Autofrettage, autofrettage
 from ...models.strength_modes import Stress, load_multiplier
 from ...numeric import Array, maximum, real, where
@@ -62,6 +62,7 @@ def compute(
         bending_stiffness=bending,
         shear_stiffness=shear * column.cowper_tube(poissons_ratio=contraction, radius_ratio=ratio),
         thin_ratio=(g.outer_radius - g.inner_radius) / g.inner_radius,
+        layered=len(layers) > 1,
         axial_line_stiffness=1 / (swelling.stretch * pi * (g.inner_radius + g.outer_radius)),
         missing=missing,
     )
@@ -213,20 +214,15 @@ def _metal(
     used = yielding.yield_utilisation(stress=load, yield_strength=strength, residual=residual)
     for place, pressure in _rows(states, paths, 1 / plies.worst(used, (0, 1))):
         wall.yield_pressure[f"{layer.label}, {place}"] = pressure
-    span = supply * yielding.yield_utilisation(stress=load, yield_strength=1.0)
-    full = (supply * load[0], supply * load[1], supply * load[2], supply * load[3])
-    peak = span
-    if residual is not None:
-        full = (
-            full[0] + residual[0],
-            full[1] + residual[1],
-            full[2] + residual[2],
-            full[3] + residual[3],
-        )
-        start = yielding.yield_utilisation(stress=residual, yield_strength=1.0)
-        peak = maximum(start, yielding.yield_utilisation(stress=full, yield_strength=1.0))
-    mean = plies.worst(maximum(peak - span / 2, 0.0 * peak), (0, 1, 2))
-    span = plies.worst(span, (0, 1, 2))
+    pulse = liner.liner_cycle(
+        stress=(supply * load[0], supply * load[1], supply * load[2], supply * load[3]),
+        yield_strength=1.0,
+        youngs_modulus=1.0,
+        residual=(0.0, 0.0, 0.0, 0.0) if residual is None else residual,
+    )
+    peak = maximum(pulse.at_rest, pulse.at_pressure)
+    mean = plies.worst(maximum(peak - pulse.strain_range / 2, 0.0 * peak), (0, 1, 2))
+    span = plies.worst(pulse.strain_range, (0, 1, 2))
     for p, place in enumerate(paths):
         wall.cycles[f"{layer.label}, {place}"] = Cycle(layer.name, span[p], mean[p])
 

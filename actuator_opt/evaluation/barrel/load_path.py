@@ -42,7 +42,7 @@ class Swelling:
 
 @dataclass(frozen=True, slots=True)
 class TieRods:
-    """Forces of tie rods [N]: preload, all rods at supply pressure; preload over its loss then."""
+    """Tie rods: preload and force of all at supply pressure [N]; preload over its loss at proof."""
 
     preload: Array
     largest: Array
@@ -90,10 +90,10 @@ def derive(
             cap_side_pressure=state.moving_a, cap_side_area=g.area_a
         )
     none = 0.0 * np.atleast_1d(np.asarray(g.area_a))
-    worst = none + largest_area(design, g)
+    name = STOP if design.cylinder.end_stop == "internal" else LARGEST
+    worst = {name: none + largest_area(design, g)}
     if not tied(design):
-        name = STOP if design.cylinder.end_stop == "internal" else LARGEST
-        return LoadPath({NONE: none, name: worst}, 0.0, cases)
+        return LoadPath({NONE: none, **worst}, 0.0, cases)
     return _clamped(v, design, stock, g, state, swelling, worst, cases)
 
 
@@ -104,10 +104,13 @@ def _clamped(
     g: Geometry,
     state: State,
     swelling: Swelling,
-    worst: Array,
+    worst: dict[str, Array],
     cases: Array,
 ) -> LoadPath:
-    """A barrel between tie rods: two springs in parallel with preload."""
+    """A barrel between tie rods: two springs in parallel with preload.
+
+    `worst` is the area on which pressure tears the ends apart, by the name of its load path.
+    """
     assert design.retention is not None
     assert design.retention.material is not None
     modulus = stock.get(design.retention.material, "youngs_modulus")
@@ -126,19 +129,18 @@ def _clamped(
             axial_force=force, preload=0.0, free_shortening=slack * pressure, **springs
         )
 
-    unit, _ = shared(worst, 1.0)
-    relaxed, _ = shared(0.0 * worst, 1.0)
+    ((name, area),) = worst.items()
+    unit, _ = shared(area, 1.0)
+    relaxed, _ = shared(0.0 * area, 1.0)
     preload = v.get("retention.preload", None)
     if preload is None:
         preload = proof * unit
     pressure = maximum(state.moving_a, state.moving_b)
     barrel, _ = shared(cases, pressure)
-    rods = supply * worst - (supply * unit - preload)
-    lost = supply * unit
     return LoadPath(
-        {NONE: relaxed, STOP: unit},
+        {NONE: relaxed, name: unit},
         -preload,
         barrel - preload,
-        TieRods(preload, rods, preload / lost),
+        TieRods(preload, supply * (area - unit) + preload, preload / (proof * unit)),
         springs["barrel_stiffness"] / (springs["barrel_stiffness"] + springs["tie_rod_stiffness"]),
     )

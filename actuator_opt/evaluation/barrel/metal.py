@@ -55,6 +55,7 @@ def compute(
         shear_stiffness=shear
         * column.cowper_tube(poissons_ratio=ratio, radius_ratio=inner / outer),
         thin_ratio=(g.outer_radius - g.inner_radius) / g.inner_radius,
+        layered=False,
         axial_line_stiffness=modulus * (g.outer_radius - g.inner_radius),
     )
     alpha = stock.get(name, "thermal_expansion", "thermal_expansion_2")

@@ -41,6 +41,7 @@ class Wall:
     bending_stiffness: Array
     shear_stiffness: Array
     thin_ratio: Array
+    layered: bool
     axial_line_stiffness: Array
     expansion: tuple[Array, Array] | None = None
     yield_pressure: dict[str, Array] = field(default_factory=dict)
