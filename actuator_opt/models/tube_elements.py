@@ -9,8 +9,9 @@ started from the hoop strain e_a and the radial strain q_a at the layer's inner 
 the axial strain and with frozen or thermal stresses, H with the twist:
 phi_1 = [cosh + sinh/l - x]/(l^2 - 1), phi_2 = [cosh + 2 sinh/l - x^2]/(l^2 - 4). Both are
 written with (e^y - 1)/y, so that l = 1 (isotropic and axial layers) and l = 2 need no branch. All
-integrals are in closed form. `layered_tube` loads the tube. Rounding grows as exp(2 l tau): 1e-15 in
-a barrel's wall, 1e-7 in a single layer of outer over inner radius 3 with E_t/E_r = 100.
+integrals are in closed form. `layered_tube` loads the tube. Rounding
+grows as exp(2 l tau): 1e-15 in a barrel's wall, 1e-7 in a single layer of outer over inner radius 3
+with E_t/E_r = 100.
 """
 
 from __future__ import annotations
