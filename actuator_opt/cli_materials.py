@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from . import streams
+from . import store, streams
 from .errors import Diagnostic, UsageError
 from .options import Json
 
@@ -43,17 +44,42 @@ def list_materials(
 @app.command("show")
 def show_material(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the entry.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="Draw a fluid into this folder (NAME.png, NAME.svg)."
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
-    """Every property of one entry, with scatter and source."""
+    """Every property of one entry, with scatter and source.
+
+    A fluid is also shown over temperature and pressure.
+    """
     from .design.material_tables import show_lines, to_dict
     from .design.materials import load_library
 
     material = load_library().get(name)
+    if out is not None:
+        if material.kind != "fluid":
+            message = f"--out: {name} is a {material.kind}, only fluids have a figure"
+            raise UsageError(Diagnostic(message, "leave --out away, or name a fluid"))
+        store.require_folder(out)
+    style = streams.style()
     if as_json:
         streams.out_json(to_dict([material]))
     else:
-        streams.out("\n".join(show_lines(material, ascii=not streams.style()["unicode"])))
+        lines = show_lines(material, ascii=not style["unicode"])
+        if material.kind == "fluid":
+            from .reporting.fluid_figure import table_lines
+
+            lines += ["", *table_lines(material, **style)]
+        streams.out("\n".join(lines))
+    if out is not None:
+        from .reporting.fluid_figure import write_figure
+
+        for path in write_figure(material, out):
+            streams.err(f"wrote {path}")
 
 
 @app.command("compare")

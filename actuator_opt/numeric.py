@@ -80,6 +80,20 @@ def sqrt(value: Array) -> Array:
     return where(negative, 0 * root + np.nan, root)
 
 
+def magnitude(first: Array, second: Array) -> Array:
+    """sqrt(first^2 + second^2), of two parts that may each carry a complex step."""
+    return sqrt(first * first + second * second)
+
+
+def angle(imaginary: Array, real_part: Array) -> Array:
+    """arctan2(imaginary, real_part) with its derivative; `arctan2` refuses complex input."""
+    xp = namespace(imaginary, real_part)
+    y, x = real(imaginary), real(real_part)
+    value = xp.atan2(xp.asarray(y, dtype=xp.float64), xp.asarray(x, dtype=xp.float64))
+    dy, dx = imaginary - y, real_part - x
+    return value + (x * dy - y * dx) / (x * x + y * y)
+
+
 def expm1_quotient(value: Array) -> Array:
     """expm1(value)/value, 1 at 0, smooth and complex-step safe."""
     xp = namespace(value)

@@ -105,6 +105,19 @@ INPUTS = _table("""
  allowed_angle        | theta  | angle       | deg  | 0     | 90    | winding angle the shop can make
  ply_thickness        | t_p    | length      | mm   | 0.01  | 50    | cured thickness of one ply
  autofrettage_pressure| p_af   | pressure    | bar  | 1     | 5000  | autofrettage pressure
+ frequency            | f      | frequency   | Hz   | 0.001 | 100000| frequency
+ rated_flow           | q_r    | flow        | l/min| 0.001 | 100000| rated flow
+ leakage_flow         | q_l    | flow        | l/min| 0     | 1000  | leakage flow
+ pressure_drop        | dp     | pressure    | bar  | 0.01  | 1500  | pressure drop
+ signal               | U      | voltage     | V    | 0.001 | 1000  | full signal
+ gain                 | K_p    | signal_gain | V/m  | 0.001 | 1e9   | gain
+ damping_ratio        | zeta   | ratio       | -    | 0.001 | 10    | damping ratio
+ orifice_area         | A_o    | area        | cm^2 | 0     | 1000  | orifice area
+ opening              | y      | ratio       | %    | 0     | 100   | opening
+ conductance          | G      | conductance | ml/min/bar | 0 | 1e9  | conductance, flow per pressure
+ gas_volume           | V_g    | volume      | ml   | 0.1   | 1e6   | gas volume
+ precharge            | p_0    | pressure    | bar  | 0.1   | 1000  | gas precharge, gauge
+ polytropic_index     | n      | ratio       | -    | 1     | 3     | polytropic index of the gas
 """)
 
 MATERIAL_PROPERTIES = _table("""
@@ -166,6 +179,9 @@ MATERIAL_PROPERTIES = _table("""
  bulk_modulus_temperature | T_K | temperature | degC  | -60    | 200  | temperature of the bulk modulus
  bulk_modulus_pressure| p_K    | pressure    | bar    | 0      | 1000 | gauge pressure of the bulk modulus
  bulk_modulus_decay   | b_K    | per_temperature | 1/K | 0     | 0.02 | relative fall of the bulk modulus per kelvin
+ tait_modulus         | K_00   | pressure    | GPa    | 0.5    | 200  | zero-pressure bulk modulus of the Tait law, extended to 0 K
+ tait_decay           | c_K    | per_temperature | 1/K | 0     | 0.02 | relative fall of the Tait modulus per kelvin
+ tait_coefficient     | B      | ratio       | -      | 1.5    | 30   | coefficient of the Tait law, one more than K' at zero pressure
  bond_thickness       | t_a    | length      | mm     | 0.005  | 5    | bond line thickness
  speed_max            | v_max  | speed       | m/s    | 0.001  | 50   | highest sliding speed
 """)
@@ -179,6 +195,7 @@ METRICS = _table("""
  stiffness_oil        | k_oil  | stiffness   | kN/mm| | | stiffness of oil alone at the weakest position
  stiffness_rod        | k_rod  | stiffness   | kN/mm| | | axial stiffness of the rod
  stiffness_barrel     | k_bar  | stiffness   | kN/mm| | | stiffness of barrel swelling at the weakest position
+ stiffness_seals      | k_s    | stiffness   | kN/mm| | | stiffness of sticking seals, beside the oil
  bore_growth          | u_i    | length      | um   | | | radial bore growth at supply pressure
  seal_gap             | g      | length      | um   | | | radial extrusion gap at the piston seal
  seal_squeeze         | C_min  | ratio       | %    | | | smallest seal squeeze after growth and tolerance
@@ -195,6 +212,13 @@ METRICS = _table("""
  damping_seal         | B      | damping     | kN*s/m| | | secant damping of the seals at the stated speed
  damping_ratio        | zeta   | ratio       | -    | | | damping ratio of the load on the actuator
  natural_frequency    | f_0    | frequency   | Hz   | | | lowest natural frequency at the load mass over the stroke
+ dynamic_stiffness    | k_dyn  | stiffness   | kN/mm| | | dynamic stiffness at the frequency of the load case
+ dynamic_phase        | phi    | angle       | deg  | | | phase by which the force leads at that frequency
+ ultimate_gain        | K_u    | signal_gain | V/m  | | | gain at which the position loop begins to swing
+ position_gain        | K_p    | signal_gain | V/m  | | | gain of the position loop
+ gain_margin          | K_u/K_p| ratio       | -    | | | ultimate over present gain of the position loop
+ phase_margin         | phi_m  | angle       | deg  | | | phase margin of the position loop
+ bandwidth            | f_b    | frequency   | Hz   | | | -3 dB bandwidth of the position loop
  efficiency           | eta    | ratio       | %    | | | force efficiency
  proof_factor         | S_p    | ratio       | -    | | | yield or first-ply pressure over proof pressure
  burst_factor         | S_b    | ratio       | -    | | | barrel burst pressure over working pressure
@@ -238,6 +262,7 @@ METRICS = _table("""
  blocked_port_factor  | S_bl   | ratio       | -    | | | proof pressure over rod-side pressure with its port blocked
  temperature_margin   | dT     | temperature_difference | K | | | distance to the service limits of every material
  oil_viscosity        | nu     | kinematic_viscosity | mm^2/s | | | oil viscosity at the case temperature
+ cavitation_margin    | p-p_v  | pressure    | bar  | | | lowest absolute chamber pressure less the vapour pressure of the oil
  extrusion_factor     | g_max/g| ratio       | -    | | | allowed over present extrusion gap
  end_stop_factor      | S_end  | ratio       | -    | | | proof pressure over peak end-stop pressure
  trapped_factor       | S_tr   | ratio       | -    | | | proof pressure over trapped-oil pressure

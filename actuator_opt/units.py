@@ -40,6 +40,9 @@ BASE = {
     "pressure_per_temperature": "Pa/K",
     "line_load": "N/m",
     "hardness": "ShoreA",
+    "voltage": "V",
+    "signal_gain": "V/m",
+    "conductance": "m^3/(s*Pa)",
 }
 """Every dimension with its SI unit."""
 
@@ -146,6 +149,15 @@ _SCALES: dict[str, dict[str, float]] = {
     "pressure_per_temperature": {"Pa/K": 1.0, "bar/K": 1e5, "MPa/K": 1e6},
     "line_load": {"N/m": 1.0, "N/mm": 1e3, "kN/m": 1e3},
     "hardness": {"ShoreA": 1.0, "Shore A": 1.0, "shore_a": 1.0},
+    "voltage": {"V": 1.0, "mV": 1e-3},
+    "signal_gain": {"V/m": 1.0, "V/mm": 1e3},
+    "conductance": {
+        "m^3/(s*Pa)": 1.0,
+        "ml/min/bar": 1e-11 / 60,
+        "l/min/bar": 1e-8 / 60,
+        "ml/s/bar": 1e-11,
+        "mm^3/s/bar": 1e-14,
+    },
 }
 _OFFSETS = {"degC": 273.15, "°C": 273.15, "degF": 459.67 * 5 / 9, "°F": 459.67 * 5 / 9}
 

@@ -14,7 +14,9 @@ from dataclasses import replace
 from math import pi
 
 import samples_criteria
+import samples_fluid
 import samples_liner
+import samples_lines
 import samples_rods
 import samples_tube
 
@@ -25,6 +27,7 @@ from actuator_opt.models.strength_modes import PlyStrength
 
 SCALAR_ONLY = {
     "stepped_segments.stepped_column_load_segments": "reference solution by scanning, floats only",
+    **dict.fromkeys(samples_lines.FREQUENCY_RESPONSES, "complex-valued, laws of their own"),
 }
 """Public functions outside the array laws, with the reason."""
 
@@ -161,9 +164,6 @@ SAMPLES = {
     "elements.sound_speed": {"bulk_modulus": 1.4e9, "density": 865.0},
     "elements.quarter_wave_frequency": {"length": 1.2, "sound_speed": 1272.0},
     "elements.resonance_frequency": {"inertance": 2e7, "capacitance": 4.3e-14},
-    "elements.orifice_flow": {
-        "area": 3e-5, "pressure_difference": -5e5, "density": 870.0, "smoothing_pressure": 1e4,
-    },
     "fluid.viscosity_astm_d341": {
         "temperature": 330.0, "points_temperature": (233.0, 313.0, 373.0),
         "points_viscosity": (6e-4, 1.32e-5, 4.9e-6),
@@ -433,7 +433,14 @@ SAMPLES = {
     "endurance.end_stop_peak_force": {"stiffness": 3e7, "compression": 6e-4},
     "endurance.end_stop_peak_pressure": {"pressure": 1e6, "peak_force": 18e3, "area": 9e-4},
 }  # fmt: skip
-for _group in (samples_criteria, samples_liner, samples_rods, samples_tube):
+for _group in (
+    samples_criteria,
+    samples_fluid,
+    samples_liner,
+    samples_lines,
+    samples_rods,
+    samples_tube,
+):
     SAMPLES |= _group.SAMPLES
 """Arguments by ``module.function``, ``*`` for positional ones: one sample, or a list of them."""
 

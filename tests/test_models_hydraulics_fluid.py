@@ -123,6 +123,59 @@ def test_roelands_outside_its_domain_is_nan():
     assert eta[1] > 0.02
 
 
+@given(st.floats(0.003, 0.5), st.floats(5e-9, 35e-9), st.floats(0, 9e8), st.floats(1e5, 1e8))
+def test_roelands_rises_with_pressure_and_below_barus(viscosity, coefficient, pressure, step):
+    """More pressure is never thinner; below Z = 1 the growth stays under the exponential."""
+    arguments = {"viscosity": viscosity, "coefficient": coefficient}
+    low = fluid.roelands(pressure=pressure, **arguments)
+    assert fluid.roelands(pressure=pressure + step, **arguments) > low
+    if coefficient / (5.1e-9 * (math.log(viscosity) + 9.67)) < 0.99:
+        # p0 = 1.96e8 and 5.1e-9 differ from exact reciprocals by 4e-4
+        assert math.log(low / viscosity) <= 1.0005 * coefficient * pressure + 1e-12
+
+
+WATER = {0: 611.2, 20: 2339.3, 40: 7384.9, 60: 19947.0, 80: 47414.0}
+"""Saturation pressure of water (Pa) over temperature (degC), steam tables."""
+
+
+def test_vapour_pressure_lies_between_its_points_as_in_steam_tables():
+    """Water at 10, 30, 50 and 70 degC from points 20 K apart: 1.228, 4.247, 12.352, 31.20 kPa."""
+    points = {
+        "points_temperature": [t + CELSIUS for t in WATER], "points_pressure": list(WATER.values()),
+    }  # fmt: skip
+    for celsius, expected in ((10, 1228.2), (30, 4247.0), (50, 12352.0), (70, 31202.0)):
+        found = fluid.vapour_pressure(temperature=celsius + CELSIUS, **points)
+        assert found == pytest.approx(expected, rel=4e-3)
+    at = np.array(list(WATER)) + CELSIUS
+    np.testing.assert_allclose(fluid.vapour_pressure(temperature=at, **points), [*WATER.values()])
+    rising = fluid.vapour_pressure(temperature=np.linspace(230, 400, 99), **points)
+    assert (np.diff(rising) > 0).all()
+    assert math.isnan(fluid.vapour_pressure(temperature=0.0, **points))
+    with pytest.raises(ValueError, match="two or more"):
+        fluid.vapour_pressure(temperature=300.0, points_temperature=[300.0], points_pressure=[1e3])
+
+
+def test_density_compressed_has_the_bulk_modulus_it_is_made_of():
+    """Closed form rho0 (1 + m p/K0)^(1/m), its limit rho0 exp(p/K0), and K = rho dp/drho."""
+    k0, m, p = 1.4e9, 10.8, 300e5
+    found = density.density_compressed(
+        reference_density=870.0, pressure=p, bulk_modulus=k0, slope=m
+    )
+    assert found == pytest.approx(870 * (1 + m * p / k0) ** (1 / m), rel=1e-13)
+    for slope in (0.0, 1e-9):
+        flat = density.density_compressed(
+            reference_density=870.0, pressure=p, bulk_modulus=k0, slope=slope
+        )
+        assert flat == pytest.approx(870 * math.exp(p / k0), rel=1e-10)
+    low, high = (
+        density.density_compressed(
+            reference_density=870.0, pressure=q, bulk_modulus=k0, slope=np.array([m])
+        )
+        for q in (p - 1e4, p + 1e4)
+    )
+    assert (found * 2e4 / (high - low))[0] == pytest.approx(k0 + m * p, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("celsius", "bar", "expected"),
     [(20, 1, 856.9), (20, 200, 867.3), (40, 200, 855.6), (60, 1, 831.6), (80, 200, 833.4)],

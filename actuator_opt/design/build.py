@@ -14,8 +14,9 @@ from ..quantities import Quantity
 from . import suggest, wishes
 from .faults import cross_field, material_faults
 from .kinds import Of, ValueFault, example, what
-from .model import Design, Ply, Section
+from .model import Design, Ply
 from .paths import put, resolve, spell
+from .section import Section
 from .structure import Entry, Loc, child_at, entries, leaves
 from .view import Fault, Materials
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from .. import quantities
-from . import suggest, wall_faults
+from . import circuit_faults, material_laws, suggest, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
 from .structure import Loc, child, leaves
@@ -139,19 +139,6 @@ def barrel_length(view: View) -> Iterator[Fault]:
             f"{length_text(length)}: shorter than stroke + piston + head ({length_text(needed)})",
             f"write at least {length_text(needed)}, or leave it out",
         )
-
-
-def lines(view: View) -> Iterator[Fault]:
-    """Every line has a wall."""
-    for index in range(len(view.items("lines"))):
-        inner = view.number("lines", index, "inner_diameter")
-        outer = view.number("lines", index, "outer_diameter")
-        if inner is not None and outer is not None and outer <= inner:
-            yield Fault(
-                ("lines", index, "outer_diameter"),
-                f"{length_text(outer)}: not larger than inner_diameter ({length_text(inner)})",
-                f"write more than {length_text(inner)}",
-            )
 
 
 def supply(view: View) -> Iterator[Fault]:
@@ -283,11 +270,11 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     grooves,
     squeeze,
     barrel_length,
-    lines,
     supply,
     environment,
     retention,
     load_cases,
+    *circuit_faults.CHECKS,
     *wall_faults.CHECKS,
 )
 
@@ -307,6 +294,7 @@ def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
     """Every fault that shows when the library is asked."""
     yield from _material_names(tree, materials)
     yield from wall_faults.of_materials(tree, materials)
+    yield from material_laws.of_fluid(tree, materials)
 
 
 def _material_names(tree: Any, materials: Materials) -> Iterator[Fault]:

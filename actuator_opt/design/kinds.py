@@ -39,6 +39,10 @@ EXAMPLES = {
     "fraction": "50 %", "friction_coefficient": "0.3", "breakaway_ratio": "1.5",
     "stribeck_speed": "5 mm/s", "viscous_friction": "100 N*s/m", "safety_factor": "1.5",
     "cycles": "20000", "stiffness": "50 kN/mm", "coefficient": "1", "surface_roughness": "0.2 um",
+    "frequency": "20 Hz", "rated_flow": "10 l/min", "leakage_flow": "0.1 l/min",
+    "pressure_drop": "35 bar", "signal": "10 V", "gain": "500 V/m", "damping_ratio": "0.7",
+    "orifice_area": "0.2 cm^2", "opening": "50 %", "conductance": "20 ml/min/bar",
+    "gas_volume": "50 ml", "precharge": "30 bar", "polytropic_index": "1.4",
 }  # fmt: skip
 """One good value of every input quantity, for messages, the schema and the start file."""
 

@@ -360,6 +360,11 @@ class _Reader:
             advice = "write points: [{temperature: 40 degC, value: ...}, ...]"
             self.fault(loc, "a fluid needs its viscosity at two or more temperatures", advice)
             return
+        vapour = found.properties.get("vapour_pressure")
+        if vapour is not None and vapour.points and min(vapour.values) <= 0:
+            loc = ("properties", "vapour_pressure")
+            self.fault(loc, "a table of vapour pressures needs values above zero", "remove the 0")
+            return
         constants = material.ply_constants(found.numbers)
         if constants and material.compliance_determinant(constants) <= 0:
             message = (

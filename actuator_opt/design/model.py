@@ -8,15 +8,11 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from .circuit import Control, Line, Ports, Stiffness, Valve
 from .kinds import CaseName, Flag, Goal, MaterialName, Of, Position, PositionKind, Text
-
-
-class Section(BaseModel):
-    """A block of the design file: unknown keys are faults."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
+from .section import Section
 
 
 class FluidSection(Section):
@@ -29,6 +25,13 @@ class FluidSection(Section):
     air_content: Annotated[
         float, Of("air_content", "entrained air at atmospheric pressure, by volume")
     ] = 0.005
+    polytropic_index: Annotated[
+        float, Of("polytropic_index", "of the entrained air: 1.4 fast (adiabatic), 1 slow")
+    ] = 1.4
+    bulk_modulus_law: Literal["constant", "linear", "tait"] | None = None
+    """Bulk modulus over pressure; default: linear where the fluid states a slope, else constant."""
+    viscosity_pressure: Literal["none", "barus", "roelands"] | None = None
+    """Viscosity over pressure; default: roelands where the fluid states its coefficient."""
 
 
 class Supply(Section):
@@ -177,6 +180,9 @@ class Piston(Section):
     length: Annotated[float, Of("part_length", "axial length of the piston")]
     bearing: Annotated[str | None, MaterialName("structural")] = None
     clearance: Annotated[float, Of("radial_clearance", "radial clearance piston to bore")] = 3e-5
+    leakage_conductance: Annotated[
+        float, Of("conductance", "leakage across the piston over the pressure difference")
+    ] = 0.0
 
 
 class Head(Section):
@@ -259,16 +265,6 @@ class Seals(Section):
     rod: Seal
 
 
-class Line(Section):
-    """A pipe or hose between valve and one chamber (a: cap side, b: rod side)."""
-
-    chamber: Literal["a", "b"]
-    length: Annotated[float, Of("part_length", "length of the line")]
-    inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
-    outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
-    material: Annotated[str, MaterialName("isotropic")]
-
-
 class Load(Section):
     """What the rod moves."""
 
@@ -292,6 +288,17 @@ class LoadCase(Section):
         float | None, Of("temperature", "oil temperature; default: fluid.temperature")
     ] = None
     side_load: Annotated[float, Of("force", "force across the rod end")] = 0.0
+    frequency: Annotated[
+        float | None, Of("frequency", "frequency at which the load shakes the held actuator")
+    ] = None
+    pressure_a: Annotated[
+        float | None,
+        Of("pressure", "gauge pressure in the held chamber A; default: a servo valve's"),
+    ] = None
+    pressure_b: Annotated[
+        float | None,
+        Of("pressure", "gauge pressure in the held chamber B; default: a servo valve's"),
+    ] = None
 
 
 class Variable(Section):
@@ -341,7 +348,7 @@ class Design(Section):
 
     name: Annotated[str, Text("title of the design")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
-    reproduces: Literal["ElAsswad2018"] | None = None
+    reproduces: Literal["ElAsswad2018", "AaltoThesis"] | None = None
     """The paper whose cylinder this is: reports set its published numbers beside ours."""
     fluid: FluidSection
     supply: Supply
@@ -356,11 +363,15 @@ class Design(Section):
     clevis: Clevis | None = None
     seals: Seals
     lines: Annotated[tuple[Line, ...], Field(max_length=24)] = ()
+    stiffness: Stiffness = Stiffness()
+    valve: Valve | None = None
+    ports: Ports = Ports()
+    control: Control | None = None
     load: Load = Load()
     load_cases: Annotated[tuple[LoadCase, ...], Field(min_length=1, max_length=100)]
-    variables: dict[str, Variable] = {}
-    requirements: dict[str, Limit] = {}
-    waivers: dict[str, Annotated[str, Text("why the check does not apply")]] = {}
-    materials: dict[str, dict[str, float]] = {}
+    variables: dict[str, Variable] = {}  # noqa: RUF012 (pydantic copies it)
+    requirements: dict[str, Limit] = {}  # noqa: RUF012 (pydantic copies it)
+    waivers: dict[str, Annotated[str, Text("why the check does not apply")]] = {}  # noqa: RUF012 (pydantic copies it)
+    materials: dict[str, dict[str, float]] = {}  # noqa: RUF012 (pydantic copies it)
     """Properties (SI) that replace the library's in this design, by material name."""
     objective: Objective = Objective(minimise="mass")

@@ -18,7 +18,8 @@ from ..errors import Diagnostic, InputError, UsageError
 from ..quantities import Quantity
 from . import suggest
 from .kinds import Fraction, ValueFault
-from .model import Design, Section
+from .model import Design
+from .section import Section
 from .structure import Entry, Loc, child, child_at, entries, leaves, number_of
 
 _PATH = re.compile(r"[^.\[\]=]+(\[[^\[\]=]+\])?(\.[^.\[\]=]+(\[[^\[\]=]+\])?)*")

@@ -17,7 +17,8 @@ from ..quantities import Quantity
 from . import layup, wishes
 from .kinds import CaseName, Flag, Kind, MaterialName, Of, PositionKind, Text, example
 from .material import ROLES
-from .model import Design, Ply, Section
+from .model import Design, Ply
+from .section import Section
 from .structure import Entry, entries
 from .view import Materials
 

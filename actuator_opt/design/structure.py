@@ -13,7 +13,8 @@ from typing import Any, Literal, TypeAlias, Union, get_args, get_origin
 
 from ..quantities import Quantity
 from .kinds import Fraction, Kind, Of, PositionKind
-from .model import Design, Section
+from .model import Design
+from .section import Section
 
 Loc: TypeAlias = tuple[str | int, ...]
 """Keys and indices from the design to a value."""

@@ -18,9 +18,10 @@ from ..quantities import Quantity
 from . import layup
 from .build import build, to_tree
 from .kinds import Flag, Fraction
-from .model import Design, Section
+from .model import Design
 from .paths import resolve
 from .reader import Source
+from .section import Section
 from .structure import Loc, child, child_at, entries, number_of, value_at
 from .yaml_source import Document, parse
 

@@ -31,12 +31,20 @@ from .result import (
     StrokeCurve,
 )
 from .rows import ALL_CASES, Computed, Row, by_case, rows_of
+from .study import dynamics
 from .values import Values
 
 SENSES: dict[str, Sense] = {line.metric: line.sense for line in CHECK_LIST if line.metric} | {
     "stiffness_oil": "min",
     "stiffness_rod": "min",
     "stiffness_barrel": "min",
+    "stiffness_seals": "min",
+    "dynamic_stiffness": "min",
+    "ultimate_gain": "min",
+    "gain_margin": "min",
+    "phase_margin": "min",
+    "bandwidth": "min",
+    "damping_ratio": "min",
     "liner_yield_factor": "min",
     "local_buckling_factor": "min",
 }
@@ -139,6 +147,7 @@ def evaluate(subject: Subject) -> Evaluation:
         outlines=outline.outlines(design, subject.materials, done.geometry),
         lengths=outline.lengths(design, done.geometry),
         wall=study.study(subject, v, done),
+        dynamics=dynamics.study(subject, v, done, metrics["stiffness_min"].case),
     )
 
 

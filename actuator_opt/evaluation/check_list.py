@@ -149,6 +149,13 @@ CHECK_LIST: tuple[CheckLine, ...] = (
         "line pressure drop", "line_drop_ratio", "max", 0.05, "choice: 5 % of the supply pressure"
     ),
     CheckLine("flow", "flow", "max"),
+    CheckLine(
+        "cavitation in the chambers",
+        "cavitation_margin",
+        "min",
+        0.0,
+        "the oil boils below its vapour pressure; dissolved air leaves it earlier",
+    ),
     CheckLine("piston speed", "piston_speed", "max", 0.5, "standard seals and cylinders: 0.5 m/s"),
     CheckLine(
         "end-stop peak pressure, the case's load still acting",

@@ -9,10 +9,11 @@ import numpy as np
 from ..design.material import compatible
 from ..design.model import PLAIN_CAP
 from ..models import laminate, seals
+from . import motion, oil, springs
 from .barrel import LAMINATES, kind
 from .beam import NEAR
 from .kernel import Pass, Subject
-from .provenance import model_of
+from .provenance import describe, model_of
 from .result import Metric, ModelUse, Unverified
 from .values import Values
 
@@ -71,8 +72,11 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
             f"pressure-cycle life beyond {LONGEST_LIFE / 1e6:.0f} million cycles is extrapolated: "
             "read it as longer than that; adhesive and plies are not in it",
         )
-    yield from _oil_warnings(subject, v)
+    section = subject.design.fluid
+    yield from oil.warnings(section, subject.materials[section.material], v.cases, done.state)
     yield from _seal_warnings(subject, v, done)
+    yield from springs.warnings(done.springs)
+    yield from motion.warnings(v, subject.design, done.motion, done.state, done.computed)
     if done.wall.missing:
         yield "burst_factor", f"barrel: {done.wall.missing[0]}"
     for material in subject.materials.values():
@@ -167,21 +171,6 @@ def _bond_warnings(done: Pass) -> Iterable[tuple[str, str]]:
         )
 
 
-def _oil_warnings(subject: Subject, v: Values) -> Iterable[tuple[str, str]]:
-    """Load cases outside the temperatures the oil is known or made for."""
-    oil = subject.materials[subject.design.fluid.material]
-    low = oil.numbers.get("temperature_min", -np.inf)
-    high = oil.numbers.get("temperature_max", np.inf)
-    temperatures = np.ravel(v.case("temperature", v["fluid.temperature"]))
-    for case, temperature in zip(v.cases, np.broadcast_to(temperatures, len(v.cases)), strict=True):
-        if not low <= temperature <= high:
-            yield (
-                "oil_viscosity",
-                f"{case}: {temperature - 273.15:.0f} degC is outside the service range of "
-                f"{oil.name}, {low - 273.15:.0f} to {high - 273.15:.0f} degC",
-            )
-
-
 def _seal_warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
     design = subject.design
     pressures = {
@@ -208,9 +197,9 @@ def _seal_warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[st
                 f"{name} seal: pressure is {ratio:.1f} times Young's modulus, the {law.name} law "
                 f"was compared with data up to {law.pressure_range[1]:g}",
             )
-        oil, compound = design.fluid.material, section.compound
-        if compatible(subject.materials[oil], subject.materials[compound]) is False:
-            yield "", f"{name} seal: {compound} does not withstand {oil}"
+        liquid, compound = design.fluid.material, section.compound
+        if compatible(subject.materials[liquid], subject.materials[compound]) is False:
+            yield "", f"{name} seal: {compound} does not withstand {liquid}"
 
 
 SOURCES = frozenset({"bore_growth", "first_ply_factor", "burst_factor", "cycle_life"})
@@ -260,6 +249,17 @@ def models(
             f"squeeze {100 * low:.0f} to {100 * high:.0f} %, p/E up to {law.pressure_range[1]:g}",
             f"squeeze {100 * section.squeeze:.4g} %",
             not any(text.startswith(f"{place} seal") for text in said),
+        )
+    liquid = subject.design.fluid
+    for function, what in oil.laws(liquid, subject.materials[liquid.material]):
+        model = describe(function)
+        yield ModelUse(
+            model.name,
+            model.summary,
+            model.reference,
+            model.valid,
+            f"{liquid.material}, chambers up to {subject.design.supply.pressure / 1e5:.0f} bar",
+            not any(text.startswith(f"{what}:") for text in said),
         )
 
 

@@ -14,7 +14,19 @@ from ..numeric import Array, minimum, where
 from ..quantities import METRICS, Quantity
 from . import barrel as barrel_module
 from . import beam as beam_module
-from . import duty, hydraulics, rods, sealing, state, strength, weight
+from . import (
+    circuit,
+    duty,
+    hydraulics,
+    motion,
+    oil,
+    rods,
+    sealing,
+    springs,
+    state,
+    strength,
+    weight,
+)
 from . import geometry as geometry_module
 from .allow import Stock
 from .barrel import Wall
@@ -69,7 +81,12 @@ class Pass:
     wall: Wall
     rod: Rod
     beam: Beam
-    springs: hydraulics.Springs
+    springs: springs.Springs
+    motion: motion.Motion
+    weakest: Array
+    """Position of least stiffness."""
+    places: dict[str, Array]
+    """Positions where dynamics are asked, by name."""
     mass_parts: dict[str, Array]
 
 
@@ -81,6 +98,7 @@ def compute(subject: Subject, v: Values) -> Pass:
         stock = Stock(v, subject.materials, subject.factors, subject.constants)
         g = geometry_module.derive(v, design)
         case_state = state.derive(v, design, stock, g)
+        oil.compute(design.fluid, stock, case_state, out)
         barrel = barrel_module.compute(v, design, stock, g, case_state)
         out.put("bore_growth", barrel.growth)
         friction = sealing.compute(v, design, stock, g, case_state, barrel, out)
@@ -89,10 +107,15 @@ def compute(subject: Subject, v: Values) -> Pass:
         parts = weight.parts(v, design, g, rod)
         out.put("mass", sum(parts.values()))
         out.put("mass_oil", weight.oil(v, design, g))
-        springs = hydraulics.springs(v, design, g, case_state, barrel, rod)
+        branches = circuit.branches(v, design, case_state)
+        budget = springs.springs(
+            v, design, g, case_state, barrel, rod, friction.breakaway, branches
+        )
         moving = v["load.mass"] + parts["rod"] + parts["piston"] + parts["fastening"]
-        least = hydraulics.compute_stiffness(springs, moving, out)
-        hydraulics.compute_damping(v, g, case_state, friction, least, moving, out)
+        weakest = springs.compute(budget, moving, out)
+        damping = hydraulics.compute_damping(g, case_state, friction, out)
+        swing = motion.derive(v, design, case_state, budget, branches, moving, damping)
+        places = motion.compute(v, design, swing, weakest, out)
         hydraulics.compute_flow(v, design, g, case_state, out)
         beam = beam_module.derive(v, design, g, case_state, barrel, rod, parts)
         strength.compute(v, design, stock, g, case_state, barrel, rod, beam, out)
@@ -106,7 +129,7 @@ def compute(subject: Subject, v: Values) -> Pass:
         out.skip("leakage", "needs the film of the running seal; static O-rings hold")
         for plugin in subject.plugins:
             out.put(plugin.name, plugin.call(v, out.metrics))
-    return Pass(out, g, case_state, barrel, rod, beam, springs, parts)
+    return Pass(out, g, case_state, barrel, rod, beam, budget, swing, weakest, places, parts)
 
 
 def _manufacture(v: Values, subject: Subject, out: Computed) -> None:

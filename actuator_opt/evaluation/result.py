@@ -10,6 +10,7 @@ from .. import quantities
 from ..design.model import Design
 from ..numeric import Array
 from ..tables import aligned
+from .study.dynamics import DynamicsStudy
 from .study.record import WallStudy
 
 
@@ -109,6 +110,15 @@ class StrokeCurve:
     stiffness: Array
     contributions: Mapping[str, Array]
 
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON; compliances in m/N."""
+        return {
+            "case": self.case,
+            "position": self.position.tolist(),
+            "stiffness": self.stiffness.tolist(),
+            "compliance": {name: c.tolist() for name, c in self.contributions.items()},
+        }
+
 
 @dataclass(frozen=True, slots=True)
 class Outline:
@@ -142,6 +152,8 @@ class Evaluation:
     """Dimensions for the drawing (m): bore, rod, barrel outer diameter, stroke, closed length…"""
     wall: WallStudy | None = None
     """The barrel through its thickness; None where its model is the paper's own."""
+    dynamics: DynamicsStudy | None = None
+    """Modes along the stroke, dynamic stiffness over frequency, and the position loop."""
 
     @property
     def met(self) -> bool:
@@ -198,6 +210,8 @@ class Evaluation:
             "warnings": list(self.warnings),
             "unverified": [asdict(value) for value in self.unverified],
             "wall": None if self.wall is None else self.wall.to_dict(),
+            "stiffness_budget": self.curve.to_dict(),
+            "dynamics": None if self.dynamics is None else self.dynamics.to_dict(),
         }
 
     def columns(self) -> dict[str, list[Any]]:

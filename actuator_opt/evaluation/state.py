@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..design.kinds import Fraction
-from ..design.material import Material
 from ..design.model import Design
-from ..models import density as oil_density
-from ..models import fluid, stiffness
+from ..models import stiffness
 from ..numeric import Array, where
+from . import oil
 from .allow import Stock
 from .geometry import Geometry
 from .values import Values, stacked
@@ -40,6 +39,10 @@ class State:
     kinematic_viscosity: Array
     density: Array
     dynamic_viscosity: Array
+    """Viscosities and density at the case temperature and zero gauge pressure."""
+    dynamic_viscosity_a: Array
+    dynamic_viscosity_b: Array
+    """At the pressures of the moving chambers."""
     bulk_modulus_a: Array
     bulk_modulus_b: Array
 
@@ -54,43 +57,6 @@ def case_force(v: Values, design: Design) -> Array:
         else:
             rows.append(v[f"{at}.joint_torque"] / v[f"{at}.lever_arm"])
     return stacked(rows)
-
-
-def oil_bulk_modulus(
-    v: Values, stock: Stock, name: str, temperature: Array, pressure: Array
-) -> Array:
-    """Tangent bulk modulus of the oil with its air at a temperature and a pressure."""
-    modulus = stock.get(name, "bulk_modulus")
-    decay = stock.get(name, "bulk_modulus_decay")
-    if decay is not None:
-        modulus = fluid.bulk_modulus_warm(
-            bulk_modulus=modulus,
-            decay=decay,
-            temperature=temperature,
-            reference_temperature=stock.get(name, "bulk_modulus_temperature"),
-        )
-    pure = fluid.bulk_modulus_linear(
-        bulk_modulus=modulus,
-        slope=stock.get(name, "bulk_modulus_slope", default=0.0),
-        pressure=pressure - stock.get(name, "bulk_modulus_pressure", default=0.0),
-    )
-    return fluid.effective_bulk_modulus(
-        bulk_modulus=pure, pressure=pressure, air_content=v["fluid.air_content"]
-    )
-
-
-def _viscosity(v: Values, oil: Material, temperature: Array) -> Array:
-    """Kinematic viscosity from the oil's table, scaled with its stated value."""
-    points = oil.viscosity_points
-    stated = oil.numbers["kinematic_viscosity"]
-    scale = v[f"materials.{oil.name}.kinematic_viscosity"] / stated
-    if len(points) < 2:
-        return scale * stated + 0 * temperature
-    return scale * fluid.viscosity_astm_d341(
-        temperature=temperature,
-        points_temperature=tuple(t for t, _ in points),
-        points_viscosity=tuple(value for _, value in points),
-    )
 
 
 def _reach(v: Values, design: Design, geometry: Geometry) -> Array:
@@ -109,6 +75,12 @@ def _reach(v: Values, design: Design, geometry: Geometry) -> Array:
     return stacked(rows)
 
 
+def _stated(v: Values, design: Design, field: str, otherwise: Array) -> Array:
+    """A held pressure of every case: the case's own, or `otherwise`."""
+    own = np.array([[getattr(case, field) is not None] for case in design.load_cases])
+    return where(own, v.case(field, 0.0), otherwise) if own.any() else otherwise
+
+
 def derive(v: Values, design: Design, stock: Stock, geometry: Geometry) -> State:
     """State of every load case of a design."""
     push = np.array([[case.direction == "push"] for case in design.load_cases])
@@ -123,18 +95,12 @@ def derive(v: Values, design: Design, stock: Stock, geometry: Geometry) -> State
         area_a=geometry.area_a,
         area_b=geometry.area_b,
     )
-    name = design.fluid.material
-    oil = stock.material(name)
-    kinematic = _viscosity(v, oil, temperature)
-    density = stock.get(name, "density")
-    expansion = stock.get(name, "volume_expansion")
-    if expansion is not None and "density_temperature" in oil.numbers:
-        density = oil_density.density_thermal(
-            reference_density=density,
-            volume_expansion=expansion,
-            temperature=temperature,
-            reference_temperature=stock.get(name, "density_temperature"),
-        )
+    holding_a = _stated(v, design, "pressure_a", holding_a)
+    holding_b = _stated(v, design, "pressure_b", holding_b)
+    kinematic = oil.kinematic_viscosity(v, design.fluid, stock, temperature)
+    density = oil.density(v, design.fluid, stock, temperature)
+    dynamic = kinematic * density
+    moving_a, moving_b = where(push, driven, drain), where(push, drain, driven)
     return State(
         push=push,
         reach=_reach(v, design, geometry),
@@ -143,13 +109,15 @@ def derive(v: Values, design: Design, stock: Stock, geometry: Geometry) -> State
         side_load=v.case("side_load"),
         temperature=temperature,
         driven_pressure=driven,
-        moving_a=where(push, driven, drain),
-        moving_b=where(push, drain, driven),
+        moving_a=moving_a,
+        moving_b=moving_b,
         holding_a=holding_a,
         holding_b=holding_b,
         kinematic_viscosity=kinematic,
         density=density,
-        dynamic_viscosity=kinematic * density,
-        bulk_modulus_a=oil_bulk_modulus(v, stock, name, temperature, holding_a),
-        bulk_modulus_b=oil_bulk_modulus(v, stock, name, temperature, holding_b),
+        dynamic_viscosity=dynamic,
+        dynamic_viscosity_a=oil.under_pressure(design.fluid, stock, dynamic, temperature, moving_a),
+        dynamic_viscosity_b=oil.under_pressure(design.fluid, stock, dynamic, temperature, moving_b),
+        bulk_modulus_a=oil.bulk_modulus(v, design.fluid, stock, temperature, holding_a),
+        bulk_modulus_b=oil.bulk_modulus(v, design.fluid, stock, temperature, holding_b),
     )

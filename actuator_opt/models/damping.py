@@ -184,8 +184,54 @@ def gap_leakage(
     >>> print(f"{q:.5e}")
     1.76715e-06
     """
+    conductance = gap_conductance(
+        diameter=diameter,
+        gap=gap,
+        dynamic_viscosity=dynamic_viscosity,
+        length=length,
+        eccentricity=eccentricity,
+    )
+    return conductance * pressure_difference
+
+
+def gap_conductance(
+    *,
+    diameter: Array,
+    gap: Array,
+    dynamic_viscosity: Array,
+    length: Array,
+    eccentricity: Array = 0.0,
+) -> Array:
+    """Conductance dq/d(dp) of an annular gap, pi D h^3/(12 eta L) (1 + 1.5 e^2).
+
+    Parameters
+    ----------
+    diameter : [m]
+    gap : mean radial clearance h [m]
+    dynamic_viscosity : [Pa s]
+    length : [m]
+    eccentricity : offset over h [-], 0 to 1
+
+    Returns
+    -------
+    conductance [m^3/s/Pa]
+
+    Notes
+    -----
+    Valid: laminar, gap much smaller than the diameter.
+
+    References
+    ----------
+    [Merritt1967] annular leakage with eccentricity
+
+    Examples
+    --------
+    >>> g = gap_conductance(diameter=0.04, gap=30e-6, dynamic_viscosity=0.04, length=0.02)
+    >>> print(f"{g:.5e}")
+    3.53429e-13
+    """
     concentric = (math.pi / 12) * diameter * gap * gap * gap / (dynamic_viscosity * length)
-    return concentric * pressure_difference * (1 + 1.5 * eccentricity * eccentricity)
+    return concentric * (1 + 1.5 * eccentricity * eccentricity)
 
 
 def secant(*, friction: Array, speed: Array) -> Array:

@@ -5,7 +5,7 @@ Pressures are gauge, temperatures in kelvin. The Tait equation lives in `tait`.
 
 from __future__ import annotations
 
-from ..numeric import Array
+from ..numeric import Array, namespace, real, where
 
 
 def density_dowson_higginson(
@@ -42,6 +42,48 @@ def density_dowson_higginson(
     880.10
     """
     return reference_density * (1 + coefficient_a * pressure / (1 + coefficient_b * pressure))
+
+
+def density_compressed(
+    *, reference_density: Array, pressure: Array, bulk_modulus: Array, slope: Array = 0.0
+) -> Array:
+    """Density under pressure of a liquid whose bulk modulus is K0 + m p.
+
+    rho = rho0 (1 + m p/K0)^(1/m); rho0 exp(p/K0) where m = 0.
+
+    Parameters
+    ----------
+    reference_density : at zero gauge pressure [kg/m^3]
+    pressure : gauge [Pa]
+    bulk_modulus : tangent value at zero gauge pressure, K0 [Pa]
+    slope : m = dK/dp [-]
+
+    Returns
+    -------
+    density [kg/m^3]
+
+    Notes
+    -----
+    Valid: 0 to 500 bar, pure liquid.
+
+    References
+    ----------
+    [derived] integral of drho/rho = dp/(K0 + m p)
+
+    Examples
+    --------
+    >>> rho = density_compressed(reference_density=870.0, pressure=200e5, bulk_modulus=1.4e9,
+    ...                          slope=6.0)
+    >>> print(f"{rho:.2f} kg/m3")
+    882.01 kg/m3
+    """
+    strain = pressure / bulk_modulus
+    load = slope * strain
+    xp = namespace(strain, load)
+    small = (real(load) < 1e-5) & (real(load) > -1e-5)
+    safe = where(small, 0 * load + 1, load)
+    mean = where(small, 1 - load / 2 + load * load / 3, xp.log1p(safe) / safe)
+    return reference_density * xp.exp(strain * mean)
 
 
 def density_thermal(

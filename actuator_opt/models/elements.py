@@ -1,6 +1,6 @@
-"""Lumped hydraulic elements: orifice, resistance, inertance, capacitance and their resonances.
+"""Lumped hydraulic elements of a line: resistance, inertance, capacitance and resonances.
 
-`lines` re-exports these functions.
+Lines as functions of frequency live in `transmission_line`, side branches in `resonators`.
 """
 
 from __future__ import annotations
@@ -126,7 +126,8 @@ def sound_speed(*, bulk_modulus: Array, density: Array) -> Array:
 def quarter_wave_frequency(*, length: Array, sound_speed: Array) -> Array:
     """First quarter-wave frequency of a plugged branch, f = a/(4 l).
 
-    Odd multiples amplify, even multiples attenuate.
+    At odd multiples the plugged end swings and the mouth takes flow without pressure; at even
+    ones the branch takes no flow.
 
     Parameters
     ----------
@@ -181,46 +182,3 @@ def resonance_frequency(*, inertance: Array, capacitance: Array) -> Array:
     168.731
     """
     return (0.5 / math.pi) / sqrt(inertance * capacitance)
-
-
-def orifice_flow(
-    *,
-    area: Array,
-    pressure_difference: Array,
-    density: Array,
-    discharge_coefficient: Array = 0.611,
-    smoothing_pressure: Array = 1.0,
-) -> Array:
-    """Flow through a sharp orifice, q = C_q A sqrt(2 |dp|/rho) sgn(dp), smooth at zero.
-
-    sqrt(|dp|) sgn(dp) is written dp/(dp^2 + delta^2)^(1/4).
-
-    Parameters
-    ----------
-    area : [m^2]
-    pressure_difference : [Pa], either sign
-    density : [kg/m^3]
-    discharge_coefficient : C_q [-]: 0.611 in turbulent flow, falling with Re
-    smoothing_pressure : delta [Pa]
-
-    Returns
-    -------
-    flow [m^3/s], with the sign of the pressure difference
-
-    Notes
-    -----
-    Valid: |dp| much larger than delta for the plain square root.
-
-    References
-    ----------
-    [AaltoThesis] eq. 9
-
-    Examples
-    --------
-    >>> q = orifice_flow(area=0.3e-4, pressure_difference=5e5, density=870.0)
-    >>> print(f"{q * 60000:.3f} l/min")
-    37.287 l/min
-    """
-    square = pressure_difference * pressure_difference + smoothing_pressure * smoothing_pressure
-    root = pressure_difference / sqrt(sqrt(square))
-    return discharge_coefficient * area * root * (2 / density) ** 0.5

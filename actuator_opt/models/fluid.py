@@ -1,4 +1,4 @@
-"""Hydraulic fluid: viscosity, bulk modulus, entrained and trapped air.
+"""Hydraulic fluid: viscosity, bulk modulus, entrained and trapped air, vapour pressure.
 
 Density lives in `density`, the Tait equation in `tait`. Pressures are gauge unless a name says
 ``absolute``; temperatures are in kelvin. A bulk modulus without a qualifier is the isothermal
@@ -14,6 +14,10 @@ from ..numeric import Array, maximum, namespace, real, where
 
 ATMOSPHERIC_PRESSURE = 101325.0
 """Standard atmosphere, Pa absolute."""
+LEAST_VISCOSITY = 2e-6
+"""Kinematic viscosity down to which ASTM D341 holds in the form used here, m^2/s."""
+BARUS_PRESSURE, ROELANDS_PRESSURE, LINEAR_PRESSURE = 1e8, 1e9, 500e5
+"""Gauge pressures up to which the laws of viscosity and of a linear bulk modulus hold, Pa."""
 
 
 def viscosity_astm_d341(
@@ -163,6 +167,56 @@ def roelands(*, viscosity: Array, pressure: Array, coefficient: Array) -> Array:
     exponent = coefficient / (5.1e-9 * slope)
     growth = xp.exp(exponent * xp.log1p(where(valid, pressure, 0.0) / 1.96e8)) - 1
     return where(valid, safe * xp.exp(slope * growth), math.nan)
+
+
+def vapour_pressure(
+    *, temperature: Array, points_temperature: Sequence[Array], points_pressure: Sequence[Array]
+) -> Array:
+    """Vapour pressure at a temperature, from two or more known points.
+
+    ln p = a - b/T between neighbouring points; the end segments continue outside.
+
+    Parameters
+    ----------
+    temperature : [K]
+    points_temperature : [K], strictly ascending
+    points_pressure : absolute, above zero [Pa], one per temperature
+
+    Returns
+    -------
+    vapour pressure, absolute [Pa]; NaN at temperature <= 0
+
+    Raises
+    ------
+    ValueError
+        Fewer than two points, or lists of unequal length.
+
+    Notes
+    -----
+    Valid: near the given points, far below the critical temperature.
+
+    References
+    ----------
+    [derived] Clausius-Clapeyron with a constant heat of evaporation and an ideal vapour
+
+    Examples
+    --------
+    >>> water = dict(points_temperature=(313.15, 333.15), points_pressure=(7384.9, 19947.0))
+    >>> print(f"{vapour_pressure(temperature=323.15, **water) / 1e3:.2f} kPa")
+    12.33 kPa
+    """
+    if len(points_temperature) != len(points_pressure) or len(points_temperature) < 2:
+        raise ValueError("need two or more points, as many pressures as temperatures")
+    xp = namespace(temperature, *points_temperature, *points_pressure)
+    valid = real(temperature) > 0
+    x = 1 / where(valid, temperature, points_temperature[0])
+    xs = [1 / t for t in points_temperature]
+    ys = [xp.log(p) for p in points_pressure]
+    y: Array = None
+    for x0, x1, y0, y1 in zip(xs, xs[1:], ys, ys[1:], strict=False):
+        segment = y0 + (y1 - y0) / (x1 - x0) * (x - x0)
+        y = segment if y is None else where(real(x) < real(x0), segment, y)
+    return where(valid, xp.exp(y), math.nan)
 
 
 def bulk_modulus_linear(*, bulk_modulus: Array, slope: Array, pressure: Array) -> Array:

@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from ..numeric import Array, expm1_quotient, namespace
 
+TAIT_PRESSURE, TAIT_TEMPERATURES = 350e5, (273.15, 423.15)
+"""Gauge pressure (Pa) and temperatures (K) for which the constants of the generic oil stand."""
+
 
 def _zero_pressure_modulus(zero_modulus: Array, coefficient: Array, temperature: Array) -> Array:
     """K0 at a temperature."""

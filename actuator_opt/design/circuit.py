@@ -1,0 +1,105 @@
+"""What the actuator works with: lines, valve, what ends the lines, and the position loop."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from .kinds import Flag, MaterialName, Of
+from .section import Section
+
+
+class Line(Section):
+    """A pipe or hose between valve and one chamber (a: cap side, b: rod side)."""
+
+    chamber: Literal["a", "b"]
+    type: Literal["pipe", "hose"] = "pipe"
+    length: Annotated[float, Of("part_length", "length of the line")]
+    inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
+    outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
+    material: Annotated[str, MaterialName("isotropic")]
+    rigid: Annotated[bool, Flag("count only its oil: the wall does not give")] = False
+    beyond_throttle: Annotated[bool, Flag("lies between the throttle and the line's end")] = False
+
+
+class Stiffness(Section):
+    """What counts in the axial stiffness, and how the sources' totals combine."""
+
+    topology: Literal["per_chamber", "aalto_as_published", "elasswad_as_published"] = "per_chamber"
+    seals: Literal["sliding", "sticking"] = "sliding"
+    """Sticking seals stand beside the oil as a spring until they break away."""
+    seal_deflection: Annotated[
+        float, Of("radial_clearance", "travel at which sticking seals break away")
+    ] = 1e-4
+    load_cell: Annotated[
+        float | None, Of("stiffness", "stiffness of the load cell of a test rig")
+    ] = None
+
+
+class Valve(Section):
+    """A proportional or servo valve of four alike edges, linear in the signal."""
+
+    rated_flow: Annotated[float, Of("rated_flow", "flow through one edge at full signal")]
+    rated_drop: Annotated[
+        float, Of("pressure_drop", "pressure drop over that edge at rated flow")
+    ] = 35e5
+    leakage_flow: Annotated[
+        float, Of("leakage_flow", "flow through one edge with the spool centred")
+    ] = 0.0
+    leakage_drop: Annotated[
+        float, Of("pressure_drop", "pressure drop over that edge at the leakage flow")
+    ] = 50e5
+    signal: Annotated[float, Of("signal", "signal of the fully open spool")] = 10.0
+    natural_frequency: Annotated[float, Of("frequency", "natural frequency of the spool")]
+    damping_ratio: Annotated[float, Of("damping_ratio", "damping ratio of the spool")] = 0.7
+
+
+class Throttle(Section):
+    """A one-way flow-control valve at each port: it throttles the oil that leaves the chamber."""
+
+    area: Annotated[float, Of("orifice_area", "area of the fully open needle")]
+    opening: Annotated[float, Of("opening", "opening of the needle")] = 1.0
+    check_area: Annotated[float, Of("orifice_area", "area of the open check valve")]
+    cracking_pressure: Annotated[
+        float, Of("pressure_drop", "pressure difference that opens the check valve")
+    ] = 0.4e5
+
+
+class ReducingValve(Section):
+    """A pressure reducing valve as a second-order line end (small signals)."""
+
+    conductance: Annotated[float, Of("conductance", "flow per pressure it regulates with, slowly")]
+    passive_conductance: Annotated[
+        float, Of("conductance", "flow per pressure of its opening, at any frequency")
+    ] = 0.0
+    natural_frequency: Annotated[float, Of("frequency", "natural frequency of the valve")]
+    damping_ratio: Annotated[float, Of("damping_ratio", "damping ratio of the valve")]
+
+
+class Accumulator(Section):
+    """A gas-charged accumulator on the line of one chamber, through a neck."""
+
+    chamber: Literal["a", "b"]
+    gas_volume: Annotated[float, Of("gas_volume", "gas volume at the precharge")]
+    precharge: Annotated[float, Of("precharge", "gas precharge, gauge")]
+    neck_length: Annotated[float, Of("part_length", "length of the neck")]
+    neck_diameter: Annotated[float, Of("diameter", "inner diameter of the neck")]
+
+
+class Ports(Section):
+    """What ends both lines while the load shakes the actuator."""
+
+    end: Literal["closed", "valve", "constant_pressure", "reducing_valve"] = "closed"
+    throttle: Throttle | None = None
+    reducing_valve: ReducingValve | None = None
+    accumulators: Annotated[tuple[Accumulator, ...], Field(max_length=8)] = ()
+
+
+class Control(Section):
+    """The position loop: signal = gain x position error, measured at the load."""
+
+    gain: Annotated[
+        float | None,
+        Of("gain", "signal per position error; default: half the ultimate gain"),
+    ] = None

@@ -1,0 +1,121 @@
+"""Faults between the values of lines, valve, ports and position loop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from .view import Fault, View, length_text
+
+
+def lines(view: View) -> Iterator[Fault]:
+    """Every line has a wall; a line beyond the throttle needs the throttle."""
+    for index in range(len(view.items("lines"))):
+        inner = view.number("lines", index, "inner_diameter")
+        outer = view.number("lines", index, "outer_diameter")
+        if inner is not None and outer is not None and outer <= inner:
+            yield Fault(
+                ("lines", index, "outer_diameter"),
+                f"{length_text(outer)}: not larger than inner_diameter ({length_text(inner)})",
+                f"write more than {length_text(inner)}",
+            )
+        if view.flag("lines", index, "beyond_throttle") and not view.has("ports", "throttle"):
+            yield Fault(
+                ("lines", index, "beyond_throttle"),
+                "no throttle stated",
+                "add ports.throttle, or leave beyond_throttle out",
+            )
+
+
+def ports(view: View) -> Iterator[Fault]:
+    """What ends the lines is described."""
+    end = view.text("ports", "end")
+    needed = {"valve": ("valve",), "reducing_valve": ("ports", "reducing_valve")}.get(end or "")
+    if needed is not None and not view.has(*needed):
+        yield Fault(
+            ("ports", "end"),
+            f"{end}: not described",
+            f"add {'.'.join(needed)}, or write closed or constant_pressure",
+        )
+    if end != "reducing_valve" and view.has("ports", "reducing_valve"):
+        yield Fault(
+            ("ports", "reducing_valve"),
+            "does not end the lines",
+            'write "end: reducing_valve", or leave it out',
+            at_key=True,
+        )
+    if end == "constant_pressure" and view.items("ports", "accumulators"):
+        yield Fault(
+            ("ports", "accumulators"),
+            "without effect where the line's pressure is constant",
+            "leave them out, or write another end",
+            at_key=True,
+        )
+
+
+def control(view: View) -> Iterator[Fault]:
+    """A position loop needs the valve it drives."""
+    if view.has("control") and not view.has("valve"):
+        yield Fault(
+            ("control",), "no valve to drive", "add valve, or leave control out", at_key=True
+        )
+
+
+def held_pressures(view: View) -> Iterator[Fault]:
+    """Held pressures are stated for both chambers or for none."""
+    for index in range(len(view.items("load_cases"))):
+        loc = ("load_cases", index)
+        a, b = view.has(*loc, "pressure_a"), view.has(*loc, "pressure_b")
+        if a != b:
+            missing, other = ("pressure_b", "pressure_a") if a else ("pressure_a", "pressure_b")
+            yield Fault(
+                (*loc, missing), f"missing: {other} needs it", f'add e.g. "{missing}: 20 bar"'
+            )
+
+
+NEEDS: dict[str, tuple[tuple[str, ...], str]] = {
+    **dict.fromkeys(
+        ("ultimate_gain", "position_gain", "gain_margin", "phase_margin", "bandwidth"),
+        (("valve",), "add valve"),
+    ),
+    **dict.fromkeys(
+        ("dynamic_stiffness", "dynamic_phase"),
+        (("load_cases", "*", "frequency"), "add frequency to a load case"),
+    ),
+}
+"""Metrics that exist only where the design states something, and what to do."""
+
+
+def requirements(view: View) -> Iterator[Fault]:
+    """No requirement asks for a figure the design cannot have."""
+    for metric, (needed, remedy) in NEEDS.items():
+        if not view.has("requirements", metric):
+            continue
+        if needed[0] == "load_cases":
+            cases = range(len(view.items("load_cases")))
+            known = any(view.has("load_cases", i, needed[-1]) for i in cases)
+        else:
+            known = view.has(*needed)
+        if not known:
+            yield Fault(
+                ("requirements", metric),
+                f"nothing gives this design a {metric}",
+                f"{remedy}, or leave the requirement out",
+                at_key=True,
+            )
+    sliding = view.text("stiffness", "seals") != "sticking"
+    if sliding and view.has("requirements", "stiffness_seals"):
+        yield Fault(
+            ("requirements", "stiffness_seals"),
+            "the seals slide",
+            'add "seals: sticking" to stiffness, or leave the requirement out',
+            at_key=True,
+        )
+
+
+CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+    lines,
+    ports,
+    control,
+    held_pressures,
+    requirements,
+)

@@ -1,0 +1,64 @@
+"""Laws of an oil: which one a design means, and what each needs the library to know."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator, Mapping
+from typing import Any, Final
+
+from ..errors import InputError
+from .structure import child_at
+from .view import Fault, Materials, Properties, View
+
+BULK_MODULUS_LAWS: Final[Mapping[str, tuple[str, ...]]] = {
+    "constant": (),
+    "linear": ("bulk_modulus_slope",),
+    "tait": ("tait_modulus", "tait_decay", "tait_coefficient"),
+}
+"""Bulk modulus over pressure, and the properties each law needs."""
+VISCOSITY_LAWS: Final[Mapping[str, tuple[str, ...]]] = {
+    "none": (),
+    "barus": ("pressure_viscosity",),
+    "roelands": ("pressure_viscosity",),
+}
+"""Viscosity over pressure, and the properties each law needs."""
+_GOOD = {
+    "bulk_modulus_slope": "6", "pressure_viscosity": "18 1/GPa", "tait_modulus": "8.4 GPa",
+    "tait_decay": "0.0058 1/K", "tait_coefficient": "11.9",
+}  # fmt: skip
+"""One good value of each, of mineral oil, for messages."""
+
+
+def bulk_modulus_law(stated: str | None, known: Container[str]) -> str:
+    """The stated law, else linear where the slope is among the known properties, else constant."""
+    return stated or ("linear" if "bulk_modulus_slope" in known else "constant")
+
+
+def viscosity_law(stated: str | None, known: Container[str]) -> str:
+    """The stated law, else Roelands where its coefficient is among the known properties."""
+    return stated or ("roelands" if "pressure_viscosity" in known else "none")
+
+
+def of_fluid(tree: Any, materials: Materials) -> Iterator[Fault]:
+    """Laws of the oil whose data neither the library nor the design states."""
+    view = View(tree)
+    name = view.text("fluid", "material")
+    if name is None or not isinstance(materials, Properties) or materials.kind(name) != "fluid":
+        return
+    own = child_at(tree, ("materials", name))
+    try:
+        known = {*materials.numbers(name), *(own if isinstance(own, Mapping) else ())}
+    except InputError:  # a faulty entry is told elsewhere
+        return
+    for key, laws, instead in (
+        ("bulk_modulus_law", BULK_MODULUS_LAWS, bulk_modulus_law(None, known)),
+        ("viscosity_pressure", VISCOSITY_LAWS, viscosity_law(None, known)),
+    ):
+        law = view.text("fluid", key)
+        missing = [needed for needed in laws.get(law or "", ()) if needed not in known]
+        if missing:
+            stated = f'"{missing[0]}: {_GOOD[missing[0]]}"'
+            yield Fault(
+                ("fluid", key),
+                f"{law}: {name} states no {', '.join(missing)}",
+                f"write {instead}, or add e.g. {stated} under materials.{name}",
+            )

@@ -1,0 +1,341 @@
+"""Linear dynamics in an evaluation: modes, dynamic stiffness and the position loop.
+
+One model (`models.linear`) serves them all. Every figure is asked at several places of the stroke
+and, for the loop, in both directions of the spool; each is a row, so the optimiser sees the worst
+without a smooth maximum.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..design.model import Design
+from ..models import accumulator, dynamics, elements, linear, loop, one_way_valve, valve
+from ..models.linear import LinearActuator, LineEnd, Side
+from ..numeric import Array, angle, magnitude, real, where
+from .circuit import CHAMBERS, Branch, Chamber
+from .rows import Computed
+from .springs import Springs
+from .state import State
+from .values import Values
+
+SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Where on the stroke dynamics are asked, beside the weakest position."""
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """What the linear model needs beside the position; arrays (cases, designs)."""
+
+    springs: Springs
+    mass: Array
+    damping: Array
+    """Incremental friction and oil damping at the piston [N s/m]."""
+    leakage: Array
+    branches: dict[Chamber, Branch]
+    throttles: dict[Chamber, Array]
+    """Conductance of the throttle at its operating point [m^3/s/Pa]; empty without one."""
+    ends: dict[Chamber, LineEnd]
+    """What ends the lines while the load shakes the actuator."""
+    slopes: dict[bool, valve.ValveSlopes]
+    """Valve linearised at the centre, extending and retracting; empty without a valve."""
+    spool: tuple[Array, Array] | None
+
+    def model(self, position: Array, *, extending: Array | None = None) -> LinearActuator:
+        """Linear model at a position: load shaking, or driven by the valve in one direction.
+
+        `extending` is True, False, or an array of them.
+        """
+        s = self.springs
+        near = s.total().at(position, s.geometry.stroke)
+        driven = extending is not None
+        sides = {}
+        for chamber, area, whole in zip(
+            CHAMBERS, (s.geometry.area_a, s.geometry.area_b), (near.a, near.b), strict=True
+        ):
+            branch = self.branches[chamber]
+            end, gain = self.ends[chamber], 0.0
+            if extending is not None:
+                out, back = self.slopes[True], self.slopes[False]
+                if chamber == "a":
+                    end, gain = (
+                        LineEnd((out.conductance_a,)),
+                        where(extending, out.gain_a, back.gain_a),
+                    )
+                else:
+                    end, gain = (
+                        LineEnd((out.conductance_b,)),
+                        -where(extending, out.gain_b, back.gain_b),
+                    )
+            sides[chamber] = Side(
+                area=area,
+                compliance=whole - branch.far,
+                throttle=self.throttles.get(chamber),
+                resistance=branch.resistance,
+                inertance=branch.inertance,
+                far_compliance=branch.far,
+                end=end,
+                flow_gain=gain,
+            )
+        return linear.linear_actuator(
+            side_a=sides["a"],
+            side_b=sides["b"],
+            mass=self.mass,
+            damping=self.damping,
+            coupling=near.ab,
+            leakage=self.leakage,
+            seal_stiffness=0.0 if s.seals is None or driven else s.seals,
+            flexibility=s.flexibility(),
+        )
+
+    def position_loop(self, position: Array, *, extending: Array) -> loop.OpenLoop:
+        """Open position loop at unit gain."""
+        assert self.spool is not None
+        frequency, damping = self.spool
+        return loop.open_loop(
+            model=self.model(position, extending=extending),
+            natural_frequency=frequency,
+            damping_ratio=damping,
+        )
+
+    def mode(self, model: LinearActuator, position: Array) -> loop.Mode:
+        """Mode of the load on the actuator as it is held."""
+        closed = dynamics.natural_frequency(
+            stiffness=self.springs.stiffness(position), mass=self.mass
+        )
+        return loop.load_mode(model=model, near=closed)
+
+
+def derive(
+    v: Values,
+    design: Design,
+    state: State,
+    springs: Springs,
+    branches: dict[Chamber, Branch],
+    mass: Array,
+    damping: Array,
+) -> Motion:
+    """The linear model's numbers in every load case."""
+    slopes = _valve_slopes(v, design, state)
+    return Motion(
+        springs=springs,
+        mass=mass,
+        damping=damping,
+        leakage=v["piston.leakage_conductance"],
+        branches=branches,
+        throttles=_throttles(v, design, state, springs),
+        ends={chamber: _end(v, design, state, slopes, chamber) for chamber in CHAMBERS},
+        slopes=slopes,
+        spool=(v["valve.natural_frequency"], v["valve.damping_ratio"]) if design.valve else None,
+    )
+
+
+def _valve_slopes(v: Values, design: Design, state: State) -> dict[bool, valve.ValveSlopes]:
+    """Valve at its centre with the held pressures, extending and retracting."""
+    if design.valve is None:
+        return {}
+    rated = valve.edge_coefficient(flow=v["valve.rated_flow"], pressure_drop=v["valve.rated_drop"])
+    leakage = valve.edge_coefficient(
+        flow=v["valve.leakage_flow"], pressure_drop=v["valve.leakage_drop"]
+    )
+    return {
+        extending: valve.valve_slopes(
+            rated_coefficient=rated,
+            leakage_coefficient=leakage,
+            signal=v["valve.signal"],
+            supply_pressure=v["supply.pressure"],
+            return_pressure=v["supply.return_pressure"],
+            pressure_a=state.holding_a,
+            pressure_b=state.holding_b,
+            extending=extending,
+        )
+        for extending in (True, False)
+    }
+
+
+def _throttles(v: Values, design: Design, state: State, springs: Springs) -> dict[Chamber, Array]:
+    """Conductance of the one-way valves at the flow of the case's speed."""
+    if design.ports.throttle is None:
+        return {}
+    g = springs.geometry
+    outwards = where(state.push, -1.0, 1.0) * state.speed  # positive leaves chamber A
+    at = "ports.throttle."
+    common = {
+        "density": state.density,
+        "dynamic_viscosity": state.dynamic_viscosity,
+        "opening": v[at + "opening"],
+        "needle_area": v[at + "area"],
+        "check_area": v[at + "check_area"],
+        "cracking_pressure": v[at + "cracking_pressure"],
+    }
+    found: dict[Chamber, Array] = {}
+    for chamber, flow in zip(CHAMBERS, (g.area_a * outwards, -g.area_b * outwards), strict=True):
+        drop = one_way_valve.one_way_pressure_drop(flow=flow, **common)
+        found[chamber] = one_way_valve.one_way_conductance(pressure_difference=drop, **common)
+    return found
+
+
+def _end(
+    v: Values,
+    design: Design,
+    state: State,
+    slopes: dict[bool, valve.ValveSlopes],
+    chamber: Chamber,
+) -> LineEnd:
+    """What ends the line of a chamber while the load shakes the actuator."""
+    ends = [_accumulator(v, state, i, chamber) for i in _accumulators(design, chamber)]
+    kind = design.ports.end
+    if kind == "valve":
+        centred = slopes[True]
+        conductance = centred.conductance_a if chamber == "a" else centred.conductance_b
+        ends.append(LineEnd((conductance,)))
+    elif kind == "constant_pressure":
+        return LineEnd((1.0,), ())
+    elif kind == "reducing_valve":
+        at = "ports.reducing_valve."
+        ends.append(
+            linear.reducing_valve_end(
+                conductance=v[at + "conductance"],
+                passive_conductance=v[at + "passive_conductance"],
+                natural_frequency=v[at + "natural_frequency"],
+                damping_ratio=v[at + "damping_ratio"],
+            )
+        )
+    return linear.parallel_ends(*ends) if ends else LineEnd()
+
+
+def _accumulators(design: Design, chamber: Chamber) -> list[int]:
+    return [i for i, one in enumerate(design.ports.accumulators) if one.chamber == chamber]
+
+
+def _accumulator(v: Values, state: State, index: int, chamber: Chamber) -> LineEnd:
+    at = f"ports.accumulators[{index}]."
+    neck = {"inner_diameter": v[at + "neck_diameter"], "length": v[at + "neck_length"]}
+    pressure = state.holding_a if chamber == "a" else state.holding_b
+    return linear.accumulator_end(
+        capacitance=accumulator.gas_capacitance(
+            pressure=pressure,
+            precharge_pressure=v[at + "precharge"],
+            gas_volume=v[at + "gas_volume"],
+            polytropic_index=v["fluid.polytropic_index"],
+        ),
+        inertance=elements.inertance(**neck, density=state.density),
+        resistance=elements.resistance(**neck, dynamic_viscosity=state.dynamic_viscosity),
+    )
+
+
+def _places(stroke: Array, weakest: Array) -> tuple[list[str], Array]:
+    """Names and positions (places, cases, designs) where dynamics are asked."""
+    names = [f"{100 * share:.0f} % of the stroke" for share in SHARES] + ["weakest position"]
+    positions = [share * stroke for share in SHARES] + [weakest]
+    shape = np.broadcast_shapes(*(np.shape(p) for p in positions), (1, 1))
+    return names, np.stack([np.broadcast_to(p, shape) for p in positions])
+
+
+def compute(
+    v: Values, design: Design, motion: Motion, weakest: Array, out: Computed
+) -> dict[str, Array]:
+    """Damping ratio, dynamic stiffness and the position loop; returns the places asked."""
+    names, positions = _places(motion.springs.geometry.stroke, weakest)
+    model = motion.model(positions)
+    mode = motion.mode(model, positions)
+    out.put("damping_ratio", dict(zip(names, mode.damping_ratio, strict=True)))
+    _dynamic_stiffness(v, design, model, names, out)
+    if motion.spool is None:
+        for name in LOOP_METRICS:
+            out.skip(name, "no valve stated: add valve")
+    else:
+        _position_loop(v, design, motion, names, positions, out)
+    return dict(zip(names, positions, strict=True))
+
+
+LOOP_METRICS = ("ultimate_gain", "position_gain", "gain_margin", "phase_margin", "bandwidth")
+
+
+def _dynamic_stiffness(
+    v: Values, design: Design, model: LinearActuator, names: list[str], out: Computed
+) -> None:
+    shaken = np.array([case.frequency is not None for case in design.load_cases])
+    if not shaken.any():
+        for name in ("dynamic_stiffness", "dynamic_phase"):
+            out.skip(name, "no load case shakes: add load_cases[NAME].frequency")
+        return
+    parts = linear.dynamic_stiffness(model=model, frequency=v.case("frequency", 1.0))
+    values = magnitude(parts.real, parts.imaginary)
+    out.put("dynamic_stiffness", dict(zip(names, values, strict=True)), cases=shaken)
+    phase = angle(parts.imaginary, parts.real)
+    out.put("dynamic_phase", dict(zip(names, phase, strict=True)), cases=shaken)
+
+
+def _position_loop(
+    v: Values,
+    design: Design,
+    motion: Motion,
+    names: list[str],
+    positions: Array,
+    out: Computed,
+) -> None:
+    """Margins and bandwidth at every place, in both directions of the spool."""
+    directions = np.array([True, False]).reshape(-1, 1, 1, 1)
+    one = motion.position_loop(positions, extending=directions)
+    limit = loop.ultimate_gain(loop=one)
+    stated = design.control is not None and design.control.gain is not None
+    gain = v["control.gain"] if stated else 0.5 * _least(limit.gain)
+    margin = limit.gain / gain
+    found = loop.margins(loop=one, gain=gain)
+
+    def put(name: str, value: Array) -> None:
+        rows = {
+            f"{word}, {place}": value[i, k]
+            for i, word in enumerate(("extending", "retracting"))
+            for k, place in enumerate(names)
+        }
+        out.put(name, rows)
+
+    put("ultimate_gain", limit.gain)
+    put("gain_margin", margin)
+    put("phase_margin", where(real(margin) > 1, found.phase_margin, -found.phase_margin))
+    put("bandwidth", found.bandwidth)
+    out.put("position_gain", gain)
+
+
+def _least(values: Array) -> Array:
+    """Smallest over directions, places and cases, by real part: (designs,)."""
+    flat = values.reshape(-1, values.shape[-1])
+    best = np.argmin(real(flat), axis=0)[None]
+    return np.take_along_axis(flat, best, axis=0)[0]
+
+
+LONGEST = 0.1
+"""Longest line over the wavelength for one lumped element (choice: 2 % in its impedance)."""
+
+
+def warnings(
+    v: Values, design: Design, motion: Motion, state: State, out: Computed
+) -> Iterable[tuple[str, str]]:
+    """(metric, sentence) where the linear model is used outside its range."""
+    slowest = float(np.min(np.real(motion.damping)))
+    if slowest < 0:
+        yield (
+            "damping_ratio",
+            f"friction falls with speed ({slowest:.3g} N*s/m): the load may stick and slip",
+        )
+    asked = {f"load case {case.name}": case.frequency or 0.0 for case in design.load_cases}
+    if motion.spool is not None:
+        asked["the valve's spool"] = float(np.max(np.real(motion.spool[0])))
+    what, fastest = max(asked.items(), key=lambda one: one[1])
+    for i in range(len(design.lines)):
+        length = float(np.max(np.real(v[f"lines[{i}].length"])))
+        modulus = np.minimum(np.real(state.bulk_modulus_a), np.real(state.bulk_modulus_b))
+        speed = elements.sound_speed(bulk_modulus=modulus, density=np.real(state.density))
+        limit = LONGEST * float(np.min(speed)) / length
+        if fastest > limit:
+            metric = "dynamic_stiffness" if "dynamic_stiffness" in out.metrics else "bandwidth"
+            yield (
+                metric,
+                f"lines[{i}]: one lumped element is good to {limit:.0f} Hz, {what} asks for "
+                f"{fastest:.4g} Hz: split the line or read the figure as rough",
+            )

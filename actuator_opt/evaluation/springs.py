@@ -1,0 +1,288 @@
+"""The stiffness budget: everything that gives way between load and ground, along the stroke."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from ..design.model import Design
+from ..models import dynamics, lugre, stiffness
+from ..models import stiffness_published as published
+from ..numeric import Array, real
+from .barrel import Wall
+from .circuit import Branch, Chamber
+from .geometry import Geometry
+from .rods import Rod
+from .rows import Computed
+from .state import State
+from .values import Values
+
+
+class Give(NamedTuple):
+    """One cause of compliance along the piston's position x.
+
+    Of chamber A a0 + a1 x, of chamber B b0 + b1 (s - x); c0 + c1 x is what the pressure of one adds
+    to the volume of the other.
+    """
+
+    a0: Array = 0.0
+    a1: Array = 0.0
+    b0: Array = 0.0
+    b1: Array = 0.0
+    c0: Array = 0.0
+    c1: Array = 0.0
+
+    def at(self, position: Array, stroke: Array) -> Compliances:
+        """Compliances of both chambers at a position."""
+        return Compliances(
+            self.a0 + self.a1 * position,
+            self.b0 + self.b1 * (stroke - position),
+            self.c0 + self.c1 * position,
+        )
+
+
+class Compliances(NamedTuple):
+    """Of chamber A, of chamber B, and of one on the other [m^3/Pa]."""
+
+    a: Array
+    b: Array
+    ab: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Springs:
+    """Everything that gives way between load and ground."""
+
+    chambers: dict[str, Give]
+    """By cause: oil of A and of B, barrel, its stretch, pipes, hoses."""
+    seals: Array | None
+    """Of sticking seals, beside the oil; None where they slide."""
+    chain: dict[str, Array]
+    """Stiffnesses in series with the chambers: rod, mount, load cell."""
+    geometry: Geometry
+    topology: str
+    pressure: Array
+    """Pressure difference over the piston, for the one published form that needs it."""
+    rod_place: str = ""
+
+    def total(self, causes: Iterable[str] | None = None) -> Give:
+        """Compliance of some causes, or all, together."""
+        chosen = [self.chambers[cause] for cause in (causes or self.chambers)]
+        return Give(*(sum(part[1:], start=part[0]) for part in zip(*chosen, strict=True)))
+
+    def hydraulic(self, position: Array, causes: Iterable[str] | None = None) -> Array:
+        """Stiffness of the closed chambers at a position, counting only some causes."""
+        g = self.geometry
+        a, b, ab = self.total(causes).at(position, g.stroke)
+        return stiffness.hydraulic_stiffness(
+            area_a=g.area_a, compliance_a=a, area_b=g.area_b, compliance_b=b, compliance_ab=ab
+        )
+
+    def flexibility(self) -> Array:
+        """Compliance of the parts in series with the chambers [m/N]."""
+        return sum(1 / part for part in self.chain.values())
+
+    def compliances(self, position: Array) -> dict[str, Array]:
+        """Compliance by part at a position (m/N); they add up to 1/stiffness.
+
+        Per chamber, each part's share is its strain energy under a unit force: p^T C_part p with
+        the chamber pressures p of that force, k x^2 of the seals; no order of parts matters.
+        """
+        if self.topology != "per_chamber":
+            parts = self._published(position)
+        else:
+            parts = self._by_energy(position)
+        return parts | {name: 1 / part for name, part in self.chain.items()}
+
+    def _by_energy(self, position: Array) -> dict[str, Array]:
+        g = self.geometry
+        a, b, ab = self.total().at(position, g.stroke)
+        det = a * b - ab * ab
+        per_a = (g.area_a * b + g.area_b * ab) / det  # pressure of A per displacement
+        per_b = -(g.area_a * ab + g.area_b * a) / det
+        seals = 0.0 if self.seals is None else self.seals
+        moved = 1 / (g.area_a * per_a - g.area_b * per_b + seals)
+        force_a, force_b = moved * per_a, moved * per_b
+        parts = {}
+        for cause, give in self.chambers.items():
+            one = give.at(position, g.stroke)
+            parts[cause] = (
+                force_a * force_a * one.a
+                + force_b * force_b * one.b
+                + 2 * force_a * force_b * one.ab
+            )
+        if self.seals is not None:
+            parts["seals"] = moved * moved * seals
+        return parts
+
+    def _published(self, position: Array) -> dict[str, Array]:
+        """Totals of each kind in series, as the sources write them."""
+        g = self.geometry
+        square_a, square_b = g.area_a * g.area_a, g.area_b * g.area_b
+
+        def totals(cause: str, swelling_b: Array = 1.0) -> tuple[Array, Array]:
+            one = self.chambers[cause].at(position, g.stroke)
+            return square_a / one.a, square_b / (one.b * swelling_b)
+
+        oil_a, oil_b = totals("oil A")[0], totals("oil B")[1]
+        oil = oil_a + oil_b
+        parts = {"oil A": oil_a / oil / oil, "oil B": oil_b / oil / oil}
+        if self.topology == "elasswad_as_published":
+            bulge = published.cylinder_expansion_as_published(
+                pressure=self.pressure, area=g.area_a, stroke=g.stroke
+            )
+            return parts | {"barrel": 1 / bulge}
+        parts["barrel"] = 1 / sum(totals("barrel", swelling_b=g.area_b / g.area_a))
+        for cause in ("pipes", "hoses"):
+            if cause in self.chambers:
+                parts[cause] = 1 / sum(totals(cause))
+        return parts
+
+    def stiffness(self, position: Array) -> Array:
+        """Axial stiffness at a position."""
+        return 1 / sum(self.compliances(position).values())
+
+
+def _stretch(design: Design, g: Geometry, wall: Wall, extra: Array) -> Give:
+    """Axial stretch of the barrel under the pressure of the chamber that pulls on it.
+
+    Cap-mounted, N = p_B A_B over the whole length: the head moves by e_N L N + e_p (x p_A +
+    y p_B), and N narrows both chambers by e_p N per length; e_p is the strain per pressure, y the
+    wetted length of chamber B, the rest of the stroke and what the barrel is longer (`extra`).
+    Head-mounted, the same with p_A A_A. Tie rods take their share of N.
+    """
+    shortening = wall.swelling.shortening * wall.path.share
+    cap = design.cylinder.mount.startswith("cap")
+    area = g.area_b if cap else g.area_a
+    own = area * area * wall.swelling.stretch * wall.path.share * g.barrel_length
+    twice, once = 2 * shortening * area, shortening * area
+    if cap:
+        return Give(b0=own + twice * extra, b1=twice, c1=once)
+    return Give(a0=own, a1=twice, c0=once * (g.stroke + extra), c1=-once)
+
+
+def springs(
+    v: Values,
+    design: Design,
+    geometry: Geometry,
+    state: State,
+    wall: Wall,
+    rod: Rod,
+    breakaway: Array,
+    branches: dict[Chamber, Branch],
+) -> Springs:
+    """Compliance of chambers, lines, rod, mount, seals and load cell.
+
+    `breakaway` is the force at which the seals slip [N].
+    """
+    g = geometry
+    extra = g.barrel_length - g.piston_length - g.head_length - g.stroke
+    volume_a = v["cylinder.dead_volume_a"] + branches["a"].volume
+    volume_b = v["cylinder.dead_volume_b"] + g.area_b * extra + branches["b"].volume
+    swelling = 2 * pi * g.inner_radius * wall.swelling.growth
+    oil_a, oil_b = state.bulk_modulus_a, state.bulk_modulus_b
+    chambers = {
+        "oil A": Give(a0=volume_a / oil_a, a1=g.area_a / oil_a),
+        "oil B": Give(b0=volume_b / oil_b, b1=g.area_b / oil_b),
+        "barrel": Give(a1=swelling, b0=swelling * extra, b1=swelling),
+        "stretch": _stretch(design, g, wall, extra),
+    }
+    kinds = {line.type for line in design.lines if not line.rigid}
+    if "pipe" in kinds:
+        chambers["pipes"] = Give(a0=branches["a"].pipes, b0=branches["b"].pipes)
+    if "hose" in kinds:
+        chambers["hoses"] = Give(a0=branches["a"].hoses, b0=branches["b"].hoses)
+    chain = {"rod": rod.axial_stiffness / g.rod_length}
+    for name, path in (
+        ("mount", "cylinder.mount_stiffness"),
+        ("load cell", "stiffness.load_cell"),
+    ):
+        if path in v:
+            chain[name] = v[path]
+    sticking = design.stiffness.seals == "sticking"
+    return Springs(
+        chambers=chambers,
+        seals=lugre.lugre_bristle_stiffness(
+            static=breakaway, largest_deflection=v["stiffness.seal_deflection"]
+        )
+        if sticking
+        else None,
+        chain=chain,
+        geometry=g,
+        topology=design.stiffness.topology,
+        pressure=state.driven_pressure,
+        rod_place=rod.place,
+    )
+
+
+def weakest(s: Springs) -> Array:
+    """Position of least stiffness in every case."""
+    if s.topology != "per_chamber":
+        return _softest(s.stiffness, s.geometry.stroke)
+    give = s.total()
+    return stiffness.weakest_position(
+        area_a=s.geometry.area_a,
+        area_b=s.geometry.area_b,
+        compliance_a0=give.a0,
+        compliance_a_per_length=give.a1,
+        compliance_b0=give.b0,
+        compliance_b_per_length=give.b1,
+        stroke=s.geometry.stroke,
+        compliance_ab0=give.c0,
+        compliance_ab_per_length=give.c1,
+    )
+
+
+def _softest(curve: Callable[[Array], Array], stroke: Array) -> Array:
+    """Position of least stiffness by narrowing a grid.
+
+    On real parts: at a minimum the position's own derivative does not count.
+    """
+    length = np.asarray(real(stroke))
+    middle, reach = 0.5 * length, 0.5 * length
+    for _ in range(5):
+        grid = middle + np.linspace(-1.0, 1.0, 33).reshape(-1, 1, 1) * reach
+        grid = np.clip(grid, 1e-6 * length, (1 - 1e-6) * length)
+        values = np.asarray(real(curve(grid)))
+        grid = np.broadcast_to(grid, values.shape)
+        best = np.argmin(values, axis=0)[None]
+        middle = np.take_along_axis(grid, best, axis=0)[0]
+        reach = reach / 8
+    return middle
+
+
+def compute(s: Springs, moving_mass: Array, out: Computed) -> Array:
+    """Stiffness and frequency metrics; returns the position of least stiffness."""
+    position = weakest(s)
+    parts = s.compliances(position)
+    total = 1 / sum(parts.values())
+    out.put("stiffness_min", total)
+    out.put("stiffness_oil", s.hydraulic(position, ("oil A", "oil B")))
+    out.put("stiffness_barrel", 1 / parts["barrel"])
+    out.put("stiffness_rod", {s.rod_place: s.chain["rod"]})
+    if s.seals is not None:
+        out.put("stiffness_seals", s.seals)
+    else:
+        out.skip("stiffness_seals", "the seals slide: state stiffness.seals: sticking")
+    out.put("natural_frequency", dynamics.natural_frequency(stiffness=total, mass=moving_mass))
+    return position
+
+
+def warnings(s: Springs) -> Iterable[tuple[str, str]]:
+    """(metric, sentence) for what the stiffness leaves out or counts on."""
+    if s.topology != "per_chamber":
+        for metric in ("stiffness_min", "natural_frequency"):
+            yield (
+                metric,
+                f"stiffness as published ({s.topology.partition('_')[0]}): totals of oil, barrel "
+                "and lines in series, off by up to 13 % with hoses; per_chamber is the balance",
+            )
+    if s.seals is not None:
+        yield (
+            "",
+            "sticking seals are counted in the stiffness: they hold only until they break away",
+        )

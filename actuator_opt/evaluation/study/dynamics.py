@@ -1,0 +1,317 @@
+"""Dynamics along the stroke and over frequency, beside the metrics: modes, Bode data, shares.
+
+SI throughout. Only the load case and place that govern are told; `study` fills the record.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from ...design.model import Design
+from ...models import dynamics, linear, loop
+from ...numeric import Array
+from ...polynomial import Polynomial, add, at_frequency, roots, scale
+from ..kernel import Pass, Subject
+from ..motion import Motion
+from ..values import Values
+
+FREQUENCIES = np.geomspace(0.1, 1000.0, 121)
+"""Where responses are told (Hz), and about every resonance between."""
+AROUND = np.array([-8.0, -3.0, -1.0, 0.0, 1.0, 3.0, 8.0])
+"""Half-widths of a resonance at which it is told too, so that none falls between two points."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pole:
+    """A pole of the held actuator: frequency [Hz] and damping ratio; above 1 it does not swing."""
+
+    frequency: float
+    damping_ratio: float
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """Dynamic stiffness [N/m] and the phase [rad] by which the force leads, over frequency."""
+
+    place: str
+    position: float
+    magnitude: Array
+    phase: Array
+    static: float
+    """Stiffness with closed ports at this place."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoopStudy:
+    """The position loop in one case at one place; arrays over the frequencies of the study."""
+
+    case: str
+    place: str
+    gain: float
+    tuned: bool
+    """Whether the gain is the tool's (half the ultimate gain) and not the design's."""
+    ultimate_gain: float
+    ultimate_frequency: float
+    gain_margin: float
+    phase_margin: float
+    crossover: float | None
+    bandwidth: float | None
+    open_magnitude: Array
+    open_phase: Array
+    """[rad], falling from -pi/2 without jumps."""
+    closed_magnitude: Array
+
+
+@dataclass(frozen=True, slots=True)
+class DynamicsStudy:
+    """What the linear model says of one design, in the case of least stiffness."""
+
+    case: str
+    mass: float
+    end: str
+    """What ends the lines: closed, valve, constant_pressure, reducing_valve."""
+    position: Array
+    """[m] from the cap end; the next three are arrays along it"""
+    closed_frequency: Array
+    """[Hz], ports closed"""
+    frequency: Array
+    """[Hz], lines ended as `end` says"""
+    damping_ratio: Array
+    friction_share: float
+    """Damping ratio from friction and oil shear at the weakest position: closed form, for the
+    part of the load's motion that reaches the piston through rod and mount."""
+    conductance_share: float
+    """Damping ratio from leakage and line ends there: the exact one less friction's."""
+    poles: tuple[Pole, ...]
+    """All of them at the weakest position, slowest first."""
+    frequencies: Array
+    response_case: str
+    """Case of the responses: of least dynamic stiffness, or `case` where none shakes."""
+    responses: tuple[Response, ...]
+    """At the cap end, the weakest position and the rod end."""
+    shaken: tuple[tuple[str, float], ...]
+    """Load cases that shake the actuator, with their frequency [Hz]."""
+    position_loop: LoopStudy | None
+    """Where its gain margin is least; None without a valve."""
+    other_loops: tuple[LoopStudy, ...] = ()
+    """Where phase margin and bandwidth are least, if elsewhere."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON."""
+        return {name: _plain(getattr(self, name)) for name in self.__dataclass_fields__}
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "__dataclass_fields__"):
+        return {name: _plain(getattr(value, name)) for name in value.__dataclass_fields__}
+    if isinstance(value, np.ndarray):
+        return [_plain(x) for x in value.tolist()]
+    if isinstance(value, (list, tuple)):
+        return [_plain(x) for x in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return value
+
+
+def study(subject: Subject, v: Values, done: Pass, case: str | None) -> DynamicsStudy | None:
+    """Dynamics of one design in the case of least stiffness; None where nothing moves."""
+    motion = done.motion
+    index = v.cases.index(case) if case in v.cases else 0
+    stroke = float(np.squeeze(done.geometry.stroke))
+    position = np.linspace(0.0, stroke, 61)
+    weakest = _of_case(done.weakest, index)
+    model = motion.model(position)
+    along = motion.mode(model, position)
+    closed = dynamics.natural_frequency(
+        stiffness=motion.springs.stiffness(position), mass=motion.mass
+    )
+    stiffness = _of_case(motion.springs.stiffness(weakest), index)
+    mass = float(np.squeeze(motion.mass))
+    reaching = 1 - stiffness * _of_case(motion.springs.flexibility(), index)
+    friction = reaching**2 * dynamics.friction_damping_ratio(
+        incremental_damping=_of_case(motion.damping, index), stiffness=stiffness, mass=mass
+    )
+    here = motion.model(np.array([[weakest]]))
+    whole = _of_case(motion.mode(here, np.array([[weakest]])).damping_ratio, index)
+    design = subject.design
+    shaken = _worst(done, "dynamic_stiffness", design)
+    asked = index if shaken is None else shaken[0]
+    places = {
+        "cap end": 0.0,
+        "weakest position": _of_case(done.weakest, asked),
+        "rod end": stroke,
+    }
+    models = {name: motion.model(np.array([[[x]]])) for name, x in places.items()}
+    rows = [_worst(done, name, design) for name in ("gain_margin", "phase_margin", "bandwidth")]
+    loops = [_Loop.of(done, *row) for row in dict.fromkeys(row for row in rows if row is not None)]
+    polynomials = [p for one in models.values() for p in (one.characteristic, one.mobile)]
+    polynomials += [p for one in loops for p in one.polynomials()]
+    frequencies = _frequencies(polynomials)
+    told = [_loop(subject, v, done, one, frequencies) for one in loops]
+    return DynamicsStudy(
+        case=v.cases[index],
+        mass=mass,
+        end=design.ports.end,
+        position=position,
+        closed_frequency=_row(closed, index, position),
+        frequency=_row(along.natural_frequency, index, position),
+        damping_ratio=_row(along.damping_ratio, index, position),
+        friction_share=float(friction),
+        conductance_share=float(whole - friction),
+        poles=_poles(here, index),
+        frequencies=frequencies,
+        response_case=v.cases[asked],
+        responses=tuple(
+            _response(motion, name, x, asked, models[name], frequencies)
+            for name, x in places.items()
+        ),
+        shaken=tuple(
+            (one.name, one.frequency) for one in design.load_cases if one.frequency is not None
+        ),
+        position_loop=told[0] if told else None,
+        other_loops=tuple(told[1:]),
+    )
+
+
+def _of_case(value: Array, index: int) -> float:
+    """One case's number of an array (cases, 1), (1, 1) or a float."""
+    array = np.atleast_2d(np.asarray(value))
+    return float(array[min(index, array.shape[0] - 1), 0])
+
+
+def _row(value: Array, index: int, along: Array) -> Array:
+    """One case's row of an array (cases, points)."""
+    array = np.broadcast_to(np.atleast_2d(value), (np.shape(np.atleast_2d(value))[0], along.size))
+    return array[min(index, array.shape[0] - 1)]
+
+
+def _poles(model: linear.LinearActuator, index: int) -> tuple[Pole, ...]:
+    found = loop.poles(model=model)
+    found = found[min(index, found.shape[0] - 1), 0] if found.ndim == 3 else found.reshape(-1)
+    rows = [
+        Pole(float(abs(one)) / (2 * pi), float(-one.real / abs(one)))
+        for one in found
+        if one.imag >= 0 and abs(one) > 0
+    ]
+    return tuple(sorted(rows, key=lambda pole: pole.frequency))
+
+
+def _worst(done: Pass, metric: str, design: Design) -> tuple[int, str] | None:
+    """Case and place of a metric's least value; None where it was not computed."""
+    shaken = [case.frequency is not None for case in design.load_cases]
+    rows = [
+        (float(value[i, 0]), i, place)
+        for place, value in done.computed.metrics.get(metric, {}).items()
+        for i in range(len(value))
+        if metric != "dynamic_stiffness" or shaken[i]
+    ]
+    known = [row for row in rows if np.isfinite(row[0])] or rows
+    return min(known)[1:] if known else None
+
+
+def _frequencies(polynomials: list[Polynomial]) -> Array:
+    """`FREQUENCIES` and points about every resonance and anti-resonance of some polynomials."""
+    found = [FREQUENCIES]
+    for polynomial in polynomials:
+        zeros = roots(polynomial[_integrators(polynomial) :]).reshape(-1)
+        swings = zeros[zeros.imag > 0]
+        size = np.abs(swings) / (2 * pi)
+        near = (size > FREQUENCIES[0]) & (size < FREQUENCIES[-1])
+        width = np.clip(-swings.real / np.abs(swings), 1e-9, 0.05)
+        found.append((size * (1 + width * AROUND[:, None]))[:, near].reshape(-1))
+    grid = np.unique(np.concatenate(found))
+    return grid[(grid >= FREQUENCIES[0]) & (grid <= FREQUENCIES[-1])]
+
+
+def _integrators(polynomial: Polynomial) -> int:
+    """How many roots at zero a polynomial has: coefficients that are 0."""
+    return next(k for k, one in enumerate(polynomial) if np.any(np.asarray(one) != 0))
+
+
+def _response(
+    motion: Motion,
+    name: str,
+    position: float,
+    index: int,
+    model: linear.LinearActuator,
+    frequencies: Array,
+) -> Response:
+    parts = linear.dynamic_stiffness(model=model, frequency=frequencies.reshape(-1, 1, 1))
+    value = np.asarray(parts.real + 1j * parts.imaginary)
+    value = value[:, min(index, value.shape[1] - 1), 0]
+    return Response(
+        place=name,
+        position=position,
+        magnitude=np.abs(value),
+        phase=np.angle(value),
+        static=_of_case(motion.springs.stiffness(np.array([[position]])), index),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Loop:
+    """The open loop in one case at one place."""
+
+    index: int
+    place: str
+    gain: float
+    open_loop: loop.OpenLoop
+
+    @classmethod
+    def of(cls, done: Pass, index: int, place: str) -> _Loop:
+        """From the names of the metrics' rows."""
+        direction, _, where = place.partition(", ")
+        position = np.asarray(done.places[where])
+        one = done.motion.position_loop(position, extending=np.array(direction == "extending"))
+        gain = _of_case(done.computed.metrics["position_gain"][""], index)
+        return cls(index, place, gain, one)
+
+    def polynomials(self) -> list[Polynomial]:
+        """Numerator, denominator, and the denominator of the closed loop."""
+        one = self.open_loop
+        return [
+            one.numerator,
+            one.denominator,
+            add(one.denominator, scale(one.numerator, self.gain)),
+        ]
+
+
+def _loop(subject: Subject, v: Values, done: Pass, at: _Loop, frequencies: Array) -> LoopStudy:
+    """What one loop does over frequency, with its figures from the metrics."""
+
+    def of(metric: str) -> float:
+        return _of_case(done.computed.metrics[metric][at.place], at.index)
+
+    one, gain = at.open_loop, at.gain
+    limit = loop.ultimate_gain(loop=one)
+    figures = loop.margins(loop=one, gain=gain)
+    s = 2 * pi * frequencies.reshape(-1, 1, 1)
+    top, low = at_frequency(one.numerator, s), at_frequency(one.denominator, s)
+    response = gain * (top.real + 1j * top.imaginary) / (low.real + 1j * low.imaginary)
+    response = response[:, min(at.index, response.shape[1] - 1), 0]
+    crossover, width = _of_case(figures.crossover, at.index), of("bandwidth")
+    return LoopStudy(
+        case=v.cases[at.index],
+        place=at.place,
+        gain=gain,
+        tuned=subject.design.control is None or subject.design.control.gain is None,
+        ultimate_gain=of("ultimate_gain"),
+        ultimate_frequency=_of_case(limit.frequency, at.index),
+        gain_margin=of("gain_margin"),
+        phase_margin=of("phase_margin"),
+        crossover=crossover if np.isfinite(crossover) else None,
+        bandwidth=width if np.isfinite(width) else None,
+        open_magnitude=np.abs(response),
+        open_phase=_unwrapped(response),
+        closed_magnitude=np.abs(response / (1 + response)),
+    )
+
+
+def _unwrapped(response: Array) -> Array:
+    """Phase without jumps, starting next to -pi/2 where the integrator rules."""
+    phase = np.unwrap(np.angle(response))
+    return phase - 2 * pi * np.round((phase[0] + pi / 2) / (2 * pi))

@@ -1,0 +1,208 @@
+"""Gas-charged accumulators: gas volume, capacitance, usable volume and stored energy.
+
+Pressures are gauge, as everywhere; the gas laws add the atmospheric pressure themselves. The
+branch of an accumulator on a line is `resonators.branch_admittance`: inertance and resistance of
+its neck before this capacitance.
+"""
+
+from __future__ import annotations
+
+from ..numeric import Array, expm1_quotient, maximum, minimum, namespace, real, where
+from .fluid import ATMOSPHERIC_PRESSURE
+
+
+def gas_volume_at(
+    *,
+    pressure: Array,
+    precharge_pressure: Array,
+    gas_volume: Array,
+    polytropic_index: Array = 1.0,
+    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
+) -> Array:
+    """Gas volume at an oil pressure, V = V0 ((p0 + p_a)/(p + p_a))^(1/n).
+
+    Parameters
+    ----------
+    pressure : oil, gauge [Pa]; at or below the precharge the gas fills the shell
+    precharge_pressure : p0, gauge [Pa], at the temperature of use
+    gas_volume : V0, at the precharge pressure [m^3]
+    polytropic_index : n [-]: 1.0 slow (isothermal), 1.4 fast (adiabatic nitrogen)
+    atmospheric_pressure : absolute [Pa]
+
+    Returns
+    -------
+    gas volume [m^3]
+
+    Notes
+    -----
+    Valid: ideal gas, to about 200 bar; pressures above -p_a.
+
+    References
+    ----------
+    [derived] polytropic ideal gas of constant mass, p V^n constant
+
+    Examples
+    --------
+    >>> v = gas_volume_at(pressure=100e5, precharge_pressure=60e5, gas_volume=1e-3)
+    >>> print(f"{v * 1e3:.4f} l")
+    0.6040 l
+    """
+    start = precharge_pressure + atmospheric_pressure
+    now = maximum(pressure + atmospheric_pressure, start)
+    return gas_volume * (start / now) ** (1 / polytropic_index)
+
+
+def gas_capacitance(
+    *,
+    pressure: Array,
+    precharge_pressure: Array,
+    gas_volume: Array,
+    polytropic_index: Array = 1.4,
+    filling_index: Array = 1.0,
+    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
+) -> Array:
+    """Capacitance of the gas for small vibrations, C = V/(n (p + p_a)).
+
+    The gas was filled slowly to V (`filling_index`) and then vibrates fast about it (n).
+
+    Parameters
+    ----------
+    pressure : mean oil pressure, gauge [Pa]
+    precharge_pressure : gauge [Pa], at the temperature of use
+    gas_volume : at the precharge pressure [m^3]
+    polytropic_index : n of the vibration [-]: 1.4 above some tenths of a hertz
+    filling_index : index of the filling [-]: 1.0 slow
+    atmospheric_pressure : absolute [Pa]
+
+    Returns
+    -------
+    capacitance -dV/dp [m^3/Pa]; 0 below the precharge, where no oil has entered
+
+    Notes
+    -----
+    Valid: ideal gas, to about 200 bar; amplitudes much smaller than the mean.
+
+    References
+    ----------
+    [derived] slope of `gas_volume_at`
+
+    Examples
+    --------
+    >>> c = gas_capacitance(pressure=100e5, precharge_pressure=60e5, gas_volume=1e-3)
+    >>> print(f"{c:.3e}")
+    4.271e-11
+    """
+    filled = gas_volume_at(
+        pressure=pressure,
+        precharge_pressure=precharge_pressure,
+        gas_volume=gas_volume,
+        polytropic_index=filling_index,
+        atmospheric_pressure=atmospheric_pressure,
+    )
+    working = real(pressure) > real(precharge_pressure)
+    absolute_pressure = where(working, pressure, precharge_pressure) + atmospheric_pressure
+    return where(working, filled / (polytropic_index * absolute_pressure), 0.0)
+
+
+def usable_volume(
+    *,
+    low_pressure: Array,
+    high_pressure: Array,
+    precharge_pressure: Array,
+    gas_volume: Array,
+    polytropic_index: Array = 1.4,
+    filling_index: Array = 1.0,
+    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
+) -> Array:
+    """Oil an accumulator gives from a high to a low pressure.
+
+    Filled to V at the high pressure (`filling_index`), the gas expands with n down to the low
+    pressure, or to the shell: min(V ((p_high + p_a)/(p_low + p_a))^(1/n), V0) - V.
+
+    Parameters
+    ----------
+    low_pressure, high_pressure : gauge [Pa], high >= low
+    precharge_pressure : gauge [Pa], at the temperature of use
+    gas_volume : V0, at the precharge pressure [m^3]
+    polytropic_index : n of the discharge [-]: 1.4 within seconds, 1.0 over minutes
+    filling_index : index of the filling [-]: 1.0 slow
+    atmospheric_pressure : absolute [Pa]
+
+    Returns
+    -------
+    oil volume [m^3]
+
+    Notes
+    -----
+    Valid: ideal gas, to about 200 bar.
+
+    References
+    ----------
+    [derived] `gas_volume_at` from the filled state
+
+    Examples
+    --------
+    >>> v = usable_volume(low_pressure=70e5, high_pressure=140e5, precharge_pressure=60e5,
+    ...                   gas_volume=1e-3)
+    >>> print(f"{v * 1e3:.3f} l")
+    0.274 l
+    """
+    shell = {"precharge_pressure": precharge_pressure, "gas_volume": gas_volume}
+    filled = gas_volume_at(
+        pressure=high_pressure,
+        polytropic_index=filling_index,
+        atmospheric_pressure=atmospheric_pressure,
+        **shell,
+    )
+    ratio = (high_pressure + atmospheric_pressure) / (low_pressure + atmospheric_pressure)
+    expanded = filled * ratio ** (1 / polytropic_index)
+    return minimum(expanded, gas_volume) - filled
+
+
+def stored_energy(
+    *,
+    pressure: Array,
+    precharge_pressure: Array,
+    gas_volume: Array,
+    polytropic_index: Array = 1.0,
+    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
+) -> Array:
+    """Energy the oil puts into the gas from the precharge up, integral of p (gauge) over -dV.
+
+    W = (p0 + p_a) V0 (e^(k x) - 1)/(n k) - p_a (V0 - V), k = 1 - 1/n, x = ln((p + p_a)/(p0 + p_a));
+    the first term is (p0 + p_a) V0 x for the isothermal gas (n = 1).
+
+    Parameters
+    ----------
+    pressure : oil, gauge [Pa]
+    precharge_pressure : p0, gauge [Pa], at the temperature of use
+    gas_volume : V0, at the precharge pressure [m^3]
+    polytropic_index : n [-]
+    atmospheric_pressure : p_a, absolute [Pa]
+
+    Returns
+    -------
+    energy [J]; 0 below the precharge
+
+    Notes
+    -----
+    Valid: ideal gas, to about 200 bar; the atmosphere's share p_a dV is not counted.
+
+    References
+    ----------
+    [derived] integral of the polytropic gas law, less the work of the atmosphere
+
+    Examples
+    --------
+    >>> w = stored_energy(pressure=100e5, precharge_pressure=60e5, gas_volume=1e-3)
+    >>> print(f"{w / 1e3:.3f} kJ")
+    3.036 kJ
+    """
+    start = precharge_pressure + atmospheric_pressure
+    now = maximum(pressure + atmospheric_pressure, start)
+    xp = namespace(now)
+    growth = xp.log(now / start)
+    step = growth / polytropic_index
+    compression = start * gas_volume * step * expm1_quotient(growth - step)
+    left = gas_volume * xp.exp(-step)
+    return compression - atmospheric_pressure * (gas_volume - left)

@@ -1,0 +1,292 @@
+"""Linear model of the held actuator: load, piston, coupled chambers, lines and their ends.
+
+Everything is a ratio of polynomials in s whose coefficients carry the derivatives; modes,
+margins and bandwidth are their roots (`loop`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import NamedTuple
+
+from ..numeric import Array
+from ..polynomial import Parts, Polynomial, add, at_frequency, multiply, scale
+
+
+@dataclass(frozen=True, slots=True)
+class LineEnd:
+    """What ends a line: an admittance Y(s) = numerator/denominator (flow out per pressure)."""
+
+    numerator: Polynomial = ()
+    denominator: Polynomial = (1.0,)
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One chamber with its line: oil and walls at the piston, R and L of the line, its far end."""
+
+    area: Array
+    """[m^2]"""
+    compliance: Array
+    """Of chamber and near half of the line [m^3/Pa]."""
+    throttle: Array | None = None
+    """Conductance of a throttle in the line, 0 when closed [m^3/s/Pa]; None: no throttle."""
+    resistance: Array = 0.0
+    """Of the line [Pa s/m^3]."""
+    inertance: Array = 0.0
+    """[kg/m^4]"""
+    far_compliance: Array = 0.0
+    """Of the line's far half [m^3/Pa]."""
+    end: LineEnd = LineEnd()
+    flow_gain: Array = 0.0
+    """Flow of the valve into the line's far end per spool signal [m^3/s/V]; A +, B -."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinearActuator:
+    """N(s) x = M(s) F + T(s) o: polynomials of load position over load force and spool signal.
+
+    x/F = mobile/characteristic is the compliance under the load's force and
+    x/o = drive/characteristic the plant of the position loop.
+    """
+
+    characteristic: Polynomial
+    mobile: Polynomial
+    drive: Polynomial
+
+
+def parallel_ends(*ends: LineEnd) -> LineEnd:
+    """Line end of several on one node: their admittances add.
+
+    Parameters
+    ----------
+    ends : as of `accumulator_end`, `reducing_valve_end` or a valve's conductance
+
+    Returns
+    -------
+    the line end of all together, Y in [m^3/s/Pa]
+
+    Notes
+    -----
+    Valid: everywhere.
+
+    References
+    ----------
+    [derived] Y = sum n_i/d_i
+
+    Examples
+    --------
+    >>> parallel_ends(LineEnd((1e-12,)), LineEnd((2e-12,))).numerator
+    (3e-12,)
+    """
+    numerator, denominator = ends[0].numerator, ends[0].denominator
+    for end in ends[1:]:
+        numerator = add(multiply(numerator, end.denominator), multiply(end.numerator, denominator))
+        denominator = multiply(denominator, end.denominator)
+    return LineEnd(numerator, denominator)
+
+
+def accumulator_end(*, capacitance: Array, inertance: Array, resistance: Array) -> LineEnd:
+    """Gas-charged accumulator behind its neck, Y = C s/(1 + R C s + L C s^2).
+
+    Parameters
+    ----------
+    capacitance : of the gas at the working pressure [m^3/Pa]
+    inertance : of the neck [kg/m^4]
+    resistance : of the neck [Pa s/m^3]
+
+    Returns
+    -------
+    line end, Y in [m^3/s/Pa]
+
+    Notes
+    -----
+    Valid: pressure swings small against the gas pressure.
+
+    References
+    ----------
+    [derived] series of neck and gas; [AaltoThesis] eq. 11-16
+
+    Examples
+    --------
+    >>> accumulator_end(capacitance=2.0, inertance=3.0, resistance=5.0)
+    LineEnd(numerator=(0.0, 2.0), denominator=(1.0, 10.0, 6.0))
+    """
+    return LineEnd((0.0, capacitance), (1.0, resistance * capacitance, inertance * capacitance))
+
+
+def reducing_valve_end(
+    *,
+    conductance: Array,
+    natural_frequency: Array,
+    damping_ratio: Array,
+    passive_conductance: Array = 0.0,
+) -> LineEnd:
+    """Pressure reducing valve, Y = g + G omega^2/(s^2 + 2 zeta omega s + omega^2).
+
+    Slowly it holds its pressure with G + g; it lags at every frequency, like an inertance, and well
+    above its own only g, the conductance of its opening, is left.
+
+    Parameters
+    ----------
+    conductance : G, flow per pressure the spool regulates with [m^3/s/Pa]
+    natural_frequency : [Hz]
+    damping_ratio : [-]
+    passive_conductance : g [m^3/s/Pa]
+
+    Returns
+    -------
+    line end, Y in [m^3/s/Pa]
+
+    Notes
+    -----
+    Valid: small signals about the set pressure.
+
+    References
+    ----------
+    [AaltoThesis] section 5.2, the suspect of its 20 Hz peak; [derived] second-order spool
+
+    Examples
+    --------
+    >>> end = reducing_valve_end(conductance=1e-10, natural_frequency=20.0, damping_ratio=0.3)
+    >>> end.numerator
+    (1e-10,)
+    """
+    omega = 2 * pi * natural_frequency
+    denominator = (1.0, 2 * damping_ratio / omega, 1 / (omega * omega))
+    return LineEnd(add(scale(denominator, passive_conductance), (conductance,)), denominator)
+
+
+class _Eliminated(NamedTuple):
+    """A chamber after its far node is gone: e (q_v + A v) and m p = d G o."""
+
+    e: Polynomial
+    m: Polynomial
+    d: Polynomial
+
+
+def _eliminated(side: Side, leakage: Array) -> _Eliminated:
+    """Far node (C s + Y) p_f = G o - q and line (R + 1/g + L s) q = p_f - p eliminated.
+
+    Everything is multiplied by the line end's denominator and by the throttle's conductance, so
+    that a closed throttle (g = 0) divides nothing.
+    """
+    far = add(multiply((0.0, side.far_compliance), side.end.denominator), side.end.numerator)
+    line, g = (side.resistance, side.inertance), side.throttle
+    d = side.end.denominator
+    if g is not None:
+        line, d = add(scale(line, g), (1.0,)), scale(d, g)
+    e = add(multiply(line, far), d)
+    through = far if g is None else scale(far, g)
+    return _Eliminated(e, add(multiply(e, (leakage, side.compliance)), through), d)
+
+
+def linear_actuator(
+    *,
+    side_a: Side,
+    side_b: Side,
+    mass: Array,
+    damping: Array,
+    coupling: Array = 0.0,
+    leakage: Array = 0.0,
+    seal_stiffness: Array = 0.0,
+    flexibility: Array = 0.0,
+) -> LinearActuator:
+    """Polynomials of the held actuator, load at the rod's end behind rod and mount.
+
+    Chambers: e_i (C_i s + g) p_i + m_i p_i + e_i (c s - g) p_j = d_i G_i o - e_i a_i s x_p with
+    a = (A_A, -A_B); piston: F = a^T p - (B s + k_s) x_p; load: m s^2 x = F + F_L and
+    x_p = x + f F. Eliminating p by Cramer's rule leaves N x = M F_L + T o with
+    N = m s^2 M + P, M = det + f P, P = (B s + k_s) det + s a^T adj(.) e a.
+
+    Parameters
+    ----------
+    side_a, side_b : chambers with lines (`Side`)
+    mass : at the rod's end, rod and piston included [kg]
+    damping : incremental friction damping at the piston [N s/m]
+    coupling : C_AB, volume of one chamber per pressure of the other [m^3/Pa]
+    leakage : across the piston per pressure difference [m^3/s/Pa]
+    seal_stiffness : of sticking seals [N/m]; 0 sliding
+    flexibility : of rod, mount and load cell in series [m/N]
+
+    Returns
+    -------
+    polynomials in s [rad/s], lowest power first
+
+    Notes
+    -----
+    Valid: small motion about rest; lines shorter than a tenth of the wavelength.
+
+    References
+    ----------
+    [derived] continuity of both chambers and lines, force balance; [AaltoThesis] eq. 11-16
+
+    Examples
+    --------
+    >>> side = Side(area=5e-4, compliance=5e-14)
+    >>> model = linear_actuator(side_a=side, side_b=side, mass=10.0, damping=100.0)
+    >>> n, m = at_frequency(model.characteristic, 0.0), at_frequency(model.mobile, 0.0)
+    >>> len(model.characteristic) - 1
+    4
+    """
+    e_a, m_a, d_a = _eliminated(side_a, leakage)
+    e_b, m_b, d_b = _eliminated(side_b, leakage)
+    cross = add((0.0, coupling), scale((leakage,), -1.0))
+    both = multiply(e_a, e_b)
+    det = add(multiply(m_a, m_b), scale(multiply(both, cross, cross), -1.0))
+    a, b = side_a.area, side_b.area
+    pull = add(
+        scale(multiply(e_a, m_b), a * a),
+        scale(multiply(e_b, m_a), b * b),
+        scale(multiply(both, cross), 2 * a * b),
+    )
+    drive = add(
+        multiply(d_a, (side_a.flow_gain,), add(scale(m_b, a), scale(multiply(e_b, cross), b))),
+        scale(
+            multiply(d_b, (side_b.flow_gain,), add(scale(m_a, b), scale(multiply(e_a, cross), a))),
+            -1.0,
+        ),
+    )
+    piston = add(multiply((seal_stiffness, damping), det), multiply((0.0, 1.0), pull))
+    mobile = add(det, scale(piston, flexibility))
+    characteristic = add(multiply((0.0, 0.0, mass), mobile), piston)
+    return LinearActuator(characteristic, mobile, drive)
+
+
+def dynamic_stiffness(*, model: LinearActuator, frequency: Array) -> Parts:
+    """Dynamic stiffness F/x = N(i omega)/M(i omega) in its real and imaginary part.
+
+    Parameters
+    ----------
+    model : from `linear_actuator`
+    frequency : [Hz], > 0
+
+    Returns
+    -------
+    real (storage) and imaginary (loss) part [N/m]; a positive phase means the force leads
+
+    Notes
+    -----
+    Valid: as the model; frequency > 0.
+
+    References
+    ----------
+    [AaltoThesis] eq. 2; [derived] ratio of the model's polynomials
+
+    Examples
+    --------
+    >>> side = Side(area=5e-4, compliance=5e-14)
+    >>> model = linear_actuator(side_a=side, side_b=side, mass=0.0, damping=100.0)
+    >>> k = dynamic_stiffness(model=model, frequency=10.0)
+    >>> print(f"{k.real:.0f} {k.imaginary:.0f}")
+    10000000 6283
+    """
+    omega = 2 * pi * frequency
+    top = at_frequency(model.characteristic, omega)
+    low = at_frequency(model.mobile, omega)
+    size = low.real * low.real + low.imaginary * low.imaginary
+    return Parts(
+        (top.real * low.real + top.imaginary * low.imaginary) / size,
+        (top.imaginary * low.real - top.real * low.imaginary) / size,
+    )

@@ -1,0 +1,326 @@
+"""Modes of the held actuator and the position loop closed over it: margins and bandwidth.
+
+Roots are found on real parts; the imaginary step of the coefficients is carried to each result by
+the implicit-function theorem, so every figure here has its exact derivative.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from ..numeric import Array, absolute, angle, real, sqrt, where
+from ..polynomial import (
+    Polynomial,
+    add,
+    at_frequency,
+    even_and_odd,
+    multiply,
+    positive_root,
+    root_motion,
+    roots,
+    scale,
+    square_of_magnitude,
+)
+from .linear import LinearActuator
+
+
+class Mode(NamedTuple):
+    """A pair of poles as frequency and damping ratio."""
+
+    natural_frequency: Array
+    """[Hz]"""
+    damping_ratio: Array
+
+
+def _without_integrators(polynomial: Polynomial) -> Polynomial:
+    """Roots at zero (coefficients that are the number 0) divided out."""
+    start = 0
+    while isinstance(polynomial[start], (int, float)) and polynomial[start] == 0:
+        start += 1
+    return polynomial[start:]
+
+
+def poles(*, model: LinearActuator) -> np.ndarray:
+    """Every pole of the held actuator but those at zero, (..., n) complex [rad/s].
+
+    Parameters
+    ----------
+    model : from `linear.linear_actuator`
+
+    Returns
+    -------
+    roots of the characteristic polynomial [rad/s]
+
+    Notes
+    -----
+    Valid: mass > 0; real parts of the coefficients count (no complex step).
+
+    References
+    ----------
+    [derived] eigenvalues of the companion matrix
+
+    Examples
+    --------
+    >>> from actuator_opt.models.linear import Side, linear_actuator
+    >>> side = Side(area=5e-4, compliance=5e-14)
+    >>> model = linear_actuator(side_a=side, side_b=side, mass=10.0, damping=100.0)
+    >>> print(np.round(poles(model=model).imag))
+    [ 1000. -1000.]
+    """
+    return roots(_without_integrators(model.characteristic))
+
+
+def load_mode(*, model: LinearActuator, near: Array) -> Mode:
+    """Mode of the load on the oil: the pair of poles next to an expected frequency.
+
+    omega^2 = lambda_1 lambda_2, zeta = -(lambda_1 + lambda_2)/(2 omega); above one the mode does
+    not swing.
+
+    Parameters
+    ----------
+    model : from `linear.linear_actuator`
+    near : expected frequency, as sqrt(k/m)/(2 pi) of the closed cylinder [Hz]
+
+    Returns
+    -------
+    natural frequency [Hz] and damping ratio; negative where it grows (stick-slip)
+
+    Notes
+    -----
+    Valid: simple poles; mass > 0.
+
+    References
+    ----------
+    [derived] eigenvalues with their derivative -dN(lambda)/N'(lambda)
+
+    Examples
+    --------
+    >>> from actuator_opt.models.linear import Side, linear_actuator
+    >>> side = Side(area=5e-4, compliance=5e-14)
+    >>> model = linear_actuator(side_a=side, side_b=side, mass=10.0, damping=100.0)
+    >>> mode = load_mode(model=model, near=150.0)
+    >>> print(f"{mode.natural_frequency:.2f} Hz, {mode.damping_ratio:.4f}")
+    159.15 Hz, 0.0050
+    """
+    polynomial = _without_integrators(model.characteristic)
+    found = roots(polynomial)
+    with np.errstate(all="ignore"):
+        far = np.abs(np.log(np.abs(found) / (2 * pi * np.asarray(real(near))[..., None])))
+    far = np.where(np.isfinite(far), far, 1e300)
+    first_at = np.argmin(far, axis=-1)[..., None]
+    first = np.take_along_axis(found, first_at, axis=-1)
+    swings = np.abs(first.imag) > 1e-9 * np.abs(first)
+    # the partner: the conjugate, or the next real pole
+    others = np.where(np.abs(found.imag) > 1e-9 * np.abs(found), 1e300, far)
+    np.put_along_axis(others, first_at, 1e300, axis=-1)
+    second = np.take_along_axis(found, np.argmin(others, axis=-1)[..., None], axis=-1)
+    one, two = first[..., 0], np.where(swings, np.conj(first), second)[..., 0]
+    motion = root_motion(polynomial, one), root_motion(polynomial, two)
+    product = (one * two).real + 1j * (one * motion[1] + two * motion[0]).real
+    total = (one + two).real + 1j * (motion[0] + motion[1]).real
+    omega = sqrt(product)
+    stepped = any(np.iscomplexobj(c) for c in polynomial)
+    frequency, ratio = omega / (2 * pi), -0.5 * total / omega
+    return Mode(frequency, ratio) if stepped else Mode(real(frequency), real(ratio))
+
+
+@dataclass(frozen=True, slots=True)
+class OpenLoop:
+    """Position over error at unit gain, L(s) = numerator/denominator [m/V]."""
+
+    numerator: Polynomial
+    denominator: Polynomial
+
+
+def open_loop(*, model: LinearActuator, natural_frequency: Array, damping_ratio: Array) -> OpenLoop:
+    """Position loop without its gain: spool of second order before the actuator.
+
+    L = omega_v^2/(s^2 + 2 zeta omega_v s + omega_v^2) T(s)/N(s).
+
+    Parameters
+    ----------
+    model : from `linear.linear_actuator`, with the valve's flow gains
+    natural_frequency : of the spool [Hz]
+    damping_ratio : of the spool [-]
+
+    Returns
+    -------
+    numerator and denominator polynomials of L [m/V]
+
+    Notes
+    -----
+    Valid: linear spool, no rate limit.
+
+    References
+    ----------
+    [MECE5005] position control of a cylinder; [derived] linearised
+
+    Examples
+    --------
+    >>> from actuator_opt.models.linear import Side, linear_actuator
+    >>> model = linear_actuator(side_a=Side(5e-4, 5e-14, flow_gain=1e-5),
+    ...     side_b=Side(5e-4, 5e-14, flow_gain=-1e-5), mass=10.0, damping=100.0)
+    >>> len(open_loop(model=model, natural_frequency=100.0, damping_ratio=0.7).denominator)
+    7
+    """
+    omega = 2 * pi * natural_frequency
+    spool = (1.0, 2 * damping_ratio / omega, 1 / (omega * omega))
+    return OpenLoop(model.drive, multiply(model.characteristic, spool))
+
+
+def _crossings(polynomial: Polynomial) -> np.ndarray:
+    """Positive real roots in w = omega^2, NaN elsewhere, (..., n)."""
+    found = roots(polynomial)
+    near_axis = np.abs(found.imag) <= 1e-6 * np.abs(found)
+    return np.where(near_axis & (found.real > 0), found.real, np.nan)
+
+
+def _value(polynomial: Polynomial, point: Array) -> Array:
+    """Value at a real point."""
+    value: Array = 0.0
+    for coefficient in reversed(polynomial):
+        value = value * point + coefficient
+    return value
+
+
+def _lifted(polynomial: Polynomial) -> Polynomial:
+    """Real parts of the coefficients with one axis more, for many points each."""
+    return tuple(np.asarray(real(coefficient))[..., None] for coefficient in polynomial)
+
+
+def _chosen(crossings: np.ndarray, score: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The crossing of least score, 1 in its place where there is none, and whether there is."""
+    if not score.shape[-1]:
+        return np.ones(score.shape[:-1]), np.zeros(score.shape[:-1], dtype=bool)
+    best = np.argmin(score, axis=-1)[..., None]
+    square = np.take_along_axis(crossings, best, axis=-1)[..., 0]
+    found = np.isfinite(np.take_along_axis(score, best, axis=-1)[..., 0])
+    return np.where(found, square, 1.0), found
+
+
+class UltimateGain(NamedTuple):
+    """Where the loop begins to swing by itself."""
+
+    gain: Array
+    """[V/m]; infinite where no gain does, 0 where the actuator itself is unstable"""
+    frequency: Array
+    """[Hz]; NaN where there is none"""
+
+
+def ultimate_gain(*, loop: OpenLoop) -> UltimateGain:
+    """Smallest gain with a closed-loop pole on the imaginary axis.
+
+    Im[N(i omega) conj D(i omega)] = 0 gives every crossing in w = omega^2; there
+    K = -|D|^2/Re(N conj D), and the smallest positive one is the limit.
+
+    Parameters
+    ----------
+    loop : from `open_loop`
+
+    Returns
+    -------
+    gain [V/m] and frequency [Hz]
+
+    Notes
+    -----
+    Valid: the actuator is stable without the loop; else the gain is 0.
+
+    References
+    ----------
+    [derived] Nyquist criterion on the real axis; [ZieglerNichols1942] ultimate gain
+
+    Examples
+    --------
+    >>> loop = OpenLoop((1.0,), (0.0, 1.0, 1.4e-3, 1e-6))  # omega 1000 1/s, zeta 0.7
+    >>> limit = ultimate_gain(loop=loop)
+    >>> print(f"{limit.gain:.1f}, {limit.frequency:.2f} Hz")
+    1400.0, 159.15 Hz
+    """
+    top, low = even_and_odd(loop.numerator), even_and_odd(loop.denominator)
+    axis = add(multiply(top[1], low[0]), scale(multiply(top[0], low[1]), -1.0))
+    along = add(multiply(top[0], low[0]), multiply((0.0, 1.0), top[1], low[1]))
+    size = square_of_magnitude(loop.denominator)
+    axis = _without_integrators(axis)
+    crossings = _crossings(axis)
+    with np.errstate(all="ignore"):
+        gains = -_value(_lifted(size), crossings) / _value(_lifted(along), crossings)
+    score = np.where(np.isfinite(gains) & (gains > 0), gains, np.inf)
+    start, found = _chosen(crossings, score)
+    square = positive_root(axis, start)
+    gain = where(found, -_value(size, square) / _value(along, square), math.inf)
+    poles_open = roots(_without_integrators(loop.denominator)).real
+    stable = np.all(poles_open < 0, axis=-1)
+    unknown = np.any(np.isnan(poles_open), axis=-1)
+    gain = where(stable, gain, where(unknown, math.nan, 0.0))
+    return UltimateGain(gain, where(found & stable, sqrt(square) / (2 * pi), math.nan))
+
+
+class Margins(NamedTuple):
+    """How far a closed loop is from swinging, and how fast it follows."""
+
+    phase_margin: Array
+    """[rad]"""
+    crossover: Array
+    """Where the open loop's magnitude is one [Hz]"""
+    bandwidth: Array
+    """Where the closed loop falls to -3 dB [Hz]"""
+
+
+def margins(*, loop: OpenLoop, gain: Array) -> Margins:
+    """Phase margin, its crossover and the -3 dB bandwidth of the closed position loop.
+
+    |K N|^2 = |D|^2 gives the crossovers, |D + K N|^2 = 2 |K N|^2 the bandwidth (its first root);
+    the phase margin is the smallest angle between K N/D and -1 over the crossovers.
+
+    Parameters
+    ----------
+    loop : from `open_loop`
+    gain : K_p [V/m], > 0
+
+    Returns
+    -------
+    phase margin [rad], crossover [Hz], bandwidth [Hz]; NaN where there is none
+
+    Notes
+    -----
+    Valid: below the ultimate gain; the angle does not tell on which side -1 is passed.
+
+    References
+    ----------
+    [derived] from the loop's polynomials
+
+    Examples
+    --------
+    >>> loop = OpenLoop((1.0,), (0.0, 1.0))  # an integrator
+    >>> m = margins(loop=loop, gain=100.0)
+    >>> print(f"{m.phase_margin:.4f} rad, {m.crossover:.3f} Hz, {m.bandwidth:.3f} Hz")
+    1.5708 rad, 15.915 Hz, 15.915 Hz
+    """
+    forward = scale(loop.numerator, gain)
+    top = square_of_magnitude(forward)
+    unity = add(square_of_magnitude(loop.denominator), scale(top, -1.0))
+    half = add(square_of_magnitude(add(loop.denominator, forward)), scale(top, -2.0))
+    crossings = _crossings(unity)
+    with np.errstate(all="ignore"):
+        angles = _phase(_lifted(forward), _lifted(loop.denominator), np.sqrt(crossings))
+    score = np.where(np.isfinite(crossings), np.abs(angles), np.inf)
+    start, found = _chosen(crossings, score)
+    omega = sqrt(positive_root(unity, start))
+    phase = where(found, absolute(_phase(forward, loop.denominator, omega)), math.nan)
+    falling = _crossings(half)
+    start, falls = _chosen(falling, np.where(np.isfinite(falling), falling, np.inf))
+    width = sqrt(positive_root(half, start)) / (2 * pi)
+    return Margins(phase, where(found, omega / (2 * pi), math.nan), where(falls, width, math.nan))
+
+
+def _phase(upper: Polynomial, lower: Polynomial, omega: Array) -> Array:
+    """Angle of -N/D at i omega."""
+    top, low = at_frequency(upper, omega), at_frequency(lower, omega)
+    along = top.real * low.real + top.imaginary * low.imaginary
+    across = top.imaginary * low.real - top.real * low.imaginary
+    return angle(-across, -along)

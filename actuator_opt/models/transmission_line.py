@@ -1,0 +1,376 @@
+"""Round lines as functions of frequency: distributed, lumped, and what they show at one end.
+
+Results are complex; arguments are real and the convention is e^(+i omega t), so that a result at
+-f is the conjugate of that at f. Pressure and flow at the near end follow from those at the far
+end by a matrix, p1 = A p2 + B q2, q1 = C p2 + D q2, flow positive from near to far [Merritt1967].
+Friction by name as in `line_friction`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from ..numeric import Array, namespace, where
+from .line_friction import series_impedance
+
+
+class LineMatrix(NamedTuple):
+    """Near-end pressure and flow of a line from those at its far end."""
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+
+
+def characteristic_impedance(
+    *,
+    frequency: Array,
+    inner_diameter: Array,
+    density: Array,
+    sound_speed: Array,
+    dynamic_viscosity: Array,
+    friction: str = "distributed",
+) -> Array:
+    """Characteristic impedance Z_c = sqrt(Z'/Y'), Y' = i omega A/(rho a^2); rho a/A without loss.
+
+    Parameters
+    ----------
+    frequency : [Hz], not 0
+    inner_diameter : [m]
+    density : [kg/m^3]
+    sound_speed : wave speed a in the elastic line [m/s]
+    dynamic_viscosity : [Pa s]
+    friction : name of the friction [-]
+
+    Returns
+    -------
+    complex impedance [Pa s/m^3]; NaN at zero frequency
+
+    Notes
+    -----
+    Valid: as `line_friction.series_impedance`.
+
+    References
+    ----------
+    [DSouza1964] distributed line; [derived] waves of p' = -Z' q, q' = -Y' p
+
+    Examples
+    --------
+    >>> z = characteristic_impedance(frequency=100.0, inner_diameter=8e-3, density=865.0,
+    ...     sound_speed=1272.2, dynamic_viscosity=0.0, friction="lossless")
+    >>> print(f"{z.real:.4e}")
+    2.1893e+10
+    """
+    xp = namespace(frequency, inner_diameter, density, sound_speed, dynamic_viscosity)
+    along = series_impedance(
+        frequency=frequency,
+        inner_diameter=inner_diameter,
+        density=density,
+        dynamic_viscosity=dynamic_viscosity,
+        friction=friction,
+    )
+    across = _shunt_admittance(xp, frequency, inner_diameter, density, sound_speed)
+    moving = across != 0
+    return xp.sqrt(where(moving, along, math.nan) / where(moving, across, 1.0))
+
+
+def propagation(
+    *,
+    frequency: Array,
+    length: Array,
+    inner_diameter: Array,
+    density: Array,
+    sound_speed: Array,
+    dynamic_viscosity: Array,
+    friction: str = "distributed",
+) -> Array:
+    """Propagation operator of a line, Gamma = l sqrt(Z' Y'); i omega l/a without loss.
+
+    A wave leaves the far end e^-Gamma times as large: the real part damps, the imaginary delays.
+
+    Parameters
+    ----------
+    frequency : [Hz]
+    length, inner_diameter : [m]
+    density : [kg/m^3]
+    sound_speed : wave speed a in the elastic line [m/s]
+    dynamic_viscosity : [Pa s]
+    friction : name of the friction [-]
+
+    Returns
+    -------
+    complex propagation operator [-]
+
+    Notes
+    -----
+    Valid: as `line_friction.series_impedance`.
+
+    References
+    ----------
+    [DSouza1964] distributed line; [derived] waves of p' = -Z' q, q' = -Y' p
+
+    Examples
+    --------
+    >>> g = propagation(frequency=20.0, length=16.25, inner_diameter=8e-3, density=865.0,
+    ...     sound_speed=1300.0, dynamic_viscosity=0.0, friction="lossless")
+    >>> print(f"{g.imag:.4f}")
+    1.5708
+    """
+    xp = namespace(frequency, length, inner_diameter, density, sound_speed, dynamic_viscosity)
+    along = series_impedance(
+        frequency=frequency,
+        inner_diameter=inner_diameter,
+        density=density,
+        dynamic_viscosity=dynamic_viscosity,
+        friction=friction,
+    )
+    across = _shunt_admittance(xp, frequency, inner_diameter, density, sound_speed)
+    return length * xp.sqrt(along * across)
+
+
+def line_matrix(
+    *,
+    frequency: Array,
+    length: Array,
+    inner_diameter: Array,
+    density: Array,
+    sound_speed: Array,
+    dynamic_viscosity: Array,
+    friction: str = "distributed",
+) -> LineMatrix:
+    """Matrix of a distributed line: A = D = cosh Gamma, B = Z_c sinh Gamma, C = sinh Gamma/Z_c.
+
+    Parameters
+    ----------
+    frequency : [Hz]; 0 gives the steady flow
+    length, inner_diameter : [m]
+    density : [kg/m^3]
+    sound_speed : wave speed a in the elastic line [m/s]
+    dynamic_viscosity : [Pa s]
+    friction : name of the friction [-]
+
+    Returns
+    -------
+    complex A, D [-], B [Pa s/m^3], C [m^3/s/Pa]; A D - B C = 1
+
+    Notes
+    -----
+    Valid: as `line_friction.series_impedance`; real part of Gamma below 700.
+
+    References
+    ----------
+    [DSouza1964] distributed line; [derived] waves of p' = -Z' q, q' = -Y' p
+
+    Examples
+    --------
+    >>> quarter = line_matrix(frequency=20.0, length=16.25, inner_diameter=8e-3, density=865.0,
+    ...     sound_speed=1300.0, dynamic_viscosity=0.0, friction="lossless")
+    >>> print(f"{abs(quarter.A):.3f} {quarter.B.imag:.4e}")
+    0.000 2.2371e+10
+    """
+    xp = namespace(frequency, length, inner_diameter, density, sound_speed, dynamic_viscosity)
+    along = length * series_impedance(
+        frequency=frequency,
+        inner_diameter=inner_diameter,
+        density=density,
+        dynamic_viscosity=dynamic_viscosity,
+        friction=friction,
+    )
+    across = length * _shunt_admittance(xp, frequency, inner_diameter, density, sound_speed)
+    square = along * across
+    gamma = xp.sqrt(square)
+    small = xp.abs(square) < 1e-8
+    quotient = xp.sinh(gamma) / where(small, 1.0, gamma)
+    quotient = where(small, 1 + square / 6, quotient)  # sinh Gamma/Gamma
+    diagonal = xp.cosh(gamma)
+    return LineMatrix(diagonal, along * quotient, across * quotient, diagonal)
+
+
+def lumped_line_matrix(
+    *,
+    frequency: Array,
+    length: Array,
+    inner_diameter: Array,
+    density: Array,
+    sound_speed: Array,
+    dynamic_viscosity: Array,
+    segments: int,
+    friction: str = "steady",
+) -> LineMatrix:
+    """Matrix of a line of equal lumped pi segments: half the capacitance at each end of each.
+
+    One segment: Z = Z' l/n, Y = Y' l/n, A = D = 1 + Z Y/2, B = Z, C = Y (1 + Z Y/4).
+
+    Parameters
+    ----------
+    frequency : [Hz]; 0 gives the steady flow
+    length, inner_diameter : [m]
+    density : [kg/m^3]
+    sound_speed : wave speed a in the elastic line [m/s]
+    dynamic_viscosity : [Pa s]
+    segments : n, 1 or more [-]
+    friction : name of the friction [-]
+
+    Returns
+    -------
+    complex A, D [-], B [Pa s/m^3], C [m^3/s/Pa]; A D - B C = 1
+
+    Raises
+    ------
+    ValueError
+        Fewer than one segment.
+
+    Notes
+    -----
+    Valid: segments much shorter than the wavelength: n well above 2 pi f l/a.
+
+    References
+    ----------
+    [AaltoThesis] eq. 12, 14, 16 and 19; [derived] product of the segments' matrices
+
+    Examples
+    --------
+    >>> line = dict(length=1.2, inner_diameter=8e-3, density=865.0, sound_speed=1272.2,
+    ...             dynamic_viscosity=0.04)
+    >>> exact = line_matrix(frequency=100.0, friction="steady", **line)
+    >>> lumped = lumped_line_matrix(frequency=100.0, segments=10, **line)
+    >>> print(f"{abs(lumped.B / exact.B - 1):.1e}")
+    5.7e-04
+    """
+    if segments < 1:
+        raise ValueError(f"segments: {segments}; a lumped line has one or more")
+    xp = namespace(frequency, length, inner_diameter, density, sound_speed, dynamic_viscosity)
+    piece = length / segments
+    along = piece * series_impedance(
+        frequency=frequency,
+        inner_diameter=inner_diameter,
+        density=density,
+        dynamic_viscosity=dynamic_viscosity,
+        friction=friction,
+    )
+    across = piece * _shunt_admittance(xp, frequency, inner_diameter, density, sound_speed)
+    square = along * across
+    one = LineMatrix(1 + square / 2, along, across * (1 + square / 4), 1 + square / 2)
+    total = one
+    for _ in range(segments - 1):
+        total = cascade(near=total, far=one)
+    return total
+
+
+def cascade(*, near: LineMatrix, far: LineMatrix) -> LineMatrix:
+    """Matrix of two lines or elements behind each other: the product of their matrices.
+
+    Parameters
+    ----------
+    near, far : complex A, D [-], B [Pa s/m^3], C [m^3/s/Pa]
+
+    Returns
+    -------
+    complex A, D [-], B [Pa s/m^3], C [m^3/s/Pa]
+
+    Notes
+    -----
+    Valid: everywhere.
+
+    References
+    ----------
+    [derived] the far pressure and flow of one are the near ones of the next
+
+    Examples
+    --------
+    >>> throttle = LineMatrix(1.0, 2e9, 0.0, 1.0)
+    >>> cascade(near=throttle, far=throttle)
+    LineMatrix(A=1.0, B=4000000000.0, C=0.0, D=1.0)
+    """
+    return LineMatrix(
+        near.A * far.A + near.B * far.C,
+        near.A * far.B + near.B * far.D,
+        near.C * far.A + near.D * far.C,
+        near.C * far.B + near.D * far.D,
+    )
+
+
+def input_impedance(*, matrix: LineMatrix, end_impedance: Array) -> Array:
+    """Impedance p/q at the near end of a line, (A Z + B)/(C Z + D).
+
+    Parameters
+    ----------
+    matrix : of the line: A, D [-], B [Pa s/m^3], C [m^3/s/Pa]
+    end_impedance : Z at the far end [Pa s/m^3]: 0 constant pressure, infinite closed
+
+    Returns
+    -------
+    complex impedance [Pa s/m^3]; infinite, or very large, at a resonance without loss
+
+    Notes
+    -----
+    Valid: everywhere.
+
+    References
+    ----------
+    [derived] p2 = Z q2 in the line's matrix
+
+    Examples
+    --------
+    >>> throttle = LineMatrix(1.0, 2e9, 0.0, 1.0)
+    >>> input_impedance(matrix=throttle, end_impedance=3e9)
+    5000000000.0
+    """
+    finite, end = _finite(end_impedance)
+    numerator = where(finite, matrix.A * end + matrix.B, matrix.A)
+    return _ratio(numerator, where(finite, matrix.C * end + matrix.D, matrix.C))
+
+
+def input_admittance(*, matrix: LineMatrix, end_admittance: Array) -> Array:
+    """Admittance q/p at the near end of a line, (C + D Y)/(A + B Y).
+
+    Parameters
+    ----------
+    matrix : of the line: A, D [-], B [Pa s/m^3], C [m^3/s/Pa]
+    end_admittance : Y at the far end [m^3/s/Pa]: 0 closed, infinite constant pressure
+
+    Returns
+    -------
+    complex admittance [m^3/s/Pa]; infinite, or very large, at a resonance without loss
+
+    Notes
+    -----
+    Valid: everywhere.
+
+    References
+    ----------
+    [derived] q2 = Y p2 in the line's matrix
+
+    Examples
+    --------
+    >>> throttle = LineMatrix(1.0, 2e9, 0.0, 1.0)
+    >>> print(f"{input_admittance(matrix=throttle, end_admittance=float('inf')):.1e}")
+    5.0e-10
+    """
+    finite, end = _finite(end_admittance)
+    numerator = where(finite, matrix.C + matrix.D * end, matrix.D)
+    return _ratio(numerator, where(finite, matrix.A + matrix.B * end, matrix.B))
+
+
+def _shunt_admittance(
+    xp: Any, frequency: Array, inner_diameter: Array, density: Array, sound_speed: Array
+) -> Array:
+    """Shunt admittance per length, i omega A/(rho a^2)."""
+    area = (0.25 * math.pi) * inner_diameter * inner_diameter
+    rate = 2j * math.pi * xp.asarray(frequency, dtype=xp.complex128)
+    return rate * (area / (density * sound_speed * sound_speed))
+
+
+def _finite(value: Array) -> tuple[Array, Array]:
+    """Where a value is finite, and the value with zero elsewhere."""
+    xp = namespace(value)
+    finite = xp.isfinite(value)
+    return finite, where(finite, value, 0.0)
+
+
+def _ratio(numerator: Array, denominator: Array) -> Array:
+    """Quotient that is infinite, not an error, where the denominator vanishes."""
+    vanishes = denominator == 0
+    return where(vanishes, math.inf, numerator / where(vanishes, 1.0, denominator))

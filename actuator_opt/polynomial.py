@@ -1,0 +1,174 @@
+"""Real polynomials in s as tuples of coefficients, lowest power first.
+
+Coefficients are floats or arrays that broadcast. A coefficient that is the number 0 is known to
+vanish and costs nothing, so that one formula serves circuits with and without a line or a valve.
+Everything but `roots` is plain arithmetic: it works under a complex step, and frequency responses
+come in two parts (real, imaginary) for the same reason.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from .numeric import Array, namespace, real
+
+Polynomial: TypeAlias = tuple[Array, ...]
+"""Coefficients, lowest power first; () is zero."""
+
+
+class Parts(NamedTuple):
+    """A complex number in two real (or complex-stepped) parts."""
+
+    real: Array
+    imaginary: Array
+
+
+def _vanishes(coefficient: Array) -> bool:
+    return isinstance(coefficient, (int, float)) and coefficient == 0
+
+
+def trimmed(polynomial: Polynomial) -> Polynomial:
+    """Without leading coefficients that are the number 0."""
+    size = len(polynomial)
+    while size and _vanishes(polynomial[size - 1]):
+        size -= 1
+    return polynomial[:size]
+
+
+def add(*polynomials: Polynomial) -> Polynomial:
+    """Sum of polynomials.
+
+    >>> add((1.0, 2.0), (3.0,))
+    (4.0, 2.0)
+    """
+    total: list[Array] = [0.0] * max(len(p) for p in polynomials)
+    for polynomial in polynomials:
+        for power, coefficient in enumerate(polynomial):
+            if not _vanishes(coefficient):
+                known = total[power]
+                total[power] = coefficient if _vanishes(known) else known + coefficient
+    return trimmed(tuple(total))
+
+
+def multiply(*factors: Polynomial) -> Polynomial:
+    """Product of polynomials.
+
+    >>> multiply((1.0, 1.0), (1.0, -1.0))
+    (1.0, 0.0, -1.0)
+    """
+    product: Polynomial = (1.0,)
+    for factor in factors:
+        terms: list[Array] = [0.0] * max(len(product) + len(factor) - 1, 0)
+        for i, first in enumerate(product):
+            for j, second in enumerate(factor):
+                if not (_vanishes(first) or _vanishes(second)):
+                    term, known = first * second, terms[i + j]
+                    terms[i + j] = term if _vanishes(known) else known + term
+        product = tuple(terms)
+    return trimmed(product)
+
+
+def scale(polynomial: Polynomial, factor: Array) -> Polynomial:
+    """A polynomial times a number."""
+    return multiply(polynomial, (factor,))
+
+
+def at_frequency(polynomial: Polynomial, angular_frequency: Array) -> Parts:
+    """Value at s = i omega, by Horner in omega^2 for each part.
+
+    >>> at_frequency((1.0, 2.0, 3.0), 2.0)
+    Parts(real=-11.0, imaginary=4.0)
+    """
+    square = -angular_frequency * angular_frequency
+    parts = []
+    for start in (0, 1):
+        value: Array = 0.0
+        for coefficient in reversed(polynomial[start::2]):
+            value = value * square + coefficient
+        parts.append(value)
+    return Parts(parts[0], parts[1] * angular_frequency)
+
+
+def even_and_odd(polynomial: Polynomial) -> tuple[Polynomial, Polynomial]:
+    """P(i omega) = E(w) + i omega O(w) with w = omega^2: E and O as polynomials in w."""
+    signs = (1.0, -1.0)
+    even = tuple(signs[k % 2] * c for k, c in enumerate(polynomial[0::2]))
+    odd = tuple(signs[k % 2] * c for k, c in enumerate(polynomial[1::2]))
+    return trimmed(even), trimmed(odd)
+
+
+def square_of_magnitude(polynomial: Polynomial) -> Polynomial:
+    """|P(i omega)|^2 as a polynomial in w = omega^2: E^2 + w O^2.
+
+    >>> square_of_magnitude((1.0, 2.0))
+    (1.0, 4.0)
+    """
+    even, odd = even_and_odd(polynomial)
+    return add(multiply(even, even), multiply((0.0, 1.0), odd, odd))
+
+
+def roots(polynomial: Polynomial) -> np.ndarray:
+    """All roots, (..., degree) complex: eigenvalues of the scaled companion matrix.
+
+    Real parts of the coefficients count. Columns that repeat along the last axis (the copies of
+    one design under a complex step) are solved once.
+    """
+    rows = np.broadcast_arrays(*[np.asarray(real(c), dtype=float) for c in polynomial])
+    coefficients = np.stack(rows, axis=-1)
+    shape = coefficients.shape[:-1]
+    alike = len(shape) > 0 and shape[-1] > 1
+    if alike and bool(np.all(coefficients == coefficients[..., :1, :])):
+        found = _companion_roots(coefficients[..., :1, :])
+        return np.broadcast_to(found, (*shape, found.shape[-1]))
+    return _companion_roots(coefficients)
+
+
+def _companion_roots(coefficients: np.ndarray) -> np.ndarray:
+    """Roots of polynomials (..., degree + 1) whose variable is scaled to mean magnitude one."""
+    degree = coefficients.shape[-1] - 1
+    lead = coefficients[..., -1]
+    with np.errstate(all="ignore"):
+        size = np.abs(coefficients[..., 0] / lead) ** (1 / max(degree, 1))
+        size = np.where(np.isfinite(size) & (size > 0), size, 1.0)
+        monic = coefficients[..., :-1] / lead[..., None]
+        monic = monic * size[..., None] ** (np.arange(degree) - degree)
+    broken = ~np.all(np.isfinite(monic), axis=-1)
+    monic = np.where(broken[..., None], 0.0, monic)
+    companion = np.zeros((*monic.shape[:-1], degree, degree))
+    companion[..., 1:, :-1] = np.eye(degree - 1)
+    companion[..., :, -1] = -monic
+    found = np.linalg.eigvals(companion) * size[..., None]
+    return np.where(broken[..., None], np.nan, found)
+
+
+def root_motion(polynomial: Polynomial, root: Array) -> Array:
+    """Motion of a simple root with the imaginary steps of the coefficients: -dP(root)/P'(root)."""
+    change: Array = 0.0
+    slope: Array = 0.0
+    for power in range(len(polynomial) - 1, -1, -1):
+        coefficient = polynomial[power]
+        change = change * root + namespace(coefficient).imag(coefficient + 0j)
+        if power:
+            slope = slope * root + power * real(coefficient)
+    return -change / slope
+
+
+def positive_root(polynomial: Polynomial, start: Array) -> Array:
+    """A real root near `start`, polished by Newton; carries the step of the coefficients.
+
+    The last Newton step is taken in the arithmetic of the coefficients, which by the
+    implicit-function theorem gives the root its exact derivative.
+    """
+    value = start
+    for last in (False, False, True):
+        result: Array = 0.0
+        slope: Array = 0.0
+        for power in range(len(polynomial) - 1, -1, -1):
+            coefficient = polynomial[power] if last else real(polynomial[power])
+            result = result * value + coefficient
+            if power:
+                slope = slope * value + power * coefficient
+        value = value - result / slope
+    return value
