@@ -113,8 +113,12 @@ def roots(polynomial: Polynomial) -> np.ndarray:
     """All roots, (..., degree) complex: eigenvalues of the scaled companion matrix.
 
     Real parts of the coefficients count. Columns that repeat along the last axis (the copies of
-    one design under a complex step) are solved once.
+    one design under a complex step) are solved once. A leading coefficient of zero in an array
+    leaves a root at minus infinity; coefficients that are not finite make every root NaN.
     """
+    if len(polynomial) < 2:
+        shape = np.shape(real(polynomial[0])) if polynomial else ()
+        return np.empty((*shape, 0), dtype=complex)
     rows = np.broadcast_arrays(*[np.asarray(real(c), dtype=float) for c in polynomial])
     coefficients = np.stack(rows, axis=-1)
     shape = coefficients.shape[:-1]
@@ -130,7 +134,7 @@ def _companion_roots(coefficients: np.ndarray) -> np.ndarray:
     degree = coefficients.shape[-1] - 1
     lead = coefficients[..., -1]
     with np.errstate(all="ignore"):
-        size = np.abs(coefficients[..., 0] / lead) ** (1 / max(degree, 1))
+        size = np.abs(coefficients[..., 0] / lead) ** (1 / degree)
         size = np.where(np.isfinite(size) & (size > 0), size, 1.0)
         monic = coefficients[..., :-1] / lead[..., None]
         monic = monic * size[..., None] ** (np.arange(degree) - degree)
@@ -139,8 +143,14 @@ def _companion_roots(coefficients: np.ndarray) -> np.ndarray:
     companion = np.zeros((*monic.shape[:-1], degree, degree))
     companion[..., 1:, :-1] = np.eye(degree - 1)
     companion[..., :, -1] = -monic
-    found = np.linalg.eigvals(companion) * size[..., None]
-    return np.where(broken[..., None], np.nan, found)
+    found = np.linalg.eigvals(companion).astype(complex) * size[..., None]
+    found = np.where(broken[..., None], np.nan, found)
+    lower = (lead == 0) & np.all(np.isfinite(coefficients), axis=-1)
+    if lower.any():
+        found[lower, 0] = -np.inf
+        if degree > 1:
+            found[lower, 1:] = _companion_roots(coefficients[lower, :-1])
+    return found
 
 
 def root_motion(polynomial: Polynomial, root: Array) -> Array:
@@ -159,9 +169,11 @@ def positive_root(polynomial: Polynomial, start: Array) -> Array:
     """A real root near `start`, polished by Newton; carries the step of the coefficients.
 
     The last Newton step is taken in the arithmetic of the coefficients, which by the
-    implicit-function theorem gives the root its exact derivative.
+    implicit-function theorem gives the root its exact derivative. A constant has no root: `start`.
     """
     value = start
+    if len(polynomial) < 2:
+        return value
     for last in (False, False, True):
         result: Array = 0.0
         slope: Array = 0.0

@@ -66,9 +66,7 @@ def _end(eq, side, node, end):
     conductance, natural, ratio, passive = numbers
     place, speed = f"spool {tag}", f"speed {tag}"
     eq.state({place: 1.0}, {speed: 1.0})
-    eq.state(
-        {speed: 1.0}, {node: natural**2, place: -(natural**2), speed: -2 * ratio * natural}
-    )
+    eq.state({speed: 1.0}, {node: natural**2, place: -(natural**2), speed: -2 * ratio * natural})
     return {node: passive, place: conductance}
 
 
@@ -110,8 +108,8 @@ def _side(eq, name, side, swept, coupling, leakage):
         eq.state({flow: side["inertance"]}, {far: 1.0, own: -1.0, flow: -series})
 
 
-def state_space(circuit):
-    """python-control's StateSpace from load force F and spool signal o to load position x."""
+def _equations(circuit):
+    """Every equation of a circuit, inputs load force F and spool signal o."""
     c, eq = circuit, Equations()
     area_a, area_b = c["a"]["area"], c["b"]["area"]
     flexibility, seals, damping = c["flexibility"], c["seal_stiffness"], c["damping"]
@@ -124,9 +122,7 @@ def state_space(circuit):
         yielding = 1 / (seals + 1 / flexibility)
         share = yielding / flexibility
         load = {name: factor * share for name, factor in oil.items()}
-        eq.state(
-            {"v": c["mass"]}, {**load, "x": (share - 1) / flexibility}, {"F": 1.0}
-        )
+        eq.state({"v": c["mass"]}, {**load, "x": (share - 1) / flexibility}, {"F": 1.0})
         swept = {"p_a": area_a * yielding, "p_b": -area_b * yielding, "x": share}
     else:
         stiff = 1 / flexibility
@@ -136,17 +132,30 @@ def state_space(circuit):
     for name, sign in (("a", area_a), ("b", -area_b)):
         volume = {state: sign * factor for state, factor in swept.items()}
         _side(eq, name, c[name], volume, c["coupling"], c["leakage"])
-    e, a, b = eq.matrices(["F", "o"])
+    return eq
+
+
+def descriptor(circuit):
+    """E, A and B of E z' = A z + B [F, o], and the index of the load position in z."""
+    eq = _equations(circuit)
+    return *eq.matrices(["F", "o"]), eq.index("x")
+
+
+def state_space(circuit):
+    """python-control's StateSpace from load force F and spool signal o to load position x."""
+    e, a, b, position = descriptor(circuit)
     moving = np.any(e != 0, axis=1)
     dynamic = np.any(e != 0, axis=0)
     assert moving.sum() == dynamic.sum()
-    slave = np.linalg.solve(a[np.ix_(~moving, ~dynamic)], -np.c_[a[~moving][:, dynamic], b[~moving]])
+    slave = np.linalg.solve(
+        a[np.ix_(~moving, ~dynamic)], -np.c_[a[~moving][:, dynamic], b[~moving]]
+    )
     count = dynamic.sum()
     whole_a = a[np.ix_(moving, dynamic)] + a[np.ix_(moving, ~dynamic)] @ slave[:, :count]
     whole_b = b[moving] + a[np.ix_(moving, ~dynamic)] @ slave[:, count:]
     mass = e[np.ix_(moving, dynamic)]
     out = np.zeros((1, count))
-    out[0, [n for n, used in zip(eq.names, dynamic, strict=True) if used].index("x")] = 1.0
+    out[0, dynamic[:position].sum()] = 1.0
     matrix, drive = np.linalg.solve(mass, whole_a), np.linalg.solve(mass, whole_b)
     return control.ss(matrix, drive, out, np.zeros((1, 2)))
 
@@ -161,6 +170,11 @@ def spool(natural_frequency, damping_ratio):
 def plant(circuit, natural_frequency, damping_ratio):
     """Valve signal to load position."""
     return control.series(spool(natural_frequency, damping_ratio), state_space(circuit)[0, 1])
+
+
+def in_milliseconds(system):
+    """The same system in rad/ms: python-control's polynomials of many poles then stay in range."""
+    return control.ss(system.A / 1e3, system.B / 1e3, system.C, system.D)
 
 
 def closed(open_plant, gain):

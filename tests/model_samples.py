@@ -14,6 +14,7 @@ from dataclasses import replace
 from math import pi
 
 import samples_criteria
+import samples_dynamics
 import samples_fluid
 import samples_liner
 import samples_lines
@@ -28,6 +29,7 @@ from actuator_opt.models.strength_modes import PlyStrength
 SCALAR_ONLY = {
     "stepped_segments.stepped_column_load_segments": "reference solution by scanning, floats only",
     **dict.fromkeys(samples_lines.FREQUENCY_RESPONSES, "complex-valued, laws of their own"),
+    **samples_dynamics.COMPLEX,
 }
 """Public functions outside the array laws, with the reason."""
 
@@ -149,14 +151,6 @@ SAMPLES = {
     },
     "dynamics.conductance_damping_ratio": {
         "stiffness": 2e7, "mass": 30.0, "conductance_a": 1e-12, "conductance_b": 2e-12, **CHAMBERS,
-    },
-    "dynamics.damping_ratio": {
-        "incremental_damping": 400.0, "stiffness": 2e7, "mass": 30.0, "conductance_a": 1e-12,
-        "conductance_b": 2e-12, **CHAMBERS,
-    },
-    "dynamics.dynamic_stiffness": {
-        "frequency": 15.0, "mass": 30.0, "damping": 400.0, "admittance_a": 1e-11,
-        "admittance_b": 3e-12, **CHAMBERS,
     },
     "elements.resistance": {"inner_diameter": 8e-3, "length": 1.2, "dynamic_viscosity": 0.04},
     "elements.inertance": {"inner_diameter": 8e-3, "length": 1.2, "density": 865.0},
@@ -435,6 +429,7 @@ SAMPLES = {
 }  # fmt: skip
 for _group in (
     samples_criteria,
+    samples_dynamics,
     samples_fluid,
     samples_liner,
     samples_lines,

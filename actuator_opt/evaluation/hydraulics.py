@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..design.model import Design
 from ..models import damping, forces, lines
-from ..numeric import Array
+from ..numeric import Array, absolute
 from .geometry import Geometry
 from .rows import Computed
 from .sealing import Friction
@@ -32,6 +32,36 @@ def compute_damping(geometry: Geometry, state: State, friction: Friction, out: C
     out.put("damping_pipe", pipe)
     out.put("damping_annular", piston + head)
     return friction.slope + pipe + piston + head
+
+
+def compute_leakage(
+    v: Values, design: Design, geometry: Geometry, state: State, out: Computed
+) -> Array:
+    """Leakage across the piston in motion; returns its conductance.
+
+    The stated conductance, and through the gap of a piston without seals, opened by the bore's
+    growth under it.
+    """
+    path = "piston.leakage_conductance"
+    conductance = v[path]
+    bare = design.seals.piston.count == 0
+    if bare:
+        g = geometry
+        conductance = conductance + damping.gap_conductance(
+            diameter=g.bore,
+            gap=g.piston_clearance + out.metrics["growth_at_seal"][""],
+            dynamic_viscosity=0.5 * (state.dynamic_viscosity_a + state.dynamic_viscosity_b),
+            length=g.piston_length,
+        )
+    if bare or path in v.varied or design.piston.leakage_conductance > 0:
+        out.put("leakage", conductance * absolute(state.moving_a - state.moving_b))
+    else:
+        out.skip(
+            "leakage",
+            "needs the film of the running seal; static O-rings hold: "
+            "state piston.leakage_conductance if known",
+        )
+    return conductance
 
 
 def compute_flow(

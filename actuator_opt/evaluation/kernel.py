@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -90,8 +90,11 @@ class Pass:
     mass_parts: dict[str, Array]
 
 
-def compute(subject: Subject, v: Values) -> Pass:
-    """Every metric of the designs in `v`; invalid designs come out as NaN."""
+def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -> Pass:
+    """Every metric of the designs in `v`; invalid designs come out as NaN.
+
+    Where `wanted` names the metrics that are needed, costly ones beside them may be left out.
+    """
     design = subject.design
     with np.errstate(all="ignore"):
         out = Computed()
@@ -114,8 +117,9 @@ def compute(subject: Subject, v: Values) -> Pass:
         moving = v["load.mass"] + parts["rod"] + parts["piston"] + parts["fastening"]
         weakest = springs.compute(budget, moving, out)
         damping = hydraulics.compute_damping(g, case_state, friction, out)
-        swing = motion.derive(v, design, case_state, budget, branches, moving, damping)
-        places = motion.compute(v, design, swing, weakest, out)
+        leakage = hydraulics.compute_leakage(v, design, g, case_state, out)
+        swing = motion.derive(v, design, case_state, budget, branches, moving, damping, leakage)
+        places = motion.compute(v, design, swing, weakest, wanted, out)
         hydraulics.compute_flow(v, design, g, case_state, out)
         beam = beam_module.derive(v, design, g, case_state, barrel, rod, parts)
         strength.compute(v, design, stock, g, case_state, barrel, rod, beam, out)
@@ -126,7 +130,6 @@ def compute(subject: Subject, v: Values) -> Pass:
         _manufacture(v, subject, out)
         out.put("barrel_length", g.barrel_length)
         out.put("closed_length", g.closed_length)
-        out.skip("leakage", "needs the film of the running seal; static O-rings hold")
         for plugin in subject.plugins:
             out.put(plugin.name, plugin.call(v, out.metrics))
     return Pass(out, g, case_state, barrel, rod, beam, budget, swing, weakest, places, parts)

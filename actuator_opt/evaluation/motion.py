@@ -7,7 +7,7 @@ without a smooth maximum.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -117,6 +117,7 @@ def derive(
     branches: dict[Chamber, Branch],
     mass: Array,
     damping: Array,
+    leakage: Array,
 ) -> Motion:
     """The linear model's numbers in every load case."""
     slopes = _valve_slopes(v, design, state)
@@ -124,7 +125,7 @@ def derive(
         springs=springs,
         mass=mass,
         damping=damping,
-        leakage=v["piston.leakage_conductance"],
+        leakage=leakage,
         branches=branches,
         throttles=_throttles(v, design, state, springs),
         ends={chamber: _end(v, design, state, slopes, chamber) for chamber in CHAMBERS},
@@ -236,19 +237,28 @@ def _places(stroke: Array, weakest: Array) -> tuple[list[str], Array]:
 
 
 def compute(
-    v: Values, design: Design, motion: Motion, weakest: Array, out: Computed
+    v: Values,
+    design: Design,
+    motion: Motion,
+    weakest: Array,
+    wanted: Container[str] | None,
+    out: Computed,
 ) -> dict[str, Array]:
-    """Damping ratio, dynamic stiffness and the position loop; returns the places asked."""
+    """Damping ratio, dynamic stiffness and the position loop; returns the places asked.
+
+    Poles and margins cost more than all else: only those in `wanted` are found (None: all).
+    """
     names, positions = _places(motion.springs.geometry.stroke, weakest)
     model = motion.model(positions)
-    mode = motion.mode(model, positions)
-    out.put("damping_ratio", dict(zip(names, mode.damping_ratio, strict=True)))
+    if wanted is None or "damping_ratio" in wanted:
+        mode = motion.mode(model, positions)
+        out.put("damping_ratio", dict(zip(names, mode.damping_ratio, strict=True)))
     _dynamic_stiffness(v, design, model, names, out)
     if motion.spool is None:
         for name in LOOP_METRICS:
             out.skip(name, "no valve stated: add valve")
-    else:
-        _position_loop(v, design, motion, names, positions, out)
+    elif wanted is None or any(name in wanted for name in LOOP_METRICS):
+        _position_loop(v, design, motion, names, positions, wanted, out)
     return dict(zip(names, positions, strict=True))
 
 
@@ -276,6 +286,7 @@ def _position_loop(
     motion: Motion,
     names: list[str],
     positions: Array,
+    wanted: Container[str] | None,
     out: Computed,
 ) -> None:
     """Margins and bandwidth at every place, in both directions of the spool."""

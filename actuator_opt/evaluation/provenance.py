@@ -99,6 +99,7 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "position_gain": loop.ultimate_gain,
         "phase_margin": loop.margins,
         "bandwidth": loop.margins,
+        "leakage": damping.gap_conductance,
         "stiffness_seals": lugre.lugre_bristle_stiffness,
         "bore_growth": barrel.bore_growth,
         "growth_at_seal": barrel_ends.pressure_step_factor,

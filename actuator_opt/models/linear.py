@@ -170,9 +170,11 @@ def _eliminated(side: Side, leakage: Array) -> _Eliminated:
     """Far node (C s + Y) p_f = G o - q and line (R + 1/g + L s) q = p_f - p eliminated.
 
     Everything is multiplied by the line end's denominator and by the throttle's conductance, so
-    that a closed throttle (g = 0) divides nothing.
+    that a closed throttle (g = 0) divides nothing. Behind a closed end without oil nothing flows.
     """
     far = add(multiply((0.0, side.far_compliance), side.end.denominator), side.end.numerator)
+    if not far:
+        return _Eliminated((1.0,), (leakage, side.compliance), (1.0,))
     line, g = (side.resistance, side.inertance), side.throttle
     d = side.end.denominator
     if g is not None:

@@ -40,7 +40,9 @@ class Mode(NamedTuple):
 def _without_integrators(polynomial: Polynomial) -> Polynomial:
     """Roots at zero (coefficients that are the number 0) divided out."""
     start = 0
-    while isinstance(polynomial[start], (int, float)) and polynomial[start] == 0:
+    for coefficient in polynomial:
+        if not (isinstance(coefficient, (int, float)) and coefficient == 0):
+            break
         start += 1
     return polynomial[start:]
 
@@ -88,7 +90,8 @@ def load_mode(*, model: LinearActuator, near: Array) -> Mode:
 
     Returns
     -------
-    natural frequency [Hz] and damping ratio; negative where it grows (stick-slip)
+    natural frequency [Hz] and damping ratio, negative where it grows (stick-slip); 0 Hz and
+    infinite where no oil holds the load
 
     Notes
     -----
@@ -109,24 +112,35 @@ def load_mode(*, model: LinearActuator, near: Array) -> Mode:
     """
     polynomial = _without_integrators(model.characteristic)
     found = roots(polynomial)
+    near = np.asarray(real(near))
+    if found.shape[-1] < 2:
+        still = 0.0 * near + np.zeros(found.shape[:-1])
+        return Mode(still, still + math.inf)
     with np.errstate(all="ignore"):
-        far = np.abs(np.log(np.abs(found) / (2 * pi * np.asarray(real(near))[..., None])))
+        one, two = _load_pair(found, near)
+        motion = root_motion(polynomial, one), root_motion(polynomial, two)
+        product = (one * two).real + 1j * (one * motion[1] + two * motion[0]).real
+        total = (one + two).real + 1j * (motion[0] + motion[1]).real
+        omega = where(np.isnan(near), math.nan, sqrt(product))
+        frequency, ratio = omega / (2 * pi), -0.5 * total / omega
+    stepped = any(np.iscomplexobj(c) for c in polynomial)
+    return Mode(frequency, ratio) if stepped else Mode(real(frequency), real(ratio))
+
+
+def _load_pair(found: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The pole next to a frequency with its conjugate, or with the next real pole."""
+    swings = np.abs(found.imag) > 1e-9 * np.abs(found)
+    far = np.abs(np.log(np.abs(found) / (2 * pi * near[..., None])))
     far = np.where(np.isfinite(far), far, 1e300)
+    single = np.sum(~swings, axis=-1, keepdims=True) < 2
+    far = np.where(single & ~swings, np.inf, far)
     first_at = np.argmin(far, axis=-1)[..., None]
     first = np.take_along_axis(found, first_at, axis=-1)
-    swings = np.abs(first.imag) > 1e-9 * np.abs(first)
-    # the partner: the conjugate, or the next real pole
-    others = np.where(np.abs(found.imag) > 1e-9 * np.abs(found), 1e300, far)
-    np.put_along_axis(others, first_at, 1e300, axis=-1)
+    others = np.where(swings, np.inf, far)
+    np.put_along_axis(others, first_at, np.inf, axis=-1)
     second = np.take_along_axis(found, np.argmin(others, axis=-1)[..., None], axis=-1)
-    one, two = first[..., 0], np.where(swings, np.conj(first), second)[..., 0]
-    motion = root_motion(polynomial, one), root_motion(polynomial, two)
-    product = (one * two).real + 1j * (one * motion[1] + two * motion[0]).real
-    total = (one + two).real + 1j * (motion[0] + motion[1]).real
-    omega = sqrt(product)
-    stepped = any(np.iscomplexobj(c) for c in polynomial)
-    frequency, ratio = omega / (2 * pi), -0.5 * total / omega
-    return Mode(frequency, ratio) if stepped else Mode(real(frequency), real(ratio))
+    pair = np.take_along_axis(swings, first_at, axis=-1)
+    return first[..., 0], np.where(pair, np.conj(first), second)[..., 0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +221,7 @@ class UltimateGain(NamedTuple):
     """Where the loop begins to swing by itself."""
 
     gain: Array
-    """[V/m]; infinite where no gain does, 0 where the actuator itself is unstable"""
+    """[V/m]; infinite where no gain does, 0 where every gain or the actuator itself does"""
     frequency: Array
     """[Hz]; NaN where there is none"""
 
@@ -228,7 +242,7 @@ def ultimate_gain(*, loop: OpenLoop) -> UltimateGain:
 
     Notes
     -----
-    Valid: the actuator is stable without the loop; else the gain is 0.
+    Valid: the actuator is stable without the loop and follows a slow signal; else 0.
 
     References
     ----------
@@ -249,15 +263,43 @@ def ultimate_gain(*, loop: OpenLoop) -> UltimateGain:
     crossings = _crossings(axis)
     with np.errstate(all="ignore"):
         gains = -_value(_lifted(size), crossings) / _value(_lifted(along), crossings)
-    score = np.where(np.isfinite(gains) & (gains > 0), gains, np.inf)
-    start, found = _chosen(crossings, score)
-    square = positive_root(axis, start)
-    gain = where(found, -_value(size, square) / _value(along, square), math.inf)
-    poles_open = roots(_without_integrators(loop.denominator)).real
-    stable = np.all(poles_open < 0, axis=-1)
-    unknown = np.any(np.isnan(poles_open), axis=-1)
-    gain = where(stable, gain, where(unknown, math.nan, 0.0))
-    return UltimateGain(gain, where(found & stable, sqrt(square) / (2 * pi), math.nan))
+        score = np.where(np.isfinite(gains) & (gains > 0), gains, np.inf)
+        start, found = _chosen(crossings, score)
+        square = positive_root(axis, start)
+        gain = where(found, -_value(size, square) / _value(along, square), math.inf)
+    stable = _holds(loop)
+    unknown = _unknown(loop)
+    gain = where(unknown, math.nan, where(stable, gain, 0.0))
+    swings = found & stable & ~unknown
+    return UltimateGain(gain, where(swings, sqrt(square) / (2 * pi), math.nan))
+
+
+def _unknown(loop: OpenLoop) -> Array:
+    """Whether a coefficient is not a number."""
+    known: Array = np.True_
+    for coefficient in (*loop.numerator, *loop.denominator):
+        known = known & np.isfinite(real(coefficient))
+    return ~known
+
+
+def _holds(loop: OpenLoop) -> Array:
+    """Whether a small gain holds: no pole of the actuator grows, and position follows the signal.
+
+    Pressure that nothing lets out leaves a pole at zero, which does no harm.
+    """
+    low = _without_integrators(loop.denominator)
+    poles_open = roots(low)
+    sizes = np.where(np.isfinite(poles_open), np.abs(poles_open), 0.0)
+    slow = sizes <= 1e-12 * np.max(sizes, axis=-1, keepdims=True, initial=0.0)
+    stable = np.all((poles_open.real < 0) | (slow & np.isfinite(poles_open)), axis=-1)
+    integrators = len(loop.denominator) - len(low)
+    if not integrators:
+        return stable
+    top, low = (*loop.numerator[integrators - 1 :], 0.0, 0.0), (*low, 0.0)
+    with np.errstate(all="ignore"):
+        slowly, faster = (real(top[i]) / np.asarray(real(low[i])) for i in (0, 1))
+        leads = where(real(low[0]) == 0, faster, slowly)
+        return stable & ~(leads < -1e-9 * np.nan_to_num(np.abs(faster), posinf=0.0))
 
 
 class Margins(NamedTuple):
@@ -305,16 +347,15 @@ def margins(*, loop: OpenLoop, gain: Array) -> Margins:
     top = square_of_magnitude(forward)
     unity = add(square_of_magnitude(loop.denominator), scale(top, -1.0))
     half = add(square_of_magnitude(add(loop.denominator, forward)), scale(top, -2.0))
-    crossings = _crossings(unity)
+    crossings, falling = _crossings(unity), _crossings(half)
     with np.errstate(all="ignore"):
         angles = _phase(_lifted(forward), _lifted(loop.denominator), np.sqrt(crossings))
-    score = np.where(np.isfinite(crossings), np.abs(angles), np.inf)
-    start, found = _chosen(crossings, score)
-    omega = sqrt(positive_root(unity, start))
-    phase = where(found, absolute(_phase(forward, loop.denominator, omega)), math.nan)
-    falling = _crossings(half)
-    start, falls = _chosen(falling, np.where(np.isfinite(falling), falling, np.inf))
-    width = sqrt(positive_root(half, start)) / (2 * pi)
+        score = np.where(np.isfinite(crossings), np.abs(angles), np.inf)
+        start, found = _chosen(crossings, score)
+        omega = sqrt(positive_root(unity, start))
+        phase = where(found, absolute(_phase(forward, loop.denominator, omega)), math.nan)
+        start, falls = _chosen(falling, np.where(np.isfinite(falling), falling, np.inf))
+        width = sqrt(positive_root(half, start)) / (2 * pi)
     return Margins(phase, where(found, omega / (2 * pi), math.nan), where(falls, width, math.nan))
 
 

@@ -91,6 +91,8 @@ class ActuatorProblem:
     fixed: tuple[Row, ...]
     """Rows no variable changes: met or missed for good."""
     problem: Problem
+    wanted: frozenset[str] | None
+    """Metrics of objective and rows; None where a user's own metric may read any."""
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
         """The same problem with prices asked for the numbers at `parameters`."""
@@ -106,7 +108,7 @@ class ActuatorProblem:
         """Objective and constraint margins of points (variables, designs)."""
         varied = dict(parameters or {}) | dict(zip(self.paths, points, strict=True))
         numbers = self.subject.values(varied)
-        done = compute(self.subject, numbers)
+        done = compute(self.subject, numbers, self.wanted)
         return Values(
             self.goal.value(done.computed, self.subject.cases),
             _margins(self.rows, done.computed, numbers, points.shape[1]),
@@ -201,7 +203,12 @@ def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
         relaxable=tuple(row.limit_of.origin != "geometry" for row in rows),
         groups=tuple(limits.index(row.limit_of) for row in rows),
     )
-    holder.append(ActuatorProblem(subject, goal, paths, rows, fixed, problem))
+    wanted = frozenset({row.limit_of.metric for row in rows} | set(goal.weights))
+    holder.append(
+        ActuatorProblem(
+            subject, goal, paths, rows, fixed, problem, None if subject.plugins else wanted
+        )
+    )
     return holder[0]
 
 

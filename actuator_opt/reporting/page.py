@@ -7,10 +7,9 @@ from typing import Any
 
 from ..evaluation.result import Evaluation
 from ..optimisation.result import Optimisation
-from . import optimum, tables, text, wall, whole_plies
-from .blocks import Block, ExtraTable, clean, figure, listing, notes, short, soft
+from . import dynamics_page, optimum, stiffness_page, tables, text, wall, whole_plies
+from .blocks import Block, ExtraTable, clean, listing, notes, short, soft
 from .drawing import section
-from .figures import stiffness_figure
 
 KEY_FIGURES = (
     "mass",
@@ -136,7 +135,7 @@ def page(
             blocks.append(rounding)
     else:
         blocks.append(tables.masses(evaluation))
-    blocks.append(_curve(evaluation))
+    blocks += stiffness_page.blocks(evaluation) + dynamics_page.blocks(evaluation)
     if optimisation is not None and optimisation.sensitivities:
         blocks.append(optimum.sensitivities(optimisation))
     if optimisation is not None and optimisation.variables:
@@ -170,13 +169,6 @@ def page(
         ],
         "blocks": blocks,
     }
-
-
-def _curve(evaluation: Evaluation) -> Block:
-    rows = evaluation.requirements
-    required = next((r for r in rows if r.metric == "stiffness_min" and r.sense == "min"), None)
-    note = f"Case {evaluation.curve.case}, ports closed; the contributions add up to 1/k."
-    return figure("Stiffness over the stroke", stiffness_figure(evaluation.curve, required), note)
 
 
 def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> list[Block]:

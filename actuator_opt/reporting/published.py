@@ -11,12 +11,13 @@ from collections.abc import Callable
 
 from ..evaluation import Evaluation
 from ..optimisation.result import Optimisation
-from . import elasswad_tables
+from . import aalto_tables, elasswad_tables
 from .blocks import ExtraTable
 from .page import parts_of
 
 TABLES: dict[str, tuple[Callable[[Evaluation], ExtraTable], ...]] = {
     "ElAsswad2018": elasswad_tables.TABLES,
+    "AaltoThesis": aalto_tables.TABLES,
 }
 """What each paper's tables are made by; the keys are those of `Design.reproduces`."""
 

@@ -10,8 +10,9 @@ from typing import TypedDict
 
 from ..evaluation.result import Evaluation, Requirement, StrokeCurve
 from ..optimisation.result import Infeasibility, Optimisation
-from . import optimum, page, plot, text, whole_plies
+from . import optimum, page, plot, stiffness_page, text, whole_plies
 from .console import Column, Console
+from .places import brief
 from .text import DASH
 
 _STATE_STYLE = {
@@ -87,15 +88,16 @@ def evaluation_table(
     limits: dict[str, list[Requirement]] = {}
     for required in evaluation.requirements:
         limits.setdefault(required.metric, []).append(required)
-    rows, styles, missing = [], [], []
+    rows, styles, half = [], [], 5 if width >= 110 else 3
+    missing: dict[str, list[str]] = {}
     for metric in evaluation.metrics.values():
         quantity = metric.quantity
         if metric.value is None:
-            missing.append(f"{metric.name}: {metric.why or 'not computed'}")
+            missing.setdefault(metric.why or "not computed", []).append(metric.name)
             continue
         entries: Sequence[Requirement | None] = limits.get(metric.name) or [None]
         for index, row in enumerate(entries):
-            case = ", ".join(p for p in (metric.case, metric.place) if p)
+            case = brief(metric.case, metric.place)
             flag = "" if metric.in_range else " (!)"
             limit = "" if row is None else text.limit_text(quantity, row.sense, row.limit)
             margin = None if row is None else row.margin
@@ -107,8 +109,8 @@ def evaluation_table(
                     text.unit_text(quantity.unit) if index == 0 else "",
                     limit,
                     text.margin_text(margin, met=met) if row is not None else "",
-                    console.margin_bar(margin),
-                    case if row is None else row.case or case,
+                    console.margin_bar(margin, half),
+                    case if row is None else brief(row.case, row.place) or case,
                     quantity.label if index == 0 else "",
                 ]
             )
@@ -119,7 +121,9 @@ def evaluation_table(
         lines.append(console.paint("(!) a model was used outside its valid range", "yellow"))
     if missing:
         lines += ["", console.paint("not computed", "dim")]
-        lines += ["  " + console.cut(console.say(line), width - 2) for line in missing]
+        for why, names in missing.items():
+            wrapped = Console(colour, unicode, width - 4).wrap(f"{', '.join(names)}: {why}")
+            lines.append("  " + wrapped.replace("\n", "\n    "))
     return "\n".join(lines)
 
 
@@ -139,7 +143,7 @@ def requirements_table(
         Column("", drop=1),
         Column("governing case", flexible=True, drop=2),
     ]
-    rows, styles = [], []
+    rows, styles, half = [], [], 5 if width >= 110 else 3
     for row in evaluation.requirements:
         quantity = text.metric(row.metric)
         metric = evaluation.metrics.get(row.metric)
@@ -152,8 +156,8 @@ def requirements_table(
                 text.limit_text(quantity, row.sense, row.limit),
                 why or text.value_text(quantity, row.value),
                 text.margin_text(row.margin, met=row.met),
-                console.margin_bar(row.margin),
-                ", ".join(p for p in (row.case, row.place) if p),
+                console.margin_bar(row.margin, half),
+                brief(row.case, row.place),
             ]
         )
         paint = _STATE_STYLE[state]
@@ -360,10 +364,14 @@ def evaluation_text(
         None,
     )
     style: _Style = {"colour": colour, "unicode": unicode, "width": width}
+    curve = stiffness_curve(evaluation.curve, required, **style)
+    shares = stiffness_page.summary(evaluation.curve)
+    if curve and shares:
+        curve += "\n" + Console(**style).wrap(f"compliance there: {shares}", "dim")
     parts = [
         verdict(evaluation, **style),
         evaluation_table(evaluation, **style),
-        stiffness_curve(evaluation.curve, required, **style),
+        curve,
         checks_table(evaluation, **style),
         notes(evaluation, **style),
     ]

@@ -5,7 +5,7 @@ SI throughout. Only the load case and place that govern are told; `study` fills 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
 
@@ -82,10 +82,9 @@ class DynamicsStudy:
     """[Hz], lines ended as `end` says"""
     damping_ratio: Array
     friction_share: float
-    """Damping ratio from friction and oil shear at the weakest position: closed form, for the
-    part of the load's motion that reaches the piston through rod and mount."""
+    """Damping ratio from friction and oil shear at the weakest position: lost without them."""
     conductance_share: float
-    """Damping ratio from leakage and line ends there: the exact one less friction's."""
+    """Damping ratio from leakage, lines and what ends them there: left without friction."""
     poles: tuple[Pole, ...]
     """All of them at the weakest position, slowest first."""
     frequencies: Array
@@ -122,21 +121,18 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
     motion = done.motion
     index = v.cases.index(case) if case in v.cases else 0
     stroke = float(np.squeeze(done.geometry.stroke))
-    position = np.linspace(0.0, stroke, 61)
     weakest = _of_case(done.weakest, index)
+    position = np.unique(np.append(np.linspace(0.0, stroke, 61), weakest))
     model = motion.model(position)
     along = motion.mode(model, position)
     closed = dynamics.natural_frequency(
         stiffness=motion.springs.stiffness(position), mass=motion.mass
     )
-    stiffness = _of_case(motion.springs.stiffness(weakest), index)
-    mass = float(np.squeeze(motion.mass))
-    reaching = 1 - stiffness * _of_case(motion.springs.flexibility(), index)
-    friction = reaching**2 * dynamics.friction_damping_ratio(
-        incremental_damping=_of_case(motion.damping, index), stiffness=stiffness, mass=mass
-    )
-    here = motion.model(np.array([[weakest]]))
-    whole = _of_case(motion.mode(here, np.array([[weakest]])).damping_ratio, index)
+    there = np.array([[weakest]])
+    here = motion.model(there)
+    whole = _of_case(motion.mode(here, there).damping_ratio, index)
+    sliding = replace(motion, damping=0.0 * motion.damping)
+    ends = _of_case(sliding.mode(sliding.model(there), there).damping_ratio, index)
     design = subject.design
     shaken = _worst(done, "dynamic_stiffness", design)
     asked = index if shaken is None else shaken[0]
@@ -148,20 +144,20 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
     models = {name: motion.model(np.array([[[x]]])) for name, x in places.items()}
     rows = [_worst(done, name, design) for name in ("gain_margin", "phase_margin", "bandwidth")]
     loops = [_Loop.of(done, *row) for row in dict.fromkeys(row for row in rows if row is not None)]
-    polynomials = [p for one in models.values() for p in (one.characteristic, one.mobile)]
-    polynomials += [p for one in loops for p in one.polynomials()]
+    polynomials = [(p, asked) for m in models.values() for p in (m.characteristic, m.mobile)]
+    polynomials += [(p, one.index) for one in loops for p in one.polynomials()]
     frequencies = _frequencies(polynomials)
     told = [_loop(subject, v, done, one, frequencies) for one in loops]
     return DynamicsStudy(
         case=v.cases[index],
-        mass=mass,
+        mass=float(np.squeeze(motion.mass)),
         end=design.ports.end,
         position=position,
         closed_frequency=_row(closed, index, position),
         frequency=_row(along.natural_frequency, index, position),
         damping_ratio=_row(along.damping_ratio, index, position),
-        friction_share=float(friction),
-        conductance_share=float(whole - friction),
+        friction_share=whole - ends,
+        conductance_share=ends,
         poles=_poles(here, index),
         frequencies=frequencies,
         response_case=v.cases[asked],
@@ -213,12 +209,17 @@ def _worst(done: Pass, metric: str, design: Design) -> tuple[int, str] | None:
     return min(known)[1:] if known else None
 
 
-def _frequencies(polynomials: list[Polynomial]) -> Array:
-    """`FREQUENCIES` and points about every resonance and anti-resonance of some polynomials."""
+def _frequencies(polynomials: list[tuple[Polynomial, int]]) -> Array:
+    """`FREQUENCIES` and points about every resonance and anti-resonance of some polynomials.
+
+    Each comes with the load case that counts.
+    """
     found = [FREQUENCIES]
-    for polynomial in polynomials:
-        zeros = roots(polynomial[_integrators(polynomial) :]).reshape(-1)
-        swings = zeros[zeros.imag > 0]
+    for polynomial, index in polynomials:
+        zeros = roots(polynomial[_integrators(polynomial) :])
+        zeros = zeros.reshape(-1, zeros.shape[-1])
+        swings = zeros[min(index, len(zeros) - 1)]
+        swings = swings[swings.imag > 0]
         size = np.abs(swings) / (2 * pi)
         near = (size > FREQUENCIES[0]) & (size < FREQUENCIES[-1])
         width = np.clip(-swings.real / np.abs(swings), 1e-9, 0.05)

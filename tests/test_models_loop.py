@@ -1,0 +1,319 @@
+"""Claims about modes, ultimate gain, margins and bandwidth of the position loop.
+
+python-control's state space of `circuit_oracle` is the judge: eigenvalues of the closed loop,
+its own margins and bandwidth.
+"""
+
+from __future__ import annotations
+
+import math
+
+import control
+import numpy as np
+import pytest
+from circuit_oracle import closed, in_milliseconds, plant, random_circuit, state_space
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from samples_dynamics import DRIVEN, bare, loop_of, model_of
+from test_models_hydraulics_dynamics import CHAMBERS
+from test_models_valve import LEAKAGE, RATED
+
+from actuator_opt.models import dynamics, linear, loop, valve
+from actuator_opt.models.linear import LineEnd, Side
+
+SEEDS = st.integers(0, 2**32 - 1)
+SPOOLS = st.tuples(st.floats(20.0, 500.0), st.floats(0.3, 1.1))
+STEP = 1e-30
+
+
+def opened(circuit, spool):
+    """Our open loop of a circuit with a spool."""
+    return loop.open_loop(
+        model=model_of(circuit), natural_frequency=spool[0], damping_ratio=spool[1]
+    )
+
+
+def growth(open_plant, gain):
+    """Closed-loop eigenvalues at a gain."""
+    return np.linalg.eigvals(open_plant.A - gain * open_plant.B @ open_plant.C)
+
+
+# --- ultimate gain -------------------------------------------------------------------------------
+
+
+@given(SEEDS, SPOOLS)
+def test_ultimate_gain_is_where_the_closed_loop_begins_to_grow(seed, spool):
+    """A pole lies on the axis at K_u, none is unstable at 0.999 K_u or below, one at 1.001 K_u."""
+    circuit = random_circuit(seed, driven=True)
+    limit, judge = loop.ultimate_gain(loop=opened(circuit, spool)), plant(circuit, *spool)
+    if limit.gain == 0:  # every gain grows, if slowly
+        assert np.max(growth(judge, 1.0).real) > 0
+        return
+    assume(np.isfinite(limit.gain))
+    omega = 2 * np.pi * limit.frequency
+    at_limit = growth(judge, limit.gain)
+    assert np.min(np.abs(at_limit - 1j * omega)) < 1e-6 * omega
+    assert np.max(growth(judge, 1.001 * limit.gain).real) > 0
+    for gain in limit.gain * np.append(np.geomspace(1e-6, 0.99, 25), 0.999):
+        poles = growth(judge, gain)
+        assert np.max(poles.real) < 1e-11 * np.max(np.abs(poles))
+
+
+def check_loop(frequency):
+    """32/18-160 of PHYSICS at mid-stroke: 140 bar, both chambers at 70 bar, U > 0."""
+    slopes = valve.valve_slopes(
+        rated_coefficient=RATED, leakage_coefficient=LEAKAGE, signal=10.0, supply_pressure=14e6,
+        return_pressure=0.0, pressure_a=7e6, pressure_b=7e6, extending=True,
+    )  # fmt: skip
+    ends = {
+        "a": {"end": LineEnd((slopes.conductance_a,)), "flow_gain": slopes.gain_a},
+        "b": {"end": LineEnd((slopes.conductance_b,)), "flow_gain": -slopes.gain_b},
+    }
+    sides = {
+        f"side_{c}": Side(CHAMBERS[f"area_{c}"], CHAMBERS[f"compliance_{c}"], **ends[c])
+        for c in "ab"
+    }
+    model = linear.linear_actuator(**sides, mass=30.0, damping=400.0)
+    return loop.open_loop(model=model, natural_frequency=frequency, damping_ratio=0.7)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "gain", "period"), [(250.0, 416.743, 7.7584e-3), (400.0, 333.220, 7.6671e-3)]
+)
+def test_ultimate_gain_check_values(frequency, gain, period):
+    """A slower spool gives the higher ultimate gain: 416.743 at 250 Hz, 333.220 V/m at 400 Hz."""
+    limit = loop.ultimate_gain(loop=check_loop(frequency))
+    assert limit.gain == pytest.approx(gain, abs=6e-4)
+    assert 1 / limit.frequency == pytest.approx(period, abs=6e-8)
+
+
+@pytest.mark.parametrize(("omega", "zeta", "velocity"), [(800.0, 0.02, 3.0), (50.0, 0.9, 0.1)])
+def test_ultimate_gain_of_the_textbook_servo(omega, zeta, velocity):
+    """Integrator and one oil pair, [Merritt1967]: K_u = 2 zeta omega/K_v, swinging at omega."""
+    textbook = loop.OpenLoop((velocity,), (0.0, 1.0, 2 * zeta / omega, 1 / omega**2))
+    limit = loop.ultimate_gain(loop=textbook)
+    assert limit.gain == pytest.approx(2 * zeta * omega / velocity, rel=1e-9)
+    assert limit.frequency == pytest.approx(omega / (2 * math.pi), rel=1e-9)
+
+
+def test_an_unstable_actuator_has_no_gain():
+    """Falling friction beyond what the leakage damps: K_u = 0 and no frequency."""
+    limit = loop.ultimate_gain(loop=loop_of(**{**DRIVEN, "damping": -4000.0}))
+    assert limit.gain == 0
+    assert np.isnan(limit.frequency)
+    assert loop.load_mode(model=bare(**{**DRIVEN, "damping": -4000.0}), near=130.0)[1] < 0
+
+
+@pytest.mark.parametrize("number", [float, lambda value: np.array([value])], ids=["one", "array"])
+def test_a_valve_without_leakage_still_has_a_limit(number):
+    """Oil shut in leaves a pole at zero that does no harm: the limit of ever less leakage."""
+    tight = {**DRIVEN, "leakage": 0.0, "valve_a": 0.0, "valve_b": 0.0}
+    almost = {**tight, "valve_a": 1e-19, "valve_b": 1e-19}
+    limit, near = (
+        loop.ultimate_gain(loop=loop_of(**{key: number(value) for key, value in case.items()}))
+        for case in (tight, almost)
+    )
+    assert limit.gain > 100
+    np.testing.assert_allclose(limit, near, rtol=1e-6)
+    one = loop.margins(loop=loop_of(**{k: number(x) for k, x in tight.items()}), gain=100.0)
+    two = loop.margins(loop=loop_of(**{k: number(x) for k, x in almost.items()}), gain=100.0)
+    np.testing.assert_allclose(one, two, rtol=1e-6)
+
+
+@pytest.mark.parametrize("number", [float, lambda value: np.array([value])], ids=["one", "array"])
+def test_a_position_that_runs_backwards_has_no_gain(number):
+    """More out of B than into A across a leaking piston: the load creeps the wrong way; K_u = 0.
+
+    The valve's reversed sign is such a case too.
+    """
+    leaking = {**DRIVEN, "valve_a": 0.0, "valve_b": 0.0, "gain_a": 0.5e-5}
+    reversed_sign = {**DRIVEN, "gain_a": -1e-5, "gain_b": -1e-5}
+    for case in (leaking, reversed_sign):
+        limit = loop.ultimate_gain(loop=loop_of(**{k: number(x) for k, x in case.items()}))
+        assert limit.gain == 0
+
+
+def test_loops_without_a_crossing():
+    """An integrator alone never swings; nor does a valve without flow; a NaN is never infinite."""
+    limit = loop.ultimate_gain(loop=loop.OpenLoop((1.0,), (0.0, 1.0)))
+    assert limit.gain == math.inf
+    assert np.isnan(limit.frequency)
+    for number in (float, lambda value: np.array([value])):
+        still = loop_of(**{k: number(x) for k, x in DRIVEN.items()} | {
+            "gain_a": number(0.0), "gain_b": number(0.0),
+        })  # fmt: skip
+        assert loop.ultimate_gain(loop=still).gain == math.inf
+        assert np.isnan(loop.margins(loop=still, gain=10.0)).all()
+        for key in ("gain_a", "damping", "compliance_b"):
+            broken = loop_of(**{k: number(x) for k, x in DRIVEN.items()} | {key: number(math.nan)})
+            assert np.isnan(loop.ultimate_gain(loop=broken)).all()
+            assert np.isnan(loop.margins(loop=broken, gain=10.0)).all()
+
+
+def test_one_edge_without_flow_keeps_its_limit():
+    """A line on A alone and an array whose second design has no flow through the edge at B.
+
+    The leading coefficient of the crossings then vanishes in that design only.
+    """
+    gain_b = np.array([-1e-5, 0.0])
+
+    def of(gain_a, gain_b):
+        line = {"resistance": 4e8, "inertance": 1.5e7, "far_compliance": 3e-14}
+        model = linear.linear_actuator(
+            side_a=Side(8e-4, 5e-14, **line, end=LineEnd((1e-12,)), flow_gain=gain_a),
+            side_b=Side(5e-4, 4e-14, end=LineEnd((1e-12,)), flow_gain=gain_b),
+            mass=30.0, damping=400.0,
+        )  # fmt: skip
+        return loop.open_loop(model=model, natural_frequency=250.0, damping_ratio=0.7)
+
+    for gain_a in (1e-5, np.array([1e-5, 0.0])):
+        together = loop.ultimate_gain(loop=of(gain_a, gain_b))
+        alone = loop.ultimate_gain(loop=of(1e-5, 0.0 if np.ndim(gain_a) == 0 else -0.0))
+        if np.ndim(gain_a) == 0:
+            assert together.gain[1] == pytest.approx(alone.gain, rel=1e-9)
+        else:
+            assert together.gain[1] == math.inf
+    swapped = loop.ultimate_gain(loop=of(np.array([1e-5, 0.0]), -1e-5))
+    assert swapped.gain[1] == pytest.approx(loop.ultimate_gain(loop=of(0.0, -1e-5)).gain, rel=1e-9)
+
+
+# --- margins and bandwidth -----------------------------------------------------------------------
+
+
+@given(SEEDS, SPOOLS)
+def test_margins_and_bandwidth_are_those_of_python_control(seed, spool):
+    """At half the ultimate gain: gain margin 2, phase margin, crossover and -3 dB of control."""
+    circuit = random_circuit(seed, driven=True)
+    one, judge = opened(circuit, spool), in_milliseconds(plant(circuit, *spool))
+    gain = 0.5 * loop.ultimate_gain(loop=one).gain
+    assume(0 < gain < math.inf)
+    ours = loop.margins(loop=one, gain=gain)
+    gains, phases, _, _, crossings, _ = control.stability_margins(gain * judge, returnall=True)
+    assert np.min(gains[gains > 1]) == pytest.approx(2, rel=1e-5)
+    least = np.argmin(np.abs(phases))
+    assert ours.phase_margin == pytest.approx(np.radians(abs(phases[least])), rel=1e-5)
+    if np.sum(np.abs(phases) < 1.0001 * abs(phases[least])) == 1:
+        assert ours.crossover == pytest.approx(crossings[least] * 1e3 / (2 * np.pi), rel=1e-5)
+    half_power = -10 * math.log10(2)
+    width = control.bandwidth(closed(judge, gain), dbdrop=half_power) * 1e3 / (2 * np.pi)
+    assert ours.bandwidth == pytest.approx(width, rel=1e-5)
+
+
+def test_phase_margin_vanishes_at_the_ultimate_gain():
+    """At K_u the crossover is where the loop swings and the margin is nothing."""
+    one = check_loop(250.0)
+    limit = loop.ultimate_gain(loop=one)
+    found = loop.margins(loop=one, gain=limit.gain)
+    assert found.phase_margin == pytest.approx(0, abs=1e-6)
+    assert found.crossover == pytest.approx(limit.frequency, rel=1e-6)
+
+
+def test_slow_loops_follow_the_closed_forms():
+    """A gain far below the oil: crossover and bandwidth tend to K K_v/(2 pi), the margin to 90 deg."""
+    velocity = 0.02
+    one = loop.OpenLoop((velocity,), (0.0, 1.0, 1e-4, 1e-6))
+    found = loop.margins(loop=one, gain=50.0)
+    assert found.crossover == pytest.approx(1 / (2 * math.pi), rel=1e-4)
+    assert found.bandwidth == pytest.approx(1 / (2 * math.pi), rel=1e-3)
+    assert found.phase_margin == pytest.approx(math.pi / 2, rel=1e-3)
+
+
+# --- modes ---------------------------------------------------------------------------------------
+
+
+@given(SEEDS)
+def test_the_load_mode_is_a_pole_of_the_state_space(seed):
+    """Frequency and ratio are |s|/2 pi and -Re s/|s| of an oscillating pole, or of two real ones."""
+    circuit = random_circuit(seed)
+    judge = state_space(circuit).poles()
+    for near in (20.0, 120.0, 900.0):
+        mode = loop.load_mode(model=model_of(circuit), near=near)
+        omega, ratio = 2 * np.pi * mode.natural_frequency, mode.damping_ratio
+        if abs(ratio) < 1 - 1e-9:
+            pole = omega * complex(-ratio, math.sqrt(1 - ratio**2))
+            assert np.min(np.abs(judge - pole)) < 1e-6 * omega
+        elif np.isfinite(ratio):
+            root = math.sqrt(max(ratio**2 - 1, 0.0))
+            for pole in (-omega * (ratio + root), -omega / (ratio + root)):
+                assert np.min(np.abs(judge - pole)) < 1e-4 * abs(pole)
+
+
+def test_modes_of_one_spring_and_one_damper():
+    """m s^2 + B s + k: under-damped, critical, over-damped and growing, by the closed form."""
+    side = Side(5e-4, 5e-14)
+    for ratio in (0.0, 0.05, 1.0, 1.7, -0.2):
+        damping = 2 * ratio * math.sqrt(1e7 * 10.0)
+        model = linear.linear_actuator(side_a=side, side_b=side, mass=10.0, damping=damping)
+        mode = loop.load_mode(model=model, near=150.0)
+        assert mode.natural_frequency == pytest.approx(1000 / (2 * math.pi), rel=1e-9)
+        assert mode.damping_ratio == pytest.approx(ratio, rel=1e-6, abs=1e-12)
+
+
+def test_a_load_that_nothing_holds():
+    """At a constant pressure without a line no oil holds the load: 0 Hz, infinitely damped."""
+    free = Side(5e-4, 5e-14, end=LineEnd((1.0,), ()))
+    model = linear.linear_actuator(side_a=free, side_b=free, mass=10.0, damping=100.0)
+    assert loop.load_mode(model=model, near=100.0) == (0.0, math.inf)
+    np.testing.assert_allclose(loop.poles(model=model), [-10.0])
+
+
+def test_an_unknown_frequency_has_no_mode():
+    """NaN in, NaN out: for the frequency looked near, and for a coefficient."""
+    assert np.isnan(loop.load_mode(model=bare(**DRIVEN), near=math.nan)).all()
+    broken = bare(**{**DRIVEN, "damping": math.nan})
+    assert np.isnan(loop.load_mode(model=broken, near=130.0)).all()
+
+
+def test_poles_of_arrays_are_those_of_each_design():
+    """Columns, copies and complex steps give the roots of the real designs."""
+    masses = np.array([[5.0], [30.0]]) * np.ones(3)
+    found = loop.poles(model=bare(**{**DRIVEN, "mass": masses + 1j * STEP}))
+    for row, mass in enumerate((5.0, 30.0)):
+        one = loop.poles(model=bare(**{**DRIVEN, "mass": mass}))
+        for column in range(3):
+            np.testing.assert_allclose(
+                np.sort_complex(found[row, column]), np.sort_complex(one), rtol=1e-9
+            )
+
+
+# --- gradients -----------------------------------------------------------------------------------
+
+
+def figures(circuit, spool, near, gain):
+    """Every figure of a driven circuit as one list."""
+    one = opened(circuit, spool)
+    limit = loop.ultimate_gain(loop=one)
+    mode = loop.load_mode(model=model_of(circuit), near=near)
+    margins = loop.margins(loop=one, gain=gain)
+    return [*limit, *mode, *margins]
+
+
+@given(SEEDS, SPOOLS)
+def test_gradients_of_random_circuits(seed, spool):
+    """The complex step of every figure is its slope, over mass, damping, oil, valve and rod."""
+    circuit = random_circuit(seed, driven=True)
+    limit = loop.ultimate_gain(loop=opened(circuit, spool)).gain
+    assume(0 < limit < math.inf)
+    near = dynamics.natural_frequency(
+        stiffness=sum(circuit[c]["area"] ** 2 / circuit[c]["compliance"] for c in "ab"),
+        mass=circuit["mass"],
+    )
+    asked = {"near": float(near), "gain": 0.4 * limit}
+    mode = loop.load_mode(model=model_of(circuit), near=near)
+    assume(abs(mode.damping_ratio) < 0.99)  # two real poles may meet and part
+    values = np.array(figures(circuit, spool, **asked))
+    for path in ("mass", "damping", "a.compliance", "b.area", "b.flow_gain", "a.far_compliance"):
+
+        def at(factor, path=path):
+            changed = {**circuit, "a": dict(circuit["a"]), "b": dict(circuit["b"])}
+            home = changed[path[0]] if "." in path else changed
+            home[path.split(".")[-1]] = home[path.split(".")[-1]] * factor
+            return np.array(figures(changed, spool, **asked))
+
+        slope = at(1 + 1j * STEP).imag / STEP
+        step = 1e-5
+        differences = [(at(1 + h) - at(1 - h)) / (2 * h) for h in (step, 2 * step)]
+        smooth = np.abs(differences[0] - differences[1]) < 1e-5 * np.abs(values)
+        error = np.abs(slope - differences[0])
+        assert np.all(error[smooth] <= 2e-5 * np.abs(values[smooth]) + 1e-9)
+        assert smooth.sum() >= 5

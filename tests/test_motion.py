@@ -1,0 +1,335 @@
+"""Linear dynamics and stiffness budget in a whole evaluation.
+
+The judge takes sizes, oil, wall and friction from the evaluation and builds the circuit's
+differential equations itself (`circuit_oracle`); lines are computed here from their sizes.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from circuit_oracle import descriptor, plant, state_space
+from cli_runner import bench
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import actuator_opt as ao
+from actuator_opt.evaluation import compute
+from actuator_opt.evaluation.springs import weakest
+from actuator_opt.models import linear, loop, stiffness
+
+SERVO = """
+valve:
+  rated_flow: 10 l/min
+  leakage_flow: 0.2 l/min
+  natural_frequency: 120 Hz
+
+lines:
+  - chamber: a
+    type: hose
+    length: 0.3 m
+    inner_diameter: 6 mm
+    outer_diameter: 10 mm
+    material: steel_42crmo4
+  - chamber: b
+    length: 0.25 m
+    inner_diameter: 5 mm
+    outer_diameter: 8 mm
+    material: steel_42crmo4
+
+control:
+  gain: 100 V/m
+"""
+SHAKEN = ("    side_load: 30 N\n", "    side_load: 30 N\n    frequency: 20 Hz\n")
+THROTTLE = """  throttle:
+    area: 8 mm2
+    check_area: 20 mm2
+"""
+ENDS = {
+    "closed": "",
+    "valve": "ports:\n  end: valve\n",
+    "constant": "ports:\n  end: constant_pressure\n",
+    "reducing": """ports:
+  end: reducing_valve
+  reducing_valve:
+    conductance: 2e-10 m3/(s*Pa)
+    natural_frequency: 20 Hz
+    damping_ratio: 0.4
+""",
+    "accumulator": """ports:
+  end: valve
+  accumulators:
+    - chamber: b
+      gas_volume: 20 ml
+      precharge: 20 bar
+      neck_length: 40 mm
+      neck_diameter: 5 mm
+""",
+    "throttle": "ports:\n  end: valve\n" + THROTTLE,
+}
+STATED = "control:\n  gain: 100 V/m\n"
+LATER = "\n# the gain is left to the tool\n"
+SEALS = "\nstiffness:\n  seals: sticking\n"
+
+
+@pytest.fixture(scope="module")
+def subject_of(tmp_path_factory):
+    """Subjects of the bench design on a servo valve, by what ends its lines."""
+    folder, found = tmp_path_factory.mktemp("motion"), {}
+
+    def get(end="valve", more="", **sets):
+        key = (end, more, *sets.items())
+        if key not in found:
+            path = folder / f"{len(found)}.yaml"
+            text = bench(SHAKEN) + SERVO + ENDS[end] + more
+            path.write_text(text.replace(STATED, "") if more == LATER else text)
+            found[key] = ao.read(path, set=sets).subject()
+        return found[key]
+
+    return get
+
+
+def circuit_of(subject, done, case, position, direction=None):
+    """The oracle's circuit of one case at a position; with a direction, driven by the valve."""
+    v, g, s = subject.values(), done.geometry, done.state
+    budget = done.springs
+
+    def number(value):
+        return float(np.broadcast_to(value, (2, 1))[case, 0])
+
+    whole = budget.total().at(position, g.stroke)
+    pressures = {"a": number(s.holding_a), "b": number(s.holding_b)}
+    moduli = {"a": number(s.bulk_modulus_a), "b": number(s.bulk_modulus_b)}
+    supply, drain = v["supply.pressure"], v["supply.return_pressure"]
+    leak = (0.2e-3 / 60) / math.sqrt(50e5)
+    opening = ((10e-3 / 60) / math.sqrt(35e5) - leak) / 10
+    circuit = {}
+    for i, name in enumerate("ab"):
+        d, length = v[f"lines[{i}].inner_diameter"], v[f"lines[{i}].length"]
+        outer = v[f"lines[{i}].outer_diameter"]
+        ratio = (outer**2 + d**2) / (outer**2 - d**2)
+        e, nu = (v[f"materials.steel_42crmo4.{k}"] for k in ("youngs_modulus", "poissons_ratio"))
+        bore = math.pi * d**2 / 4
+        wall = math.pi * d**2 * length * (ratio + nu) / (2 * e)
+        far = 0.5 * (bore * length / moduli[name] + wall)
+        up, down = supply - pressures[name], pressures[name] - drain
+        valve = leak / (2 * math.sqrt(up)) + leak / (2 * math.sqrt(down))
+        ends = [("conductance", valve)]
+        if direction is None:
+            kind = subject.design.ports.end
+            ends = {
+                "closed": [],
+                "valve": ends,
+                "constant_pressure": [("constant_pressure",)],
+                "reducing_valve": [("reducing", 2e-10, 2 * math.pi * 20, 0.4, 0.0)],
+            }[kind]
+        viscosity = getattr(s, f"dynamic_viscosity_{name}")
+        fills = (name == "a") == (direction != "retracting")
+        circuit[name] = {
+            "area": float(getattr(g, f"area_{name}")),
+            "compliance": number(getattr(whole, name)) - far,
+            "throttle": None,
+            "resistance": 128 * number(viscosity) * length / (math.pi * d**4),
+            "inertance": number(s.density) * length / bore,
+            "far_compliance": far,
+            "ends": ends,
+            "flow_gain": 0.0
+            if direction is None
+            else (1 if name == "a" else -1) * opening * math.sqrt(up if fills else down),
+        }
+    sticks = direction is None and budget.seals is not None
+    return circuit | {
+        "mass": number(done.motion.mass),
+        "damping": number(done.motion.damping),
+        "coupling": number(whole.ab),
+        "leakage": 0.0,
+        "seal_stiffness": number(budget.seals) if sticks else 0.0,
+        "flexibility": sum(1 / number(part) for part in budget.chain.values()),
+    }
+
+
+@pytest.mark.parametrize("end", ["closed", "valve", "constant", "reducing"])
+@pytest.mark.parametrize("more", ["", SEALS], ids=["sliding", "sticking"])
+def test_held_actuator_is_that_of_the_differential_equations(subject_of, end, more):
+    """Dynamic stiffness, phase and damping ratio at all six places, for every kind of line end."""
+    subject = subject_of(end, more)
+    done = compute(subject, subject.values())
+    metrics = done.computed.metrics
+    for place, position in done.places.items():
+        where = np.broadcast_to(position, (2, 1))[0]
+        circuit = circuit_of(subject, done, 0, where)
+        e, a, b, out = descriptor(circuit)
+        k = 1 / np.linalg.solve(2j * math.pi * 20 * e - a, b[:, 0])[out]
+        assert metrics["dynamic_stiffness"][place][0, 0] == pytest.approx(abs(k), rel=1e-6)
+        assert metrics["dynamic_phase"][place][0, 0] == pytest.approx(np.angle(k), abs=1e-6)
+        ratio = metrics["damping_ratio"][place][0, 0]
+        poles = state_space(circuit).poles()
+        poles = poles[np.abs(poles) > 1e-3]
+        if abs(ratio) < 1:
+            assert np.min(np.abs(-poles.real / np.abs(poles) - ratio)) < 1e-6
+
+
+def test_position_loop_is_that_of_the_differential_equations(subject_of):
+    """Ultimate gain in both cases, both directions and all places by closed-loop eigenvalues."""
+    subject = subject_of()
+    done = compute(subject, subject.values())
+    limits = done.computed.metrics["ultimate_gain"]
+    for direction in ("extending", "retracting"):
+        for place, position in done.places.items():
+            for case in range(2):
+                where = np.broadcast_to(position, (2, 1))[case]
+                judge = plant(circuit_of(subject, done, case, where, direction), 120.0, 0.7)
+                limit = limits[f"{direction}, {place}"][case, 0]
+                growths = [
+                    np.max(np.linalg.eigvals(judge.A - k * limit * judge.B @ judge.C).real)
+                    for k in (0.1, 0.5, 0.9, 0.9999, 1.0001)
+                ]
+                assert [growth > 0 for growth in growths] == [False] * 4 + [True]
+
+
+def test_margins_belong_to_the_stated_gain(subject_of):
+    """Gain margin = K_u/K; above K_u the phase margin is negative; without a gain K = K_u/2."""
+    subject = subject_of()
+    stated = compute(subject, subject.values()).computed.metrics
+    for place, margin in stated["gain_margin"].items():
+        np.testing.assert_allclose(margin, stated["ultimate_gain"][place] / 100, rtol=1e-12)
+    least = min(np.min(limit) for limit in stated["ultimate_gain"].values())
+    beyond = compute(subject, subject.values({"control.gain": 1.01 * least})).computed.metrics
+    worst = min(beyond["phase_margin"], key=lambda place: np.min(beyond["gain_margin"][place]))
+    assert np.min(beyond["phase_margin"][worst]) < 0
+    assert np.all(np.array(list(stated["phase_margin"].values())) > 0)
+    free = subject_of("valve", LATER)
+    done = compute(free, free.values()).computed.metrics
+    assert done["position_gain"][""] == pytest.approx(least / 2, rel=1e-12)
+
+
+def test_a_valve_without_leakage_has_an_ultimate_gain(subject_of):
+    """Leakage is 0 unless stated: the loop's limit is that of a valve that hardly leaks."""
+    subject = subject_of()
+    tight, almost = (
+        compute(subject, subject.values({"valve.leakage_flow": np.array([flow])})).computed.metrics
+        for flow in (0.0, 1e-15)
+    )
+    for place, limit in tight["ultimate_gain"].items():
+        assert np.all(limit > 0)
+        np.testing.assert_allclose(limit, almost["ultimate_gain"][place], rtol=1e-5)
+
+
+# --- gradients -----------------------------------------------------------------------------------
+
+FIGURES = (
+    "damping_ratio", "dynamic_stiffness", "ultimate_gain", "gain_margin", "phase_margin",
+    "bandwidth", "stiffness_min", "natural_frequency",
+)  # fmt: skip
+PATHS = ("cylinder.bore", "rod.outer_diameter", "load.mass", "lines[0].length", "supply.pressure")
+
+
+@pytest.mark.parametrize("end", list(ENDS))
+def test_gradients_of_every_figure(subject_of, end):
+    """Complex step through a whole evaluation equals central differences, at every place."""
+    subject = subject_of(end)
+    step, tiny = 1e-5, 1e-30
+    for path in PATHS:
+        base = subject.numbers[path]
+        exact = compute(subject, subject.values({path: np.array([base * (1 + 1j * tiny)])}))
+        points = base * (1 + step * np.array([1.0, -1.0, 2.0, -2.0]))
+        moved = compute(subject, subject.values({path: points}))
+        for name in FIGURES:
+            for place, value in exact.computed.metrics[name].items():
+                value = np.atleast_2d(value)
+                other = np.atleast_2d(moved.computed.metrics[name][place])
+                other = np.broadcast_to(other, (len(other), 4))
+                with np.errstate(invalid="ignore"):
+                    near = (other[:, 0] - other[:, 1]) / (2 * step)
+                    wide = (other[:, 2] - other[:, 3]) / (4 * step)
+                size = np.abs(value[:, 0].real)
+                smooth = np.abs(near - wide) <= 1e-4 * size
+                assert smooth.all() or not np.isfinite(size).all()
+                error = np.abs(value[:, 0].imag / tiny - near)
+                assert np.all((error <= 1e-4 * size + 1e-12) | ~np.isfinite(size)), (name, place)
+
+
+# --- the stiffness budget ------------------------------------------------------------------------
+
+
+@settings(max_examples=25)
+@given(st.floats(0.018, 0.04), st.floats(0.0, 1.0), st.booleans())
+def test_shares_of_the_budget(subject_of, bore, share, sticking):
+    """Every share is positive; together they are 1/k, k in series with rod and beside the seals.
+
+    A barrel that shortens as it swells takes from its own share: both parts of it count as one.
+    """
+    subject = subject_of("closed", SEALS if sticking else "")
+    done = compute(subject, subject.values({"cylinder.bore": np.array([bore])}))
+    budget, g = done.springs, done.geometry
+    position = share * g.stroke
+    parts = budget.compliances(position)
+    assert {"oil A", "oil B", "barrel", "stretch", "pipes", "hoses", "rod"} <= set(parts)
+    positive = {**parts, "barrel": parts["barrel"] + parts["stretch"]}
+    del positive["stretch"]
+    for part in positive.values():
+        assert np.all(np.asarray(part) > 0)
+    give = budget.total().at(position, g.stroke)
+    oil = stiffness.hydraulic_stiffness(
+        area_a=g.area_a, area_b=g.area_b, compliance_a=give.a, compliance_b=give.b,
+        compliance_ab=give.ab,
+    )  # fmt: skip
+    seals = budget.seals if sticking else 0.0
+    expected = 1 / (oil + seals) + budget.flexibility()
+    np.testing.assert_allclose(sum(parts.values()), expected, rtol=1e-12)
+    np.testing.assert_allclose(budget.stiffness(position), 1 / expected, rtol=1e-12)
+
+
+def test_softer_parts_lower_the_closed_frequency(subject_of):
+    """Longer lines, more air, more dead volume, a thinner rod: never a higher frequency."""
+    subject = subject_of("closed")
+    for path, factors in {
+        "lines[0].length": (1, 2, 4), "fluid.air_content": (1, 2, 4),
+        "cylinder.dead_volume_a": (1, 3, 9), "cylinder.dead_volume_b": (1, 3, 9),
+        "rod.inner_diameter": (1, 1.1, 1.3), "load.mass": (1, 2, 4),
+    }.items():  # fmt: skip
+        points = subject.numbers[path] * np.array(factors, dtype=float)
+        done = compute(subject, subject.values({path: points}))
+        found = done.computed.metrics["natural_frequency"][""]
+        assert np.all(np.diff(found, axis=-1) < 0), path
+
+
+@pytest.mark.parametrize("end", ["closed", "valve", "reducing", "throttle"])
+def test_six_places_find_the_worst_of_the_stroke(subject_of, end):
+    """On a dense grid of the stroke no figure falls 1 % below the least of the six places."""
+    subject = subject_of(end)
+    done = compute(subject, subject.values())
+    metrics, stroke = done.computed.metrics, done.geometry.stroke
+    grid = np.linspace(0, 1, 81).reshape(-1, 1, 1) * stroke
+    motion = done.motion
+    model = motion.model(grid)
+    parts = linear.dynamic_stiffness(model=model, frequency=20.0)
+    dense = {
+        "dynamic_stiffness": np.hypot(parts.real, parts.imaginary)[:, :1],
+        "damping_ratio": motion.mode(model, grid).damping_ratio,
+    }
+    one = motion.position_loop(grid, extending=np.array([True, False]).reshape(-1, 1, 1, 1))
+    dense["ultimate_gain"] = loop.ultimate_gain(loop=one).gain
+    found = loop.margins(loop=one, gain=100.0)
+    dense |= {"phase_margin": found.phase_margin, "bandwidth": found.bandwidth}
+    for name, values in dense.items():
+        rows = metrics[name].values()
+        cases = slice(0, 1) if name == "dynamic_stiffness" else slice(None)
+        least = min(np.min(row[cases]) for row in rows)
+        assert np.min(values) >= least - 0.01 * abs(least), name
+
+
+def test_the_weakest_position_is_the_least_of_a_dense_grid(subject_of):
+    """Per chamber and in both published topologies, the position found is the softest."""
+    for topology in ("per_chamber", "aalto_as_published", "elasswad_as_published"):
+        subject = subject_of("closed", **{"stiffness.topology": topology})
+        done = compute(subject, subject.values())
+        budget, stroke = done.springs, done.geometry.stroke
+        grid = np.linspace(1e-6, 1 - 1e-6, 4001).reshape(-1, 1, 1) * stroke
+        with np.errstate(divide="ignore"):  # a chamber without this cause
+            least = np.min(budget.stiffness(grid), axis=0)
+            found = budget.stiffness(weakest(budget))
+        np.testing.assert_allclose(found, least, rtol=1e-6)
+        assert done.computed.metrics["stiffness_min"][""] == pytest.approx(found)

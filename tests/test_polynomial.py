@@ -1,0 +1,123 @@
+"""Claims about polynomials in s: arithmetic, responses, roots and their motion."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.polynomial import polynomial as reference
+
+from actuator_opt import polynomial
+
+COEFFICIENT = st.floats(-1e3, 1e3).filter(lambda value: value == 0 or abs(value) > 1e-3)
+POLYNOMIAL = st.lists(COEFFICIENT, min_size=1, max_size=7).map(tuple)
+STEP = 1e-30
+
+
+def padded(coefficients):
+    """At least one coefficient, as NumPy's polynomials want."""
+    return np.array([*coefficients, 0.0])
+
+
+@given(POLYNOMIAL, POLYNOMIAL, POLYNOMIAL)
+def test_sums_and_products_are_those_of_numpy(first, second, third):
+    """Sum, product and multiple by an independent library; leading zeros are gone."""
+    total = polynomial.add(first, second, third)
+    expected = reference.polyadd(reference.polyadd(first, second), third)
+    np.testing.assert_allclose(reference.polysub(padded(total), expected), 0, atol=1e-9)
+    product = polynomial.multiply(first, second, third)
+    expected = reference.polymul(reference.polymul(first, second), third)
+    np.testing.assert_allclose(reference.polysub(padded(product), expected), 0, atol=1e-4)
+    np.testing.assert_allclose(padded(polynomial.scale(first, 2.5))[:1], 2.5 * first[0], rtol=1e-15)
+    assert not total or total[-1] != 0
+    assert not product or product[-1] != 0
+
+
+def test_zero_is_empty_and_costs_nothing():
+    """The number 0 vanishes; an array of zeros is data and stays."""
+    assert polynomial.add((1.0,), (-1.0, 0.0)) == ()
+    assert polynomial.multiply((), (1.0, 2.0)) == ()
+    assert polynomial.multiply((0.0, 1.0), ()) == ()
+    assert polynomial.trimmed((1, 0, 0.0)) == (1,)
+    assert len(polynomial.trimmed((1.0, np.zeros(2)))) == 2
+
+
+@given(POLYNOMIAL, st.floats(1e-2, 1e2))
+def test_frequency_response_in_two_parts(coefficients, omega):
+    """Both parts, the squared magnitude and E + i w O equal complex arithmetic."""
+    expected = reference.polyval(1j * omega, coefficients)
+    size = np.sum(np.abs(coefficients) * omega ** np.arange(len(coefficients)))
+    parts = polynomial.at_frequency(coefficients, omega)
+    assert abs(complex(parts.real, parts.imaginary) - expected) <= 1e-13 * size
+    square = reference.polyval(omega**2, padded(polynomial.square_of_magnitude(coefficients)))
+    assert square == pytest.approx(abs(expected) ** 2, rel=1e-11, abs=1e-12 * size**2)
+    even, odd = (
+        reference.polyval(omega**2, padded(p)) for p in polynomial.even_and_odd(coefficients)
+    )
+    assert abs(even + 1j * omega * odd - expected) <= 1e-13 * size
+
+
+def of_roots(roots, lead=1.0):
+    """Coefficients of a polynomial by its roots."""
+    return tuple(lead * reference.polyfromroots(roots).real)
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
+def test_roots_over_many_magnitudes(scale):
+    """A leakage pole, an oil pair and a line pair, five decades apart, in any unit of time."""
+    expected = scale * np.array([-1e-2, -3 + 800j, -3 - 800j, -50 + 9e3j, -50 - 9e3j, -2e4])
+    found = polynomial.roots(of_roots(expected, 1e-40))
+    for root in expected:
+        assert np.min(np.abs(found - root)) <= 1e-9 * abs(root)
+
+
+def test_repeated_roots_come_to_half_the_digits():
+    """A double root is found to the square root of rounding, the best any method in doubles can."""
+    found = polynomial.roots(of_roots([-5.0, -5.0, -90.0]))
+    np.testing.assert_allclose(np.sort(found.real), [-90, -5, -5], rtol=1e-6)
+
+
+def test_roots_of_arrays_are_those_of_each_column():
+    """Batches, repeated columns, and columns that lose their leading coefficient."""
+    columns = [of_roots([-1.0, -2.0, -k]) for k in (3.0, 4.0, 4.0)]
+    found = polynomial.roots(tuple(np.array(columns).T))
+    np.testing.assert_allclose(np.sort(found.real)[:, 0], [-3, -4, -4], rtol=1e-12)
+    same = polynomial.roots(tuple(np.array([columns[0]] * 5).T))
+    np.testing.assert_allclose(same, np.broadcast_to(same[:1], (5, 3)))
+    lower = polynomial.roots((np.array([2.0, 6.0]), np.array([3.0, 5.0]), np.array([1.0, 0.0])))
+    np.testing.assert_allclose(np.sort(lower[0].real), [-2, -1], rtol=1e-12)
+    np.testing.assert_allclose(np.sort(lower[1].real), [-np.inf, -1.2], rtol=1e-12)
+
+
+def test_roots_without_an_answer():
+    """Constants have none; a coefficient that is no number makes every root of its column NaN."""
+    assert polynomial.roots(()).shape == (0,)
+    assert polynomial.roots((np.ones(3),)).shape == (3, 0)
+    found = polynomial.roots((np.array([1.0, np.nan]), np.array([2.0, 1.0]), 1.0))
+    np.testing.assert_array_equal(np.isnan(found), [[False, False], [True, True]])
+    assert np.isnan(polynomial.roots((1.0, np.inf, 1.0))).all()
+
+
+def test_roots_move_as_the_differences_say():
+    """Motion of a simple root and of a polished real root against central differences."""
+    base = np.array(of_roots([-3 + 20j, -3 - 20j, -7.0, 4.0]))
+    for k in range(5):
+        stepped = tuple(base + 1j * STEP * (np.arange(5) == k))
+        change = 1e-5 * abs(base[k]) * (np.arange(5) == k)
+        for near in (-3 + 20j, -7.0):
+            high, low, root = (
+                min(polynomial.roots(tuple(c)), key=lambda r: abs(r - near))  # noqa: B023
+                for c in (base + change, base - change, base)
+            )
+            slope = (high - low) / (2e-5 * abs(base[k]))
+            found = polynomial.root_motion(stepped, root) / STEP
+            assert abs(found - slope) <= 1e-6 * abs(slope)
+        polished = polynomial.positive_root(stepped, 4.001)
+        assert polished.real == pytest.approx(4.0, rel=1e-12)
+        moved = (
+            polynomial.positive_root(tuple(base + change), 4.0)
+            - polynomial.positive_root(tuple(base - change), 4.0)
+        ) / (2e-5 * abs(base[k]))
+        assert polished.imag / STEP == pytest.approx(moved, rel=1e-6)
+    assert polynomial.positive_root((3.0,), 1.0) == 1.0
