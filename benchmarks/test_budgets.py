@@ -9,6 +9,7 @@ import statistics
 import subprocess
 import sys
 import time
+import timeit
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,8 @@ from actuator_opt.models.layered_tube import (
     ply_stresses_at_faces,
     tube_state,
 )
+from actuator_opt.models.linear import LineEnd, Side, dynamic_stiffness, linear_actuator
+from actuator_opt.models.loop import poles
 from actuator_opt.models.solid_ply import solid_stiffness
 from actuator_opt.models.strength import tsai_wu_modes
 from actuator_opt.models.strength_modes import PlyStrength
@@ -31,6 +34,43 @@ from actuator_opt.optimisation.run import sensitivities
 from actuator_opt.optimisation.solver import solve
 
 KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
+
+
+SERVO = """
+valve:
+  rated_flow: 10 l/min
+  leakage_flow: 0.2 l/min
+  natural_frequency: 120 Hz
+
+lines:
+  - chamber: a
+    length: 0.3 m
+    inner_diameter: 6 mm
+    outer_diameter: 8 mm
+    material: steel_42crmo4
+  - chamber: b
+    length: 0.3 m
+    inner_diameter: 6 mm
+    outer_diameter: 8 mm
+    material: steel_42crmo4
+
+ports:
+  end: valve
+
+control:
+  gain: 300 V/m
+"""
+"""What makes the knee a servo actuator on two pipes."""
+
+
+@pytest.fixture(scope="module")
+def servo(tmp_path_factory):
+    """The knee on a servo valve, with requirements on its dynamics."""
+    path = tmp_path_factory.mktemp("servo") / "servo.yaml"
+    shaken = KNEE.read_text().replace("force: 6 kN", "force: 6 kN\n    frequency: 20 Hz", 1)
+    wishes = "requirements:\n  bandwidth:\n    min: 5 Hz\n  dynamic_stiffness:\n    min: 1 kN/mm\n"
+    path.write_text(shaken.replace("requirements:\n", wishes, 1) + SERVO)
+    return build(prepare(read_design(path).design))
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +117,37 @@ def test_evaluate_with_gradients(benchmark, knee):
     evaluator = Evaluator(knee.problem)
     z = evaluator.space.to_z(knee.problem.start)[:, None]
     benchmark(lambda: evaluator.jacobians(z))
+
+
+def test_evaluate_with_gradients_of_a_servo(benchmark, servo):
+    """Value and all gradients of the knee with valve, lines and position loop."""
+    evaluator = Evaluator(servo.problem)
+    z = evaluator.space.to_z(servo.problem.start)[:, None]
+    benchmark(lambda: evaluator.jacobians(z))
+
+
+@pytest.mark.parametrize("designs", [1, 256])
+def test_linear_dynamics(benchmark, designs):
+    """Poles and 60 frequencies of one design with two lines on a valve: budget 0.2 ms."""
+    numpy = min(timeit.repeat(lambda: np.linalg.eigvals(np.eye(8)), number=200, repeat=5)) / 200
+    frequencies = np.geomspace(0.1, 1000, 60)
+    if designs > 1:
+        frequencies = frequencies[:, None]
+    mass = np.linspace(10, 30, designs) if designs > 1 else 20.0
+    line = {"resistance": 4e8, "inertance": 1.2e7, "far_compliance": 3e-15}
+    side = Side(8e-4, 5e-14, **line, end=LineEnd((1e-12,)))
+
+    def study():
+        model = linear_actuator(
+            side_a=side, side_b=side, mass=mass, damping=400.0, coupling=-1e-15, flexibility=1e-9
+        )
+        return poles(model=model), dynamic_stiffness(model=model, frequency=frequencies)
+
+    benchmark(study)
+    if benchmark.stats:
+        each = benchmark.stats["min"] / designs
+        ratio = each / numpy
+        print(f"\n{each * 1e3:.3f} ms a design, {ratio:.1f} x eigenvalues of an 8 x 8 matrix")
 
 
 def test_evaluate(benchmark, knee):

@@ -54,7 +54,7 @@ def closed(side_a=SIDE_A, side_b=SIDE_B, **body):
 
 @given(SEEDS)
 def test_dynamic_stiffness_is_that_of_the_differential_equations(seed):
-    """0.1 to 1000 Hz, every element there or not: 1/G(i w) of the equations solved at each point."""
+    """0.1 to 1000 Hz, every element there or not: 1/G(i w) of the equations at each point."""
     circuit = random_circuit(seed)
     e, a, b, out = descriptor(circuit)
     response = [np.linalg.solve(2j * np.pi * f * e - a, b[:, 0])[out] for f in FREQUENCIES]
@@ -138,7 +138,7 @@ def test_dynamic_stiffness_check_values(frequency, admittance, magnitude, phase)
 
 
 def test_dynamic_stiffness_is_the_published_formula():
-    """-m w^2 + i w B + sum A^2/(C + Y/(i w)) in complex arithmetic, rod in series behind the load."""
+    """-m w^2 + i w B + sum A^2/(C + Y/(i w)) in complex numbers, the rod in series with it."""
     y_a, y_b, flexibility = 3e-11, CONDUCTANCE, 1 / 4e7
     s = 2j * math.pi * FREQUENCIES
     inner = 400.0 * s
@@ -154,7 +154,7 @@ def test_dynamic_stiffness_is_the_published_formula():
 
 @given(st.floats(-0.3, 0.3), st.floats(1e6, 1e9), st.floats(0, 1e7), st.floats(1e-14, 1e-12))
 def test_slowly_it_is_the_static_stiffness(share, rod, seals, far):
-    """Ports closed, f -> 0: coupled oil beside the seals, in series with the rod, lines included."""
+    """Ports closed, f -> 0: coupled oil with lines beside the seals, in series with the rod."""
     coupling = share * SIDE_B.compliance
     line = {"resistance": 1e9, "inertance": 1e7, "far_compliance": far}
     model = closed(

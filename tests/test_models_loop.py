@@ -209,7 +209,7 @@ def test_phase_margin_vanishes_at_the_ultimate_gain():
 
 
 def test_slow_loops_follow_the_closed_forms():
-    """A gain far below the oil: crossover and bandwidth tend to K K_v/(2 pi), the margin to 90 deg."""
+    """A gain far below the oil: crossover and bandwidth tend to K K_v/(2 pi), margin to 90 deg."""
     velocity = 0.02
     one = loop.OpenLoop((velocity,), (0.0, 1.0, 1e-4, 1e-6))
     found = loop.margins(loop=one, gain=50.0)
@@ -223,7 +223,7 @@ def test_slow_loops_follow_the_closed_forms():
 
 @given(SEEDS)
 def test_the_load_mode_is_a_pole_of_the_state_space(seed):
-    """Frequency and ratio are |s|/2 pi and -Re s/|s| of an oscillating pole, or of two real ones."""
+    """Frequency and ratio are |s|/2 pi and -Re s/|s| of a swinging pole, or of two real ones."""
     circuit = random_circuit(seed)
     judge = state_space(circuit).poles()
     for near in (20.0, 120.0, 900.0):
@@ -239,7 +239,7 @@ def test_the_load_mode_is_a_pole_of_the_state_space(seed):
 
 
 def test_modes_of_one_spring_and_one_damper():
-    """m s^2 + B s + k: under-damped, critical, over-damped and growing, by the closed form."""
+    """Of m s^2 + B s + k: under-damped, critical, over-damped and growing, by the closed form."""
     side = Side(5e-4, 5e-14)
     for ratio in (0.0, 0.05, 1.0, 1.7, -0.2):
         damping = 2 * ratio * math.sqrt(1e7 * 10.0)

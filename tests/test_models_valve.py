@@ -84,7 +84,7 @@ def test_edge_flow_is_odd_and_its_slope_its_derivative(drop):
 
 
 def test_edges_follow_the_square_root_beyond_a_bar():
-    """Away from zero: q = K sqrt(dp), slope K/(2 sqrt(dp)), at 0.1 bar smooth, at 0 K/sqrt(delta)."""
+    """Away from zero q = K sqrt(dp) and its slope K/(2 sqrt(dp)); at zero the slope K/sqrt(delta)."""
     for drop in (1e6, 1e7, 3.5e7):
         flow = valve.edge_flow(coefficient=RATED, pressure_drop=drop)
         assert flow == pytest.approx(RATED * math.sqrt(drop), rel=3e-5)
@@ -116,7 +116,7 @@ def test_slopes_are_the_derivatives_of_the_whole_valve(pressure_a, pressure_b, e
 
 
 def test_an_edge_without_pressure_gives_no_flow():
-    """Gains vanish where the opening edge sees no pressure drop: the valve cannot move the piston."""
+    """Gains vanish where the opening edge sees no pressure drop: the valve moves nothing."""
     slopes = valve.valve_slopes(
         rated_coefficient=RATED, leakage_coefficient=LEAKAGE, signal=10.0, supply_pressure=1e7,
         return_pressure=5e5, pressure_a=np.array([1.1e7, 1e7]), pressure_b=4e5, extending=True,

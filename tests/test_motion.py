@@ -91,6 +91,15 @@ def subject_of(tmp_path_factory):
     return get
 
 
+def _accumulator(pressure, density, s, number):
+    """20 ml at 20 bar behind a neck of 5 x 40 mm: filled slowly, shaken at the polytrope 1.4."""
+    volume = 20e-6 * (20e5 + 101325) / (pressure + 101325)
+    capacitance = volume / (1.4 * (pressure + 101325))
+    inertance = density * 0.04 / (math.pi * 0.005**2 / 4)
+    resistance = 128 * number(s.dynamic_viscosity) * 0.04 / (math.pi * 0.005**4)
+    return "accumulator", capacitance, inertance, resistance
+
+
 def circuit_of(subject, done, case, position, direction=None):
     """The oracle's circuit of one case at a position; with a direction, driven by the valve."""
     v, g, s = subject.values(), done.geometry, done.state
@@ -113,10 +122,12 @@ def circuit_of(subject, done, case, position, direction=None):
         e, nu = (v[f"materials.steel_42crmo4.{k}"] for k in ("youngs_modulus", "poissons_ratio"))
         bore = math.pi * d**2 / 4
         wall = math.pi * d**2 * length * (ratio + nu) / (2 * e)
-        far = 0.5 * (bore * length / moduli[name] + wall)
+        beyond = 0.0 if done.motion.throttles else 0.5  # the throttle sits at the port by default
+        far = beyond * (bore * length / moduli[name] + wall)
         up, down = supply - pressures[name], pressures[name] - drain
         valve = leak / (2 * math.sqrt(up)) + leak / (2 * math.sqrt(down))
         ends = [("conductance", valve)]
+        throttles = done.motion.throttles
         if direction is None:
             kind = subject.design.ports.end
             ends = {
@@ -125,12 +136,14 @@ def circuit_of(subject, done, case, position, direction=None):
                 "constant_pressure": [("constant_pressure",)],
                 "reducing_valve": [("reducing", 2e-10, 2 * math.pi * 20, 0.4, 0.0)],
             }[kind]
+            if subject.design.ports.accumulators and name == "b":
+                ends = [*ends, _accumulator(pressures["b"], number(s.density), s, number)]
         viscosity = getattr(s, f"dynamic_viscosity_{name}")
         fills = (name == "a") == (direction != "retracting")
         circuit[name] = {
             "area": float(getattr(g, f"area_{name}")),
             "compliance": number(getattr(whole, name)) - far,
-            "throttle": None,
+            "throttle": number(throttles[name]) if throttles else None,
             "resistance": 128 * number(viscosity) * length / (math.pi * d**4),
             "inertance": number(s.density) * length / bore,
             "far_compliance": far,
@@ -150,7 +163,7 @@ def circuit_of(subject, done, case, position, direction=None):
     }
 
 
-@pytest.mark.parametrize("end", ["closed", "valve", "constant", "reducing"])
+@pytest.mark.parametrize("end", list(ENDS))
 @pytest.mark.parametrize("more", ["", SEALS], ids=["sliding", "sticking"])
 def test_held_actuator_is_that_of_the_differential_equations(subject_of, end, more):
     """Dynamic stiffness, phase and damping ratio at all six places, for every kind of line end."""
@@ -215,6 +228,18 @@ def test_a_valve_without_leakage_has_an_ultimate_gain(subject_of):
     for place, limit in tight["ultimate_gain"].items():
         assert np.all(limit > 0)
         np.testing.assert_allclose(limit, almost["ultimate_gain"][place], rtol=1e-5)
+
+
+def test_an_accumulator_below_its_precharge_is_not_there(subject_of):
+    """Precharged above the held pressure it takes no oil: every figure is that without it."""
+    empty = subject_of("accumulator", **{"ports.accumulators[0].precharge": 2.5e7})
+    without = subject_of("valve")
+    found, expected = (
+        compute(subject, subject.values()).computed.metrics for subject in (empty, without)
+    )
+    for name in ("damping_ratio", "dynamic_stiffness", "dynamic_phase", "bandwidth"):
+        for place, value in expected[name].items():
+            np.testing.assert_allclose(found[name][place], value, rtol=1e-8)
 
 
 # --- gradients -----------------------------------------------------------------------------------

@@ -107,7 +107,7 @@ def test_roots_move_as_the_differences_say():
         change = 1e-5 * abs(base[k]) * (np.arange(5) == k)
         for near in (-3 + 20j, -7.0):
             high, low, root = (
-                min(polynomial.roots(tuple(c)), key=lambda r: abs(r - near))  # noqa: B023
+                min(polynomial.roots(tuple(c)), key=lambda r: abs(r - near))
                 for c in (base + change, base - change, base)
             )
             slope = (high - low) / (2e-5 * abs(base[k]))

@@ -124,11 +124,13 @@ class Springs:
         g = self.geometry
         square_a, square_b = g.area_a * g.area_a, g.area_b * g.area_b
 
-        def totals(cause: str, swelling_b: Array = 1.0) -> tuple[Array, Array]:
-            one = self.chambers[cause].at(position, g.stroke)
-            return square_a / one.a, square_b / (one.b * swelling_b)
+        def side_a(cause: str) -> Array:
+            return square_a / self.chambers[cause].at(position, g.stroke).a
 
-        oil_a, oil_b = totals("oil A")[0], totals("oil B")[1]
+        def side_b(cause: str) -> Array:
+            return square_b / self.chambers[cause].at(position, g.stroke).b
+
+        oil_a, oil_b = side_a("oil A"), side_b("oil B")
         oil = oil_a + oil_b
         parts = {"oil A": oil_a / oil / oil, "oil B": oil_b / oil / oil}
         if self.topology == "elasswad_as_published":
@@ -136,10 +138,11 @@ class Springs:
                 pressure=self.pressure, area=g.area_a, stroke=g.stroke
             )
             return parts | {"barrel": 1 / bulge}
-        parts["barrel"] = 1 / sum(totals("barrel", swelling_b=g.area_b / g.area_a))
+        # eq. 23 lets the wall of chamber B swell over the annulus, not over the bore
+        parts["barrel"] = 1 / (side_a("barrel") + side_b("barrel") * g.area_a / g.area_b)
         for cause in ("pipes", "hoses"):
             if cause in self.chambers:
-                parts[cause] = 1 / sum(totals(cause))
+                parts[cause] = 1 / (side_a(cause) + side_b(cause))
         return parts
 
     def stiffness(self, position: Array) -> Array:

@@ -96,7 +96,7 @@ def axial_stiffness(
 
     References
     ----------
-    [ElAsswad2018] eq. 8, [AaltoThesis] eq. 4
+    [ElAsswad2018] eq. 8, [AaltoThesis] eq. 21
 
     Examples
     --------

@@ -164,7 +164,8 @@ def static_table(evaluation: Evaluation) -> ExtraTable:
         "Aalto thesis: displacement under a force step, as its figure 42",
         aalto_figures.static_figure(evaluation.design.cylinder.stroke, test),
         "Grey: measured, all positions and both piston directions. Load 3.45 and 4.85 kN, the "
-        "means of both runs; behind the load cell; K 1600 MPa, polytropic index 1.4.",
+        "means of both runs, read as steps (the text leaves open whether they are levels); "
+        "behind the load cell; K 1600 MPa, polytropic index 1.4.",
     )
     columns = (
         "assumption",
@@ -254,7 +255,8 @@ def _dynamic_note(test: DynamicTest) -> str:
         "the same; without the opening beside it the valve would feed the swing. Along the stroke "
         f"20 Hz gives {text.trimmed(low, 2)} to {text.trimmed(high, 2)} times the static "
         f"stiffness, most at {text.trimmed(place, 3)} mm. It shows that such a valve would do it, "
-        "not that this one did."
+        "not that this one did. The check valves, which open in every half cycle, are not in a "
+        "linear model: it overstates the throttle."
     )
 
 

@@ -54,7 +54,8 @@ def damping_sentence(study: DynamicsStudy) -> str:
     friction, ends = study.friction_share, study.conductance_share
     whole = friction + ends
     small = 1e-4 * abs(whole)
-    shares = {"friction and oil shear (open circle)": friction, "leakage and lines": ends}
+    circle = " (open circle)" if abs(ends) >= small else ""
+    shares = {f"friction and oil shear{circle}": friction, "leakage and lines": ends}
     given = ", ".join(
         f"{name} {_ratio(share) if abs(share) >= small else 'next to nothing'}"
         for name, share in shares.items()
