@@ -58,14 +58,18 @@ def multiply(*factors: Polynomial) -> Polynomial:
     >>> multiply((1.0, 1.0), (1.0, -1.0))
     (1.0, 0.0, -1.0)
     """
-    product: Polynomial = (1.0,)
-    for factor in factors:
+    product: Polynomial = factors[0]
+    for factor in factors[1:]:
+        others = [(j, c) for j, c in enumerate(factor) if not _vanishes(c)]
         terms: list[Array] = [0.0] * max(len(product) + len(factor) - 1, 0)
+        filled = [False] * len(terms)
         for i, first in enumerate(product):
-            for j, second in enumerate(factor):
-                if not (_vanishes(first) or _vanishes(second)):
-                    term, known = first * second, terms[i + j]
-                    terms[i + j] = term if _vanishes(known) else known + term
+            if _vanishes(first):
+                continue
+            for j, second in others:
+                term, k = first * second, i + j
+                terms[k] = terms[k] + term if filled[k] else term
+                filled[k] = True
         product = tuple(terms)
     return trimmed(product)
 

@@ -84,7 +84,7 @@ def test_edge_flow_is_odd_and_its_slope_its_derivative(drop):
 
 
 def test_edges_follow_the_square_root_beyond_a_bar():
-    """Away from zero q = K sqrt(dp) and its slope K/(2 sqrt(dp)); at zero the slope K/sqrt(delta)."""
+    """Away from zero q = K sqrt(dp) with slope K/(2 sqrt(dp)); at zero the slope K/sqrt(delta)."""
     for drop in (1e6, 1e7, 3.5e7):
         flow = valve.edge_flow(coefficient=RATED, pressure_drop=drop)
         assert flow == pytest.approx(RATED * math.sqrt(drop), rel=3e-5)
