@@ -136,8 +136,8 @@ def circuit_of(subject, done, case, position, direction=None):
                 "constant_pressure": [("constant_pressure",)],
                 "reducing_valve": [("reducing", 2e-10, 2 * math.pi * 20, 0.4, 0.0)],
             }[kind]
-            if subject.design.ports.accumulators and name == "b":
-                ends = [*ends, _accumulator(pressures["b"], number(s.density), s, number)]
+        if subject.design.ports.accumulators and name == "b":
+            ends = [*ends, _accumulator(pressures["b"], number(s.density), s, number)]
         viscosity = getattr(s, f"dynamic_viscosity_{name}")
         fills = (name == "a") == (direction != "retracting")
         circuit[name] = {
@@ -184,9 +184,13 @@ def test_held_actuator_is_that_of_the_differential_equations(subject_of, end, mo
             assert np.min(np.abs(-poles.real / np.abs(poles) - ratio)) < 1e-6
 
 
-def test_position_loop_is_that_of_the_differential_equations(subject_of):
-    """Ultimate gain in both cases, both directions and all places by closed-loop eigenvalues."""
-    subject = subject_of()
+@pytest.mark.parametrize("more", ["valve", "accumulator"])
+def test_position_loop_is_that_of_the_differential_equations(subject_of, more):
+    """Ultimate gain in both cases, both directions and all places by closed-loop eigenvalues.
+
+    An accumulator on the line stays there while the valve drives.
+    """
+    subject = subject_of(more)
     done = compute(subject, subject.values())
     limits = done.computed.metrics["ultimate_gain"]
     for direction in ("extending", "retracting"):

@@ -81,7 +81,7 @@ def test_the_wall_stands_before_the_check_list():
     places = [k for k, title in enumerate(titles) if title.startswith("Barrel wall")]
     assert places == list(range(places[0], places[0] + 9))
     assert titles[places[-1] + 1] == "Check list"
-    assert titles[places[0] - 1] == "Stiffness over the stroke"
+    assert titles[places[0] - 1] == "Dynamics"
 
 
 def figures_of(evaluation):

@@ -319,8 +319,10 @@ def _against(check: Check) -> str:
 def _curve(done: Pass, v: Values, case: str | None) -> StrokeCurve:
     """Stiffness over the stroke in the governing case."""
     stroke = float(np.squeeze(done.geometry.stroke))
-    position = np.linspace(0.0, stroke, 101)
     index = v.cases.index(case) if case in v.cases else 0
+    row = np.atleast_2d(done.weakest)
+    weakest = float(row[min(index, len(row) - 1), 0])
+    position = np.unique(np.append(np.linspace(0.0, stroke, 101), weakest))
     parts = {
         name: np.broadcast_to(np.atleast_2d(value), (len(v.cases), position.size))[index]
         for name, value in done.springs.compliances(position).items()

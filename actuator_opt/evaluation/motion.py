@@ -15,7 +15,7 @@ import numpy as np
 from ..design.model import Design
 from ..models import accumulator, dynamics, elements, linear, loop, one_way_valve, valve
 from ..models.linear import LinearActuator, LineEnd, Side
-from ..numeric import Array, angle, magnitude, real, where
+from ..numeric import Array, angle, magnitude, maximum, real, where
 from .circuit import CHAMBERS, Branch, Chamber
 from .rows import Computed
 from .springs import Springs
@@ -38,8 +38,10 @@ class Motion:
     branches: dict[Chamber, Branch]
     throttles: dict[Chamber, Array]
     """Conductance of the throttle at its operating point [m^3/s/Pa]; empty without one."""
+    accumulators: dict[Chamber, tuple[LineEnd, ...]]
+    """Accumulators on the lines."""
     ends: dict[Chamber, LineEnd]
-    """What ends the lines while the load shakes the actuator."""
+    """What ends the lines while the load shakes the actuator, accumulators included."""
     slopes: dict[bool, valve.ValveSlopes]
     """Valve linearised at the centre, extending and retracting; empty without a valve."""
     spool: tuple[Array, Array] | None
@@ -61,15 +63,11 @@ class Motion:
             if extending is not None:
                 out, back = self.slopes[True], self.slopes[False]
                 if chamber == "a":
-                    end, gain = (
-                        LineEnd((out.conductance_a,)),
-                        where(extending, out.gain_a, back.gain_a),
-                    )
+                    conductance, gain = out.conductance_a, where(extending, out.gain_a, back.gain_a)
                 else:
-                    end, gain = (
-                        LineEnd((out.conductance_b,)),
-                        -where(extending, out.gain_b, back.gain_b),
-                    )
+                    conductance = out.conductance_b
+                    gain = -where(extending, out.gain_b, back.gain_b)
+                end = linear.parallel_ends(LineEnd((conductance,)), *self.accumulators[chamber])
             sides[chamber] = Side(
                 area=area,
                 compliance=whole - branch.far,
@@ -121,6 +119,7 @@ def derive(
 ) -> Motion:
     """The linear model's numbers in every load case."""
     slopes = _valve_slopes(v, design, state)
+    accumulators = {chamber: _accumulators(v, design, state, chamber) for chamber in CHAMBERS}
     return Motion(
         springs=springs,
         mass=mass,
@@ -128,7 +127,10 @@ def derive(
         leakage=leakage,
         branches=branches,
         throttles=_throttles(v, design, state, springs),
-        ends={chamber: _end(v, design, state, slopes, chamber) for chamber in CHAMBERS},
+        accumulators=accumulators,
+        ends={
+            chamber: _end(v, design, slopes, accumulators[chamber], chamber) for chamber in CHAMBERS
+        },
         slopes=slopes,
         spool=(v["valve.natural_frequency"], v["valve.damping_ratio"]) if design.valve else None,
     )
@@ -182,12 +184,12 @@ def _throttles(v: Values, design: Design, state: State, springs: Springs) -> dic
 def _end(
     v: Values,
     design: Design,
-    state: State,
     slopes: dict[bool, valve.ValveSlopes],
+    accumulators: tuple[LineEnd, ...],
     chamber: Chamber,
 ) -> LineEnd:
     """What ends the line of a chamber while the load shakes the actuator."""
-    ends = [_accumulator(v, state, i, chamber) for i in _accumulators(design, chamber)]
+    ends = list(accumulators)
     kind = design.ports.end
     if kind == "valve":
         centred = slopes[True]
@@ -208,24 +210,28 @@ def _end(
     return linear.parallel_ends(*ends) if ends else LineEnd()
 
 
-def _accumulators(design: Design, chamber: Chamber) -> list[int]:
-    return [i for i, one in enumerate(design.ports.accumulators) if one.chamber == chamber]
-
-
-def _accumulator(v: Values, state: State, index: int, chamber: Chamber) -> LineEnd:
-    at = f"ports.accumulators[{index}]."
-    neck = {"inner_diameter": v[at + "neck_diameter"], "length": v[at + "neck_length"]}
-    pressure = state.holding_a if chamber == "a" else state.holding_b
-    return linear.accumulator_end(
-        capacitance=accumulator.gas_capacitance(
-            pressure=pressure,
+def _accumulators(v: Values, design: Design, state: State, chamber: Chamber) -> tuple[LineEnd, ...]:
+    """Every accumulator on the line of a chamber."""
+    found = []
+    for i, one in enumerate(design.ports.accumulators):
+        if one.chamber != chamber:
+            continue
+        at = f"ports.accumulators[{i}]."
+        neck = {"inner_diameter": v[at + "neck_diameter"], "length": v[at + "neck_length"]}
+        capacitance = accumulator.gas_capacitance(
+            pressure=state.holding_a if chamber == "a" else state.holding_b,
             precharge_pressure=v[at + "precharge"],
             gas_volume=v[at + "gas_volume"],
             polytropic_index=v["fluid.polytropic_index"],
-        ),
-        inertance=elements.inertance(**neck, density=state.density),
-        resistance=elements.resistance(**neck, dynamic_viscosity=state.dynamic_viscosity),
-    )
+        )
+        found.append(
+            linear.accumulator_end(
+                capacitance=capacitance,
+                inertance=elements.inertance(**neck, density=state.density),
+                resistance=elements.resistance(**neck, dynamic_viscosity=state.dynamic_viscosity),
+            )
+        )
+    return tuple(found)
 
 
 def _places(stroke: Array, weakest: Array) -> tuple[list[str], Array]:
@@ -294,7 +300,7 @@ def _position_loop(
     one = motion.position_loop(positions, extending=directions)
     limit = loop.ultimate_gain(loop=one)
     stated = design.control is not None and design.control.gain is not None
-    gain = v["control.gain"] if stated else 0.5 * _least(limit.gain)
+    gain = v["control.gain"] if stated else maximum(0.5 * _least(limit.gain), LEAST_GAIN)
     margin = limit.gain / gain
     found = loop.margins(loop=one, gain=gain)
 
@@ -311,6 +317,10 @@ def _position_loop(
     put("phase_margin", where(real(margin) > 1, found.phase_margin, -found.phase_margin))
     put("bandwidth", found.bandwidth)
     out.put("position_gain", gain)
+
+
+LEAST_GAIN = 1e-3
+"""Gain where every gain would swing (V/m): nothing follows, and the figures stay finite."""
 
 
 def _least(values: Array) -> Array:
@@ -334,6 +344,14 @@ def warnings(
             "damping_ratio",
             f"friction falls with speed ({slowest:.3g} N*s/m): the load may stick and slip",
         )
+    if "ultimate_gain" in out.metrics:
+        least = min(float(np.min(np.real(x))) for x in out.metrics["ultimate_gain"].values())
+        if least == 0:
+            yield (
+                "ultimate_gain",
+                "no gain is stable: the load grows by itself, or leakage across the piston "
+                "outweighs the centred valve's; give the valve leakage or the load damping",
+            )
     asked = {f"load case {case.name}": case.frequency or 0.0 for case in design.load_cases}
     if motion.spool is not None:
         asked["the valve's spool"] = float(np.max(np.real(motion.spool[0])))

@@ -284,6 +284,14 @@ def warnings(s: Springs) -> Iterable[tuple[str, str]]:
                 f"stiffness as published ({s.topology.partition('_')[0]}): totals of oil, barrel "
                 "and lines in series, off by up to 13 % with hoses; per_chamber is the balance",
             )
+        for cause in ("pipes", "hoses"):
+            give = s.chambers.get(cause)
+            if give is not None and not (np.all(give.a0) and np.all(give.b0)):
+                yield (
+                    "stiffness_min",
+                    f"as published, {cause} on one chamber only count as rigid: the other side's "
+                    "missing ones are infinitely stiff and are added",
+                )
     if s.seals is not None:
         yield (
             "",
