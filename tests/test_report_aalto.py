@@ -12,9 +12,13 @@ import pytest
 
 from actuator_opt import verbs
 from actuator_opt.evaluation.study import aalto, aalto_dynamic, aalto_static
-from actuator_opt.reporting import aalto_equations, aalto_figures, aalto_tables
 from actuator_opt.reporting.page import page
-from actuator_opt.reporting.published import published_tables
+from actuator_opt.reporting.published import (
+    aalto_equations,
+    aalto_figures,
+    aalto_tables,
+    published_tables,
+)
 
 DESIGN = Path(__file__).parents[1] / "designs" / "aalto_40_25_220.yaml"
 SOURCE = {"source_text": "a: 1", "source_name": "a.yaml", "command": "report", "date": None}

@@ -13,10 +13,9 @@ import pytest
 
 from actuator_opt import verbs
 from actuator_opt.models import barrel, stiffness, stiffness_published
-from actuator_opt.reporting import elasswad_record, elasswad_tables
-from actuator_opt.reporting.elasswad_figures import record_figure
 from actuator_opt.reporting.page import page
-from actuator_opt.reporting.published import published_tables
+from actuator_opt.reporting.published import elasswad_record, elasswad_tables, published_tables
+from actuator_opt.reporting.published.elasswad_figures import record_figure
 
 DESIGN = Path(__file__).parents[1] / "designs" / "elasswad_knee.yaml"
 SOURCE = {"source_text": "a: 1", "source_name": "a.yaml", "command": "report", "date": None}

@@ -9,7 +9,7 @@ import numpy as np
 from ..design.material import compatible
 from ..design.model import PLAIN_CAP
 from ..models import laminate, seals
-from . import motion, oil, springs
+from . import motion, oil, oil_range, springs
 from .barrel import LAMINATES, kind
 from .beam import NEAR
 from .kernel import Pass, Subject
@@ -73,7 +73,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
             "read it as longer than that; adhesive and plies are not in it",
         )
     section = subject.design.fluid
-    yield from oil.warnings(section, subject.materials[section.material], v.cases, done.state)
+    yield from oil_range.warnings(section, subject.materials[section.material], v.cases, done.state)
     yield from _seal_warnings(subject, v, done)
     yield from springs.warnings(done.springs)
     yield from motion.warnings(v, subject.design, done.motion, done.state, done.computed)

@@ -19,7 +19,7 @@ from . import (
     duty,
     hydraulics,
     motion,
-    oil,
+    oil_range,
     rods,
     sealing,
     springs,
@@ -101,7 +101,7 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         stock = Stock(v, subject.materials, subject.factors, subject.constants)
         g = geometry_module.derive(v, design)
         case_state = state.derive(v, design, stock, g)
-        oil.compute(design.fluid, stock, case_state, out)
+        oil_range.compute(design.fluid, stock, case_state, out)
         barrel = barrel_module.compute(v, design, stock, g, case_state)
         out.put("bore_growth", barrel.growth)
         friction = sealing.compute(v, design, stock, g, case_state, barrel, out)

@@ -7,26 +7,18 @@ counts the entrained air.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, TypeAlias
-
-import numpy as np
+from collections.abc import Callable, Iterable, Mapping
+from typing import TypeAlias
 
 from ..design.material import Material
 from ..design.material_laws import bulk_modulus_law, viscosity_law
 from ..design.model import FluidSection
 from ..models import density as density_models
 from ..models import fluid, tait
-from ..numeric import Array, minimum, real
+from ..numeric import Array
 from .allow import Stock
-from .rows import Computed
 from .values import Values
 
-if TYPE_CHECKING:
-    from .state import State
-
-PRESSURE_FED = ("stiffness_oil", "stiffness_min", "natural_frequency")
-"""Metrics that inherit the error of the bulk modulus."""
 Law: TypeAlias = Callable[..., Array]
 _BULK_MODULUS: Mapping[str, Law] = {
     "linear": fluid.bulk_modulus_linear,
@@ -198,19 +190,6 @@ def vapour_pressure(stock: Stock, name: str, temperature: Array) -> Array | None
     )
 
 
-def compute(section: FluidSection, stock: Stock, state: State, out: Computed) -> None:
-    """Distance of the chambers from the boiling of the oil, in every case."""
-    limit = vapour_pressure(stock, section.material, state.temperature)
-    if limit is None:
-        why = f"{section.material} states no vapour_pressure: add it under materials"
-        out.skip("cavitation_margin", why)
-        return
-    lowest = minimum(
-        minimum(state.moving_a, state.moving_b), minimum(state.holding_a, state.holding_b)
-    )
-    out.put("cavitation_margin", lowest + fluid.ATMOSPHERIC_PRESSURE - limit)
-
-
 def laws(section: FluidSection, oil: Material) -> Iterable[tuple[Law, str]]:
     """(function, quantity) of every law of the oil over pressure that an evaluation uses."""
     law = bulk_modulus_law(section.bulk_modulus_law, oil.numbers)
@@ -220,52 +199,3 @@ def laws(section: FluidSection, oil: Material) -> Iterable[tuple[Law, str]]:
     law = viscosity_law(section.viscosity_pressure, oil.numbers)
     if law in _VISCOSITY:
         yield _VISCOSITY[law], "viscosity"
-
-
-def warnings(
-    section: FluidSection, oil: Material, cases: Sequence[str], state: State
-) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) for every use of the oil outside what it, or a law of it, is known for."""
-    yield from _temperatures(oil, cases, state)
-    law = bulk_modulus_law(section.bulk_modulus_law, oil.numbers)
-    chambers = [state.moving_a, state.moving_b, state.holding_a, state.holding_b]
-    highest = max(float(np.max(np.real(pressure))) for pressure in chambers)
-    limit = {"linear": fluid.LINEAR_PRESSURE, "tait": tait.TAIT_PRESSURE}.get(law, np.inf)
-    if highest > limit:
-        text = (
-            f"bulk modulus: {highest / 1e5:.0f} bar is beyond the {limit / 1e5:.0f} bar to which "
-            f"the {law} law of the oil is known"
-        )
-        yield from ((metric, text) for metric in PRESSURE_FED)
-    law = viscosity_law(section.viscosity_pressure, oil.numbers)
-    limit = {"barus": fluid.BARUS_PRESSURE, "roelands": fluid.ROELANDS_PRESSURE}.get(law, np.inf)
-    if highest > limit:
-        yield (
-            "oil_viscosity",
-            f"viscosity: {highest / 1e5:.0f} bar is beyond the {limit / 1e5:.0f} bar to which the "
-            f"law of {law.capitalize()} holds",
-        )
-
-
-def _temperatures(oil: Material, cases: Sequence[str], state: State) -> Iterable[tuple[str, str]]:
-    """Load cases outside the temperatures and viscosities the oil is known or made for."""
-    low = oil.numbers.get("temperature_min", -np.inf)
-    high = oil.numbers.get("temperature_max", np.inf)
-    for case, temperature, viscosity in zip(
-        cases,
-        np.broadcast_to(np.ravel(real(state.temperature)), len(cases)),
-        np.broadcast_to(np.ravel(real(state.kinematic_viscosity)), len(cases)),
-        strict=True,
-    ):
-        if not low <= temperature <= high:
-            yield (
-                "oil_viscosity",
-                f"{case}: {temperature - 273.15:.0f} degC is outside the service range of "
-                f"{oil.name}, {low - 273.15:.0f} to {high - 273.15:.0f} degC",
-            )
-        if viscosity < fluid.LEAST_VISCOSITY:
-            yield (
-                "oil_viscosity",
-                f"{case}: {1e6 * viscosity:.2g} mm^2/s is below the "
-                f"{1e6 * fluid.LEAST_VISCOSITY:.0f} mm^2/s to which ASTM D341 holds",
-            )

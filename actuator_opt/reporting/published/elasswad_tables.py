@@ -9,14 +9,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from .. import units
-from ..design.materials import load_library
-from ..evaluation import Evaluation
-from ..models import barrel, damping, fluid, forces, rod
-from ..models import stiffness_published as published
-from ..numeric import Array
-from . import elasswad_bending, elasswad_friction, elasswad_record, text
-from .blocks import ExtraTable, figure
+from ... import units
+from ...design.materials import load_library
+from ...evaluation import Evaluation
+from ...models import barrel, damping, fluid, forces, rod
+from ...models import stiffness_published as published
+from ...numeric import Array
+from .. import text
+from ..blocks import ExtraTable, figure
+from . import elasswad_bending, elasswad_friction, elasswad_record
 from .elasswad_figures import record_figure
 from .elasswad_paper import PAPER, POISSONS_RATIO, root
 from .elasswad_text import (

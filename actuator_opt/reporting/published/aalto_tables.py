@@ -10,14 +10,15 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..evaluation import Evaluation
-from ..evaluation.study import aalto, aalto_dynamic, aalto_static
-from ..evaluation.study.aalto import PAPER, Theory
-from ..evaluation.study.aalto_dynamic import DynamicTest, Needle
-from ..evaluation.study.aalto_static import Answer, Bypass, StaticTest
-from ..numeric import Array
-from . import aalto_equations, aalto_figures, text
-from .blocks import ExtraTable, figure
+from ...evaluation import Evaluation
+from ...evaluation.study import aalto, aalto_dynamic, aalto_static
+from ...evaluation.study.aalto import PAPER, Theory
+from ...evaluation.study.aalto_dynamic import DynamicTest, Needle
+from ...evaluation.study.aalto_static import Answer, Bypass, StaticTest
+from ...numeric import Array
+from .. import text
+from ..blocks import ExtraTable, figure
+from . import aalto_equations, aalto_figures
 
 SLASH = " / "
 

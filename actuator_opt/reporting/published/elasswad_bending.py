@@ -10,11 +10,11 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..design.materials import load_library
-from ..evaluation import Evaluation
-from ..models import barrel, bending_test, column, rod
-from . import text
-from .blocks import ExtraTable
+from ...design.materials import load_library
+from ...evaluation import Evaluation
+from ...models import barrel, bending_test, column, rod
+from .. import text
+from ..blocks import ExtraTable
 from .elasswad_paper import PAPER
 from .elasswad_text import (
     COLUMNS,

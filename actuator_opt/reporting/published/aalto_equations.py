@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .blocks import ExtraTable
+from ..blocks import ExtraTable
 
 
 @dataclass(frozen=True, slots=True)

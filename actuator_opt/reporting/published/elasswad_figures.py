@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..numeric import Array
+from ...numeric import Array
+from ..figures import Axes
+from ..ink import BLUE, GREY, PALE, Ink, spread_within
+from ..text import number
+from ..wall_figures import GREEN, OCHRE
 from .elasswad_record import Along, Record
-from .figures import Axes
-from .ink import BLUE, GREY, PALE, Ink, spread_within
-from .text import number
-from .wall_figures import GREEN, OCHRE
 
 DESIGNED: dict[str, Any] = {"stroke": BLUE, "pen": 0.45}
 CORRECTED: dict[str, Any] = {"stroke": GREEN, "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)}

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from .. import units
-from ..design.materials import load_library
-from ..evaluation import Evaluation
-from . import text
+from ... import units
+from ...design.materials import load_library
+from ...evaluation import Evaluation
+from .. import text
 
 COLUMNS = ("quantity", "published", "its own formula", "ours")
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ..design.model import Seal
-from ..evaluation import Evaluation
-from ..models import forces, friction, seals
-from . import text
-from .blocks import ExtraTable
+from ...design.model import Seal
+from ...evaluation import Evaluation
+from ...models import forces, friction, seals
+from .. import text
+from ..blocks import ExtraTable
 from .elasswad_paper import PAPER
 from .elasswad_text import COLUMNS, in_mm, in_mm2, in_mpa, in_n, percent, properties
 

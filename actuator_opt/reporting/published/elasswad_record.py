@@ -10,10 +10,10 @@ from math import pi
 
 import numpy as np
 
-from ..evaluation import Evaluation
-from ..models import barrel, forces, stiffness
-from ..models import stiffness_published as published
-from ..numeric import Array
+from ...evaluation import Evaluation
+from ...models import barrel, forces, stiffness
+from ...models import stiffness_published as published
+from ...numeric import Array
 from .elasswad_friction import chord
 from .elasswad_paper import PAPER
 from .elasswad_text import value, wall_thickness

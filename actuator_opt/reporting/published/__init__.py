@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..evaluation import Evaluation
-from ..optimisation.result import Optimisation
+from ...evaluation import Evaluation
+from ...optimisation.result import Optimisation
+from ..blocks import ExtraTable
+from ..page import parts_of
 from . import aalto_tables, elasswad_tables
-from .blocks import ExtraTable
-from .page import parts_of
 
 TABLES: dict[str, tuple[Callable[[Evaluation], ExtraTable], ...]] = {
     "ElAsswad2018": elasswad_tables.TABLES,

@@ -13,14 +13,14 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from ..evaluation.study.aalto import PAPER, Theory
-from ..evaluation.study.aalto_dynamic import FREQUENCIES, DynamicTest, End, Response
-from ..evaluation.study.aalto_static import StaticTest
-from ..numeric import Array
-from .figures import Axes
-from .ink import BLACK, BLUE, GREY, PALE, Ink, Point, spread_within
-from .text import DASH, trimmed
-from .wall_figures import GREEN, OCHRE
+from ...evaluation.study.aalto import PAPER, Theory
+from ...evaluation.study.aalto_dynamic import FREQUENCIES, DynamicTest, End, Response
+from ...evaluation.study.aalto_static import StaticTest
+from ...numeric import Array
+from ..figures import Axes
+from ..ink import BLACK, BLUE, GREY, PALE, Ink, Point, spread_within
+from ..text import DASH, trimmed
+from ..wall_figures import GREEN, OCHRE
 
 Style: TypeAlias = dict[str, Any]
 FULL: Style = {"stroke": BLUE, "pen": 0.45}

@@ -1,0 +1,82 @@
+"""Where the oil of an evaluation leaves its range: boiling, laws over pressure, temperatures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from ..design.material import Material
+from ..design.material_laws import bulk_modulus_law, viscosity_law
+from ..design.model import FluidSection
+from ..models import fluid, tait
+from ..numeric import minimum, real
+from . import oil as oil_laws
+from .allow import Stock
+from .rows import Computed
+from .state import State
+
+PRESSURE_FED = ("stiffness_oil", "stiffness_min", "natural_frequency")
+"""Metrics that inherit the error of the bulk modulus."""
+
+
+def compute(section: FluidSection, stock: Stock, state: State, out: Computed) -> None:
+    """Distance of the chambers from the boiling of the oil, in every case."""
+    limit = oil_laws.vapour_pressure(stock, section.material, state.temperature)
+    if limit is None:
+        why = f"{section.material} states no vapour_pressure: add it under materials"
+        out.skip("cavitation_margin", why)
+        return
+    lowest = minimum(
+        minimum(state.moving_a, state.moving_b), minimum(state.holding_a, state.holding_b)
+    )
+    out.put("cavitation_margin", lowest + fluid.ATMOSPHERIC_PRESSURE - limit)
+
+
+def warnings(
+    section: FluidSection, oil: Material, cases: Sequence[str], state: State
+) -> Iterable[tuple[str, str]]:
+    """(metric, sentence) for every use of the oil outside what it, or a law of it, is known for."""
+    yield from _temperatures(oil, cases, state)
+    law = bulk_modulus_law(section.bulk_modulus_law, oil.numbers)
+    chambers = [state.moving_a, state.moving_b, state.holding_a, state.holding_b]
+    highest = max(float(np.max(np.real(pressure))) for pressure in chambers)
+    limit = {"linear": fluid.LINEAR_PRESSURE, "tait": tait.TAIT_PRESSURE}.get(law, np.inf)
+    if highest > limit:
+        text = (
+            f"bulk modulus: {highest / 1e5:.0f} bar is beyond the {limit / 1e5:.0f} bar to which "
+            f"the {law} law of the oil is known"
+        )
+        yield from ((metric, text) for metric in PRESSURE_FED)
+    law = viscosity_law(section.viscosity_pressure, oil.numbers)
+    limit = {"barus": fluid.BARUS_PRESSURE, "roelands": fluid.ROELANDS_PRESSURE}.get(law, np.inf)
+    if highest > limit:
+        yield (
+            "oil_viscosity",
+            f"viscosity: {highest / 1e5:.0f} bar is beyond the {limit / 1e5:.0f} bar to which the "
+            f"law of {law.capitalize()} holds",
+        )
+
+
+def _temperatures(oil: Material, cases: Sequence[str], state: State) -> Iterable[tuple[str, str]]:
+    """Load cases outside the temperatures and viscosities the oil is known or made for."""
+    low = oil.numbers.get("temperature_min", -np.inf)
+    high = oil.numbers.get("temperature_max", np.inf)
+    for case, temperature, viscosity in zip(
+        cases,
+        np.broadcast_to(np.ravel(real(state.temperature)), len(cases)),
+        np.broadcast_to(np.ravel(real(state.kinematic_viscosity)), len(cases)),
+        strict=True,
+    ):
+        if not low <= temperature <= high:
+            yield (
+                "oil_viscosity",
+                f"{case}: {temperature - 273.15:.0f} degC is outside the service range of "
+                f"{oil.name}, {low - 273.15:.0f} to {high - 273.15:.0f} degC",
+            )
+        if viscosity < fluid.LEAST_VISCOSITY:
+            yield (
+                "oil_viscosity",
+                f"{case}: {1e6 * viscosity:.2g} mm^2/s is below the "
+                f"{1e6 * fluid.LEAST_VISCOSITY:.0f} mm^2/s to which ASTM D341 holds",
+            )
