@@ -239,6 +239,8 @@ METRICS = _table("""
  port_velocity        | v_p    | speed       | m/s  | | | oil speed in the port
  line_velocity        | v_l    | speed       | m/s  | | | oil speed in the line
  line_pressure_drop   | dp     | pressure    | bar  | | | pressure drop of the lines
+ line_hammer          | dp_J   | pressure    | bar  | | | pressure rise when the line's flow is stopped at once
+ line_resonance       | f_l    | frequency   | Hz   | | | quarter-wave resonance of the line
  flow                 | q      | flow        | l/min| | | largest flow
  piston_speed         | v      | speed       | m/s  | | | piston speed
  power                | P      | power       | W    | | | mechanical output power

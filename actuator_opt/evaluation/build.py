@@ -44,6 +44,7 @@ SENSES: dict[str, Sense] = {line.metric: line.sense for line in CHECK_LIST if li
     "gain_margin": "min",
     "phase_margin": "min",
     "bandwidth": "min",
+    "line_resonance": "min",
     "damping_ratio": "min",
     "liner_yield_factor": "min",
     "local_buckling_factor": "min",

@@ -32,7 +32,7 @@ class Branch:
     throttle, the whole of the lines beyond it."""
 
 
-def _wall(v: Values, line: Line, at: str) -> Array:
+def wall_compliance(v: Values, line: Line, at: str) -> Array:
     """Volume a line's wall gives per pressure."""
     if line.rigid:
         return 0.0
@@ -60,7 +60,7 @@ def branches(v: Values, design: Design, state: State) -> dict[Chamber, Branch]:
     for i, line in enumerate(design.lines):
         at, chamber = f"lines[{i}].", line.chamber
         size = {"inner_diameter": v[at + "inner_diameter"], "length": v[at + "length"]}
-        volume, wall = lines.line_volume(**size), _wall(v, line, at)
+        volume, wall = lines.line_volume(**size), wall_compliance(v, line, at)
         count(chamber, "volume", volume)
         if not line.rigid:
             count(chamber, "hoses" if line.type == "hose" else "pipes", wall)

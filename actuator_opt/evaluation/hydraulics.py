@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from ..design.model import Design
-from ..models import damping, forces, lines
+from ..models import damping, elements, forces, lines, water_hammer
 from ..numeric import Array, absolute
+from .circuit import wall_compliance
 from .geometry import Geometry
 from .rows import Computed
 from .sealing import Friction
@@ -64,6 +65,15 @@ def compute_leakage(
     return conductance
 
 
+LINE_METRICS = (
+    "line_velocity",
+    "line_pressure_drop",
+    "line_drop_ratio",
+    "line_hammer",
+    "line_resonance",
+)
+
+
 def compute_flow(
     v: Values, design: Design, geometry: Geometry, state: State, out: Computed
 ) -> None:
@@ -81,10 +91,11 @@ def compute_flow(
     else:
         out.skip("port_velocity", "no port stated: add cylinder.port_diameter")
     if not design.lines:
-        for name in ("line_velocity", "line_pressure_drop", "line_drop_ratio"):
+        for name in LINE_METRICS:
             out.skip(name, "no lines stated: add lines")
         return
-    velocity, drop = {}, {}
+    velocity, drop, hammer, resonance = {}, {}, {}, {}
+    modulus = {"a": state.bulk_modulus_a, "b": state.bulk_modulus_b}
     viscosity = {"a": state.dynamic_viscosity_a, "b": state.dynamic_viscosity_b}
     for i, line in enumerate(design.lines):
         at, place = f"lines[{i}].", f"line {line.chamber} [{i}]"
@@ -97,6 +108,21 @@ def compute_flow(
             density=state.density,
             dynamic_viscosity=viscosity[line.chamber],
         )
+        size = {"inner_diameter": inner, "length": v[at + "length"]}
+        speed = water_hammer.wave_speed(
+            bulk_modulus=modulus[line.chamber],
+            density=state.density,
+            volume=lines.line_volume(**size),
+            wall_compliance=wall_compliance(v, line, at),
+        )
+        hammer[place] = water_hammer.joukowsky_pressure(
+            density=state.density, sound_speed=speed, velocity_change=velocity[place]
+        )
+        resonance[place] = elements.quarter_wave_frequency(
+            length=v[at + "length"], sound_speed=speed
+        )
+    out.put("line_hammer", hammer)
+    out.put("line_resonance", resonance)
     out.put("line_velocity", velocity)
     out.put("line_pressure_drop", drop)
     supply = v["supply.pressure"]

@@ -356,15 +356,12 @@ def warnings(
     if motion.spool is not None:
         asked["the valve's spool"] = float(np.max(np.real(motion.spool[0])))
     what, fastest = max(asked.items(), key=lambda one: one[1])
-    for i in range(len(design.lines)):
-        length = float(np.max(np.real(v[f"lines[{i}].length"])))
-        modulus = np.minimum(np.real(state.bulk_modulus_a), np.real(state.bulk_modulus_b))
-        speed = elements.sound_speed(bulk_modulus=modulus, density=np.real(state.density))
-        limit = LONGEST * float(np.min(speed)) / length
+    for place, resonance in out.metrics.get("line_resonance", {}).items():
+        limit = 4 * LONGEST * float(np.min(np.real(resonance)))
         if fastest > limit:
             metric = "dynamic_stiffness" if "dynamic_stiffness" in out.metrics else "bandwidth"
             yield (
                 metric,
-                f"lines[{i}]: one lumped element is good to {limit:.0f} Hz, {what} asks for "
+                f"{place}: one lumped element is good to {limit:.0f} Hz, {what} asks for "
                 f"{fastest:.4g} Hz: split the line or read the figure as rough",
             )

@@ -16,6 +16,7 @@ from ..models import (
     beam_column,
     damping,
     dynamics,
+    elements,
     end_plate,
     endurance,
     fluid,
@@ -39,6 +40,7 @@ from ..models import (
     stiffness,
     strength_modes,
     tube_burst,
+    water_hammer,
     yielding,
 )
 from ..models import density as oil_density
@@ -148,6 +150,8 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "line_velocity": lines.line_velocity,
         "line_pressure_drop": lines.line_pressure_drop,
         "line_drop_ratio": lines.line_pressure_drop,
+        "line_hammer": water_hammer.joukowsky_pressure,
+        "line_resonance": elements.quarter_wave_frequency,
         "oil_viscosity": fluid.viscosity_astm_d341,
         "cavitation_margin": fluid.vapour_pressure,
     }

@@ -18,6 +18,7 @@ from ...polynomial import Polynomial, add, at_frequency, roots, scale
 from ..kernel import Pass, Subject
 from ..motion import Motion
 from ..values import Values
+from . import distributed
 
 FREQUENCIES = np.geomspace(0.1, 1000.0, 121)
 """Where responses are told (Hz), and about every resonance between."""
@@ -92,6 +93,8 @@ class DynamicsStudy:
     """Case of the responses: of least dynamic stiffness, or `case` where none shakes."""
     responses: tuple[Response, ...]
     """At the cap end, the weakest position and the rod end."""
+    distributed: Array | None
+    """Magnitude at the weakest position with the lines as transmission lines; None without."""
     shaken: tuple[tuple[str, float], ...]
     """Load cases that shake the actuator, with their frequency [Hz]."""
     position_loop: LoopStudy | None
@@ -165,11 +168,24 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
             _response(motion, name, x, asked, models[name], frequencies)
             for name, x in places.items()
         ),
+        distributed=_distributed(v, design, done, asked, places["weakest position"], frequencies),
         shaken=tuple(
             (one.name, one.frequency) for one in design.load_cases if one.frequency is not None
         ),
         position_loop=told[0] if told else None,
         other_loops=tuple(told[1:]),
+    )
+
+
+def _distributed(
+    v: Values, design: Design, done: Pass, index: int, position: float, frequencies: Array
+) -> Array | None:
+    if not design.lines:
+        return None
+    return np.abs(
+        distributed.dynamic_stiffness(
+            v, design, done.state, done.motion, index, position, frequencies
+        )
     )
 
 
