@@ -23,7 +23,8 @@ from actuator_opt.models.layered_tube import (
     ply_stresses_at_faces,
     tube_state,
 )
-from actuator_opt.models.linear import LineEnd, Side, dynamic_stiffness, linear_actuator
+from actuator_opt.models.line_ends import LineEnd
+from actuator_opt.models.linear import Side, dynamic_stiffness, linear_actuator
 from actuator_opt.models.loop import poles
 from actuator_opt.models.solid_ply import solid_stiffness
 from actuator_opt.models.strength import tsai_wu_modes

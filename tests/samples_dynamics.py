@@ -8,15 +8,13 @@ from __future__ import annotations
 from math import pi
 
 from actuator_opt.models import loop
-from actuator_opt.models.linear import (
+from actuator_opt.models.line_ends import (
     LineEnd,
-    Side,
     accumulator_end,
-    dynamic_stiffness,
-    linear_actuator,
     parallel_ends,
     reducing_valve_end,
 )
+from actuator_opt.models.linear import Side, dynamic_stiffness, linear_actuator
 
 FAR_END = LineEnd((2e-12, 3e-16), (1.0, 1e-3, 4e-6))
 LINE_A = Side(8e-4, 5e-14, 3e-9, 4e8, 1.5e7, 3e-14, FAR_END, 1.2e-5)
@@ -78,9 +76,9 @@ SAMPLES: dict = {
         {"coefficient": 3e-7, "pressure_drop": p} for p in (35e5, -2e4, 50.0)
     ],
     "valve.valve_slopes": [{**CENTRE, "extending": extending} for extending in (True, False)],
-    "linear.parallel_ends": {"*": (FAR_END, LineEnd((1e-12,)), LineEnd((0.5, 2.0), (1.0, 3.0)))},
-    "linear.accumulator_end": {"capacitance": 4e-12, "inertance": 2e7, "resistance": 3e9},
-    "linear.reducing_valve_end": {
+    "line_ends.parallel_ends": {"*": (FAR_END, LineEnd((1e-12,)), LineEnd((0.5, 2.0), (1.0, 3.0)))},
+    "line_ends.accumulator_end": {"capacitance": 4e-12, "inertance": 2e7, "resistance": 3e9},
+    "line_ends.reducing_valve_end": {
         "conductance": 2e-10, "natural_frequency": 20.0, "damping_ratio": 0.4,
         "passive_conductance": 1e-12,
     },

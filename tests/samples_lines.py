@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from math import inf
 
+from actuator_opt.models.line_ends import LineEnd, end_admittance
 from actuator_opt.models.transmission_line import (
     LineMatrix,
     cascade,
@@ -87,7 +88,7 @@ SAMPLES: dict = {
     "resonators.quarter_wave_length": {
         "frequency": 20.0, "sound_speed": 1300.0, "quarter_waves": 3.0,
     },
-    "reducing_valve.stiff_frequency": {
+    "line_ends.stiff_frequency": {
         "conductance": 2e-10, "natural_frequency": 10.0, "damping_ratio": 0.5,
         "compliance": 1e-12,
     },
@@ -111,6 +112,11 @@ def _admittance(A, B, C, D, **end):
     return input_admittance(matrix=LineMatrix(A, B, C, D), **end)
 
 
+def _end(numerator, damping, inertia, frequency):
+    """Admittance of a second-order end, by its coefficients."""
+    return end_admittance(end=LineEnd((numerator,), (1.0, damping, inertia)), frequency=frequency)
+
+
 FREQUENCY_RESPONSES: dict = {
     "line_friction.series_impedance": [
         SECTION, {**SECTION, "frequency": 4e4}, {**SECTION, "friction": "steady"},
@@ -131,17 +137,13 @@ FREQUENCY_RESPONSES: dict = {
         (_admittance, {**MATRIX, "end_admittance": y}) for y in (0.0, 3e-10 - 1e-10j, inf)
     ],
     "resonators.branch_impedance": [NECK],
-    "resonators.branch_admittance": [NECK],
     "resonators.plugged_branch_impedance": [PIPE],
     "resonators.plugged_end_pressure_ratio": [PIPE],
     "resonators.junction_pressure_ratio": [
         {"admittance": 1e-11 + 3e-11j, "branch_impedance": z} for z in (2e9 - 3e10j, inf)
     ],
-    "reducing_valve.reducing_valve_admittance": [
-        {
-            "frequency": 12.0, "conductance": 2e-10, "natural_frequency": 10.0,
-            "damping_ratio": 0.5, "passive_conductance": 1e-11,
-        },
+    "line_ends.end_admittance": [
+        (_end, {"numerator": 2e-10, "damping": 0.016, "inertia": 2.5e-4, "frequency": 12.0}),
     ],
 }  # fmt: skip
 """Complex-valued functions: a complex step would mix with their result, so they have laws of

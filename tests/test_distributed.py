@@ -60,8 +60,8 @@ def test_lumped_lines_are_the_slow_limit(held):
 def test_a_plugged_pipe_is_a_tangent(held):
     """Without friction the pipe takes i tan(omega l/a)/Z_c; the oil's moves that by 3 % at most.
 
-    At frequencies away from the resonances. Written out here: a^2 = (K/rho)/(1 + K (dV/dp)/V), Z_c = rho a/A, chamber B and the coupling of
-    both by the barrel's stretch as the evaluation has them.
+    At frequencies away from the resonances. Written out here: a^2 = (K/rho)/(1 + K (dV/dp)/V),
+    Z_c = rho a/A; chamber B and the barrel's coupling of both are the evaluation's.
     """
     subject, done = held
     motion, state, budget = done.motion, done.state, done.springs

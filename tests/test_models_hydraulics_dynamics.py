@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from actuator_opt.models import dynamics, forces, stiffness
-from actuator_opt.models.linear import LineEnd, Side, linear_actuator
+from actuator_opt.models.line_ends import LineEnd
+from actuator_opt.models.linear import Side, linear_actuator
 from actuator_opt.models.loop import load_mode
 
 # 32/18-160 at 80 mm, V_0 8 ml, K 1.4 GPa, m 30 kg, B 400 N s/m.

@@ -18,9 +18,9 @@ from scipy.special import jv, jve
 from actuator_opt.models import (
     accumulator,
     elements,
+    line_ends,
     line_friction,
     lines,
-    reducing_valve,
     resonators,
     transmission_line,
     water_hammer,
@@ -466,13 +466,16 @@ def test_helmholtz_check_value():
 
 
 @given(FREQUENCIES, st.floats(0, 1e10))
-def test_branch_admittance_is_the_inverse(frequency, resistance):
+def test_accumulator_end_is_the_inverse_of_its_branch(frequency, resistance):
     """Y Z = 1; an empty accumulator takes no flow, and its impedance is not a number."""
-    neck = {"frequency": frequency, "inertance": 5e6, "resistance": resistance}
-    y = resonators.branch_admittance(**neck, capacitance=7e-13)
-    assert y * resonators.branch_impedance(**neck, capacitance=7e-13) == pytest.approx(1.0)
-    assert resonators.branch_admittance(**neck, capacitance=0.0) == 0
-    assert np.isnan(resonators.branch_impedance(**neck, capacitance=0.0))
+    neck = {"inertance": 5e6, "resistance": resistance}
+    at = {"frequency": frequency}
+    y = line_ends.end_admittance(end=line_ends.accumulator_end(**neck, capacitance=7e-13), **at)
+    z = resonators.branch_impedance(**neck, **at, capacitance=7e-13)
+    assert y * z == pytest.approx(1.0)
+    empty = line_ends.accumulator_end(**neck, capacitance=0.0)
+    assert line_ends.end_admittance(end=empty, **at) == 0
+    assert np.isnan(resonators.branch_impedance(**neck, **at, capacitance=0.0))
 
 
 def test_accumulator_branch_resonates_with_its_neck():
@@ -486,7 +489,7 @@ def test_accumulator_branch_resonates_with_its_neck():
     }
     resonance = elements.resonance_frequency(**{k: neck[k] for k in ("inertance", "capacitance")})
     frequencies = resonance * np.linspace(0.5, 2, 3001)
-    response = np.abs(resonators.branch_admittance(frequency=frequencies, **neck))
+    response = 1 / np.abs(resonators.branch_impedance(frequency=frequencies, **neck))
     assert frequencies[np.argmax(response)] == pytest.approx(resonance, rel=1e-3)
     assert response.max() == pytest.approx(1 / neck["resistance"], rel=1e-3)
 
@@ -568,11 +571,15 @@ def test_junction_with_nothing_or_everything_beside_it():
 VALVE = {"conductance": 2e-10, "natural_frequency": 10.0, "damping_ratio": 0.5}
 
 
+def admittance(frequency, **valve):
+    """Admittance of a reducing valve."""
+    end = line_ends.reducing_valve_end(**valve)
+    return line_ends.end_admittance(end=end, frequency=frequency)
+
+
 def test_reducing_valve_holds_slowly_and_stands_fast():
     """G + g at rest, -i G/(2 zeta) + g at its own frequency, g far above."""
-    y = reducing_valve.reducing_valve_admittance(
-        frequency=np.array([0.0, 10.0, 1e8]), passive_conductance=1e-11, **VALVE
-    )
+    y = admittance(np.array([0.0, 10.0, 1e8]), passive_conductance=1e-11, **VALVE)
     np.testing.assert_allclose(y, [2.1e-10, 1e-11 - 2e-10j, 1e-11], rtol=1e-9)
 
 
@@ -585,9 +592,9 @@ def test_stiff_frequency_is_where_chamber_and_valve_ring(natural, damping, stren
     valve = {
         "conductance": conductance, "natural_frequency": natural, "damping_ratio": damping,
     }  # fmt: skip
-    frequency = reducing_valve.stiff_frequency(**valve, compliance=compliance)
+    frequency = line_ends.stiff_frequency(**valve, compliance=compliance)
     omega = 2 * math.pi * frequency
-    y = reducing_valve.reducing_valve_admittance(frequency=frequency, **valve)
+    y = admittance(frequency, **valve)
     assert y.imag / omega == pytest.approx(-compliance, rel=1e-8)
     passive = -y.real
     assert passive > 0
@@ -603,7 +610,7 @@ def test_stiff_frequency_is_where_chamber_and_valve_ring(natural, damping, stren
 
 def test_weak_valve_never_outweighs_the_compliance():
     """Far too small a conductance: no such frequency."""
-    value = reducing_valve.stiff_frequency(**{**VALVE, "conductance": 1e-14}, compliance=1e-12)
+    value = line_ends.stiff_frequency(**{**VALVE, "conductance": 1e-14}, compliance=1e-12)
     assert math.isnan(value)
 
 
@@ -618,22 +625,13 @@ def test_twenty_hertz_peak_traced_to_a_valve():
     valve = {"conductance": conductance, "damping_ratio": 0.5}
 
     def mismatch(natural):
-        peak = reducing_valve.stiff_frequency(
-            natural_frequency=natural, compliance=compliance, **valve
-        )
+        peak = line_ends.stiff_frequency(natural_frequency=natural, compliance=compliance, **valve)
         return peak - 20.0
 
     natural = brentq(mismatch, 5.0, 19.0)
-    limit = -reducing_valve.reducing_valve_admittance(
-        frequency=20.0, natural_frequency=natural, **valve
-    ).real
+    limit = -admittance(20.0, natural_frequency=natural, **valve).real
     frequency = np.linspace(1, 60, 2000)
-    y = reducing_valve.reducing_valve_admittance(
-        frequency=frequency,
-        natural_frequency=natural,
-        passive_conductance=1.1 * limit,
-        **valve,
-    )
+    y = admittance(frequency, natural_frequency=natural, passive_conductance=1.1 * limit, **valve)
     stiffness = np.abs(1 / (compliance + y / (2j * math.pi * frequency)))
     assert frequency[np.argmax(stiffness)] == pytest.approx(20.0, rel=0.05)
     assert stiffness.max() > 3 / compliance

@@ -19,15 +19,13 @@ from samples_dynamics import model_of
 from test_models_hydraulics_dynamics import CHAMBERS, CONDUCTANCE
 
 from actuator_opt.models import stiffness
-from actuator_opt.models.linear import (
+from actuator_opt.models.line_ends import (
     LineEnd,
-    Side,
     accumulator_end,
-    dynamic_stiffness,
-    linear_actuator,
     parallel_ends,
     reducing_valve_end,
 )
+from actuator_opt.models.linear import Side, dynamic_stiffness, linear_actuator
 from actuator_opt.models.loop import poles
 from actuator_opt.polynomial import at_frequency
 

@@ -19,7 +19,8 @@ from test_models_hydraulics_dynamics import CHAMBERS
 from test_models_valve import LEAKAGE, RATED
 
 from actuator_opt.models import dynamics, linear, loop, valve
-from actuator_opt.models.linear import LineEnd, Side
+from actuator_opt.models.line_ends import LineEnd
+from actuator_opt.models.linear import Side
 
 SEEDS = st.integers(0, 2**32 - 1)
 SPOOLS = st.tuples(st.floats(20.0, 500.0), st.floats(0.3, 1.1))

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..design.model import Design
-from ..models import accumulator, dynamics, elements, linear, loop, one_way_valve, valve
-from ..models.linear import LinearActuator, LineEnd, Side
+from ..models import accumulator, dynamics, elements, line_ends, linear, loop, one_way_valve, valve
+from ..models.line_ends import LineEnd
+from ..models.linear import LinearActuator, Side
 from ..numeric import Array, angle, magnitude, maximum, real, where
 from .circuit import CHAMBERS, Branch, Chamber
 from .rows import Computed
@@ -67,7 +68,7 @@ class Motion:
                 else:
                     conductance = out.conductance_b
                     gain = -where(extending, out.gain_b, back.gain_b)
-                end = linear.parallel_ends(LineEnd((conductance,)), *self.accumulators[chamber])
+                end = line_ends.parallel_ends(LineEnd((conductance,)), *self.accumulators[chamber])
             sides[chamber] = Side(
                 area=area,
                 compliance=whole - branch.far,
@@ -200,14 +201,14 @@ def _end(
     elif kind == "reducing_valve":
         at = "ports.reducing_valve."
         ends.append(
-            linear.reducing_valve_end(
+            line_ends.reducing_valve_end(
                 conductance=v[at + "conductance"],
                 passive_conductance=v[at + "passive_conductance"],
                 natural_frequency=v[at + "natural_frequency"],
                 damping_ratio=v[at + "damping_ratio"],
             )
         )
-    return linear.parallel_ends(*ends) if ends else LineEnd()
+    return line_ends.parallel_ends(*ends) if ends else line_ends.CLOSED
 
 
 def _accumulators(v: Values, design: Design, state: State, chamber: Chamber) -> tuple[LineEnd, ...]:
@@ -225,7 +226,7 @@ def _accumulators(v: Values, design: Design, state: State, chamber: Chamber) -> 
             polytropic_index=v["fluid.polytropic_index"],
         )
         found.append(
-            linear.accumulator_end(
+            line_ends.accumulator_end(
                 capacitance=capacitance,
                 inertance=elements.inertance(**neck, density=state.density),
                 resistance=elements.resistance(**neck, dynamic_viscosity=state.dynamic_viscosity),

@@ -1,7 +1,7 @@
 """Gas-charged accumulators: gas volume, capacitance, usable volume and stored energy.
 
 Pressures are gauge, as everywhere; the gas laws add the atmospheric pressure themselves. The
-branch of an accumulator on a line is `resonators.branch_admittance`: inertance and resistance of
+branch of an accumulator on a line is `line_ends.accumulator_end`: inertance and resistance of
 its neck before this capacitance.
 """
 

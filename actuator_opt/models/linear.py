@@ -12,14 +12,7 @@ from typing import NamedTuple
 
 from ..numeric import Array
 from ..polynomial import Parts, Polynomial, add, at_frequency, multiply, scale
-
-
-@dataclass(frozen=True, slots=True)
-class LineEnd:
-    """What ends a line: an admittance Y(s) = numerator/denominator (flow out per pressure)."""
-
-    numerator: Polynomial = ()
-    denominator: Polynomial = (1.0,)
+from .line_ends import CLOSED, LineEnd
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +31,7 @@ class Side:
     """[kg/m^4]"""
     far_compliance: Array = 0.0
     """Of the line's far half [m^3/Pa]."""
-    end: LineEnd = LineEnd()
+    end: LineEnd = CLOSED
     flow_gain: Array = 0.0
     """Flow of the valve into the line's far end per spool signal [m^3/s/V]; A +, B -."""
 
@@ -54,108 +47,6 @@ class LinearActuator:
     characteristic: Polynomial
     mobile: Polynomial
     drive: Polynomial
-
-
-def parallel_ends(*ends: LineEnd) -> LineEnd:
-    """Line end of several on one node: their admittances add.
-
-    Parameters
-    ----------
-    ends : as of `accumulator_end`, `reducing_valve_end` or a valve's conductance
-
-    Returns
-    -------
-    the line end of all together, Y in [m^3/s/Pa]
-
-    Notes
-    -----
-    Valid: everywhere.
-
-    References
-    ----------
-    [derived] Y = sum n_i/d_i
-
-    Examples
-    --------
-    >>> parallel_ends(LineEnd((1e-12,)), LineEnd((2e-12,))).numerator
-    (3e-12,)
-    """
-    numerator, denominator = ends[0].numerator, ends[0].denominator
-    for end in ends[1:]:
-        numerator = add(multiply(numerator, end.denominator), multiply(end.numerator, denominator))
-        denominator = multiply(denominator, end.denominator)
-    return LineEnd(numerator, denominator)
-
-
-def accumulator_end(*, capacitance: Array, inertance: Array, resistance: Array) -> LineEnd:
-    """Gas-charged accumulator behind its neck, Y = C s/(1 + R C s + L C s^2).
-
-    Parameters
-    ----------
-    capacitance : of the gas at the working pressure [m^3/Pa]
-    inertance : of the neck [kg/m^4]
-    resistance : of the neck [Pa s/m^3]
-
-    Returns
-    -------
-    line end, Y in [m^3/s/Pa]
-
-    Notes
-    -----
-    Valid: pressure swings small against the gas pressure.
-
-    References
-    ----------
-    [derived] series of neck and gas; [AaltoThesis] eq. 11-16
-
-    Examples
-    --------
-    >>> accumulator_end(capacitance=2.0, inertance=3.0, resistance=5.0)
-    LineEnd(numerator=(0.0, 2.0), denominator=(1.0, 10.0, 6.0))
-    """
-    return LineEnd((0.0, capacitance), (1.0, resistance * capacitance, inertance * capacitance))
-
-
-def reducing_valve_end(
-    *,
-    conductance: Array,
-    natural_frequency: Array,
-    damping_ratio: Array,
-    passive_conductance: Array = 0.0,
-) -> LineEnd:
-    """Pressure reducing valve, Y = g + G omega^2/(s^2 + 2 zeta omega s + omega^2).
-
-    Slowly it holds its pressure with G + g; it lags at every frequency, like an inertance, and well
-    above its own only g, the conductance of its opening, is left.
-
-    Parameters
-    ----------
-    conductance : G, flow per pressure the spool regulates with [m^3/s/Pa]
-    natural_frequency : [Hz]
-    damping_ratio : [-]
-    passive_conductance : g [m^3/s/Pa]
-
-    Returns
-    -------
-    line end, Y in [m^3/s/Pa]
-
-    Notes
-    -----
-    Valid: small signals about the set pressure.
-
-    References
-    ----------
-    [AaltoThesis] section 5.2, the suspect of its 20 Hz peak; [derived] second-order spool
-
-    Examples
-    --------
-    >>> end = reducing_valve_end(conductance=1e-10, natural_frequency=20.0, damping_ratio=0.3)
-    >>> end.numerator
-    (1e-10,)
-    """
-    omega = 2 * pi * natural_frequency
-    denominator = (1.0, 2 * damping_ratio / omega, 1 / (omega * omega))
-    return LineEnd(add(scale(denominator, passive_conductance), (conductance,)), denominator)
 
 
 class _Eliminated(NamedTuple):

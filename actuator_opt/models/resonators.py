@@ -54,43 +54,6 @@ def branch_impedance(
     return resistance + 1j * reactance
 
 
-def branch_admittance(
-    *, frequency: Array, inertance: Array, capacitance: Array, resistance: Array = 0.0
-) -> Array:
-    """Admittance of a neck before a volume, i omega C/(1 - omega^2 L C + i omega R C).
-
-    Parameters
-    ----------
-    frequency : [Hz]
-    inertance : of the neck [kg/m^4]
-    capacitance : of the volume [m^3/Pa]; 0 takes no flow
-    resistance : of the neck [Pa s/m^3]
-
-    Returns
-    -------
-    complex admittance [m^3/s/Pa]; infinite at the resonance of a neck without resistance
-
-    Notes
-    -----
-    Valid: wavelength much longer than neck and volume.
-
-    References
-    ----------
-    [AaltoThesis] section 2.1.3; [derived] lumped elements in series
-
-    Examples
-    --------
-    >>> y = branch_admittance(frequency=10.0, inertance=5e6, capacitance=7e-14)
-    >>> print(f"{y.imag:.3e}")
-    4.404e-12
-    """
-    omega = _omega(frequency, inertance, capacitance, resistance)
-    swelling = 1j * omega * capacitance
-    rest = 1 + swelling * (resistance + 1j * omega * inertance)
-    blocked = rest == 0
-    return where(blocked, math.inf, swelling / where(blocked, 1.0, rest))
-
-
 def helmholtz_frequency(
     *, neck_diameter: Array, neck_length: Array, volume: Array, sound_speed: Array
 ) -> Array:

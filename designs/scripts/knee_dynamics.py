@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from itertools import pairwise
 from math import ceil, floor, pi, sqrt
 from pathlib import Path
 from typing import Any
@@ -24,14 +25,19 @@ import actuator_opt as ao
 from actuator_opt.quantities import METRICS
 from actuator_opt.reporting.blocks import column, figure, table
 from actuator_opt.reporting.figures import Axes
-from actuator_opt.reporting.ink import BLACK, BLUE, GREY, RED, Ink
+from actuator_opt.reporting.ink import BLUE, GREY, RED, WHITE, Ink
 from actuator_opt.reporting.text import fixed, number
 from actuator_opt.reporting.writer import TEMPLATE, sheets
 from actuator_opt.tables import aligned
 
 DESIGN = Path(__file__).resolve().parents[1] / "servo_knee.yaml"
 ASKED = ("bandwidth", "dynamic_stiffness")
-BY = {"bandwidth": "g/Hz", "dynamic_stiffness": "g per kN/mm"}
+UNITS = {name: METRICS[name].unit for name in ASKED}
+TITLES = {
+    "bandwidth": "Over the bandwidth of the position loop",
+    "dynamic_stiffness": "Over the dynamic stiffness at the impact's frequency",
+    "changes": "What else buys bandwidth, at the same mass",
+}
 SHARES = (0.0, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.92, 0.99)
 """Where points lie between what is free and the most that is within reach."""
 STEEP = 0.7
@@ -56,18 +62,21 @@ CHANGES: dict[str, dict[str, str]] = {
     "load of 24 kg": {"load.mass": "24 kg"},
 }
 """Single changes, each re-optimised for bandwidth at the mass of the design as required."""
-SAID = {
-    "bonds over the temperature range": "bond over temperature",
-    "end plate bending": "end plates",
-    "barrel.layup[0].thickness upper": "liner as thick as allowed",
-    "barrel.layup[1].thickness upper": "hoop plies as thick as allowed",
-    "barrel.layup[2].angle lower": "least winding angle",
-    "rod.inner_diameter lower": "rod bore as small as allowed",
-    "head.length lower": "shortest head",
-    "piston.leakage_conductance lower": "least bleed",
+LIMITS = {
+    "bandwidth": "bandwidth",
+    "gain_margin": "gain margin",
+    "phase_margin": "phase margin",
+    "dynamic_stiffness": "dynamic stiffness",
     "stiffness_min": "static stiffness",
+    "leakage": "leakage",
     "friction_running": "friction",
+    "seal_gap": "seal gap",
+    "barrel.layup[0].thickness upper": "thickest liner",
+    "barrel.layup[1].thickness upper": "most hoop plies",
+    "rod.inner_diameter lower": "least rod bore",
+    "piston.leakage_conductance lower": "least bleed",
 }
+"""Limits that the tables name; those of strength, seals and fit are in the attached numbers."""
 
 Data = dict[str, Any]
 
@@ -90,17 +99,13 @@ def ultimate_speed_gain(
     return sqrt(low) * (2 * damping * sqrt(x) * (1 - y) + 2 * spool_damping * sqrt(y) * (1 - x))
 
 
-def shaken_stiffness(
-    *, stiffness: float, mass: float, frequency: float, corner: float
-) -> float:
+def shaken_stiffness(*, stiffness: float, mass: float, frequency: float, corner: float) -> float:
     """Dynamic stiffness of a mass on a spring that leaks (Maxwell), |k i f/(i f + f_c) - m w^2|."""
     spring = stiffness * 1j * frequency / (1j * frequency + corner)
     return abs(spring - mass * (2 * pi * frequency) ** 2)
 
 
-def wishes(
-    *, without: str = "", goal: str = "", mass: float | None = None
-) -> ao.Actuator:
+def wishes(*, without: str = "", goal: str = "", mass: float | None = None) -> ao.Actuator:
     """The knee; one requirement left out, another goal, and a mass to stay within."""
     data = yaml.load(DESIGN.read_text("utf-8"), Loader=yaml.BaseLoader)
     data["requirements"].pop(without, None)
@@ -192,10 +197,15 @@ def compute(*, quick: bool = False) -> Data:
     required = measured(ao.optimise(knee, starts=2, prices=not quick), "bandwidth")
     shares = (0.0, 0.5, 0.9) if quick else SHARES
     changes = list(CHANGES)[:: 4 if quick else 1]
+    kept = knee.changed(required["values"])
     at_mass = wishes(without="bandwidth", goal="bandwidth", mass=(1 + FREE) * required["mass"])
     return {
         "version": ao.__version__,
         "required": required,
+        "loads": {
+            kg: ao.evaluate(kept.changed({"load.mass": f"{kg} kg"})).metrics["gain_margin"].value
+            for kg in ("16", "20", "24")
+        },
         "spool": knee.design.valve.natural_frequency,
         "series": {name: series(name, required, shares, not quick) for name in ASKED},
         "changes": {
@@ -205,3 +215,229 @@ def compute(*, quick: bool = False) -> Data:
             for name in changes
         },
     }
+
+
+def shown(metric: str, row: Data) -> float:
+    """What is asked, in the unit of the page."""
+    return METRICS[metric].to_display(row["asked"])
+
+
+def slope(metric: str, before: Data, row: Data) -> float:
+    """Mean price between two optima, in g per unit of the page."""
+    return 1e3 * (row["mass"] - before["mass"]) / (shown(metric, row) - shown(metric, before))
+
+
+def price(metric: str, row: Data) -> float | None:
+    """Price by the multiplier, in g per unit of the page."""
+    found = row["prices"].get(metric)
+    return None if found is None else 1e3 * found / METRICS[metric].to_display(1.0)
+
+
+def limits(row: Data) -> str:
+    """What of motion, leakage and walls binds."""
+    labels = [label.split(" (")[0] for label in row["binds"]]
+    return ", ".join(dict.fromkeys(LIMITS[name] for name in labels if name in LIMITS))
+
+
+def sentence(metric: str, found: Data) -> str:
+    """From where to where each unit costs how much, and what stands in the way beyond."""
+    rows, unit = found["points"], UNITS[metric]
+    steps = [rows[0], rows[len(rows) // 2], rows[-1]]
+    ends = [number(shown(metric, row), 3) for row in steps]
+    means = [number(slope(metric, *pair), 2) for pair in pairwise(steps)]
+    return (
+        f"Up to {ends[0]} {unit} is free. From there to {ends[1]} {unit} each {unit} costs"
+        f" {means[0]} g on the average, from {ends[1]} to {ends[2]} {unit} {means[1]} g. The most"
+        f" within the bounds is {number(shown(metric, found['most']), 3)} {unit} at"
+        f" {number(1e3 * found['most']['mass'], 3)} g; what binds there:"
+        f" {limits(found['most'])}."
+    )
+
+
+def rows_of(metric: str, found: Data) -> list[list[str]]:
+    """The table of one series: what is asked, what it weighs, what moves, what binds."""
+    before, rows = None, []
+    for row in found["points"]:
+        values, forms = row["values"], ("merritt", "with_spool")
+        checks = [number(row[name], 3) for name in forms]
+        if metric != "bandwidth":
+            checks = [number(1e-6 * row["maxwell"], 3)]
+        rows.append(
+            [
+                number(shown(metric, row), 4),
+                fixed(1e3 * row["mass"], 1),
+                "" if before is None else number(slope(metric, before, row), 3),
+                fixed(1e3 * values["cylinder.bore"], 2),
+                fixed(1e3 * values["rod.outer_diameter"], 2),
+                fixed(1e3 * row["wall"], 2),
+                fixed(values["control.gain"], 0),
+                fixed(6e12 * values["piston.leakage_conductance"], 2),
+                fixed(row["frequency"], 1),
+                *checks,
+                limits(row),
+            ]
+        )
+        before = row
+    return rows
+
+
+def heads(metric: str) -> list[str]:
+    """Heads of that table."""
+    checks = ["2ζf₀, Hz", "with spool, Hz"] if metric == "bandwidth" else ["closed form, kN/mm"]
+    return [
+        f"{METRICS[metric].label.split(' of ')[0].removeprefix('-3 dB ')}, {UNITS[metric]}",
+        "mass, g",
+        f"g per {UNITS[metric]}",
+        "bore, mm",
+        "rod, mm",
+        "wall, mm",
+        "gain, V/m",
+        "bleed, ml/min/bar",
+        "f₀, Hz",
+        *checks,
+        "what binds",
+    ]
+
+
+def change_rows(study: Data) -> list[list[str]]:
+    """What one change gives in bandwidth at the same mass, and what it takes elsewhere."""
+    return [
+        [
+            name,
+            number(row["metrics"]["bandwidth"], 3),
+            number(row["with_spool"], 3),
+            fixed(row["frequency"], 0),
+            fixed(row["valve_power"], 0),
+            fixed(row["bleed_power"], 0),
+            fixed(1e3 * row["sag"], 2),
+            limits(row),
+        ]
+        for name, row in study["changes"].items()
+    ]
+
+
+CHANGE_HEADS = [
+    "one change",
+    "bandwidth, Hz",
+    "closed form, Hz",
+    "f₀, Hz",
+    "lost in the valve, W",
+    "in the bleed, W",
+    "sag, mm",
+    "what binds",
+]
+
+
+def drawing(study: Data) -> Ink:
+    """Mass over what is asked, with the prices as tangents."""
+    ink = Ink(180.0, 66.0)
+    for k, (metric, found) in enumerate(study["series"].items()):
+        rows = [*found["points"], found["most"]]
+        xs, ys = [shown(metric, row) for row in rows], [1e3 * row["mass"] for row in rows]
+        room, wide = 0.06 * (xs[-1] - xs[0]), 0.16 * (xs[-1] - xs[0])
+        span = (10 * floor(0.1 * min(ys) - 0.5), 10 * ceil(0.1 * max(ys) + 0.5))
+        axes = Axes(ink, (10.0 + 92.0 * k, 8.0, 76.0, 46.0), (xs[0] - wide, xs[-1] + room), span)
+        axes.frame("Mass, g", f"least {METRICS[metric].label} asked for, {UNITS[metric]}")
+        ink.path(axes.clipped([xs[0] - wide, *xs], [ys[0], *ys]), stroke=BLUE, pen=0.5)
+        for x, y, row in zip(xs, ys, rows, strict=True):
+            at_end = row is found["most"]
+            ink.circle(axes.x(x), axes.y(y), 0.7, stroke=BLUE, fill=WHITE if at_end else BLUE)
+            paid = price(metric, row)
+            if paid is not None:
+                ends = [x - wide, x + wide]
+                line = axes.clipped(ends, [y + paid * (end - x) for end in ends])
+                ink.path(line, stroke=RED, pen=0.3, dash=(1.6, 0.8))
+                words = f"{number(paid, 3)} g per {UNITS[metric]}"
+                ink.text(axes.x(x) + 3, axes.y(y) + 3, words, color=RED, halo=True)
+        ink.text(axes.x(xs[-1]) - 2, axes.y(ys[-1]), "the most", anchor="right", halo=True)
+        ink.text(axes.x(xs[0]) - 1, axes.y(ys[0]) - 3, "free", anchor="right", color=GREY)
+    return ink
+
+
+def remarks(study: Data) -> dict[str, str]:
+    """What stands under the tables."""
+    base = study["required"]
+    fast, slow = base["speed_gains"]
+    ratio, two = number(fast / slow, 2), number(2 * base["damping"] * base["frequency"], 3)
+    masses = ", ".join(f"{number(m, 2)} at {kg} kg" for kg, m in study["loads"].items())
+    return {
+        "bandwidth": (
+            "g per Hz: between the row and the one above; red in the figure: by the multipliers."
+            f" By hand, as required: Merritt's limit of a proportional loop is 2ζf₀ = {two} Hz of"
+            f" velocity gain, over the gain margin {number(base['metrics']['gain_margin'], 2)} and"
+            f" over {ratio}, the ratio of the valve's gains where the margin and where the"
+            f" bandwidth is least: {number(base['merritt'], 3)} Hz. That holds for a spool without"
+            f" lag; with the lag of this one, {number(study['spool'], 3)} Hz beside f₀, three poles"
+            f" pairs in closed form give {number(base['with_spool'], 3)} Hz, the whole model"
+            f" {number(base['metrics']['bandwidth'], 3)} Hz. So each hertz is bought with wall that"
+            " lifts f₀ off the spool's frequency."
+        ),
+        "dynamic_stiffness": (
+            "Closed form: the weakest static stiffness as a spring that leaks with the oil's share"
+            " of the damping (Maxwell), less the mass that shakes with it."
+        ),
+        "changes": (
+            f"Each re-optimised for bandwidth at {fixed(1e3 * base['mass'], 1)} g. Valve: centred,"
+            " at supply pressure; bleed: at full pressure difference; sag: the loop's standing"
+            " error under the stance's force by the bleed alone. The spool's lag holds the"
+            " resonance down here: a quicker spool needs less gain, and the same design kept at"
+            f" its gain has gain margins of {masses}. Where the gain follows the load's pressure,"
+            f" stance could follow as swing does, {number(base['fast_bandwidth'], 2)} Hz against"
+            f" {number(base['metrics']['bandwidth'], 2)} Hz, without a gram."
+        ),
+    }
+
+
+def page(study: Data) -> tuple[bytes, list[bytes]]:
+    """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
+    text = json.dumps(study, sort_keys=True, allow_nan=False)
+    study = json.loads(text, parse_float=lambda digits: float(f"{float(digits):.7g}"))
+    said, blocks = remarks(study), [figure("What it weighs", drawing(study))]
+    for metric, found in study["series"].items():
+        columns = [column(head, "right") for head in heads(metric)[:-1]]
+        columns.append(column("what binds", "left", 1))
+        blocks.append(table(TITLES[metric], columns, rows_of(metric, found), note=said[metric]))
+    columns = [
+        column(head, "right" if 0 < k < 7 else "left") for k, head in enumerate(CHANGE_HEADS)
+    ]
+    columns[-1]["width"] = 1
+    blocks.append(table(TITLES["changes"], columns, change_rows(study), note=said["changes"]))
+    data = {
+        "version": study["version"],
+        "lead": [sentence(metric, found) for metric, found in study["series"].items()],
+        "blocks": blocks,
+        "numbers": json.dumps(study, indent=1, sort_keys=True),
+    }
+    shared, mark, _ = TEMPLATE.read_text("utf-8").partition("// ---- sheet ----")
+    assert mark, "the report template no longer says where its definitions end"
+    source = shared + Path(__file__).with_suffix(".typ").read_text("utf-8")
+    return sheets(source.encode(), data, timestamp=0)
+
+
+def write(study: Data, folder: Path) -> int:
+    """Write knee_dynamics.pdf and the PNG of its first sheet; how many sheets there are."""
+    pdf, images = page(study)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "knee_dynamics.pdf").write_bytes(pdf)
+    (folder / "knee_dynamics.png").write_bytes(images[0])
+    return len(images)
+
+
+def main() -> None:
+    """Print the tables; write the report where a folder is named."""
+    parser = argparse.ArgumentParser(description="what each hertz of the knee costs in grams")
+    parser.add_argument("--out", type=Path, help="folder for the report")
+    parser.add_argument("--quick", action="store_true", help="few points, no multipliers")
+    given = parser.parse_args()
+    study = compute(quick=given.quick)
+    for metric, found in study["series"].items():
+        rows = [heads(metric), *rows_of(metric, found)]
+        print(aligned(rows, right=range(len(rows[0]) - 1)), sentence(metric, found), sep="\n")
+        print()
+    print(aligned([CHANGE_HEADS, *change_rows(study)], right=range(1, 7)))
+    if given.out is not None:
+        print(write(study, given.out), "sheets")
+
+
+if __name__ == "__main__":
+    main()

@@ -16,7 +16,7 @@ import numpy as np
 from ...design.circuit import Ports, ReducingValve, Throttle
 from ...design.model import Design
 from ...models import elements, linear, lines, loop, one_way_valve, orifice, resonators
-from ...models.reducing_valve import stiff_frequency
+from ...models.line_ends import LineEnd, reducing_valve_end, stiff_frequency
 from ...numeric import Array
 from ..circuit import CHAMBERS
 from ..kernel import Pass
@@ -118,11 +118,11 @@ class Bench:
         }
         self.motion = replace(self.done.motion, damping=0.0)
 
-    def line_end(self, end: End) -> linear.LineEnd:
+    def line_end(self, end: End) -> LineEnd:
         """Constant pressure, or the reducing valve."""
         if end == "constant_pressure":
-            return linear.LineEnd((1.0,), ())
-        return linear.reducing_valve_end(
+            return LineEnd((1.0,), ())
+        return reducing_valve_end(
             conductance=self.valve.conductance,
             passive_conductance=self.valve.passive_conductance,
             natural_frequency=self.valve.natural_frequency,

@@ -9,11 +9,10 @@ import numpy as np
 
 from ...design.circuit import Line
 from ...design.model import Design
-from ...models import lines, water_hammer
+from ...models import line_ends, lines, water_hammer
 from ...models import transmission_line as transmission
-from ...models.linear import LineEnd
+from ...models.line_ends import LineEnd
 from ...numeric import Array
-from ...polynomial import at_frequency
 from ..circuit import CHAMBERS, Chamber, wall_compliance
 from ..motion import Motion
 from ..state import State
@@ -26,14 +25,13 @@ def _one(value: Array, index: int) -> float:
     return float(array[min(index, array.shape[0] - 1), 0])
 
 
-def _end(end: LineEnd, omega: Array, index: int) -> Array:
+def _end(end: LineEnd, frequencies: Array, index: int) -> Array:
     """Admittance of a line's end; infinite at constant pressure."""
-    numerator = tuple(_one(c, index) for c in end.numerator)
-    denominator = tuple(_one(c, index) for c in end.denominator)
-    if not denominator:
-        return np.full(omega.shape, np.inf + 0j)
-    top, low = at_frequency(numerator, omega), at_frequency(denominator, omega)
-    return (top.real + 1j * top.imaginary) / (low.real + 1j * low.imaginary)
+    alone = LineEnd(
+        tuple(_one(c, index) for c in end.numerator),
+        tuple(_one(c, index) for c in end.denominator),
+    )
+    return line_ends.end_admittance(end=alone, frequency=frequencies)
 
 
 def port_admittance(
@@ -46,11 +44,10 @@ def port_admittance(
     frequencies: Array,
 ) -> Array:
     """Flow into everything behind a chamber's port per its pressure, complex, over frequency."""
-    omega = 2 * pi * frequencies
     modulus = _one(state.bulk_modulus_a if chamber == "a" else state.bulk_modulus_b, index)
     viscosity = state.dynamic_viscosity_a if chamber == "a" else state.dynamic_viscosity_b
     density = _one(state.density, index)
-    admittance = _end(motion.ends[chamber], omega, index)
+    admittance = _end(motion.ends[chamber], frequencies, index)
     own = [(i, line) for i, line in enumerate(design.lines) if line.chamber == chamber]
     throttle = motion.throttles.get(chamber)
     beyond = [one for one in own if one[1].beyond_throttle] if throttle is not None else []

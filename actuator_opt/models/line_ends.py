@@ -1,0 +1,208 @@
+"""What ends a line: closed, a conductance, an accumulator, a reducing valve, or several of them.
+
+A line end is the ratio of two polynomials in s, so that it stands in the linear model as it is.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from math import pi
+
+from ..numeric import Array, namespace, real, sqrt, where
+from ..polynomial import Polynomial, add, at_frequency, multiply, scale
+
+
+@dataclass(frozen=True, slots=True)
+class LineEnd:
+    """What ends a line: an admittance Y(s) = numerator/denominator (flow out per pressure)."""
+
+    numerator: Polynomial = ()
+    denominator: Polynomial = (1.0,)
+
+
+CLOSED = LineEnd()
+"""Nothing flows out of the line."""
+
+
+def parallel_ends(*ends: LineEnd) -> LineEnd:
+    """Line end of several on one node: their admittances add.
+
+    Parameters
+    ----------
+    ends : as of `accumulator_end`, `reducing_valve_end` or a valve's conductance
+
+    Returns
+    -------
+    the line end of all together, Y in [m^3/s/Pa]
+
+    Notes
+    -----
+    Valid: everywhere.
+
+    References
+    ----------
+    [derived] Y = sum n_i/d_i
+
+    Examples
+    --------
+    >>> parallel_ends(LineEnd((1e-12,)), LineEnd((2e-12,))).numerator
+    (3e-12,)
+    """
+    numerator, denominator = ends[0].numerator, ends[0].denominator
+    for end in ends[1:]:
+        numerator = add(multiply(numerator, end.denominator), multiply(end.numerator, denominator))
+        denominator = multiply(denominator, end.denominator)
+    return LineEnd(numerator, denominator)
+
+
+def accumulator_end(*, capacitance: Array, inertance: Array, resistance: Array) -> LineEnd:
+    """Gas-charged accumulator behind its neck, Y = C s/(1 + R C s + L C s^2).
+
+    Parameters
+    ----------
+    capacitance : of the gas at the working pressure [m^3/Pa]
+    inertance : of the neck [kg/m^4]
+    resistance : of the neck [Pa s/m^3]
+
+    Returns
+    -------
+    line end, Y in [m^3/s/Pa]
+
+    Notes
+    -----
+    Valid: pressure swings small against the gas pressure.
+
+    References
+    ----------
+    [derived] series of neck and gas; [AaltoThesis] eq. 11-16
+
+    Examples
+    --------
+    >>> accumulator_end(capacitance=2.0, inertance=3.0, resistance=5.0)
+    LineEnd(numerator=(0.0, 2.0), denominator=(1.0, 10.0, 6.0))
+    """
+    return LineEnd((0.0, capacitance), (1.0, resistance * capacitance, inertance * capacitance))
+
+
+def reducing_valve_end(
+    *,
+    conductance: Array,
+    natural_frequency: Array,
+    damping_ratio: Array,
+    passive_conductance: Array = 0.0,
+) -> LineEnd:
+    """Pressure reducing valve, Y = g + G omega^2/(s^2 + 2 zeta omega s + omega^2).
+
+    Slowly it holds its pressure with G + g; it lags at every frequency, like an inertance, and well
+    above its own only g, the conductance of its opening, is left.
+
+    Parameters
+    ----------
+    conductance : G, flow per pressure the spool regulates with [m^3/s/Pa]
+    natural_frequency : [Hz]
+    damping_ratio : [-]
+    passive_conductance : g [m^3/s/Pa]
+
+    Returns
+    -------
+    line end, Y in [m^3/s/Pa]
+
+    Notes
+    -----
+    Valid: small signals about the set pressure.
+
+    References
+    ----------
+    [AaltoThesis] section 5.2, the suspect of its 20 Hz peak; [derived] second-order spool
+
+    Examples
+    --------
+    >>> end = reducing_valve_end(conductance=1e-10, natural_frequency=20.0, damping_ratio=0.3)
+    >>> end.numerator
+    (1e-10,)
+    """
+    omega = 2 * pi * natural_frequency
+    denominator = (1.0, 2 * damping_ratio / omega, 1 / (omega * omega))
+    return LineEnd(add(scale(denominator, passive_conductance), (conductance,)), denominator)
+
+
+def end_admittance(*, end: LineEnd, frequency: Array) -> Array:
+    """Admittance of a line end at a frequency, Y(i omega) = n(i omega)/d(i omega).
+
+    Parameters
+    ----------
+    end : numerator and denominator
+    frequency : [Hz]
+
+    Returns
+    -------
+    complex admittance, flow out of the line per pressure [m^3/s/Pa]; infinite where the pressure
+    is held
+
+    Notes
+    -----
+    Valid: real coefficients (no complex step).
+
+    References
+    ----------
+    [derived] ratio of the polynomials
+
+    Examples
+    --------
+    >>> y = end_admittance(end=reducing_valve_end(conductance=1e-10, natural_frequency=10.0,
+    ...                                           damping_ratio=0.5), frequency=10.0)
+    >>> print(f"{y.imag:.1e}")
+    -1.0e-10
+    """
+    xp = namespace(frequency)
+    omega = xp.asarray(2 * pi * frequency, dtype=xp.complex128)
+    top, low = at_frequency(end.numerator, omega), at_frequency(end.denominator, omega)
+    above, below = top.real + 1j * top.imaginary, low.real + 1j * low.imaginary + 0 * omega
+    held = below == 0
+    return where(held, math.inf, above / where(held, 1.0, below))
+
+
+def stiff_frequency(
+    *, conductance: Array, natural_frequency: Array, damping_ratio: Array, compliance: Array
+) -> Array:
+    """Frequency where chamber and valve together take no reactive flow: C + Im(Y)/w = 0.
+
+    The valve lags: below this frequency it is an inertance that outweighs the compliance, here
+    only Re(Y) is left, and the actuator's stiffness A^2 w/|Re(Y)| peaks where that is small. The
+    line is stable only if Re(Y) > 0 here, so the passive share must outweigh the valve's. With
+    k = G/(C w0): w^2 = w0^2 [1 - 2 zeta^2 + sqrt(4 zeta^4 - 4 zeta^2 + 2 zeta k)], the upper root.
+
+    Parameters
+    ----------
+    conductance : G of the controlled flow [m^3/s/Pa]
+    natural_frequency : w0/(2 pi) [Hz]
+    damping_ratio : zeta [-]
+    compliance : C of chamber, line and walls before the valve [m^3/Pa], > 0
+
+    Returns
+    -------
+    frequency [Hz]; NaN where the valve is too weak to cancel the compliance
+
+    Notes
+    -----
+    Valid: as `reducing_valve_end`; lumped chamber and line.
+
+    References
+    ----------
+    [AaltoThesis] section 5.2 suspects this resonance at 20 Hz; [derived] imaginary part of
+    i w C + Y
+
+    Examples
+    --------
+    >>> f = stiff_frequency(conductance=2e-10, natural_frequency=10.0, damping_ratio=0.5,
+    ...                     compliance=1e-12)
+    >>> print(f"{f:.2f} Hz")
+    14.35 Hz
+    """
+    strength = conductance / (compliance * (2 * math.pi) * natural_frequency)
+    square = damping_ratio * damping_ratio
+    inner = 4 * square * square - 4 * square + 2 * damping_ratio * strength
+    ratio = 1 - 2 * square + sqrt(inner)
+    valid = real(ratio) > 0
+    return where(valid, natural_frequency * sqrt(where(valid, ratio, 1.0)), math.nan)
