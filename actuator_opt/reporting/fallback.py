@@ -271,7 +271,7 @@ def _draw(sheets: Sequence[Ink], title: str) -> tuple[bytes, list[bytes]]:
     }
     with mpl.rc_context(style), PdfPages(whole, metadata=information) as pages:
         for sheet in sheets:
-            figure = _figure(sheet)
+            figure = drawn(sheet)
             image = io.BytesIO()
             FigureCanvasAgg(figure)
             figure.savefig(image, format="png", dpi=150, metadata={"Software": None})
@@ -280,16 +280,17 @@ def _draw(sheets: Sequence[Ink], title: str) -> tuple[bytes, list[bytes]]:
     return whole.getvalue(), images
 
 
-def _figure(sheet: Ink) -> Any:
+def drawn(sheet: Ink) -> Any:
+    """A sheet as a matplotlib figure of its own size."""
     from matplotlib.figure import Figure
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
-    figure = Figure(figsize=(SHEET[0] / 25.4, SHEET[1] / 25.4), facecolor=WHITE)
+    figure = Figure(figsize=(sheet.width / 25.4, sheet.height / 25.4), facecolor=WHITE)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
-    axes.set_xlim(0.0, SHEET[0])
-    axes.set_ylim(SHEET[1], 0.0)
+    axes.set_xlim(0.0, sheet.width)
+    axes.set_ylim(sheet.height, 0.0)
     for order, mark in enumerate(sheet.marks):
         if "path" in mark:
             points: list[tuple[float, float]] = []

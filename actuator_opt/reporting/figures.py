@@ -138,9 +138,17 @@ def fitted(words: str, room: float, size: float = 6.5) -> str:
     return words.rstrip() + "…"
 
 
-def legend(ink: Ink, right: float, y: float, entries: Sequence[tuple[str, dict[str, Any]]]) -> None:
-    """Names of curves in one line that ends at `right`, each after a piece of its line."""
-    x = right - sum(text_width(words, 6.5) + 11.0 for words, _ in entries) + 3.5
+def legend(
+    ink: Ink,
+    x: float,
+    y: float,
+    entries: Sequence[tuple[str, dict[str, Any]]],
+    *,
+    ends: bool = True,
+) -> None:
+    """Names of curves in one line that ends at `x`, or starts there, each after its line."""
+    if ends:
+        x -= sum(text_width(words, 6.5) + 11.0 for words, _ in entries) - 3.5
     for words, style in entries:
         ink.line((x, y), (x + 6.0, y), **style)
         ink.text(x + 7.5, y, words, size=6.5)

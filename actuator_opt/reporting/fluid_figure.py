@@ -358,14 +358,11 @@ def write_figure(material: Material, folder: Path) -> list[Path]:
     }
     contents = {}
     with mpl.rc_context(style):
-        figure = fallback._figure(ink)
-        figure.set_size_inches(ink.width / 25.4, ink.height / 25.4)
-        figure.axes[0].set_xlim(0.0, ink.width)
-        figure.axes[0].set_ylim(ink.height, 0.0)
+        figure = fallback.drawn(ink)
         FigureCanvasAgg(figure)
         for kind, about in (("png", {"Software": None}), ("svg", {"Date": None, "Creator": None})):
             file = io.BytesIO()
             figure.savefig(file, format=kind, dpi=writer.PIXELS_PER_INCH, metadata=about)
             contents[f"{material.name}.{kind}"] = file.getvalue()
-    writer._write(folder, contents)
+    writer.write_all(folder, contents)
     return [folder / name for name in contents]

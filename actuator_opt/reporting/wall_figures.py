@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..evaluation.study.record import Profile, WallStudy
-from .figures import Axes
+from .figures import Axes, fitted, legend
 from .ink import BLACK, BLUE, GREY, RED, WHITE, Ink, Point, text_width
 from .text import number
 
@@ -49,18 +49,6 @@ class Rung:
     color: str
     remark: str = ""
     required: float | None = None
-
-
-def _legend(
-    ink: Ink, x: float, y: float, entries: Sequence[tuple[str, dict[str, Any]]], *, ends: bool
-) -> None:
-    """Names of the curves in one line that starts at `x`, or ends there."""
-    if ends:
-        x -= sum(text_width(words, 6.5) for words, _ in entries) + 11.0 * len(entries) - 3.5
-    for words, style in entries:
-        ink.line((x, y), (x + 6.0, y), **style)
-        ink.text(x + 7.5, y, words, size=6.5)
-        x += 11.0 + text_width(words, 6.5)
 
 
 def _panel(
@@ -129,7 +117,7 @@ def stress_figure(study: WallStudy, *, width: float = 180.0, height: float = 52.
     if rest is not None:
         loads.append((rest, _REST))
         entries.append((_AT_REST.get(rest.name, rest.name), _REST))
-    _legend(ink, width, 1.8, entries, ends=True)
+    legend(ink, width, 1.8, entries, ends=True)
     panel = (width - 3 * 12.5) / 3
     for k, part in enumerate(("hoop", "axial", "radial")):
         box = (11.0 + k * (panel + 12.0), 12.0, panel, height - 22.0)
@@ -146,7 +134,7 @@ def strength_figure(study: WallStudy, *, width: float = 180.0, height: float = 5
     paths = list(zip(study.profiles, _STYLES, strict=False))
     curves = [Curve(one.used, style) for one, style in paths if one.used is not None]
     axes = _panel(ink, box, "Strength used, 1/SR", study, curves, _SHARES, (1.0,))
-    _legend(ink, box[0] - 9.6, 1.8, [(one.name, style) for one, style in paths], ends=False)
+    legend(ink, box[0] - 9.6, 1.8, [(one.name, style) for one, style in paths], ends=False)
     for index, row in enumerate(study.radius):
         found = [float(v) for one, _ in paths if one.used is not None for v in one.used[index]]
         worst = max((v for v in found if not math.isnan(v)), default=0.0)
@@ -167,7 +155,7 @@ def strength_figure(study: WallStudy, *, width: float = 180.0, height: float = 5
     named = [one for one in named if any(math.isfinite(float(v)) for row in one[1] for v in row)]
     curves = [Curve(values, style) for _, values, style in named]
     _panel(ink, box, "Stress over strength", study, curves, _NUMBERS, (1.0, -1.0))
-    _legend(ink, width, 1.8, [(words, style) for words, _, style in named], ends=True)
+    legend(ink, width, 1.8, [(words, style) for words, _, style in named], ends=True)
     return ink
 
 
@@ -190,15 +178,8 @@ def ladder_figure(rungs: Sequence[Rung], working: float, *, width: float = 180.0
             ink.line((x, y - 2.2), (x, y + 2.2), stroke=RED, pen=0.45)
         ink.text(values + 14.0, y, number(rung.pressure / 1e5), size=6.5, anchor="right", bold=True)
         ink.text(values + 28.0, y, number(rung.pressure / working, 3), size=6.5, anchor="right")
-        ink.text(values + 31.0, y, _fit(rung.remark, width - values - 31.0), size=6.2, color=GREY)
+        ink.text(
+            values + 31.0, y, fitted(rung.remark, width - values - 31.0, 6.2), size=6.2, color=GREY
+        )
     ink.line((left, top), (left, top + step * len(rungs)), pen=0.2)
     return ink
-
-
-def _fit(words: str, room: float, size: float = 6.2) -> str:
-    """Words cut with an ellipsis to what fits into `room` mm."""
-    if text_width(words, size) <= room:
-        return words
-    while words and text_width(words + "…", size) > room:
-        words = words[:-1]
-    return words.rstrip() + "…"

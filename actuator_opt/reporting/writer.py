@@ -106,7 +106,7 @@ def write_report(
     contents = {f"{stem}.pdf": pdf, f"{stem}.png": images[0]}
     for index, image in enumerate(images[1:], 2):
         contents[f"{stem}-page-{index}.png"] = image
-    _write(folder, contents)
+    write_all(folder, contents)
     _remove_later_pages(folder, stem, len(images))
     return [
         ReportFile(
@@ -186,7 +186,7 @@ def _font_folders() -> list[str]:
     return [str(Path(found.origin).parent / "mpl-data" / "fonts" / "ttf")]
 
 
-def _write(folder: Path, contents: Mapping[str, bytes]) -> None:
+def write_all(folder: Path, contents: Mapping[str, bytes]) -> None:
     aside: list[tuple[Path, Path]] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
