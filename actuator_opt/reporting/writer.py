@@ -187,6 +187,7 @@ def _font_folders() -> list[str]:
 
 
 def write_all(folder: Path, contents: Mapping[str, bytes]) -> None:
+    """Write every file aside, then rename all: whole or not at all."""
     aside: list[tuple[Path, Path]] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
