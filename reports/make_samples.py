@@ -1,4 +1,4 @@
-"""Write the committed reports into reports/samples: one for each shipped design, and the study.
+"""Write the committed reports into reports/samples: one for each shipped design, and the studies.
 
 Run from the root of the checkout; the same input gives the same bytes.
 """
@@ -11,7 +11,7 @@ from pathlib import Path
 import actuator_opt as ao
 
 ROOT = Path(__file__).resolve().parent.parent
-STUDY = ROOT / "designs" / "scripts" / "knee_materials.py"
+STUDIES = ("knee_materials", "knee_dynamics")
 
 
 def main() -> None:
@@ -33,9 +33,10 @@ def main() -> None:
             if file.path.stem != path.stem:  # the PDF holds every sheet; one PNG is enough here
                 file.path.unlink()
         print(files[0].path.relative_to(ROOT), files[0].pages, "sheets")
-    study = runpy.run_path(str(STUDY))
-    sheets = study["write"](study["compute"](), ROOT / "reports" / "samples")
-    print(f"reports/samples/{STUDY.stem}.pdf", sheets, "sheets")
+    for name in STUDIES:
+        study = runpy.run_path(str(ROOT / "designs" / "scripts" / f"{name}.py"))
+        sheets = study["write"](study["compute"](), ROOT / "reports" / "samples")
+        print(f"reports/samples/{name}.pdf", sheets, "sheets")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from .. import quantities
 from .view import Fault, View, length_text
 
 
@@ -26,9 +27,14 @@ def lines(view: View) -> Iterator[Fault]:
             )
 
 
+ENDS = ("closed", "valve", "constant_pressure", "reducing_valve")
+
+
 def ports(view: View) -> Iterator[Fault]:
     """What ends the lines is described."""
     end = view.text("ports", "end")
+    if end not in ENDS:  # itself a fault, told where it stands
+        return
     needed = {"valve": ("valve",), "reducing_valve": ("ports", "reducing_valve")}.get(end or "")
     if needed is not None and not view.has(*needed):
         yield Fault(
@@ -52,6 +58,36 @@ def ports(view: View) -> Iterator[Fault]:
         )
 
 
+def valve(view: View) -> Iterator[Fault]:
+    """The centred valve leaks less than the open one passes, at one pressure drop."""
+    numbers = [
+        view.number("valve", name)
+        for name in ("rated_flow", "rated_drop", "leakage_flow", "leakage_drop")
+    ]
+    if any(number is None for number in numbers):
+        return
+    rated, rated_drop, leakage, leakage_drop = (number or 0.0 for number in numbers)
+    most = rated * (leakage_drop / rated_drop) ** 0.5
+    if leakage >= most:
+        text = quantities.INPUTS["leakage_flow"].text
+        yield Fault(
+            ("valve", "leakage_flow"),
+            f"{text(leakage)}: the centred valve passes as much as the open one",
+            f"write less than {text(most)}",
+        )
+
+
+def stiffness(view: View) -> Iterator[Fault]:
+    """The published totals have no place for sticking seals."""
+    published = view.text("stiffness", "topology") != "per_chamber"
+    if published and view.text("stiffness", "seals") == "sticking":
+        yield Fault(
+            ("stiffness", "seals"),
+            "sticking: the published topologies have no seals",
+            'write "topology: per_chamber", or "seals: sliding"',
+        )
+
+
 def control(view: View) -> Iterator[Fault]:
     """A position loop needs the valve it drives."""
     if view.has("control") and not view.has("valve"):
@@ -70,12 +106,34 @@ def held_pressures(view: View) -> Iterator[Fault]:
             yield Fault(
                 (*loc, missing), f"missing: {other} needs it", f'add e.g. "{missing}: 20 bar"'
             )
+        for name in ("pressure_a", "pressure_b"):
+            pressure, supply = view.number(*loc, name), view.number("supply", "pressure")
+            ratio = view.number("supply", "proof_ratio")
+            if pressure is None or supply is None or ratio is None:
+                continue
+            if pressure > supply * ratio * (1 + 1e-9):
+                text = quantities.INPUTS["pressure"].text
+                yield Fault(
+                    (*loc, name),
+                    f"{text(pressure)}: above proof pressure ({text(supply * ratio)})",
+                    f"write at most {text(supply * ratio)}, or raise supply.pressure",
+                )
 
 
 NEEDS: dict[str, tuple[tuple[str, ...], str]] = {
     **dict.fromkeys(
         ("ultimate_gain", "position_gain", "gain_margin", "phase_margin", "bandwidth"),
         (("valve",), "add valve"),
+    ),
+    **dict.fromkeys(
+        (
+            "line_velocity",
+            "line_pressure_drop",
+            "line_drop_ratio",
+            "line_hammer",
+            "line_resonance",
+        ),
+        (("lines",), "add lines"),
     ),
     **dict.fromkeys(
         ("dynamic_stiffness", "dynamic_phase"),
@@ -98,7 +156,7 @@ def requirements(view: View) -> Iterator[Fault]:
         if not known:
             yield Fault(
                 ("requirements", metric),
-                f"nothing gives this design a {metric}",
+                f"nothing gives this design the metric {metric}",
                 f"{remedy}, or leave the requirement out",
                 at_key=True,
             )
@@ -115,6 +173,8 @@ def requirements(view: View) -> Iterator[Fault]:
 CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     lines,
     ports,
+    valve,
+    stiffness,
     control,
     held_pressures,
     requirements,

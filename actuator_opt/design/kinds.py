@@ -83,7 +83,7 @@ def _range_fault(shown_value: str, number: float, quantity: Quantity) -> ValueFa
     elif number != number:
         message = f"{shown_value}: is not a number"
     else:
-        message = f"{shown_value}: outside the valid range of a {quantity.label}"
+        message = f"{shown_value}: outside the valid range ({quantity.label})"
     return ValueFault(message, f"write {quantity.range_text()}")
 
 

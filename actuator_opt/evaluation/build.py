@@ -169,7 +169,7 @@ def _metric(
     if not usable:
         why = computed.why.get(name, "the models have no finite answer for these dimensions")
         if rows and all(math.isinf(row[0]) for row in rows):
-            why = "nothing loads it: the factor is unlimited"
+            why = computed.why.get(name, "nothing loads it: the factor is unlimited")
         definition = None if name in quantities.METRICS else subject.quantities[name]
         return Metric(name=name, value=None, why=why, definition=definition)
     pick = min if SENSES.get(name, "max") == "min" else max

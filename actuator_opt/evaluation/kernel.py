@@ -127,6 +127,8 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
         for name, value in geometry_module.lands(g, thread / 2).items():
             out.put(name, value)
+        if not g.rod_thicknesses:
+            out.skip("geometry_rod_bore", "the rod has no layers")
         _manufacture(v, subject, out)
         out.put("barrel_length", g.barrel_length)
         out.put("closed_length", g.closed_length)

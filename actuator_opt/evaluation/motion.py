@@ -103,7 +103,7 @@ class Motion:
     def mode(self, model: LinearActuator, position: Array) -> loop.Mode:
         """Mode of the load on the actuator as it is held."""
         closed = dynamics.natural_frequency(
-            stiffness=self.springs.stiffness(position), mass=self.mass
+            stiffness=self.springs.balance(position), mass=self.mass
         )
         return loop.load_mode(model=model, near=closed)
 
@@ -259,8 +259,8 @@ def compute(
     model = motion.model(positions)
     if wanted is None or "damping_ratio" in wanted:
         mode = motion.mode(model, positions)
-        out.put("damping_ratio", dict(zip(names, mode.damping_ratio, strict=True)))
-    _dynamic_stiffness(v, design, model, names, out)
+        out.put("damping_ratio", _by_place(names, mode.damping_ratio, positions))
+    _dynamic_stiffness(v, design, model, names, positions, out)
     if motion.spool is None:
         for name in LOOP_METRICS:
             out.skip(name, "no valve stated: add valve")
@@ -269,11 +269,22 @@ def compute(
     return dict(zip(names, positions, strict=True))
 
 
+def _by_place(names: list[str], value: Array, positions: Array) -> dict[str, Array]:
+    """A value at every place; where nothing depends on the place, the same at all."""
+    shape = np.broadcast_shapes(np.shape(value), positions.shape)
+    return dict(zip(names, np.broadcast_to(value, shape), strict=True))
+
+
 LOOP_METRICS = ("ultimate_gain", "position_gain", "gain_margin", "phase_margin", "bandwidth")
 
 
 def _dynamic_stiffness(
-    v: Values, design: Design, model: LinearActuator, names: list[str], out: Computed
+    v: Values,
+    design: Design,
+    model: LinearActuator,
+    names: list[str],
+    positions: Array,
+    out: Computed,
 ) -> None:
     shaken = np.array([case.frequency is not None for case in design.load_cases])
     if not shaken.any():
@@ -282,9 +293,9 @@ def _dynamic_stiffness(
         return
     parts = linear.dynamic_stiffness(model=model, frequency=v.case("frequency", 1.0))
     values = magnitude(parts.real, parts.imaginary)
-    out.put("dynamic_stiffness", dict(zip(names, values, strict=True)), cases=shaken)
+    out.put("dynamic_stiffness", _by_place(names, values, positions), cases=shaken)
     phase = angle(parts.imaginary, parts.real)
-    out.put("dynamic_phase", dict(zip(names, phase, strict=True)), cases=shaken)
+    out.put("dynamic_phase", _by_place(names, phase, positions), cases=shaken)
 
 
 def _position_loop(
@@ -300,12 +311,15 @@ def _position_loop(
     directions = np.array([True, False]).reshape(-1, 1, 1, 1)
     one = motion.position_loop(positions, extending=directions)
     limit = loop.ultimate_gain(loop=one)
+    out.why["ultimate_gain"] = out.why["gain_margin"] = "no gain makes the loop swing"
+    out.why["phase_margin"] = "no crossover: the open loop stays below one"
     stated = design.control is not None and design.control.gain is not None
     gain = v["control.gain"] if stated else maximum(0.5 * _least(limit.gain), LEAST_GAIN)
     margin = limit.gain / gain
     found = loop.margins(loop=one, gain=gain)
 
     def put(name: str, value: Array) -> None:
+        value = np.broadcast_to(value, np.broadcast_shapes(np.shape(value), (2, *positions.shape)))
         rows = {
             f"{word}, {place}": value[i, k]
             for i, word in enumerate(("extending", "retracting"))
@@ -316,8 +330,14 @@ def _position_loop(
     put("ultimate_gain", limit.gain)
     put("gain_margin", margin)
     put("phase_margin", where(real(margin) > 1, found.phase_margin, -found.phase_margin))
-    put("bandwidth", found.bandwidth)
+    put("bandwidth", where(real(margin) > 1, found.bandwidth, 0.0))  # none where the loop swings
     out.put("position_gain", gain)
+
+
+def _weakest_gain(motion: Motion) -> Array:
+    """Smallest flow gain of the valve over chambers and directions, in every case."""
+    gains = [gain for one in motion.slopes.values() for gain in (one.gain_a, one.gain_b)]
+    return np.min(np.stack(np.broadcast_arrays(*[np.real(gain) for gain in gains])), axis=0)
 
 
 LEAST_GAIN = 1e-3
@@ -347,11 +367,35 @@ def warnings(
         )
     if "ultimate_gain" in out.metrics:
         least = min(float(np.min(np.real(x))) for x in out.metrics["ultimate_gain"].values())
+        margin = min(float(np.min(np.real(x))) for x in out.metrics["gain_margin"].values())
+        if least > 0 and margin <= 1:
+            yield "bandwidth", "the position loop swings at this gain: its bandwidth counts as 0"
+        stalled = [
+            case
+            for case, gain in zip(
+                v.cases, np.broadcast_to(_weakest_gain(motion), (len(v.cases), 1)), strict=True
+            )
+            if gain[0] == 0
+        ]
+        for case in stalled:
+            yield (
+                "bandwidth",
+                f"{case}: the held force takes the whole supply pressure, the valve moves nothing",
+            )
         if least == 0:
             yield (
                 "ultimate_gain",
                 "no gain is stable: the load grows by itself, or leakage across the piston "
                 "outweighs the centred valve's; give the valve leakage or the load damping",
+            )
+    for i, one in enumerate(design.ports.accumulators):
+        held = state.holding_a if one.chamber == "a" else state.holding_b
+        precharge = float(np.max(np.real(v[f"ports.accumulators[{i}].precharge"])))
+        if float(np.min(np.real(held))) <= precharge:
+            yield (
+                "",
+                f"ports.accumulators[{i}]: its precharge is not below the pressure it holds in "
+                "every case: it takes no oil there",
             )
     asked = {f"load case {case.name}": case.frequency or 0.0 for case in design.load_cases}
     if motion.spool is not None:

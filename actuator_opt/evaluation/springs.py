@@ -101,12 +101,12 @@ class Springs:
     def _by_energy(self, position: Array) -> dict[str, Array]:
         g = self.geometry
         a, b, ab = self.total().at(position, g.stroke)
-        det = a * b - ab * ab
-        per_a = (g.area_a * b + g.area_b * ab) / det  # pressure of A per displacement
-        per_b = -(g.area_a * ab + g.area_b * a) / det
+        det = a * b - ab * ab  # 0 where a chamber is empty: rigid, and divided by nothing
+        swing_a, swing_b = g.area_a * b + g.area_b * ab, -(g.area_a * ab + g.area_b * a)
         seals = 0.0 if self.seals is None else self.seals
-        moved = 1 / (g.area_a * per_a - g.area_b * per_b + seals)
-        force_a, force_b = moved * per_a, moved * per_b
+        whole = g.area_a * swing_a - g.area_b * swing_b + seals * det
+        moved = det / whole  # displacement, pressures of A and B under a unit force
+        force_a, force_b = swing_a / whole, swing_b / whole
         parts = {}
         for cause, give in self.chambers.items():
             one = give.at(position, g.stroke)
@@ -124,30 +124,41 @@ class Springs:
         g = self.geometry
         square_a, square_b = g.area_a * g.area_a, g.area_b * g.area_b
 
+        def both(a: Array, b: Array) -> Array:
+            """Compliance of two springs side by side; an empty chamber is rigid."""
+            return a * b / (a + b)
+
         def side_a(cause: str) -> Array:
-            return square_a / self.chambers[cause].at(position, g.stroke).a
+            return self.chambers[cause].at(position, g.stroke).a / square_a
 
         def side_b(cause: str) -> Array:
-            return square_b / self.chambers[cause].at(position, g.stroke).b
+            return self.chambers[cause].at(position, g.stroke).b / square_b
 
         oil_a, oil_b = side_a("oil A"), side_b("oil B")
-        oil = oil_a + oil_b
-        parts = {"oil A": oil_a / oil / oil, "oil B": oil_b / oil / oil}
+        oil = both(oil_a, oil_b)
+        parts = {
+            "oil A": oil * oil_b / (oil_a + oil_b),
+            "oil B": oil * oil_a / (oil_a + oil_b),
+        }
         if self.topology == "elasswad_as_published":
             bulge = published.cylinder_expansion_as_published(
                 pressure=self.pressure, area=g.area_a, stroke=g.stroke
             )
             return parts | {"barrel": 1 / bulge}
         # eq. 23 lets the wall of chamber B swell over the annulus, not over the bore
-        parts["barrel"] = 1 / (side_a("barrel") + side_b("barrel") * g.area_a / g.area_b)
+        parts["barrel"] = both(side_a("barrel"), side_b("barrel") * g.area_b / g.area_a)
         for cause in ("pipes", "hoses"):
             if cause in self.chambers:
-                parts[cause] = 1 / (side_a(cause) + side_b(cause))
+                parts[cause] = both(side_a(cause), side_b(cause))
         return parts
 
     def stiffness(self, position: Array) -> Array:
         """Axial stiffness at a position."""
         return 1 / sum(self.compliances(position).values())
+
+    def balance(self, position: Array) -> Array:
+        """Axial stiffness at a position, per chamber whatever the topology."""
+        return 1 / (sum(self._by_energy(position).values()) + self.flexibility())
 
 
 def _stretch(design: Design, g: Geometry, wall: Wall, extra: Array) -> Give:

@@ -81,7 +81,8 @@ def load_mode(*, model: LinearActuator, near: Array) -> Mode:
     """Mode of the load on the oil: the pair of poles next to an expected frequency.
 
     omega^2 = lambda_1 lambda_2, zeta = -(lambda_1 + lambda_2)/(2 omega); above one the mode does
-    not swing.
+    not swing. Of two real poles of unlike sign the growing one counts, zeta = -lambda/omega with
+    omega^2 = -lambda_1 lambda_2.
 
     Parameters
     ----------
@@ -116,13 +117,17 @@ def load_mode(*, model: LinearActuator, near: Array) -> Mode:
     if found.shape[-1] < 2:
         still = 0.0 * near + np.zeros(found.shape[:-1])
         return Mode(still, still + math.inf)
+    shape = np.broadcast_shapes(found.shape[:-1], near.shape)
+    found, near = np.broadcast_to(found, (*shape, found.shape[-1])), np.broadcast_to(near, shape)
     with np.errstate(all="ignore"):
         one, two = _load_pair(found, near)
         motion = root_motion(polynomial, one), root_motion(polynomial, two)
         product = (one * two).real + 1j * (one * motion[1] + two * motion[0]).real
         total = (one + two).real + 1j * (motion[0] + motion[1]).real
-        omega = where(np.isnan(near), math.nan, sqrt(product))
-        frequency, ratio = omega / (2 * pi), -0.5 * total / omega
+        apart = product.real < 0  # one real pole grows, the other fades: the growing one counts
+        grows = where(one.real > 0, one.real + 1j * motion[0].real, two.real + 1j * motion[1].real)
+        omega = where(np.isnan(near), math.nan, sqrt(where(apart, -product, product)))
+        frequency, ratio = omega / (2 * pi), -where(apart, grows, 0.5 * total) / omega
     stepped = any(np.iscomplexobj(c) for c in polynomial)
     return Mode(frequency, ratio) if stepped else Mode(real(frequency), real(ratio))
 
@@ -267,6 +272,7 @@ def ultimate_gain(*, loop: OpenLoop) -> UltimateGain:
         start, found = _chosen(crossings, score)
         square = positive_root(axis, start)
         gain = where(found, -_value(size, square) / _value(along, square), math.inf)
+        gain = where(real(gain) > 0, gain, np.min(score, axis=-1, initial=math.inf))
     stable = _holds(loop)
     unknown = _unknown(loop)
     gain = where(unknown, math.nan, where(stable, gain, 0.0))
@@ -326,7 +332,8 @@ def margins(*, loop: OpenLoop, gain: Array) -> Margins:
 
     Returns
     -------
-    phase margin [rad], crossover [Hz], bandwidth [Hz]; NaN where there is none
+    phase margin [rad], infinite without a crossover; crossover [Hz], NaN without; bandwidth [Hz],
+    0 where nothing follows
 
     Notes
     -----
@@ -353,10 +360,15 @@ def margins(*, loop: OpenLoop, gain: Array) -> Margins:
         score = np.where(np.isfinite(crossings), np.abs(angles), np.inf)
         start, found = _chosen(crossings, score)
         omega = sqrt(positive_root(unity, start))
-        phase = where(found, absolute(_phase(forward, loop.denominator, omega)), math.nan)
+        phase = where(found, absolute(_phase(forward, loop.denominator, omega)), math.inf)
         start, falls = _chosen(falling, np.where(np.isfinite(falling), falling, np.inf))
-        width = sqrt(positive_root(half, start)) / (2 * pi)
-    return Margins(phase, where(found, omega / (2 * pi), math.nan), where(falls, width, math.nan))
+        width = where(falls, sqrt(positive_root(half, start)) / (2 * pi), 0.0)
+    unknown = _unknown(loop) | np.isnan(real(gain))
+    return Margins(
+        where(unknown, math.nan, phase),
+        where(found, omega / (2 * pi), math.nan),
+        where(unknown, math.nan, width),
+    )
 
 
 def _phase(upper: Polynomial, lower: Polynomial, omega: Array) -> Array:

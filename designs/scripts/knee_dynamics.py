@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Iterable
 from itertools import pairwise
 from math import ceil, floor, pi, sqrt
 from pathlib import Path
@@ -152,6 +153,7 @@ def measured(found: Any, metric: str, asked: float | None = None) -> Data:
         "wall": sum(layers),
         "frequency": frequency,
         "damping": damping,
+        "cases": [fast.case, slow.case],
         "speed_gains": speeds,
         "fast_bandwidth": fast.bandwidth,
         "swings_at": fast.ultimate_frequency,
@@ -175,7 +177,8 @@ def series(metric: str, required: Data, shares: tuple[float, ...], priced: bool)
     without = ao.optimise(wishes(without=metric), starts=1, prices=False)
     light = (1 + FREE) * without.objective_value
     free = ao.optimise(wishes(without=metric, goal=metric, mass=light), starts=1, prices=False)
-    most = ao.optimise(wishes(without=metric, goal=metric), starts=3, prices=False)
+    starts = 3 if priced else 1
+    most = ao.optimise(wishes(without=metric, goal=metric), starts=starts, prices=False)
     low, high = free.objective_value, most.objective_value
     points, start = [], {v.path: v.value for v in free.variables}
     for share in shares:
@@ -198,7 +201,7 @@ def compute(*, quick: bool = False) -> Data:
     changes = list(CHANGES)[:: 3 if quick else 1]
     kept = knee.changed(required["values"])
     at_mass = wishes(without="bandwidth", goal="bandwidth", mass=(1 + FREE) * required["mass"])
-    return {
+    study = {
         "version": ao.__version__,
         "required": required,
         "kept": {
@@ -214,6 +217,11 @@ def compute(*, quick: bool = False) -> Data:
             for name in changes
         },
     }
+    text = json.dumps(
+        study, allow_nan=False
+    )  # seven digits: the last bits of a machine do not show
+    found: Data = json.loads(text, parse_float=lambda digits: float(f"{float(digits):.7g}"))
+    return found
 
 
 def shown(metric: str, row: Data) -> float:
@@ -238,9 +246,9 @@ def limits(row: Data, besides: list[str] | None = None) -> list[str]:
     return [name for name in dict.fromkeys(names) if name and name not in (besides or [])]
 
 
-def always(found: Data) -> list[str]:
-    """What binds at every point of a series."""
-    first, *rest = (limits(row) for row in found["points"])
+def always(rows: Iterable[Data]) -> list[str]:
+    """What binds at every one of some optima."""
+    first, *rest = (limits(row) for row in rows)
     return [name for name in first if all(name in names for names in rest)]
 
 
@@ -254,8 +262,8 @@ def sentence(metric: str, found: Data) -> str:
     return (
         f"{metric.replace('_', ' ').capitalize()}: up to {ends[0]} {unit} it costs nothing; from"
         f" there to {ends[1]} {unit} each {unit} costs {means[0]} g on average, from {ends[1]} to"
-        f" {ends[2]} {unit} {means[1]} g. Beyond, within the bounds of the dimensions, stand in the"
-        f" way: {', '.join(limits(most))}."
+        f" {ends[2]} {unit} {means[1]} g. Beyond, within the bounds of the dimensions, these"
+        f" stand in the way: {', '.join(limits(most))}."
     )
 
 
@@ -281,7 +289,7 @@ def series_rows(metric: str, found: Data) -> list[list[str]]:
                 fixed(6e12 * v["piston.leakage_conductance"], 2),
                 fixed(row["frequency"], 1),
                 *(number(x, 3) for x in (checks if metric == "bandwidth" else [row["maxwell"]])),
-                ", ".join(limits(row, always(found))),
+                ", ".join(limits(row, always(found["points"]))),
             ]
         )
     return rows
@@ -290,8 +298,8 @@ def series_rows(metric: str, found: Data) -> list[list[str]]:
 def change_rows(study: Data) -> list[list[str]]:
     """Heads and rows: bandwidth at the same mass after one change, and what it takes elsewhere."""
     heads = ["one change", "bandwidth, Hz", "closed form, Hz", "f₀, Hz", "valve loses, W"]
-    rows = [[*heads, "bleed loses, W", "sag, mm", "what binds"]]
-    for name, row in study["changes"].items():
+    rows, changes = [[*heads, "bleed loses, W", "sag, mm", "what binds besides"]], study["changes"]
+    for name, row in changes.items():
         rows.append(
             [
                 name,
@@ -301,7 +309,7 @@ def change_rows(study: Data) -> list[list[str]]:
                 fixed(row["valve_power"], 0),
                 fixed(row["bleed_power"], 0),
                 fixed(1e3 * row["sag"], 2),
-                ", ".join(limits(row)),
+                ", ".join(limits(row, always(changes.values()))),
             ]
         )
     return rows
@@ -309,13 +317,13 @@ def change_rows(study: Data) -> list[list[str]]:
 
 def drawing(study: Data) -> Ink:
     """Mass over what is asked, with the prices as tangents."""
-    ink = Ink(180.0, 66.0)
+    ink = Ink(186.0, 58.0)
     for k, (metric, found) in enumerate(study["series"].items()):
         rows = [*found["points"], found["most"]]
         xs, ys = [shown(metric, row) for row in rows], [1e3 * row["mass"] for row in rows]
         room, wide = 0.06 * (xs[-1] - xs[0]), 0.16 * (xs[-1] - xs[0])
-        span = (10 * floor(0.1 * min(ys) - 0.5), 10 * ceil(0.1 * max(ys) + 0.5))
-        axes = Axes(ink, (10.0 + 92.0 * k, 8.0, 76.0, 46.0), (xs[0] - wide, xs[-1] + room), span)
+        span = (10 * floor(0.1 * min(ys) - 1.5), 10 * ceil(0.1 * max(ys) + 0.5))
+        axes = Axes(ink, (10.0 + 96.0 * k, 8.0, 78.0, 40.0), (xs[0] - wide, xs[-1] + room), span)
         axes.frame("Mass, g", f"{metric.replace('_', ' ')} required, {UNITS[metric]}")
         ink.path(axes.clipped([xs[0] - wide, *xs], [ys[0], *ys]), stroke=BLUE, pen=0.5)
         for x, y, row in zip(xs, ys, rows, strict=True):
@@ -336,63 +344,65 @@ def drawing(study: Data) -> Ink:
 def remarks(study: Data) -> Data:
     """What stands under the tables."""
     base, found = study["required"], study["series"]
-    first, last = found["bandwidth"]["points"][0], found["bandwidth"]["most"]
+    rows = {name: found[name]["points"] for name in ASKED} | {"changes": study["changes"].values()}
+    every = {name: f"Every row: {', '.join(always(rows[name]))}." for name in rows}
+    first, last = rows["bandwidth"][0], found["bandwidth"]["most"]
     ratios = [number(row["speed_gains"][0] / row["speed_gains"][1], 3) for row in (first, last)]
     lifted = [number(row["frequency"], 3) for row in (first, last)]
-    limit = number(2 * base["damping"] * base["frequency"], 3)
+    merritt = number(2 * base["damping"] * base["frequency"], 3)
     kept = ", ".join(f"{number(m, 3)} with {kg} kg" for kg, m in study["kept"].items())
-    found_hz = number(base["metrics"]["bandwidth"], 3)
+    model, (fast, slow) = number(base["metrics"]["bandwidth"], 3), base["cases"]
     return {
         "bandwidth": (
             "g per Hz: from the row above, by finite differences; red in the figure: by the"
-            f" multipliers. Every row: {', '.join(always(found['bandwidth']))}. By hand, as"
-            f" required: Merritt's limit of a proportional loop, 2ζf₀ = {limit} Hz of velocity"
-            " gain, over the gain margin and over the ratio of the valve's gain where the margin"
-            f" is least (swing) to that where the bandwidth is (stance), is"
-            f" {number(base['merritt'], 3)} Hz. That is for a spool without lag. This one has"
-            f" {number(study['spool'], 3)} Hz, so that the loop would swing below f₀, at"
-            f" {number(base['swings_at'], 3)} Hz, where the resonance magnifies less: with its two"
-            f" poles the closed form gives {number(base['with_spool'], 3)} Hz, the whole model"
-            f" {found_hz} Hz. What is paid for is f₀, from {lifted[0]} to {lifted[1]} Hz, and a"
-            f" bore that brings the ratio of gains from {ratios[0]} to {ratios[1]}."
+            f" multipliers. {every['bandwidth']} By hand, as required: Merritt's limit of a"
+            f" proportional loop, 2ζf₀ = {merritt} Hz of velocity gain, over the gain margin and"
+            f" over the ratio of the valve's gain where the margin is least ({fast}) to that where"
+            f" the bandwidth is ({slow}), is {number(base['merritt'], 3)} Hz. That is for a spool"
+            f" without lag. This one has {number(study['spool'], 3)} Hz, so that the loop would"
+            f" swing below f₀, at {number(base['swings_at'], 3)} Hz, where the resonance magnifies"
+            f" less: with its two poles the closed form gives {number(base['with_spool'], 3)} Hz,"
+            f" the whole model {model} Hz. What is paid for is f₀, from {lifted[0]} to {lifted[1]}"
+            f" Hz, and a bore that brings the ratio of gains from {ratios[0]} to {ratios[1]}. Each"
+            " optimum is the best of a few starts, not a proof."
         ),
         "dynamic_stiffness": (
-            f"Every row: {', '.join(always(found['dynamic_stiffness']))}. Closed form: the weakest"
-            " static stiffness as a spring that leaks (Maxwell) at the rate of the modes' damping,"
-            " less the inertia of the mass."
+            f"{every['dynamic_stiffness']} Closed form: the weakest static stiffness as a spring"
+            " that leaks (Maxwell) at the rate of the modes' damping, less the inertia of the mass."
         ),
         "changes": (
-            f"Each re-optimised for bandwidth at {fixed(1e3 * base['mass'], 1)} g. Valve: centred,"
-            " at supply pressure; bleed: at full pressure difference; sag: the loop's standing"
-            " error under the stance's force by the bleed alone. A quicker spool makes it worse:"
-            " its lag no longer keeps the loop off the resonance. What that rests on is the load:"
-            f" the optimum as required, its gain kept, has gain margins of {kept}. If the gain"
-            " followed the load's pressure, stance could follow about as swing does,"
-            f" {number(base['fast_bandwidth'], 2)} Hz against {found_hz} Hz, without a gram."
+            f"Each re-optimised for bandwidth at {fixed(1e3 * base['mass'], 1)} g."
+            f" {every['changes']} Valve: centred, at supply pressure; bleed: at full pressure"
+            f" difference; sag: the loop's standing error under the force of the {slow} by the"
+            " bleed alone. A quicker spool makes it worse: its lag no longer keeps the loop off"
+            " the resonance. All of it rests on the mass of the load: the optimum as required, its"
+            f" gain kept, has gain margins of {kept}. If the gain followed the load's pressure,"
+            f" {slow} could follow about as {fast} does, {number(base['fast_bandwidth'], 2)} Hz"
+            f" against {model} Hz, without a gram."
         ),
     }
 
 
 def page(study: Data) -> tuple[bytes, list[bytes]]:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
-    text = json.dumps(study, sort_keys=True, allow_nan=False)
-    study = json.loads(text, parse_float=lambda digits: float(f"{float(digits):.7g}"))
     said, found = remarks(study), study["series"]
     grids = {name: series_rows(name, found[name]) for name in ASKED} | {
         "changes": change_rows(study)
     }
     blocks = [figure("What it weighs", drawing(study))]
     for name, (heads, *rows) in grids.items():
-        columns = [column(head, "right", "12.4mm") for head in heads]
+        columns = [column(head, "right", "12.6mm") for head in heads]
         columns[-1] |= {"align": "left", "width": 1}
         if name == "changes":
             columns[0] |= {"align": "left", "width": "auto"}
+        else:
+            columns[0]["width"], columns[6]["width"] = "16mm", "14.4mm"
         blocks.append(table(TITLES[name], columns, rows, note=said[name]))
     data = {
         "version": study["version"],
         "lead": [sentence(name, found[name]) for name in ASKED],
         "blocks": blocks,
-        "numbers": json.dumps(study, indent=1, sort_keys=True),
+        "numbers": json.dumps(study, indent=1, allow_nan=False),
     }
     shared, mark, _ = TEMPLATE.read_text("utf-8").partition("// ---- sheet ----")
     assert mark, "the report template no longer says where its definitions end"

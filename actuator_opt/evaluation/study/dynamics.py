@@ -232,7 +232,10 @@ def _frequencies(polynomials: list[tuple[Polynomial, int]]) -> Array:
     """
     found = [FREQUENCIES]
     for polynomial, index in polynomials:
-        zeros = roots(polynomial[_integrators(polynomial) :])
+        polynomial = polynomial[_integrators(polynomial) :]
+        if len(polynomial) < 2:
+            continue
+        zeros = roots(polynomial)
         zeros = zeros.reshape(-1, zeros.shape[-1])
         swings = zeros[min(index, len(zeros) - 1)]
         swings = swings[swings.imag > 0]
@@ -246,7 +249,8 @@ def _frequencies(polynomials: list[tuple[Polynomial, int]]) -> Array:
 
 def _integrators(polynomial: Polynomial) -> int:
     """How many roots at zero a polynomial has: coefficients that are 0."""
-    return next(k for k, one in enumerate(polynomial) if np.any(np.asarray(one) != 0))
+    known = (k for k, one in enumerate(polynomial) if np.any(np.asarray(one) != 0))
+    return next(known, len(polynomial))
 
 
 def _response(

@@ -1,0 +1,235 @@
+"""The study of what each hertz of the knee costs: feasible optima, prices, and a page of them."""
+
+from __future__ import annotations
+
+import importlib.util
+import itertools
+import json
+import os
+import re
+import subprocess
+import sys
+from io import BytesIO
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import actuator_opt as ao
+
+ROOT = Path(__file__).parents[1]
+SCRIPT = ROOT / "designs" / "scripts" / "knee_dynamics.py"
+REPORT = ROOT / "reports" / "samples" / "knee_dynamics.pdf"
+
+
+def _module() -> Any:
+    spec = importlib.util.spec_from_file_location(SCRIPT.stem, SCRIPT)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+study = _module()
+
+
+def _words(pdf: bytes) -> str:
+    """Text of a PDF as one line."""
+    pypdf = pytest.importorskip("pypdf")
+    text = " ".join(page.extract_text() for page in pypdf.PdfReader(BytesIO(pdf)).pages)
+    return " ".join(text.split())
+
+
+def _numbers(pdf: Path) -> dict[str, Any]:
+    pypdf = pytest.importorskip("pypdf")
+    return json.loads(pypdf.PdfReader(pdf).attachments["knee_dynamics.json"][0])
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory) -> tuple[str, Path]:
+    """What the script prints and writes when run as a person runs it, with few points."""
+    pytest.importorskip("typst")
+    folder = tmp_path_factory.mktemp("reports")
+    done = subprocess.run(
+        [sys.executable, "-W", "error", str(SCRIPT), "--quick", "--out", str(folder)],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONUTF8": "1"},
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout, folder / "knee_dynamics.pdf"
+
+
+@pytest.fixture(params=["quick", "committed"])
+def numbers(request, quick) -> dict[str, Any]:
+    """The numbers of a quick run, and those that the committed report carries inside."""
+    return _numbers(quick[1] if request.param == "quick" else REPORT)
+
+
+@pytest.mark.parametrize("spool", [60.0, 120.0, 240.0])
+def test_the_closed_form_puts_a_pair_of_poles_on_the_axis(spool) -> None:
+    """At the gain it gives, s R(s) V(s) + K has a root i w and none to the right of the axis."""
+    mode = {"frequency": 112.0, "damping": 0.05}
+    gain = study.ultimate_speed_gain(**mode, spool=spool, spool_damping=0.7)
+    low = [1.0]
+    for frequency, damping in ((112.0, 0.05), (spool, 0.7)):
+        omega = 2 * pi * frequency
+        low = np.polymul(low, [1 / omega**2, 2 * damping / omega, 1.0])
+    low = np.polymul(low, [1.0, 0.0])
+    low[-1] += 2 * pi * gain
+    assert max(np.roots(low).real) == pytest.approx(0, abs=1e-6 * 2 * pi * 112)
+
+
+def test_the_closed_form_tends_to_that_of_merritt() -> None:
+    """A spool quick beyond measure leaves K/(2 pi) = 2 zeta f_0."""
+    mode = {"frequency": 112.0, "damping": 0.05}
+    assert study.ultimate_speed_gain(**mode) == pytest.approx(11.2)
+    fast = study.ultimate_speed_gain(**mode, spool=1e7, spool_damping=0.7)
+    assert fast == pytest.approx(11.2, rel=1e-4)
+
+
+def test_the_leaking_spring_has_its_two_ends() -> None:
+    """Without leakage k - m w^2 is left, with a leak beyond measure the mass alone."""
+    given = {"stiffness": 1e7, "mass": 20.0, "frequency": 30.0}
+    inertia = 20 * (2 * pi * 30) ** 2
+    assert study.shaken_stiffness(**given, corner=0.0) == pytest.approx(1e7 - inertia)
+    assert study.shaken_stiffness(**given, corner=1e9) == pytest.approx(inertia, rel=1e-3)
+
+
+def test_more_asked_never_weighs_less(numbers) -> None:
+    """Every point is an optimum, and mass rises with what is asked, ever more steeply."""
+    for metric, found in numbers["series"].items():
+        rows = [*found["points"], found["most"]]
+        assert {row["status"] for row in rows} == {"optimal"}
+        asked, masses = [row["asked"] for row in rows], [row["mass"] for row in rows]
+        assert asked == sorted(asked)
+        assert masses == sorted(masses)
+        slopes = [study.slope(metric, *pair) for pair in itertools.pairwise(rows)]
+        assert slopes == sorted(slopes)
+        assert slopes[0] > 0
+
+
+def test_every_point_meets_every_requirement(numbers) -> None:
+    """The dimensions of each point, set in the design as read, meet all that is required."""
+    for metric, found in numbers["series"].items():
+        for row in [*found["points"], found["most"]]:
+            asked = {f"requirements.{metric}.min": row["asked"]}
+            evaluation = ao.evaluate(ao.read(study.DESIGN).changed(row["values"] | asked))
+            assert evaluation.metrics["mass"].value == pytest.approx(row["mass"], rel=1e-6)
+            assert evaluation.metrics[metric].value == pytest.approx(row["asked"], rel=1e-5)
+            assert all(one.margin > -1e-5 for one in evaluation.requirements)  # seven digits
+
+
+def test_what_is_free_is_free(numbers) -> None:
+    """Where a series begins, leaving the requirement out saves no mass."""
+    for metric, found in numbers["series"].items():
+        without = ao.optimise(study.wishes(without=metric), starts=1, prices=False)
+        assert found["points"][0]["mass"] == pytest.approx(without.objective_value, rel=1e-5)
+        assert found["points"][0]["asked"] == pytest.approx(found["free"], rel=1e-6)
+
+
+def test_a_multiplier_lies_between_the_slopes_beside_it() -> None:
+    """Mass is convex here: the price of a point is that of neither chord, but between them."""
+    for metric, found in _numbers(REPORT)["series"].items():
+        rows, priced = [*found["points"], found["most"]], 0
+        for before, row, after in zip(rows, rows[1:], rows[2:], strict=False):
+            if metric in row["prices"]:
+                paid = study.price(metric, row)
+                low, high = study.slope(metric, before, row), study.slope(metric, row, after)
+                assert 0 < low < paid < high
+                priced += 1
+        assert priced == 2
+
+
+def test_the_closed_forms_agree_with_the_model(numbers) -> None:
+    """Spool, resonance and integrator give the bandwidth within 5 %, the leaking spring 3 %."""
+    for row in numbers["series"]["bandwidth"]["points"]:
+        assert row["with_spool"] == pytest.approx(row["metrics"]["bandwidth"], rel=0.05)
+    for row in numbers["series"]["dynamic_stiffness"]["points"]:
+        assert row["maxwell"] == pytest.approx(1e-6 * row["metrics"]["dynamic_stiffness"], rel=0.03)
+
+
+def test_a_quick_spool_comes_to_merritts_limit() -> None:
+    """With a spool of 1 kHz the model's bandwidth lies within 10 % of 2 zeta f_0 over the rest."""
+    row = _numbers(REPORT)["changes"]["spool of 1 kHz"]
+    assert row["metrics"]["bandwidth"] == pytest.approx(row["merritt"], rel=0.1)
+
+
+def test_changes_are_compared_at_one_mass(numbers) -> None:
+    """No change is given more mass than the design as required; undone it gives its bandwidth."""
+    base = numbers["required"]
+    for row in numbers["changes"].values():
+        assert row["status"] == "optimal"
+        assert row["mass"] <= (1 + 3e-6) * base["mass"]
+    same = numbers["changes"]["as it is"]["metrics"]["bandwidth"]
+    assert same == pytest.approx(base["metrics"]["bandwidth"], rel=1e-4)
+
+
+def test_what_the_page_says_in_words_holds() -> None:
+    """A quicker spool takes bandwidth, a heavier load margin; dearer points are stiffer, wider."""
+    found = _numbers(REPORT)
+    spools = [found["changes"][name] for name in found["changes"] if name.startswith("spool")]
+    widths = [row["metrics"]["bandwidth"] for row in spools]
+    assert len(widths) == 3
+    assert widths == sorted(widths, reverse=True)
+    assert list(found["kept"].values()) == sorted(found["kept"].values(), reverse=True)
+    for series in found["series"].values():
+        rows = [*series["points"], series["most"]]
+        assert all("friction" in study.limits(row) for row in rows)
+        for values in (
+            [r["frequency"] for r in rows],
+            [r["values"]["cylinder.bore"] for r in rows],
+        ):
+            assert values == sorted(values)
+    for row in found["series"]["bandwidth"]["points"]:
+        assert row["swings_at"] < row["frequency"]
+        assert row["cases"] == ["swing", "stance"]
+
+
+def test_losses_and_sag_are_those_by_hand() -> None:
+    """0.2 l/min at 50 bar is 195.7 W over two edge pairs at 205 bar; sag is g F/(A^2 K_v)."""
+    row = _numbers(REPORT)["required"]
+    edge = 0.2e-3 / 60 * (102.5 / 50) ** 0.5
+    assert row["valve_power"] == pytest.approx(2 * edge * 205e5, rel=1e-6)
+    bleed, bore = (row["values"][path] for path in ("piston.leakage_conductance", "cylinder.bore"))
+    speed = bleed * 6000 / (pi / 4 * bore**2) ** 2
+    assert row["sag"] == pytest.approx(speed / (2 * pi * row["speed_gains"][1]), rel=1e-5)
+
+
+def test_the_page_says_the_numbers(numbers) -> None:
+    """Masses, prices and sentences of the one sheet are those of the data, twice the same bytes."""
+    pytest.importorskip("typst")
+    pdf, sheets = study.page(numbers)
+    assert study.page(numbers)[0] == pdf
+    assert len(sheets) == 1
+    words = _words(pdf)
+    for metric, found in numbers["series"].items():
+        assert study.sentence(metric, found) in words.replace("- ", "")
+        for row in found["points"]:
+            assert f"{1e3 * row['mass']:.1f}" in words
+    for row in numbers["changes"].values():
+        assert f"{row['metrics']['bandwidth']:.3g}" in words
+
+
+def test_the_quick_run_prints_what_it_writes(quick) -> None:
+    """Every mass of the attached numbers stands in the printed tables."""
+    printed, pdf = quick
+    rows = _numbers(pdf)["series"]
+    masses = re.findall(r"^ +[\d.]+ +(\d{3}\.\d) ", printed, re.MULTILINE)
+    wanted = [f"{1e3 * r['mass']:.1f}" for f in rows.values() for r in [*f["points"], f["most"]]]
+    assert masses == wanted
+    assert pdf.with_suffix(".png").is_file()
+
+
+def test_the_committed_report_is_made_of_its_own_numbers() -> None:
+    """The script makes the committed text of the attached numbers."""
+    pytest.importorskip("typst")
+    assert _words(study.page(_numbers(REPORT))[0]) == _words(REPORT.read_bytes())
