@@ -135,7 +135,7 @@ def test_a_position_that_runs_backwards_has_no_gain(number):
 
 
 def test_loops_without_a_crossing():
-    """An integrator alone never swings; nor does a valve without flow; a NaN is never infinite."""
+    """An integrator alone never swings; nor does a valve without flow, which nothing follows; a NaN is never infinite."""
     limit = loop.ultimate_gain(loop=loop.OpenLoop((1.0,), (0.0, 1.0)))
     assert limit.gain == math.inf
     assert np.isnan(limit.frequency)
@@ -144,7 +144,9 @@ def test_loops_without_a_crossing():
             "gain_a": number(0.0), "gain_b": number(0.0),
         })  # fmt: skip
         assert loop.ultimate_gain(loop=still).gain == math.inf
-        assert np.isnan(loop.margins(loop=still, gain=10.0)).all()
+        margins = loop.margins(loop=still, gain=10.0)
+        assert (margins.phase_margin, margins.bandwidth) == (math.inf, 0.0)
+        assert np.isnan(margins.crossover)
         for key in ("gain_a", "damping", "compliance_b"):
             broken = loop_of(**{k: number(x) for k, x in DRIVEN.items()} | {key: number(math.nan)})
             assert np.isnan(loop.ultimate_gain(loop=broken)).all()

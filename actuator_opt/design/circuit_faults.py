@@ -120,56 +120,6 @@ def held_pressures(view: View) -> Iterator[Fault]:
                 )
 
 
-NEEDS: dict[str, tuple[tuple[str, ...], str]] = {
-    **dict.fromkeys(
-        ("ultimate_gain", "position_gain", "gain_margin", "phase_margin", "bandwidth"),
-        (("valve",), "add valve"),
-    ),
-    **dict.fromkeys(
-        (
-            "line_velocity",
-            "line_pressure_drop",
-            "line_drop_ratio",
-            "line_hammer",
-            "line_resonance",
-        ),
-        (("lines",), "add lines"),
-    ),
-    **dict.fromkeys(
-        ("dynamic_stiffness", "dynamic_phase"),
-        (("load_cases", "*", "frequency"), "add frequency to a load case"),
-    ),
-}
-"""Metrics that exist only where the design states something, and what to do."""
-
-
-def requirements(view: View) -> Iterator[Fault]:
-    """No requirement asks for a figure the design cannot have."""
-    for metric, (needed, remedy) in NEEDS.items():
-        if not view.has("requirements", metric):
-            continue
-        if needed[0] == "load_cases":
-            cases = range(len(view.items("load_cases")))
-            known = any(view.has("load_cases", i, needed[-1]) for i in cases)
-        else:
-            known = view.has(*needed)
-        if not known:
-            yield Fault(
-                ("requirements", metric),
-                f"nothing gives this design the metric {metric}",
-                f"{remedy}, or leave the requirement out",
-                at_key=True,
-            )
-    sliding = view.text("stiffness", "seals") != "sticking"
-    if sliding and view.has("requirements", "stiffness_seals"):
-        yield Fault(
-            ("requirements", "stiffness_seals"),
-            "the seals slide",
-            'add "seals: sticking" to stiffness, or leave the requirement out',
-            at_key=True,
-        )
-
-
 CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     lines,
     ports,
@@ -177,5 +127,4 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     stiffness,
     control,
     held_pressures,
-    requirements,
 )

@@ -1,4 +1,4 @@
-"""The lines of both chambers in an evaluation: volume, wall, resistance, inertance, far end."""
+"""What the chambers work with in an evaluation: lines, throttles, valve, what ends the lines."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from typing import Literal
 
 from ..design.circuit import Line
 from ..design.model import Design
-from ..models import elements, lines
-from ..numeric import Array
+from ..models import accumulator, elements, line_ends, lines, one_way_valve, valve
+from ..models.line_ends import LineEnd
+from ..numeric import Array, where
+from .geometry import Geometry
 from .state import State
 from .values import Values
 
@@ -74,3 +76,115 @@ def branches(v: Values, design: Design, state: State) -> dict[Chamber, Branch]:
             share = 1.0 if throttled else 0.5
             count(chamber, "far", share * (volume / modulus[chamber] + wall))
     return {name: Branch(**total[name]) for name in CHAMBERS}
+
+
+def valve_slopes(v: Values, design: Design, state: State) -> dict[bool, valve.ValveSlopes]:
+    """Valve at its centre with the held pressures, extending and retracting."""
+    if design.valve is None:
+        return {}
+    rated = valve.edge_coefficient(flow=v["valve.rated_flow"], pressure_drop=v["valve.rated_drop"])
+    leakage = valve.edge_coefficient(
+        flow=v["valve.leakage_flow"], pressure_drop=v["valve.leakage_drop"]
+    )
+    return {
+        extending: valve.valve_slopes(
+            rated_coefficient=rated,
+            leakage_coefficient=leakage,
+            signal=v["valve.signal"],
+            supply_pressure=v["supply.pressure"],
+            return_pressure=v["supply.return_pressure"],
+            pressure_a=state.holding_a,
+            pressure_b=state.holding_b,
+            extending=extending,
+        )
+        for extending in (True, False)
+    }
+
+
+def centred_valve(
+    v: Values, design: Design, slopes: dict[bool, valve.ValveSlopes]
+) -> dict[Chamber, LineEnd]:
+    """The valve at its centre; one that leaks nothing closes the line."""
+    if design.valve is None:
+        return {}
+    if design.valve.leakage_flow == 0 and "valve.leakage_flow" not in v.varied:
+        return dict.fromkeys(CHAMBERS, line_ends.CLOSED)
+    one = slopes[True]
+    return {"a": LineEnd((one.conductance_a,)), "b": LineEnd((one.conductance_b,))}
+
+
+def throttle_conductances(
+    v: Values, design: Design, state: State, geometry: Geometry
+) -> dict[Chamber, Array]:
+    """Conductance of the one-way valves at the flow of the case's speed."""
+    if design.ports.throttle is None:
+        return {}
+    g = geometry
+    outwards = where(state.push, -1.0, 1.0) * state.speed  # positive leaves chamber A
+    at = "ports.throttle."
+    common = {
+        "density": state.density,
+        "dynamic_viscosity": state.dynamic_viscosity,
+        "opening": v[at + "opening"],
+        "needle_area": v[at + "area"],
+        "check_area": v[at + "check_area"],
+        "cracking_pressure": v[at + "cracking_pressure"],
+    }
+    found: dict[Chamber, Array] = {}
+    for chamber, flow in zip(CHAMBERS, (g.area_a * outwards, -g.area_b * outwards), strict=True):
+        drop = one_way_valve.one_way_pressure_drop(flow=flow, **common)
+        found[chamber] = one_way_valve.one_way_conductance(pressure_difference=drop, **common)
+    return found
+
+
+def line_end(
+    v: Values,
+    design: Design,
+    centred: dict[Chamber, LineEnd],
+    accumulators: tuple[LineEnd, ...],
+    chamber: Chamber,
+) -> LineEnd:
+    """What ends the line of a chamber while the load shakes the actuator."""
+    ends = list(accumulators)
+    kind = design.ports.end
+    if kind == "valve":
+        ends.append(centred[chamber])
+    elif kind == "constant_pressure":
+        return LineEnd((1.0,), ())
+    elif kind == "reducing_valve":
+        at = "ports.reducing_valve."
+        ends.append(
+            line_ends.reducing_valve_end(
+                conductance=v[at + "conductance"],
+                passive_conductance=v[at + "passive_conductance"],
+                natural_frequency=v[at + "natural_frequency"],
+                damping_ratio=v[at + "damping_ratio"],
+            )
+        )
+    return line_ends.parallel_ends(*ends) if ends else line_ends.CLOSED
+
+
+def accumulator_ends(
+    v: Values, design: Design, state: State, chamber: Chamber
+) -> tuple[LineEnd, ...]:
+    """Every accumulator on the line of a chamber."""
+    found = []
+    for i, one in enumerate(design.ports.accumulators):
+        if one.chamber != chamber:
+            continue
+        at = f"ports.accumulators[{i}]."
+        neck = {"inner_diameter": v[at + "neck_diameter"], "length": v[at + "neck_length"]}
+        capacitance = accumulator.gas_capacitance(
+            pressure=state.holding_a if chamber == "a" else state.holding_b,
+            precharge_pressure=v[at + "precharge"],
+            gas_volume=v[at + "gas_volume"],
+            polytropic_index=v["fluid.polytropic_index"],
+        )
+        found.append(
+            line_ends.accumulator_end(
+                capacitance=capacitance,
+                inertance=elements.inertance(**neck, density=state.density),
+                resistance=elements.resistance(**neck, dynamic_viscosity=state.dynamic_viscosity),
+            )
+        )
+    return tuple(found)

@@ -13,10 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..design.model import Design
-from ..models import accumulator, dynamics, elements, line_ends, linear, loop, one_way_valve, valve
+from ..models import dynamics, line_ends, linear, loop, valve
 from ..models.line_ends import LineEnd
 from ..models.linear import LinearActuator, Side
 from ..numeric import Array, angle, magnitude, maximum, real, where
+from . import circuit
 from .circuit import CHAMBERS, Branch, Chamber
 from .rows import Computed
 from .springs import Springs
@@ -43,6 +44,8 @@ class Motion:
     """Accumulators on the lines."""
     ends: dict[Chamber, LineEnd]
     """What ends the lines while the load shakes the actuator, accumulators included."""
+    centred: dict[Chamber, LineEnd]
+    """The valve at its centre as a line end; empty without one."""
     slopes: dict[bool, valve.ValveSlopes]
     """Valve linearised at the centre, extending and retracting; empty without a valve."""
     spool: tuple[Array, Array] | None
@@ -64,11 +67,10 @@ class Motion:
             if extending is not None:
                 out, back = self.slopes[True], self.slopes[False]
                 if chamber == "a":
-                    conductance, gain = out.conductance_a, where(extending, out.gain_a, back.gain_a)
+                    gain = where(extending, out.gain_a, back.gain_a)
                 else:
-                    conductance = out.conductance_b
                     gain = -where(extending, out.gain_b, back.gain_b)
-                end = line_ends.parallel_ends(LineEnd((conductance,)), *self.accumulators[chamber])
+                end = line_ends.parallel_ends(self.centred[chamber], *self.accumulators[chamber])
             sides[chamber] = Side(
                 area=area,
                 compliance=whole - branch.far,
@@ -119,120 +121,27 @@ def derive(
     leakage: Array,
 ) -> Motion:
     """The linear model's numbers in every load case."""
-    slopes = _valve_slopes(v, design, state)
-    accumulators = {chamber: _accumulators(v, design, state, chamber) for chamber in CHAMBERS}
+    slopes = circuit.valve_slopes(v, design, state)
+    centred = circuit.centred_valve(v, design, slopes)
+    accumulators = {
+        chamber: circuit.accumulator_ends(v, design, state, chamber) for chamber in CHAMBERS
+    }
     return Motion(
         springs=springs,
         mass=mass,
         damping=damping,
         leakage=leakage,
         branches=branches,
-        throttles=_throttles(v, design, state, springs),
+        throttles=circuit.throttle_conductances(v, design, state, springs.geometry),
         accumulators=accumulators,
         ends={
-            chamber: _end(v, design, slopes, accumulators[chamber], chamber) for chamber in CHAMBERS
+            chamber: circuit.line_end(v, design, centred, accumulators[chamber], chamber)
+            for chamber in CHAMBERS
         },
+        centred=centred,
         slopes=slopes,
         spool=(v["valve.natural_frequency"], v["valve.damping_ratio"]) if design.valve else None,
     )
-
-
-def _valve_slopes(v: Values, design: Design, state: State) -> dict[bool, valve.ValveSlopes]:
-    """Valve at its centre with the held pressures, extending and retracting."""
-    if design.valve is None:
-        return {}
-    rated = valve.edge_coefficient(flow=v["valve.rated_flow"], pressure_drop=v["valve.rated_drop"])
-    leakage = valve.edge_coefficient(
-        flow=v["valve.leakage_flow"], pressure_drop=v["valve.leakage_drop"]
-    )
-    return {
-        extending: valve.valve_slopes(
-            rated_coefficient=rated,
-            leakage_coefficient=leakage,
-            signal=v["valve.signal"],
-            supply_pressure=v["supply.pressure"],
-            return_pressure=v["supply.return_pressure"],
-            pressure_a=state.holding_a,
-            pressure_b=state.holding_b,
-            extending=extending,
-        )
-        for extending in (True, False)
-    }
-
-
-def _throttles(v: Values, design: Design, state: State, springs: Springs) -> dict[Chamber, Array]:
-    """Conductance of the one-way valves at the flow of the case's speed."""
-    if design.ports.throttle is None:
-        return {}
-    g = springs.geometry
-    outwards = where(state.push, -1.0, 1.0) * state.speed  # positive leaves chamber A
-    at = "ports.throttle."
-    common = {
-        "density": state.density,
-        "dynamic_viscosity": state.dynamic_viscosity,
-        "opening": v[at + "opening"],
-        "needle_area": v[at + "area"],
-        "check_area": v[at + "check_area"],
-        "cracking_pressure": v[at + "cracking_pressure"],
-    }
-    found: dict[Chamber, Array] = {}
-    for chamber, flow in zip(CHAMBERS, (g.area_a * outwards, -g.area_b * outwards), strict=True):
-        drop = one_way_valve.one_way_pressure_drop(flow=flow, **common)
-        found[chamber] = one_way_valve.one_way_conductance(pressure_difference=drop, **common)
-    return found
-
-
-def _end(
-    v: Values,
-    design: Design,
-    slopes: dict[bool, valve.ValveSlopes],
-    accumulators: tuple[LineEnd, ...],
-    chamber: Chamber,
-) -> LineEnd:
-    """What ends the line of a chamber while the load shakes the actuator."""
-    ends = list(accumulators)
-    kind = design.ports.end
-    if kind == "valve":
-        centred = slopes[True]
-        conductance = centred.conductance_a if chamber == "a" else centred.conductance_b
-        ends.append(LineEnd((conductance,)))
-    elif kind == "constant_pressure":
-        return LineEnd((1.0,), ())
-    elif kind == "reducing_valve":
-        at = "ports.reducing_valve."
-        ends.append(
-            line_ends.reducing_valve_end(
-                conductance=v[at + "conductance"],
-                passive_conductance=v[at + "passive_conductance"],
-                natural_frequency=v[at + "natural_frequency"],
-                damping_ratio=v[at + "damping_ratio"],
-            )
-        )
-    return line_ends.parallel_ends(*ends) if ends else line_ends.CLOSED
-
-
-def _accumulators(v: Values, design: Design, state: State, chamber: Chamber) -> tuple[LineEnd, ...]:
-    """Every accumulator on the line of a chamber."""
-    found = []
-    for i, one in enumerate(design.ports.accumulators):
-        if one.chamber != chamber:
-            continue
-        at = f"ports.accumulators[{i}]."
-        neck = {"inner_diameter": v[at + "neck_diameter"], "length": v[at + "neck_length"]}
-        capacitance = accumulator.gas_capacitance(
-            pressure=state.holding_a if chamber == "a" else state.holding_b,
-            precharge_pressure=v[at + "precharge"],
-            gas_volume=v[at + "gas_volume"],
-            polytropic_index=v["fluid.polytropic_index"],
-        )
-        found.append(
-            line_ends.accumulator_end(
-                capacitance=capacitance,
-                inertance=elements.inertance(**neck, density=state.density),
-                resistance=elements.resistance(**neck, dynamic_viscosity=state.dynamic_viscosity),
-            )
-        )
-    return tuple(found)
 
 
 def _places(stroke: Array, weakest: Array) -> tuple[list[str], Array]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import NamedTuple
 
-from ..numeric import Array, maximum
+from ..numeric import Array
 from ..polynomial import Parts, Polynomial, add, at_frequency, multiply, scale
 from .line_ends import CLOSED, LineEnd
 
@@ -49,10 +49,6 @@ class LinearActuator:
     drive: Polynomial
 
 
-SHUT = 1e-22
-"""Conductance of a shut throttle [m^3/s/Pa]: 0.03 ml a year under 100 bar."""
-
-
 class _Eliminated(NamedTuple):
     """A chamber after its far node is gone: e (q_v + A v) and m p = d G o."""
 
@@ -64,9 +60,8 @@ class _Eliminated(NamedTuple):
 def _eliminated(side: Side, leakage: Array) -> _Eliminated:
     """Far node (C s + Y) p_f = G o - q and line (R + 1/g + L s) q = p_f - p eliminated.
 
-    Everything is multiplied by the line end's denominator and by the throttle's conductance, which
-    counts as `SHUT` at least: what is shut off then still has a pressure. Behind a closed end
-    without oil nothing flows.
+    Everything is multiplied by the line end's denominator and by the throttle's conductance, so
+    that a closed throttle (g = 0) divides nothing. Behind a closed end without oil nothing flows.
     """
     far = add(multiply((0.0, side.far_compliance), side.end.denominator), side.end.numerator)
     if not far:
@@ -74,7 +69,6 @@ def _eliminated(side: Side, leakage: Array) -> _Eliminated:
     line, g = (side.resistance, side.inertance), side.throttle
     d = side.end.denominator
     if g is not None:
-        g = maximum(g, SHUT)
         line, d = add(scale(line, g), (1.0,)), scale(d, g)
     e = add(multiply(line, far), d)
     through = far if g is None else scale(far, g)

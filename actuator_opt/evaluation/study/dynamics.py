@@ -325,7 +325,7 @@ def _loop(subject: Subject, v: Values, done: Pass, at: _Loop, frequencies: Array
         gain_margin=of("gain_margin"),
         phase_margin=of("phase_margin"),
         crossover=crossover if np.isfinite(crossover) else None,
-        bandwidth=width if np.isfinite(width) else None,
+        bandwidth=width if np.isfinite(width) and width > 0 else None,
         open_magnitude=np.abs(response),
         open_phase=_unwrapped(response),
         closed_magnitude=np.abs(response / (1 + response)),
