@@ -135,7 +135,7 @@ def test_a_position_that_runs_backwards_has_no_gain(number):
 
 
 def test_loops_without_a_crossing():
-    """An integrator alone never swings; nor does a valve without flow, which nothing follows; a NaN is never infinite."""
+    """An integrator alone never swings, nor does a valve without flow; a NaN is never infinite."""
     limit = loop.ultimate_gain(loop=loop.OpenLoop((1.0,), (0.0, 1.0)))
     assert limit.gain == math.inf
     assert np.isnan(limit.frequency)
