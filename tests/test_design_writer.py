@@ -154,6 +154,20 @@ def test_notes_keep_their_lines():
     assert load(to_yaml(loaded.design)).design == loaded.design
 
 
+def test_what_the_start_file_offers_as_comments_is_valid():
+    """Valve, ports, loop and a shaking frequency stand commented out; uncommented they are valid."""
+    text = init_text("offered")
+    lines = text.splitlines()
+    first = lines.index(next(line for line in lines if line.startswith("# valve:")))
+    last = lines.index("", first)
+    body = [line[2:] if first <= i < last else line for i, line in enumerate(lines)]
+    body = [f"  {line[2:]}" if line.startswith("#   frequency") else line for line in body]
+    design = load("\n".join(body)).design
+    assert design.valve is not None
+    assert (design.ports.end, design.control.gain) == ("valve", 500.0)
+    assert design.load_cases[0].frequency == 20.0
+
+
 def test_init_from_a_design():
     """`init --from` keeps text and comments and changes the name."""
     loaded = load(TEXT)

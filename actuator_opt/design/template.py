@@ -115,6 +115,17 @@ lines:                         # between valve and chambers; leave out if there 
     outer_diameter: 8 mm
     material: steel_e235
 
+# valve:                       # with a valve: position loop, bandwidth and margins
+#   rated_flow: 10 l/min       # through one edge, fully open, at rated_drop
+#   rated_drop: 35 bar
+#   leakage_flow: 0.2 l/min    # through one edge, spool centred, at leakage_drop (50 bar)
+#   natural_frequency: 120 Hz
+# ports:
+#   end: valve                 # what ends the lines while the load shakes; or closed (default),
+#                              # constant_pressure, reducing_valve
+# control:
+#   gain: 500 V/m              # signal per position error; left out: half the ultimate gain
+
 load:
   mass: 20 kg                  # moved mass, reflected to the rod
 
@@ -125,6 +136,7 @@ load_cases:                    # each requirement is met in the worst of these
     speed: 0.1 m/s
     position: worst            # or a length, or a share of the stroke (50 %)
     side_load: 20 N
+#   frequency: 20 Hz           # the load shakes the held actuator: dynamic_stiffness
   - name: swing
     direction: pull
     force: 1 kN
