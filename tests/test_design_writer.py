@@ -155,7 +155,7 @@ def test_notes_keep_their_lines():
 
 
 def test_what_the_start_file_offers_as_comments_is_valid():
-    """Valve, ports, loop and a shaking frequency stand commented out; uncommented they are valid."""
+    """Valve, ports, loop and frequency stand commented out; uncommented they are valid."""
     text = init_text("offered")
     lines = text.splitlines()
     first = lines.index(next(line for line in lines if line.startswith("# valve:")))

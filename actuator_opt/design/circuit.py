@@ -1,4 +1,4 @@
-"""What the actuator works with: lines, valve, what ends the lines, and the position loop."""
+"""Hydraulics about the cylinder: lines, valve, line ends, position loop; what stiffness counts."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .section import Section
 
 
 class Line(Section):
-    """A pipe or hose between valve and one chamber (a: cap side, b: rod side)."""
+    """A pipe or hose of one chamber (a: cap side, b: rod side), in order from its port on."""
 
     chamber: Literal["a", "b"]
     type: Literal["pipe", "hose"] = "pipe"
@@ -45,7 +45,7 @@ class Valve(Section):
         float, Of("pressure_drop", "pressure drop over that edge at rated flow")
     ] = 35e5
     leakage_flow: Annotated[
-        float, Of("leakage_flow", "flow through one edge with the spool centred")
+        float, Of("leakage_flow", "flow through one edge, spool centred: half of the valve's")
     ] = 0.0
     leakage_drop: Annotated[
         float, Of("pressure_drop", "pressure drop over that edge at the leakage flow")
@@ -56,7 +56,7 @@ class Valve(Section):
 
 
 class Throttle(Section):
-    """A one-way flow-control valve at each port: it throttles the oil that leaves the chamber."""
+    """One-way flow-control valves that throttle what leaves; linear about the flow of each case."""
 
     area: Annotated[float, Of("orifice_area", "area of the fully open needle")]
     opening: Annotated[float, Of("opening", "opening of the needle")] = 1.0
@@ -78,7 +78,7 @@ class ReducingValve(Section):
 
 
 class Accumulator(Section):
-    """A gas-charged accumulator on the line of one chamber, through a neck."""
+    """A gas accumulator on the line of one chamber; its gas follows fluid.polytropic_index."""
 
     chamber: Literal["a", "b"]
     gas_volume: Annotated[float, Of("gas_volume", "gas volume at the precharge")]
@@ -88,7 +88,7 @@ class Accumulator(Section):
 
 
 class Ports(Section):
-    """What ends both lines while the load shakes the actuator."""
+    """What ends both lines while the load shakes the actuator, the position loop open."""
 
     end: Literal["closed", "valve", "constant_pressure", "reducing_valve"] = "closed"
     throttle: Throttle | None = None

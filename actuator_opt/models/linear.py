@@ -119,7 +119,6 @@ def linear_actuator(
     --------
     >>> side = Side(area=5e-4, compliance=5e-14)
     >>> model = linear_actuator(side_a=side, side_b=side, mass=10.0, damping=100.0)
-    >>> n, m = at_frequency(model.characteristic, 0.0), at_frequency(model.mobile, 0.0)
     >>> len(model.characteristic) - 1
     4
     """

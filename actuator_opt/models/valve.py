@@ -143,7 +143,7 @@ def valve_slopes(
 
     Notes
     -----
-    Valid: spool near its centre, alike edges, no overlap.
+    Valid: spool near its centre, alike edges, no overlap; laminar leakage damps twice as much.
 
     References
     ----------
