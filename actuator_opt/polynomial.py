@@ -24,6 +24,11 @@ class Parts(NamedTuple):
     real: Array
     imaginary: Array
 
+    @property
+    def complex(self) -> Array:
+        """As one complex number, where no complex step is carried."""
+        return self.real + 1j * self.imaginary
+
 
 def _vanishes(coefficient: Array) -> bool:
     return isinstance(coefficient, (int, float)) and coefficient == 0

@@ -96,6 +96,7 @@ INPUTS = _table("""
  friction_coefficient | mu     | ratio       | -    | 0.001 | 2     | dry friction coefficient seal on counterface
  breakaway_ratio      | F_S/F_C| ratio       | -    | 1     | 5     | breakaway over running friction
  stribeck_speed       | v_s    | speed       | mm/s | 0.01  | 500   | Stribeck speed
+ breakaway_travel     | z_max  | length      | mm   | 0.001 | 10    | breakaway travel
  viscous_friction     | sigma_2| damping     | N*s/m| 0     | 1e7   | viscous friction coefficient of the seals
  safety_factor        | S      | ratio       | -    | 0.1   | 100   | safety factor
  cycles               | N      | ratio       | -    | 0     | 1e10  | pressure cycles

@@ -206,6 +206,32 @@ def test_every_key_of_the_model_is_in_the_schema():
     assert mounts == list(entries(entries(Design)["cylinder"].section)["mount"].choices)
 
 
+def choice_count(section=Design):
+    """How many choices the model has."""
+    found = entries(section).values()
+    below = sum(choice_count(entry.section) for entry in found if entry.section is not None)
+    return below + sum(entry.shape == "choice" for entry in found)
+
+
+def test_every_choice_says_what_each_word_means():
+    """Whoever hovers over a choice reads what it decides, then the meaning of every word of it."""
+    found = [
+        (path, node)
+        for path, node in walk(SCHEMA)
+        if all(isinstance(word, str) for word in node.get("enum", [1]))
+        and "enumDescriptions" not in node  # metrics, each with its label
+    ]
+    assert len(found) == choice_count()
+    for path, node in found:
+        words = "|".join(node["enum"])
+        what, *said = re.split(rf"; ({words}): ", node["description"])
+        assert len(what.split()) >= 3, path
+        assert said[::2] == node["enum"], path
+        meanings = said[1::2]
+        assert all(meanings), path
+        assert len(set(meanings)) == len(meanings), path
+
+
 def test_material_names_are_offered_by_role():
     """With a library, each place offers the names that can stand there."""
 

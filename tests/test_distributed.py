@@ -83,16 +83,35 @@ def test_a_plugged_pipe_is_a_tangent(held):
         cross = s * float(np.ravel(whole.ab)[0])
         k = s * (g.area_a**2 * m_b + g.area_b**2 * m_a + 2 * g.area_a * g.area_b * cross)
         k = k / (m_a * m_b - cross**2) + s * float(np.ravel(motion.damping)[0])
-        k = k / (1 + float(np.ravel(budget.flexibility())[0]) * k) + s * s * float(motion.mass)
+        series = float(np.ravel(budget.series_compliance())[0])
+        k = k / (1 + series * k) + s * s * float(motion.mass)
         exact = both(held, np.array([frequency]))[1][0]
         assert abs(exact / k - 1) < 0.03
+
+
+def test_a_line_in_pieces_is_one_line(held, tmp_path):
+    """Three pieces of 0.5 m give the rows of one pipe of 1.5 m: nothing is gained by splitting."""
+    _, whole = held
+    piece = LINE.partition("  - ")[2]
+    text = "\nlines:\n" + 3 * f"  - {piece.replace('1.5 m', '0.5 m')}"
+    path = tmp_path / "pieces.yaml"
+    path.write_text(KNEE.read_text("utf-8") + text, "utf-8")
+    other = prepare(read_design(path).design)
+    parts = compute(other, other.values())
+    for name in ("line_resonance", "stiffness_min", "damping_ratio"):
+        for place, value in whole.computed.metrics[name].items():
+            np.testing.assert_allclose(parts.computed.metrics[name][place], value, rtol=1e-9)
+    frequencies = np.geomspace(1, 400, 30)
+    one, three = both(held, frequencies), both((other, parts), frequencies)
+    np.testing.assert_allclose(three[0], one[0], rtol=1e-9)
+    np.testing.assert_allclose(three[1], one[1], rtol=1e-6)
 
 
 def test_line_metrics_by_hand(held):
     """Quarter wave a/(4 l) and sudden stop rho a v, with the wave speed of the elastic pipe."""
     subject, done = held
     v, state = subject.values(), done.state
-    place = "line a [0]"
+    place, chamber = "line a [0]", "lines of chamber a"
     for case in range(2):
         modulus = float(np.ravel(state.bulk_modulus_a)[case])
         density = float(np.ravel(state.density)[min(case, np.size(state.density) - 1)])
@@ -102,5 +121,5 @@ def test_line_metrics_by_hand(held):
         flow = pi / 4 * v["cylinder.bore"] ** 2 * (0.1, 0.4)[case]
         stopped = density * speed * flow / (pi / 4 * INNER**2)
         metrics = done.computed.metrics
-        assert metrics["line_resonance"][place][case, 0] == pytest.approx(speed / 6, rel=1e-9)
+        assert metrics["line_resonance"][chamber][case, 0] == pytest.approx(speed / 6, rel=1e-9)
         assert metrics["line_hammer"][place][case, 0] == pytest.approx(stopped, rel=1e-9)

@@ -14,6 +14,7 @@ from circuit_oracle import descriptor, plant, state_space
 from cli_runner import bench
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 import actuator_opt as ao
 from actuator_opt.evaluation import compute
@@ -43,6 +44,8 @@ control:
   gain: 100 V/m
 """
 SHAKEN = ("    side_load: 30 N\n", "    side_load: 30 N\n    frequency: 20 Hz\n")
+CLEARANCE = "  clearance: 30 um\n"
+LEAKY = (CLEARANCE, f"{CLEARANCE}  leakage_conductance: 1 ml/min/bar\n")
 THROTTLE = """  throttle:
     area: 8 mm2
     check_area: 20 mm2
@@ -83,7 +86,7 @@ def subject_of(tmp_path_factory):
         key = (end, more, *sets.items())
         if key not in found:
             path = folder / f"{len(found)}.yaml"
-            text = bench(SHAKEN) + SERVO + ENDS[end] + more
+            text = bench(SHAKEN, LEAKY) + SERVO + ENDS[end] + more
             path.write_text(text.replace(STATED, "") if more == LATER else text)
             found[key] = ao.read(path, set=sets).subject()
         return found[key]
@@ -98,6 +101,34 @@ def _accumulator(pressure, density, s, number):
     inertance = density * 0.04 / (math.pi * 0.005**2 / 4)
     resistance = 128 * number(s.dynamic_viscosity) * 0.04 / (math.pi * 0.005**4)
     return "accumulator", capacitance, inertance, resistance
+
+
+def _throttle(subject, done, case, name, direction, number):
+    """dq/d(dp) of needle and check valve at the flow of the case's speed, by hand.
+
+    Each path dp = rho q^2/(2 C^2 A^2) + eta q/(2 delta^2 D A), C 0.611, delta 0.2, D = sqrt(4A/pi);
+    the check valve opens by 3 w^2 - 2 w^3 over 0.1 bar beyond 0.4 bar, inwards only.
+    """
+    if subject.design.ports.throttle is None:
+        return None
+    s, g = done.state, done.geometry
+    rho, eta = number(s.density), number(s.dynamic_viscosity)
+
+    def path(area, drop):
+        a = rho / (2 * 0.611**2 * area**2)
+        b = eta / (2 * 0.2**2 * math.sqrt(4 * area / math.pi) * area)
+        return math.copysign((math.sqrt(b * b + 4 * a * abs(drop)) - b) / (2 * a), drop)
+
+    def flow(drop):
+        share = min(max((-drop - 0.4e5) / 0.1e5, 0.0), 1.0)
+        return path(8e-6, drop) + (3 * share**2 - 2 * share**3) * path(20e-6, min(drop, 0.0))
+
+    extends = (direction or ("extending" if s.push[case, 0] else "retracting")) == "extending"
+    area, speed = float(getattr(g, f"area_{name}")), number(s.speed)
+    wanted = area * speed * (-1 if extends == (name == "a") else 1)  # out of the chamber
+    drop = brentq(lambda p: flow(p) - wanted, -1e7, 1e7, xtol=1e-6, rtol=1e-15)
+    step = 1e-4 * abs(drop)
+    return (flow(drop + step) - flow(drop - step)) / (2 * step)
 
 
 def circuit_of(subject, done, case, position, direction=None):
@@ -127,7 +158,6 @@ def circuit_of(subject, done, case, position, direction=None):
         up, down = supply - pressures[name], pressures[name] - drain
         valve = leak / (2 * math.sqrt(up)) + leak / (2 * math.sqrt(down))
         ends = [("conductance", valve)]
-        throttles = done.motion.throttles
         if direction is None:
             kind = subject.design.ports.end
             ends = {
@@ -143,7 +173,7 @@ def circuit_of(subject, done, case, position, direction=None):
         circuit[name] = {
             "area": float(getattr(g, f"area_{name}")),
             "compliance": number(getattr(whole, name)) - far,
-            "throttle": number(throttles[name]) if throttles else None,
+            "throttle": _throttle(subject, done, case, name, direction, number),
             "resistance": 128 * number(viscosity) * length / (math.pi * d**4),
             "inertance": number(s.density) * length / bore,
             "far_compliance": far,
@@ -157,7 +187,7 @@ def circuit_of(subject, done, case, position, direction=None):
         "mass": number(done.motion.mass),
         "damping": number(done.motion.damping),
         "coupling": number(whole.ab),
-        "leakage": 0.0,
+        "leakage": 1e-11 / 60,  # 1 ml/min/bar
         "seal_stiffness": number(budget.seals) if sticks else 0.0,
         "flexibility": sum(1 / number(part) for part in budget.chain.values()),
     }
@@ -184,7 +214,7 @@ def test_held_actuator_is_that_of_the_differential_equations(subject_of, end, mo
             assert np.min(np.abs(-poles.real / np.abs(poles) - ratio)) < 1e-6
 
 
-@pytest.mark.parametrize("more", ["valve", "accumulator"])
+@pytest.mark.parametrize("more", ["valve", "accumulator", "throttle"])
 def test_position_loop_is_that_of_the_differential_equations(subject_of, more):
     """Ultimate gain in both cases, both directions and all places by closed-loop eigenvalues.
 
@@ -275,7 +305,7 @@ def test_gradients_of_every_figure(subject_of, end):
                     wide = (other[:, 2] - other[:, 3]) / (4 * step)
                 size = np.abs(value[:, 0].real)
                 smooth = np.abs(near - wide) <= 1e-4 * size
-                assert smooth.all() or not np.isfinite(size).all()
+                assert np.all(smooth | ~np.isfinite(size)), (name, place)
                 error = np.abs(value[:, 0].imag / tiny - near)
                 assert np.all((error <= 1e-4 * size + 1e-12) | ~np.isfinite(size)), (name, place)
 
@@ -306,7 +336,7 @@ def test_shares_of_the_budget(subject_of, bore, share, sticking):
         compliance_ab=give.ab,
     )  # fmt: skip
     seals = budget.seals if sticking else 0.0
-    expected = 1 / (oil + seals) + budget.flexibility()
+    expected = 1 / (oil + seals) + budget.series_compliance()
     np.testing.assert_allclose(sum(parts.values()), expected, rtol=1e-12)
     np.testing.assert_allclose(budget.stiffness(position), 1 / expected, rtol=1e-12)
 
@@ -327,7 +357,7 @@ def test_softer_parts_lower_the_closed_frequency(subject_of):
 
 @pytest.mark.parametrize("end", ["closed", "valve", "reducing", "throttle"])
 def test_six_places_find_the_worst_of_the_stroke(subject_of, end):
-    """On a dense grid of the stroke no figure falls 1 % below the least of the six places."""
+    """On a dense grid of the stroke no figure falls 2 % below the least of the six places."""
     subject = subject_of(end)
     done = compute(subject, subject.values())
     metrics, stroke = done.computed.metrics, done.geometry.stroke
@@ -347,7 +377,7 @@ def test_six_places_find_the_worst_of_the_stroke(subject_of, end):
         rows = metrics[name].values()
         cases = slice(0, 1) if name == "dynamic_stiffness" else slice(None)
         least = min(np.min(row[cases]) for row in rows)
-        assert np.min(values) >= least - 0.01 * abs(least), name
+        assert np.min(values) >= least - 0.02 * abs(least), name
 
 
 def test_the_weakest_position_is_the_least_of_a_dense_grid(subject_of):
@@ -362,3 +392,19 @@ def test_the_weakest_position_is_the_least_of_a_dense_grid(subject_of):
             found = budget.stiffness(weakest(budget))
         np.testing.assert_allclose(found, least, rtol=1e-6)
         assert done.computed.metrics["stiffness_min"][""] == pytest.approx(found)
+
+
+def test_a_bare_piston_leaks_through_its_gap(subject_of):
+    """Without piston seals pi D h^3/(12 eta L) joins the stated leakage, h grown with the bore.
+
+    The leakage told is that of the moving piston, and the same conductance damps the load.
+    """
+    bare = subject_of(**{"seals.piston.count": 0})
+    done = compute(bare, bare.values())
+    g, s = done.geometry, done.state
+    grown = 30e-6 + np.broadcast_to(done.computed.metrics["growth_at_seal"][""], (2, 1))
+    eta = 0.5 * (s.dynamic_viscosity_a + s.dynamic_viscosity_b)
+    gap = math.pi * g.bore * grown**3 / (12 * eta * g.piston_length)
+    expected = (gap + 1e-11 / 60) * np.abs(s.moving_a - s.moving_b)
+    np.testing.assert_allclose(done.computed.metrics["leakage"][""], expected, rtol=1e-9)
+    np.testing.assert_allclose(done.motion.leakage, gap + 1e-11 / 60, rtol=1e-9)

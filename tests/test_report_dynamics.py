@@ -321,7 +321,7 @@ def test_friction_share_is_the_closed_form():
     index = [case.name for case in evaluation.design.load_cases].index(study.case)
     k = evaluation.metrics["stiffness_min"].value
     b = float(np.broadcast_to(motion.damping, (2, 1))[index, 0])
-    f = float(np.squeeze(motion.springs.flexibility()))
+    f = float(np.squeeze(motion.springs.series_compliance()))
     expected = b * (1 - f * k) ** 2 / (2 * math.sqrt(k * study.mass))
     assert study.friction_share == pytest.approx(expected, rel=1e-4)
 

@@ -1,11 +1,12 @@
-"""Hydraulics about the cylinder: lines, valve, line ends, position loop; what stiffness counts."""
+"""Hydraulics about the cylinder: lines, valve, line ends, position loop."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 
+from . import choices
 from .kinds import Flag, MaterialName, Of
 from .section import Section
 
@@ -13,28 +14,14 @@ from .section import Section
 class Line(Section):
     """A pipe or hose of one chamber (a: cap side, b: rod side), in order from its port on."""
 
-    chamber: Literal["a", "b"]
-    type: Literal["pipe", "hose"] = "pipe"
+    chamber: choices.Chamber
+    type: choices.LineType = "pipe"
     length: Annotated[float, Of("part_length", "length of the line")]
     inner_diameter: Annotated[float, Of("diameter", "inner diameter")]
     outer_diameter: Annotated[float, Of("diameter", "outer diameter")]
     material: Annotated[str, MaterialName("isotropic")]
     rigid: Annotated[bool, Flag("count only its oil: the wall does not give")] = False
     beyond_throttle: Annotated[bool, Flag("lies between the throttle and the line's end")] = False
-
-
-class Stiffness(Section):
-    """What counts in the axial stiffness, and how the sources' totals combine."""
-
-    topology: Literal["per_chamber", "aalto_as_published", "elasswad_as_published"] = "per_chamber"
-    seals: Literal["sliding", "sticking"] = "sliding"
-    """Sticking seals stand beside the oil as a spring until they break away."""
-    seal_deflection: Annotated[
-        float, Of("radial_clearance", "travel at which sticking seals break away")
-    ] = 1e-4
-    load_cell: Annotated[
-        float | None, Of("stiffness", "stiffness of the load cell of a test rig")
-    ] = None
 
 
 class Valve(Section):
@@ -80,7 +67,7 @@ class ReducingValve(Section):
 class Accumulator(Section):
     """A gas accumulator on the line of one chamber; its gas follows fluid.polytropic_index."""
 
-    chamber: Literal["a", "b"]
+    chamber: choices.Chamber
     gas_volume: Annotated[float, Of("gas_volume", "gas volume at the precharge")]
     precharge: Annotated[float, Of("precharge", "gas precharge, gauge")]
     neck_length: Annotated[float, Of("part_length", "length of the neck")]
@@ -90,7 +77,7 @@ class Accumulator(Section):
 class Ports(Section):
     """What ends both lines while the load shakes the actuator, the position loop open."""
 
-    end: Literal["closed", "valve", "constant_pressure", "reducing_valve"] = "closed"
+    end: choices.End = "closed"
     throttle: Throttle | None = None
     reducing_valve: ReducingValve | None = None
     accumulators: Annotated[tuple[Accumulator, ...], Field(max_length=8)] = ()

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import get_args
 
 from .. import quantities
+from . import choices
 from .view import Fault, View, length_text
 
 
@@ -27,7 +29,7 @@ def lines(view: View) -> Iterator[Fault]:
             )
 
 
-ENDS = ("closed", "valve", "constant_pressure", "reducing_valve")
+ENDS = get_args(get_args(choices.End)[0])
 
 
 def ports(view: View) -> Iterator[Fault]:

@@ -37,12 +37,13 @@ EXAMPLES = {
     "temperature_rise": "10 K", "air_content": "0.5 %", "force": "3 kN", "torque": "120 N*m",
     "lever_arm": "40 mm", "speed": "0.1 m/s", "load_mass": "20 kg", "position": "55 mm",
     "fraction": "50 %", "friction_coefficient": "0.3", "breakaway_ratio": "1.5",
-    "stribeck_speed": "5 mm/s", "viscous_friction": "100 N*s/m", "safety_factor": "1.5",
-    "cycles": "20000", "stiffness": "50 kN/mm", "coefficient": "1", "surface_roughness": "0.2 um",
-    "frequency": "20 Hz", "rated_flow": "10 l/min", "leakage_flow": "0.1 l/min",
-    "pressure_drop": "35 bar", "signal": "10 V", "gain": "500 V/m", "damping_ratio": "0.7",
-    "orifice_area": "0.2 cm^2", "opening": "50 %", "conductance": "20 ml/min/bar",
-    "gas_volume": "50 ml", "precharge": "30 bar", "polytropic_index": "1.4",
+    "stribeck_speed": "5 mm/s", "breakaway_travel": "0.1 mm", "viscous_friction": "100 N*s/m",
+    "safety_factor": "1.5", "cycles": "20000", "stiffness": "50 kN/mm", "coefficient": "1",
+    "surface_roughness": "0.2 um", "frequency": "20 Hz", "rated_flow": "10 l/min",
+    "leakage_flow": "0.1 l/min", "pressure_drop": "35 bar", "signal": "10 V", "gain": "500 V/m",
+    "damping_ratio": "0.7", "orifice_area": "0.2 cm^2", "opening": "50 %",
+    "conductance": "20 ml/min/bar", "gas_volume": "50 ml", "precharge": "30 bar",
+    "polytropic_index": "1.4",
 }  # fmt: skip
 """One good value of every input quantity, for messages, the schema and the start file."""
 
@@ -285,6 +286,22 @@ class Flag(Kind):
             return self.words[value.strip().lower()]
         word = f'"{shown(value)}"' if isinstance(value, str) else what(value)
         raise ValueFault(f"need true or false, not {word}", "write true or false")
+
+
+class Choice(Kind):
+    """One of a few words; `help` says what each means, the field's `Literal` which there are."""
+
+    def __init__(self, help: str) -> None:
+        self.help = help
+
+    def validate(self, value: Any) -> Any:
+        """The value itself: the `Literal` refuses other words."""
+        return value
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return handler(source)
 
 
 class CaseName(Text):

@@ -6,11 +6,12 @@ Schema and reports read one declaration (`quantities.INPUTS`). Sections hold no 
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import Field
 
-from .circuit import Control, Line, Ports, Stiffness, Valve
+from . import choices
+from .circuit import Control, Line, Ports, Valve
 from .kinds import CaseName, Flag, Goal, MaterialName, Of, Position, PositionKind, Text
 from .section import Section
 
@@ -26,12 +27,11 @@ class FluidSection(Section):
         float, Of("air_content", "entrained air at atmospheric pressure, by volume")
     ] = 0.005
     polytropic_index: Annotated[
-        float, Of("polytropic_index", "of the entrained air: 1.4 fast (adiabatic), 1 slow")
+        float,
+        Of("polytropic_index", "of entrained air and accumulators: 1.4 fast (adiabatic), 1 slow"),
     ] = 1.4
-    bulk_modulus_law: Literal["constant", "linear", "tait"] | None = None
-    """Bulk modulus over pressure; default: linear where the fluid states a slope, else constant."""
-    viscosity_pressure: Literal["none", "barus", "roelands"] | None = None
-    """Viscosity over pressure; default: roelands where the fluid states its coefficient."""
+    bulk_modulus_law: choices.BulkModulusLaw = None
+    viscosity_pressure: choices.ViscosityLaw = None
 
 
 class Supply(Section):
@@ -64,8 +64,8 @@ class Cylinder(Section):
 
     bore: Annotated[float, Of("bore", "inner diameter of the barrel")]
     stroke: Annotated[float, Of("stroke", "travel of the piston")]
-    mount: Literal["cap_clevis", "head_flange", "head_trunnion", "cap_flange"] = "cap_clevis"
-    end_stop: Literal["internal", "external"] = "internal"
+    mount: choices.Mount = "cap_clevis"
+    end_stop: choices.EndStop = "internal"
     dead_volume_a: Annotated[
         float, Of("volume", "oil volume of the cap side at zero stroke, ports included")
     ] = 0.0
@@ -117,8 +117,8 @@ class Barrel(Section):
     """The pressure tube; one isotropic layer is a metal barrel."""
 
     layup: Annotated[tuple[Ply, ...], Field(min_length=1, max_length=MOST_LAYERS)]
-    model: Literal["auto", "isotropic", "thin_laminate", "layered", "as_published"] = "auto"
-    criterion: Literal["max_stress", "max_strain", "tsai_wu", "hashin", "puck"] = "max_stress"
+    model: choices.WallModel = "auto"
+    criterion: choices.Criterion = "max_stress"
     autofrettage_pressure: Annotated[
         float | None,
         Of("autofrettage_pressure", "pressure that yields the metal liner once, before use"),
@@ -208,7 +208,7 @@ class Retention(Section):
     adhesive or the tie-rod metal.
     """
 
-    type: Literal["bond", "thread", "tie_rods"]
+    type: choices.RetentionType
     length: Annotated[
         float, Of("part_length", "overlap of skirt and barrel, or tie-rod engagement")
     ]
@@ -229,7 +229,7 @@ class Clevis(Section):
 class Seal(Section):
     """A ring seal in a radial groove, `count` in a row."""
 
-    type: Literal["o_ring"] = "o_ring"
+    type: choices.SealType = "o_ring"
     compound: Annotated[str, MaterialName("seal")]
     section: Annotated[float, Of("cross_section", "free cross-section of the ring")]
     squeeze: Annotated[float, Of("squeeze", "nominal squeeze over the free section")]
@@ -239,8 +239,8 @@ class Seal(Section):
     ] = None
     stretch: Annotated[float, Of("stretch", "stretch of the ring in its groove")] = 0.02
     count: Annotated[float, Of("seal_count", "seals in a row")] = 1.0
-    law: Literal["plane_strain", "hertz_lindley", "chord"] = "plane_strain"
-    hardness_model: Literal["gent", "ruess"] = "gent"
+    law: choices.SealLaw = "plane_strain"
+    hardness_model: choices.HardnessModel = "gent"
     friction_coefficient: Annotated[
         float | None,
         Of("friction_coefficient", "dry friction on the counterface; default: the compound's"),
@@ -271,11 +271,24 @@ class Load(Section):
     mass: Annotated[float, Of("load_mass", "moved mass, reflected to the rod")] = 0.0
 
 
+class Stiffness(Section):
+    """What counts in the axial stiffness, and how it combines."""
+
+    topology: choices.Topology = "per_chamber"
+    seals: choices.SealState = "sliding"
+    seal_deflection: Annotated[
+        float, Of("breakaway_travel", "travel at which sticking seals break away")
+    ] = 1e-4
+    load_cell: Annotated[
+        float | None, Of("stiffness", "stiffness of the load cell of a test rig")
+    ] = None
+
+
 class LoadCase(Section):
     """One duty: a force (or a joint torque on a lever arm), a direction, a speed, a place."""
 
     name: Annotated[str, CaseName("how reports and PATHs call the case")]
-    direction: Literal["push", "pull"]
+    direction: choices.Direction
     force: Annotated[float | None, Of("force", "axial force to deliver")] = None
     joint_torque: Annotated[float | None, Of("torque", "joint torque, instead of a force")] = None
     lever_arm: Annotated[float | None, Of("lever_arm", "lever arm of the joint torque")] = None
@@ -293,11 +306,19 @@ class LoadCase(Section):
     ] = None
     pressure_a: Annotated[
         float | None,
-        Of("pressure", "gauge pressure in the held chamber A; default: a servo valve's"),
+        Of(
+            "pressure",
+            "gauge pressure in the held chamber A; "
+            "default: as a critical-centre valve holds the force",
+        ),
     ] = None
     pressure_b: Annotated[
         float | None,
-        Of("pressure", "gauge pressure in the held chamber B; default: a servo valve's"),
+        Of(
+            "pressure",
+            "gauge pressure in the held chamber B; "
+            "default: as a critical-centre valve holds the force",
+        ),
     ] = None
 
 
@@ -348,8 +369,7 @@ class Design(Section):
 
     name: Annotated[str, Text("title of the design")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
-    reproduces: Literal["ElAsswad2018", "AaltoThesis"] | None = None
-    """The paper whose cylinder this is: reports set its published numbers beside ours."""
+    reproduces: choices.Paper = None
     fluid: FluidSection
     supply: Supply
     environment: Environment | None = None

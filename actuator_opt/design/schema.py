@@ -154,7 +154,8 @@ def _value(kind: Kind | None, materials: Materials | None) -> Schema:
 
 def _entry(entry: Entry, materials: Materials | None) -> Schema:
     if entry.shape == "choice":
-        schema: Schema = {"type": "string", "enum": list(entry.choices)}
+        help = entry.kind.help if entry.kind is not None else ""
+        schema: Schema = {"description": help, "type": "string", "enum": list(entry.choices)}
     elif entry.shape == "section" and entry.section is not None:
         schema = _section(entry.section, materials)
     elif entry.shape == "list":

@@ -12,7 +12,7 @@ from types import UnionType
 from typing import Any, Literal, TypeAlias, Union, get_args, get_origin
 
 from ..quantities import Quantity
-from .kinds import Fraction, Kind, Of, PositionKind
+from .kinds import Choice, Fraction, Kind, Of, PositionKind
 from .model import Design
 from .section import Section
 
@@ -26,7 +26,7 @@ Shape: TypeAlias = Literal["value", "choice", "section", "list", "table"]
 class Entry:
     """One key of a section.
 
-    `kind` is set for a value or a list of values, `choices` for a choice, `section` for a
+    `kind` is set for a value, a list of values or a choice, `choices` for a choice, `section` for a
     section, a list of sections, or a table of sections under free names; a table without section
     holds texts, numbers or tables (waivers, objective, materials).
     """
@@ -59,7 +59,7 @@ def _entry(name: str, info: Any) -> Entry:
     required = info.is_required()
     default = None if required else info.default
     kind = _kind(info.metadata)
-    if kind is not None:
+    if kind is not None and not isinstance(kind, Choice):
         return Entry(name, "value", required, default, kind)
     least = next((m.min_length for m in info.metadata if hasattr(m, "min_length")), 0)
     most = next((m.max_length for m in info.metadata if hasattr(m, "max_length")), None)
@@ -67,7 +67,7 @@ def _entry(name: str, info: Any) -> Entry:
     annotation = options[0]
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Literal:
-        return Entry(name, "choice", required, default, choices=arguments)
+        return Entry(name, "choice", required, default, kind, choices=arguments)
     if origin is tuple:
         kind = _kind(getattr(arguments[0], "__metadata__", ()))
         section = None if kind else arguments[0]

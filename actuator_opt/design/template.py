@@ -79,7 +79,7 @@ caps:
   material: ti_6al4v           # expands little: bonds to carbon over the temperature range
   thickness: 6 mm
 
-retention:                     # how caps and head are held in the barrel
+retention:                     # how caps and head are held to the barrel
   type: bond                   # or thread, tie_rods
   material: epoxy_structural
   length: 20 mm

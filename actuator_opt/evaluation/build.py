@@ -32,7 +32,7 @@ from .result import (
 )
 from .rows import ALL_CASES, Computed, Row, by_case, rows_of
 from .study import dynamics
-from .values import Values
+from .values import Values, of_case
 
 SENSES: dict[str, Sense] = {line.metric: line.sense for line in CHECK_LIST if line.metric} | {
     "stiffness_oil": "min",
@@ -321,8 +321,7 @@ def _curve(done: Pass, v: Values, case: str | None) -> StrokeCurve:
     """Stiffness over the stroke in the governing case."""
     stroke = float(np.squeeze(done.geometry.stroke))
     index = v.cases.index(case) if case in v.cases else 0
-    row = np.atleast_2d(done.weakest)
-    weakest = float(row[min(index, len(row) - 1), 0])
+    weakest = of_case(done.weakest, index)
     position = np.unique(np.append(np.linspace(0.0, stroke, 101), weakest))
     parts = {
         name: np.broadcast_to(np.atleast_2d(value), (len(v.cases), position.size))[index]

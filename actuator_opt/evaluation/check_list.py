@@ -144,7 +144,7 @@ CHECK_LIST: tuple[CheckLine, ...] = (
     CheckLine("seal damping", "damping_seal", "max"),
     CheckLine("damping ratio", "damping_ratio", "min", 0.0, "negative damping is stick-slip"),
     CheckLine(
-        "gain margin of the position loop", "gain_margin", "min", 1.9, "choice: 6 dB, rounded down"
+        "gain margin of the position loop", "gain_margin", "min", 10 ** (6 / 20), "choice: 6 dB"
     ),
     CheckLine("port velocity", "port_velocity", "max", 8.0, "common practice, pressure ports"),
     CheckLine("line velocity", "line_velocity", "max", 6.0, "common practice, pressure lines"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from ..design.circuit import Line
 from ..design.model import Design
@@ -49,7 +49,7 @@ def wall_compliance(v: Values, line: Line, at: str) -> Array:
 
 
 def branches(v: Values, design: Design, state: State) -> dict[Chamber, Branch]:
-    """The lines of chambers a and b."""
+    """The lines of chambers a and b, with the oil as it moves through them."""
     throttled = design.ports.throttle is not None
     modulus = {"a": state.bulk_modulus_a, "b": state.bulk_modulus_b}
     viscosity = {"a": state.dynamic_viscosity_a, "b": state.dynamic_viscosity_b}
@@ -78,16 +78,36 @@ def branches(v: Values, design: Design, state: State) -> dict[Chamber, Branch]:
     return {name: Branch(**total[name]) for name in CHAMBERS}
 
 
-def valve_slopes(v: Values, design: Design, state: State) -> dict[bool, valve.ValveSlopes]:
-    """Valve at its centre with the held pressures, extending and retracting."""
+class Ways(NamedTuple):
+    """A number of a chamber that differs by the way the piston goes."""
+
+    extending: Array
+    retracting: Array
+
+    def toward(self, extending: Array) -> Array:
+        """The number of the stated way; `extending` is True, False or an array of them."""
+        return where(extending, self.extending, self.retracting)
+
+
+class CentredValve(NamedTuple):
+    """The valve linearised at its centre; both empty without one."""
+
+    gains: dict[Chamber, Ways]
+    """Flow gains K_q into the lines, A +, B - [m^3/s/V]."""
+    ends: dict[Chamber, LineEnd]
+    """Flow-pressure coefficients K_c as line ends; a valve that leaks nothing closes them."""
+
+
+def centred_valve(v: Values, design: Design, state: State) -> CentredValve:
+    """Valve at its centre with the held pressures."""
     if design.valve is None:
-        return {}
+        return CentredValve({}, {})
     rated = valve.edge_coefficient(flow=v["valve.rated_flow"], pressure_drop=v["valve.rated_drop"])
     leakage = valve.edge_coefficient(
         flow=v["valve.leakage_flow"], pressure_drop=v["valve.leakage_drop"]
     )
-    return {
-        extending: valve.valve_slopes(
+    out, back = (
+        valve.valve_slopes(
             rated_coefficient=rated,
             leakage_coefficient=leakage,
             signal=v["valve.signal"],
@@ -98,29 +118,23 @@ def valve_slopes(v: Values, design: Design, state: State) -> dict[bool, valve.Va
             extending=extending,
         )
         for extending in (True, False)
-    }
-
-
-def centred_valve(
-    v: Values, design: Design, slopes: dict[bool, valve.ValveSlopes]
-) -> dict[Chamber, LineEnd]:
-    """The valve at its centre; one that leaks nothing closes the line."""
-    if design.valve is None:
-        return {}
-    if design.valve.leakage_flow == 0 and "valve.leakage_flow" not in v.varied:
-        return dict.fromkeys(CHAMBERS, line_ends.CLOSED)
-    one = slopes[True]
-    return {"a": LineEnd((one.conductance_a,)), "b": LineEnd((one.conductance_b,))}
+    )
+    tight = design.valve.leakage_flow == 0 and "valve.leakage_flow" not in v.varied
+    return CentredValve(
+        {"a": Ways(out.gain_a, back.gain_a), "b": Ways(-out.gain_b, -back.gain_b)},
+        {
+            "a": line_ends.CLOSED if tight else LineEnd((out.conductance_a,)),
+            "b": line_ends.CLOSED if tight else LineEnd((out.conductance_b,)),
+        },
+    )
 
 
 def throttle_conductances(
     v: Values, design: Design, state: State, geometry: Geometry
-) -> dict[Chamber, Array]:
-    """Conductance of the one-way valves at the flow of the case's speed."""
+) -> dict[Chamber, Ways]:
+    """Conductance of the one-way valves at the flow of the case's speed, by the piston's way."""
     if design.ports.throttle is None:
         return {}
-    g = geometry
-    outwards = where(state.push, -1.0, 1.0) * state.speed  # positive leaves chamber A
     at = "ports.throttle."
     common = {
         "density": state.density,
@@ -130,11 +144,17 @@ def throttle_conductances(
         "check_area": v[at + "check_area"],
         "cracking_pressure": v[at + "cracking_pressure"],
     }
-    found: dict[Chamber, Array] = {}
-    for chamber, flow in zip(CHAMBERS, (g.area_a * outwards, -g.area_b * outwards), strict=True):
+
+    def conductance(flow: Array) -> Array:
+        """At a flow out of the chamber."""
         drop = one_way_valve.one_way_pressure_drop(flow=flow, **common)
-        found[chamber] = one_way_valve.one_way_conductance(pressure_difference=drop, **common)
-    return found
+        return one_way_valve.one_way_conductance(pressure_difference=drop, **common)
+
+    flow_a, flow_b = geometry.area_a * state.speed, geometry.area_b * state.speed
+    return {
+        "a": Ways(extending=conductance(-flow_a), retracting=conductance(flow_a)),
+        "b": Ways(extending=conductance(flow_b), retracting=conductance(-flow_b)),
+    }
 
 
 def line_end(
@@ -150,7 +170,7 @@ def line_end(
     if kind == "valve":
         ends.append(centred[chamber])
     elif kind == "constant_pressure":
-        return LineEnd((1.0,), ())
+        return line_ends.CONSTANT_PRESSURE
     elif kind == "reducing_valve":
         at = "ports.reducing_valve."
         ends.append(

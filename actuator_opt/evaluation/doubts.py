@@ -9,7 +9,7 @@ import numpy as np
 from ..design.material import compatible
 from ..design.model import PLAIN_CAP
 from ..models import laminate, seals
-from . import motion, oil, oil_range, springs
+from . import motion_range, oil, oil_range, springs
 from .barrel import LAMINATES, kind
 from .beam import NEAR
 from .kernel import Pass, Subject
@@ -76,7 +76,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
     yield from oil_range.warnings(section, subject.materials[section.material], v.cases, done.state)
     yield from _seal_warnings(subject, v, done)
     yield from springs.warnings(done.springs)
-    yield from motion.warnings(v, subject.design, done.motion, done.state, done.computed)
+    yield from motion_range.warnings(v, subject.design, done.motion, done.state, done.computed)
     if done.wall.missing:
         yield "burst_factor", f"barrel: {done.wall.missing[0]}"
     for material in subject.materials.values():

@@ -1,4 +1,4 @@
-"""Oil damping, flow and velocities in an evaluation."""
+"""Oil damping, leakage, flow, and what the lines make of it, in an evaluation."""
 
 from __future__ import annotations
 
@@ -94,7 +94,8 @@ def compute_flow(
         for name in LINE_METRICS:
             out.skip(name, "no lines stated: add lines")
         return
-    velocity, drop, hammer, resonance = {}, {}, {}, {}
+    velocity, drop, hammer = {}, {}, {}
+    travel: dict[str, Array] = {}
     modulus = {"a": state.bulk_modulus_a, "b": state.bulk_modulus_b}
     viscosity = {"a": state.dynamic_viscosity_a, "b": state.dynamic_viscosity_b}
     for i, line in enumerate(design.lines):
@@ -118,11 +119,16 @@ def compute_flow(
         hammer[place] = water_hammer.joukowsky_pressure(
             density=state.density, sound_speed=speed, velocity_change=velocity[place]
         )
-        resonance[place] = elements.quarter_wave_frequency(
-            length=v[at + "length"], sound_speed=speed
-        )
+        chamber = f"lines of chamber {line.chamber}"
+        travel[chamber] = travel.get(chamber, 0.0) + v[at + "length"] / speed
     out.put("line_hammer", hammer)
-    out.put("line_resonance", resonance)
+    out.put(
+        "line_resonance",
+        {
+            chamber: elements.quarter_wave_frequency(length=time, sound_speed=1.0)
+            for chamber, time in travel.items()
+        },
+    )
     out.put("line_velocity", velocity)
     out.put("line_pressure_drop", drop)
     supply = v["supply.pressure"]

@@ -118,8 +118,8 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         weakest = springs.compute(budget, moving, out)
         damping = hydraulics.compute_damping(g, case_state, friction, out)
         leakage = hydraulics.compute_leakage(v, design, g, case_state, out)
-        swing = motion.derive(v, design, case_state, budget, branches, moving, damping, leakage)
-        places = motion.compute(v, design, swing, weakest, wanted, out)
+        linear = motion.derive(v, design, case_state, budget, branches, moving, damping, leakage)
+        places = motion.compute(v, design, linear, wanted, out)
         hydraulics.compute_flow(v, design, g, case_state, out)
         beam = beam_module.derive(v, design, g, case_state, barrel, rod, parts)
         strength.compute(v, design, stock, g, case_state, barrel, rod, beam, out)
@@ -134,7 +134,7 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         out.put("closed_length", g.closed_length)
         for plugin in subject.plugins:
             out.put(plugin.name, plugin.call(v, out.metrics))
-    return Pass(out, g, case_state, barrel, rod, beam, budget, swing, weakest, places, parts)
+    return Pass(out, g, case_state, barrel, rod, beam, budget, linear, weakest, places, parts)
 
 
 def _manufacture(v: Values, subject: Subject, out: Computed) -> None:

@@ -7,20 +7,20 @@ without a smooth maximum.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable
+from collections.abc import Container
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..design.model import Design
-from ..models import dynamics, line_ends, linear, loop, valve
+from ..models import dynamics, line_ends, linear, loop
 from ..models.line_ends import LineEnd
 from ..models.linear import LinearActuator, Side
 from ..numeric import Array, angle, magnitude, maximum, real, where
 from . import circuit
-from .circuit import CHAMBERS, Branch, Chamber
+from .circuit import CHAMBERS, Branch, Chamber, Ways
 from .rows import Computed
-from .springs import Springs
+from .springs import Springs, weakest_per_chamber
 from .state import State
 from .values import Values
 
@@ -38,16 +38,16 @@ class Motion:
     """Incremental friction and oil damping at the piston [N s/m]."""
     leakage: Array
     branches: dict[Chamber, Branch]
-    throttles: dict[Chamber, Array]
-    """Conductance of the throttle at its operating point [m^3/s/Pa]; empty without one."""
-    accumulators: dict[Chamber, tuple[LineEnd, ...]]
-    """Accumulators on the lines."""
-    ends: dict[Chamber, LineEnd]
+    throttles: dict[Chamber, Ways]
+    """Conductance of the throttles at their operating point [m^3/s/Pa]; empty without."""
+    push: Array
+    """Cases whose piston extends: how the throttles work while the load shakes."""
+    held: dict[Chamber, LineEnd]
     """What ends the lines while the load shakes the actuator, accumulators included."""
-    centred: dict[Chamber, LineEnd]
-    """The valve at its centre as a line end; empty without one."""
-    slopes: dict[bool, valve.ValveSlopes]
-    """Valve linearised at the centre, extending and retracting; empty without a valve."""
+    driven: dict[Chamber, LineEnd]
+    """What ends them while the valve drives, accumulators included; empty without a valve."""
+    gains: dict[Chamber, Ways]
+    """Flow gains of the valve into the lines, A +, B - [m^3/s/V]; empty without."""
     spool: tuple[Array, Array] | None
 
     def model(self, position: Array, *, extending: Array | None = None) -> LinearActuator:
@@ -58,28 +58,21 @@ class Motion:
         s = self.springs
         near = s.total().at(position, s.geometry.stroke)
         driven = extending is not None
+        way = extending if driven else self.push
         sides = {}
         for chamber, area, whole in zip(
             CHAMBERS, (s.geometry.area_a, s.geometry.area_b), (near.a, near.b), strict=True
         ):
-            branch = self.branches[chamber]
-            end, gain = self.ends[chamber], 0.0
-            if extending is not None:
-                out, back = self.slopes[True], self.slopes[False]
-                if chamber == "a":
-                    gain = where(extending, out.gain_a, back.gain_a)
-                else:
-                    gain = -where(extending, out.gain_b, back.gain_b)
-                end = line_ends.parallel_ends(self.centred[chamber], *self.accumulators[chamber])
+            branch, throttle = self.branches[chamber], self.throttles.get(chamber)
             sides[chamber] = Side(
                 area=area,
                 compliance=whole - branch.far,
-                throttle=self.throttles.get(chamber),
+                throttle=None if throttle is None else throttle.toward(way),
                 resistance=branch.resistance,
                 inertance=branch.inertance,
                 far_compliance=branch.far,
-                end=end,
-                flow_gain=gain,
+                end=(self.driven if driven else self.held)[chamber],
+                flow_gain=self.gains[chamber].toward(way) if driven else 0.0,
             )
         return linear.linear_actuator(
             side_a=sides["a"],
@@ -89,7 +82,7 @@ class Motion:
             coupling=near.ab,
             leakage=self.leakage,
             seal_stiffness=0.0 if s.seals is None or driven else s.seals,
-            flexibility=s.flexibility(),
+            flexibility=s.series_compliance(),
         )
 
     def position_loop(self, position: Array, *, extending: Array) -> loop.OpenLoop:
@@ -105,7 +98,7 @@ class Motion:
     def mode(self, model: LinearActuator, position: Array) -> loop.Mode:
         """Mode of the load on the actuator as it is held."""
         closed = dynamics.natural_frequency(
-            stiffness=self.springs.balance(position), mass=self.mass
+            stiffness=self.springs.per_chamber_stiffness(position), mass=self.mass
         )
         return loop.load_mode(model=model, near=closed)
 
@@ -121,8 +114,7 @@ def derive(
     leakage: Array,
 ) -> Motion:
     """The linear model's numbers in every load case."""
-    slopes = circuit.valve_slopes(v, design, state)
-    centred = circuit.centred_valve(v, design, slopes)
+    centred = circuit.centred_valve(v, design, state)
     accumulators = {
         chamber: circuit.accumulator_ends(v, design, state, chamber) for chamber in CHAMBERS
     }
@@ -133,13 +125,16 @@ def derive(
         leakage=leakage,
         branches=branches,
         throttles=circuit.throttle_conductances(v, design, state, springs.geometry),
-        accumulators=accumulators,
-        ends={
-            chamber: circuit.line_end(v, design, centred, accumulators[chamber], chamber)
+        push=state.push,
+        held={
+            chamber: circuit.line_end(v, design, centred.ends, accumulators[chamber], chamber)
             for chamber in CHAMBERS
         },
-        centred=centred,
-        slopes=slopes,
+        driven={
+            chamber: line_ends.parallel_ends(end, *accumulators[chamber])
+            for chamber, end in centred.ends.items()
+        },
+        gains=centred.gains,
         spool=(v["valve.natural_frequency"], v["valve.damping_ratio"]) if design.valve else None,
     )
 
@@ -156,7 +151,6 @@ def compute(
     v: Values,
     design: Design,
     motion: Motion,
-    weakest: Array,
     wanted: Container[str] | None,
     out: Computed,
 ) -> dict[str, Array]:
@@ -164,6 +158,7 @@ def compute(
 
     Poles and margins cost more than all else: only those in `wanted` are found (None: all).
     """
+    weakest = weakest_per_chamber(motion.springs)
     names, positions = _places(motion.springs.geometry.stroke, weakest)
     model = motion.model(positions)
     if wanted is None or "damping_ratio" in wanted:
@@ -243,12 +238,6 @@ def _position_loop(
     out.put("position_gain", gain)
 
 
-def _weakest_gain(motion: Motion) -> Array:
-    """Smallest flow gain of the valve over chambers and directions, in every case."""
-    gains = [gain for one in motion.slopes.values() for gain in (one.gain_a, one.gain_b)]
-    return np.min(np.stack(np.broadcast_arrays(*[np.real(gain) for gain in gains])), axis=0)
-
-
 LEAST_GAIN = 1e-3
 """Gain where every gain would swing (V/m): nothing follows, and the figures stay finite."""
 
@@ -258,64 +247,3 @@ def _least(values: Array) -> Array:
     flat = values.reshape(-1, values.shape[-1])
     best = np.argmin(real(flat), axis=0)[None]
     return np.take_along_axis(flat, best, axis=0)[0]
-
-
-LONGEST = 0.1
-"""Longest line over the wavelength for one lumped element (choice: 2 % in its impedance)."""
-
-
-def warnings(
-    v: Values, design: Design, motion: Motion, state: State, out: Computed
-) -> Iterable[tuple[str, str]]:
-    """(metric, sentence) where the linear model is used outside its range."""
-    slowest = float(np.min(np.real(motion.damping)))
-    if slowest < 0:
-        yield (
-            "damping_ratio",
-            f"friction falls with speed ({slowest:.3g} N*s/m): the load may stick and slip",
-        )
-    if "ultimate_gain" in out.metrics:
-        least = min(float(np.min(np.real(x))) for x in out.metrics["ultimate_gain"].values())
-        margin = min(float(np.min(np.real(x))) for x in out.metrics["gain_margin"].values())
-        if least > 0 and margin <= 1:
-            yield "bandwidth", "the position loop swings at this gain: its bandwidth counts as 0"
-        stalled = [
-            case
-            for case, gain in zip(
-                v.cases, np.broadcast_to(_weakest_gain(motion), (len(v.cases), 1)), strict=True
-            )
-            if gain[0] == 0
-        ]
-        for case in stalled:
-            yield (
-                "bandwidth",
-                f"{case}: the held force takes the whole supply pressure, the valve moves nothing",
-            )
-        if least == 0:
-            yield (
-                "ultimate_gain",
-                "no gain is stable: the load grows by itself, or leakage across the piston "
-                "outweighs the centred valve's; give the valve leakage or the load damping",
-            )
-    for i, one in enumerate(design.ports.accumulators):
-        held = state.holding_a if one.chamber == "a" else state.holding_b
-        precharge = float(np.max(np.real(v[f"ports.accumulators[{i}].precharge"])))
-        if float(np.min(np.real(held))) <= precharge:
-            yield (
-                "",
-                f"ports.accumulators[{i}]: its precharge is not below the pressure it holds in "
-                "every case: it takes no oil there",
-            )
-    asked = {f"load case {case.name}": case.frequency or 0.0 for case in design.load_cases}
-    if motion.spool is not None:
-        asked["the valve's spool"] = float(np.max(np.real(motion.spool[0])))
-    what, fastest = max(asked.items(), key=lambda one: one[1])
-    for place, resonance in out.metrics.get("line_resonance", {}).items():
-        limit = 4 * LONGEST * float(np.min(np.real(resonance)))
-        if fastest > limit:
-            metric = "dynamic_stiffness" if "dynamic_stiffness" in out.metrics else "bandwidth"
-            yield (
-                metric,
-                f"{place}: one lumped element is good to {limit:.0f} Hz, {what} asks for "
-                f"{fastest:.4g} Hz: split the line or read the figure as rough",
-            )

@@ -16,7 +16,20 @@ from .allow import Stock
 from .rows import Computed
 from .state import State
 
-PRESSURE_FED = ("stiffness_oil", "stiffness_min", "natural_frequency")
+PRESSURE_FED = (
+    "stiffness_oil",
+    "stiffness_min",
+    "natural_frequency",
+    "damping_ratio",
+    "dynamic_stiffness",
+    "dynamic_phase",
+    "ultimate_gain",
+    "gain_margin",
+    "phase_margin",
+    "bandwidth",
+    "line_resonance",
+    "line_hammer",
+)
 """Metrics that inherit the error of the bulk modulus."""
 
 

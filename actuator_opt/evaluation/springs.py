@@ -82,7 +82,7 @@ class Springs:
             area_a=g.area_a, compliance_a=a, area_b=g.area_b, compliance_b=b, compliance_ab=ab
         )
 
-    def flexibility(self) -> Array:
+    def series_compliance(self) -> Array:
         """Compliance of the parts in series with the chambers [m/N]."""
         return sum(1 / part for part in self.chain.values())
 
@@ -101,7 +101,7 @@ class Springs:
     def _by_energy(self, position: Array) -> dict[str, Array]:
         g = self.geometry
         a, b, ab = self.total().at(position, g.stroke)
-        det = a * b - ab * ab  # 0 where a chamber is empty: rigid, and divided by nothing
+        det = a * b - ab * ab  # 0 where a chamber is empty: rigid, so nothing is divided by it
         swing_a, swing_b = g.area_a * b + g.area_b * ab, -(g.area_a * ab + g.area_b * a)
         seals = 0.0 if self.seals is None else self.seals
         whole = g.area_a * swing_a - g.area_b * swing_b + seals * det
@@ -156,9 +156,9 @@ class Springs:
         """Axial stiffness at a position."""
         return 1 / sum(self.compliances(position).values())
 
-    def balance(self, position: Array) -> Array:
+    def per_chamber_stiffness(self, position: Array) -> Array:
         """Axial stiffness at a position, per chamber whatever the topology."""
-        return 1 / (sum(self._by_energy(position).values()) + self.flexibility())
+        return 1 / (sum(self._by_energy(position).values()) + self.series_compliance())
 
 
 def _stretch(design: Design, g: Geometry, wall: Wall, extra: Array) -> Give:
@@ -237,6 +237,11 @@ def weakest(s: Springs) -> Array:
     """Position of least stiffness in every case."""
     if s.topology != "per_chamber":
         return _softest(s.stiffness, s.geometry.stroke)
+    return weakest_per_chamber(s)
+
+
+def weakest_per_chamber(s: Springs) -> Array:
+    """Position of least stiffness of the chambers themselves, whatever the topology."""
     give = s.total()
     return stiffness.weakest_position(
         area_a=s.geometry.area_a,
@@ -254,7 +259,7 @@ def weakest(s: Springs) -> Array:
 def _softest(curve: Callable[[Array], Array], stroke: Array) -> Array:
     """Position of least stiffness by narrowing a grid.
 
-    On real parts: at a minimum the position's own derivative does not count.
+    On real parts: for the stiffness there, the position's own derivative does not count.
     """
     length = np.asarray(real(stroke))
     middle, reach = 0.5 * length, 0.5 * length

@@ -55,3 +55,9 @@ def stacked(rows: Sequence[Array]) -> Array:
     if all(isinstance(row, float) for row in rows):
         return np.array(rows)[:, None]
     return np.stack(np.broadcast_arrays(*[np.atleast_1d(np.asarray(row)) for row in rows]))
+
+
+def of_case(value: Array, index: int) -> float:
+    """One case's number of an array (cases, 1), (1, 1) or a float."""
+    array = np.atleast_2d(np.asarray(value))
+    return float(array[min(index, array.shape[0] - 1), 0])

@@ -23,6 +23,8 @@ class LineEnd:
 
 CLOSED = LineEnd()
 """Nothing flows out of the line."""
+CONSTANT_PRESSURE = LineEnd((1.0,), ())
+"""The pressure is held whatever flows."""
 
 
 def parallel_ends(*ends: LineEnd) -> LineEnd:
@@ -157,8 +159,8 @@ def end_admittance(*, end: LineEnd, frequency: Array) -> Array:
     """
     xp = namespace(frequency)
     omega = xp.asarray(2 * pi * frequency, dtype=xp.complex128)
-    top, low = at_frequency(end.numerator, omega), at_frequency(end.denominator, omega)
-    above, below = top.real + 1j * top.imaginary, low.real + 1j * low.imaginary + 0 * omega
+    above = at_frequency(end.numerator, omega).complex
+    below = at_frequency(end.denominator, omega).complex + 0 * omega
     held = below == 0
     return where(held, math.inf, above / where(held, 1.0, below))
 

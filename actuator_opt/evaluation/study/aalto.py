@@ -16,6 +16,8 @@ from ...design.circuit import Line
 from ...design.model import Design
 from ...models import fluid
 from ...numeric import Array
+from .. import oil
+from ..allow import Stock
 from ..build import prepare
 from ..kernel import Pass, compute
 from ..springs import Springs
@@ -27,6 +29,11 @@ Topology = Literal["per_chamber", "aalto_as_published"]
 class Paper:
     """What the thesis prints and the design does not hold, SI; the comment is its place."""
 
+    bore: float = 0.040  # chapter 3
+    rod: float = 0.025
+    stroke: float = 0.220
+    throttle: float = 0.22e-4  # section 3.3.5
+    temperatures: tuple[float, float] = (298.15, 303.15)  # of the tests, 25 to 30 degC
     bulk_modulus: float = 1600e6  # section 3.3.1
     bulk_modulus_with_air: float = 1300e6  # section 3.3.3
     load_cell: float = 106e6  # section 3.2
@@ -99,6 +106,19 @@ def evaluated(design: Design) -> Pass:
     """One pass over the models."""
     subject = prepare(design)
     return compute(subject, subject.values())
+
+
+def temperature_of(design: Design, viscosity: float) -> float:
+    """Temperature [K] between -20 and 120 degC at which the oil has a kinematic viscosity.
+
+    NaN where it has it at none.
+    """
+    subject = prepare(design)
+    v = subject.values()
+    stock = Stock(v, subject.materials, subject.factors, subject.constants)
+    warm = np.linspace(253.15, 393.15, 1401)
+    found = np.log(np.ravel(oil.kinematic_viscosity(v, design.fluid, stock, warm)))
+    return float(np.interp(-np.log(viscosity), -found, warm, left=np.nan, right=np.nan))
 
 
 def first(values: Array) -> Array:

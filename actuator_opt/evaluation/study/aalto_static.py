@@ -24,6 +24,8 @@ UP, DOWN = sum(PAPER.load_up) / 2, sum(PAPER.load_down) / 2
 """Mean force steps of both piston directions [N]."""
 ENTRAINED = 0.005
 """Air content of a usual mineral oil."""
+CONTENTS = (0.001, 0.15)
+"""Air contents searched for the one behind a displacement."""
 
 
 class Bypass(NamedTuple):
@@ -81,10 +83,11 @@ class Bench:
 
     def __init__(self, design: Design) -> None:
         springs = variant(design, lines=pipes(design), bulk_modulus=PAPER.bulk_modulus)
-        self.geometry, self.flexibility = springs.geometry, springs.flexibility()
+        self.geometry, self.flexibility = springs.geometry, springs.series_compliance()
         stroke = springs.geometry.stroke
         self.position = np.linspace(MARGIN, stroke - MARGIN, 22)
-        places = np.append(self.position, min(PAPER.place, 0.99 * stroke))
+        self.place = float(np.squeeze(np.minimum(PAPER.place, 0.99 * stroke)))
+        places = np.append(self.position, self.place)
         oil = springs.total(("oil A", "oil B")).at(places, stroke)
         walls = springs.total(("oil A", "oil B", "barrel")).at(places, stroke)
         scale = PAPER.bulk_modulus
@@ -100,6 +103,7 @@ class Bench:
 
     def entrained(self, content: float) -> Air:
         """Air spread evenly through the oil, by volume at atmospheric pressure."""
+        content = min(content, CONTENTS[1])
         return Air(content * self.oil.a, content * self.oil.b)
 
     def bubbles(self, *, compressed: bool) -> Air:
@@ -140,10 +144,18 @@ class Bench:
         )
 
     def air_needed(self, load: float, most: float, *, share: float) -> float:
-        """Entrained air at which the largest displacement is the measured one."""
-        content = np.linspace(0.001, 0.15, 300)
-        largest = [self.answer(load, self.entrained(c), share=share).range[1] for c in content]
-        return float(np.interp(most, largest, content))
+        """Entrained air at which the largest displacement is the measured one.
+
+        0 where the least of `CONTENTS` already moves more, infinite where the most moves less.
+        """
+        content = np.linspace(*CONTENTS, 300)
+        largest = np.array(
+            [self.answer(load, self.entrained(c), share=share).range[1] for c in content]
+        )
+        held = np.isfinite(largest)
+        if not held.any():
+            return float("inf")
+        return float(np.interp(most, largest[held], content[held], left=0.0, right=np.inf))
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,12 +163,14 @@ class StaticTest:
     """The static test under every assumption."""
 
     position: Array
+    place: float
+    """Of the pressures of every answer."""
     up: Bypass
     down: Bypass
     assumptions: tuple[Assumption, ...]
     air_up: tuple[float, float]
     """Entrained air behind the largest displacement: all of the load on the chambers, and less
-    the measured by-pass."""
+    the measured by-pass. 0 and infinite beyond `CONTENTS`."""
     air_down: tuple[float, float]
 
 
@@ -183,6 +197,7 @@ def static_test(design: Design) -> StaticTest:
     )
     return StaticTest(
         position=bench.position,
+        place=bench.place,
         up=up,
         down=down,
         assumptions=tuple(

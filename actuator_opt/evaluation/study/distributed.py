@@ -16,20 +16,14 @@ from ...numeric import Array
 from ..circuit import CHAMBERS, Chamber, wall_compliance
 from ..motion import Motion
 from ..state import State
-from ..values import Values
-
-
-def _one(value: Array, index: int) -> float:
-    """One case's number."""
-    array = np.atleast_2d(np.asarray(value))
-    return float(array[min(index, array.shape[0] - 1), 0])
+from ..values import Values, of_case
 
 
 def _end(end: LineEnd, frequencies: Array, index: int) -> Array:
     """Admittance of a line's end; infinite at constant pressure."""
     alone = LineEnd(
-        tuple(_one(c, index) for c in end.numerator),
-        tuple(_one(c, index) for c in end.denominator),
+        tuple(of_case(c, index) for c in end.numerator),
+        tuple(of_case(c, index) for c in end.denominator),
     )
     return line_ends.end_admittance(end=alone, frequency=frequencies)
 
@@ -44,12 +38,13 @@ def port_admittance(
     frequencies: Array,
 ) -> Array:
     """Flow into everything behind a chamber's port per its pressure, complex, over frequency."""
-    modulus = _one(state.bulk_modulus_a if chamber == "a" else state.bulk_modulus_b, index)
+    modulus = of_case(state.bulk_modulus_a if chamber == "a" else state.bulk_modulus_b, index)
     viscosity = state.dynamic_viscosity_a if chamber == "a" else state.dynamic_viscosity_b
-    density = _one(state.density, index)
-    admittance = _end(motion.ends[chamber], frequencies, index)
+    density = of_case(state.density, index)
+    admittance = _end(motion.held[chamber], frequencies, index)
     own = [(i, line) for i, line in enumerate(design.lines) if line.chamber == chamber]
-    throttle = motion.throttles.get(chamber)
+    ways = motion.throttles.get(chamber)
+    throttle = None if ways is None else ways.toward(motion.push)
     beyond = [one for one in own if one[1].beyond_throttle] if throttle is not None else []
     near = [one for one in own if one not in beyond]
 
@@ -71,7 +66,7 @@ def port_admittance(
                     volume=lines.line_volume(**size),
                     wall_compliance=wall,
                 ),
-                dynamic_viscosity=_one(viscosity, index),
+                dynamic_viscosity=of_case(viscosity, index),
                 friction="distributed",
             )
             admittance = transmission.input_admittance(matrix=matrix, end_admittance=admittance)
@@ -79,7 +74,7 @@ def port_admittance(
 
     admittance = through(admittance, beyond)
     if throttle is not None:
-        g = _one(throttle, index)
+        g = of_case(throttle, index)
         series = g * admittance / (g + admittance) if g else 0 * admittance
         admittance = np.where(np.isinf(admittance), g, series)
     return through(admittance, near)
@@ -108,10 +103,10 @@ def dynamic_stiffness(
         branch = motion.branches[chamber]
         lines_of_it = branch.volume / oil[chamber] + branch.pipes + branch.hoses
         port = port_admittance(v, design, state, motion, chamber, index, frequencies)
-        own = _one(total, index) - _one(lines_of_it, index)
-        diagonal[chamber] = s * own + _one(motion.leakage, index) + port
-    cross = s * _one(whole.ab, index) - _one(motion.leakage, index)
-    a, b = _one(budget.geometry.area_a, index), _one(budget.geometry.area_b, index)
+        own = of_case(total, index) - of_case(lines_of_it, index)
+        diagonal[chamber] = s * own + of_case(motion.leakage, index) + port
+    cross = s * of_case(whole.ab, index) - of_case(motion.leakage, index)
+    a, b = of_case(budget.geometry.area_a, index), of_case(budget.geometry.area_b, index)
     with np.errstate(all="ignore"):
         det = diagonal["a"] * diagonal["b"] - cross * cross
         held = (a * a * diagonal["b"] + b * b * diagonal["a"] + 2 * a * b * cross) / det
@@ -119,7 +114,7 @@ def dynamic_stiffness(
         held = np.where(
             rigid[0], b * b / diagonal["b"], np.where(rigid[1], a * a / diagonal["a"], held)
         )
-    seals = 0.0 if budget.seals is None else _one(budget.seals, index)
-    piston = seals + s * _one(motion.damping, index) + s * held
-    flexibility = _one(budget.flexibility(), index)
-    return piston / (1 + flexibility * piston) + s * s * _one(motion.mass, index)
+    seals = 0.0 if budget.seals is None else of_case(budget.seals, index)
+    piston = seals + s * of_case(motion.damping, index) + s * held
+    flexibility = of_case(budget.series_compliance(), index)
+    return piston / (1 + flexibility * piston) + s * s * of_case(motion.mass, index)

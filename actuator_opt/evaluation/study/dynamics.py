@@ -17,7 +17,7 @@ from ...numeric import Array
 from ...polynomial import Polynomial, add, at_frequency, roots, scale
 from ..kernel import Pass, Subject
 from ..motion import Motion
-from ..values import Values
+from ..values import Values, of_case
 from . import distributed
 
 FREQUENCIES = np.geomspace(0.1, 1000.0, 121)
@@ -124,7 +124,7 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
     motion = done.motion
     index = v.cases.index(case) if case in v.cases else 0
     stroke = float(np.squeeze(done.geometry.stroke))
-    weakest = _of_case(done.weakest, index)
+    weakest = of_case(done.places["weakest position"], index)
     position = np.unique(np.append(np.linspace(0.0, stroke, 61), weakest))
     model = motion.model(position)
     along = motion.mode(model, position)
@@ -133,15 +133,15 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
     )
     there = np.array([[weakest]])
     here = motion.model(there)
-    whole = _of_case(motion.mode(here, there).damping_ratio, index)
+    whole = of_case(motion.mode(here, there).damping_ratio, index)
     sliding = replace(motion, damping=0.0 * motion.damping)
-    ends = _of_case(sliding.mode(sliding.model(there), there).damping_ratio, index)
+    ends = of_case(sliding.mode(sliding.model(there), there).damping_ratio, index)
     design = subject.design
     shaken = _worst(done, "dynamic_stiffness", design)
     asked = index if shaken is None else shaken[0]
     places = {
         "cap end": 0.0,
-        "weakest position": _of_case(done.weakest, asked),
+        "weakest position": of_case(done.places["weakest position"], asked),
         "rod end": stroke,
     }
     models = {name: motion.model(np.array([[[x]]])) for name, x in places.items()}
@@ -187,12 +187,6 @@ def _distributed(
             v, design, done.state, done.motion, index, position, frequencies
         )
     )
-
-
-def _of_case(value: Array, index: int) -> float:
-    """One case's number of an array (cases, 1), (1, 1) or a float."""
-    array = np.atleast_2d(np.asarray(value))
-    return float(array[min(index, array.shape[0] - 1), 0])
 
 
 def _row(value: Array, index: int, along: Array) -> Array:
@@ -262,14 +256,14 @@ def _response(
     frequencies: Array,
 ) -> Response:
     parts = linear.dynamic_stiffness(model=model, frequency=frequencies.reshape(-1, 1, 1))
-    value = np.asarray(parts.real + 1j * parts.imaginary)
+    value = np.asarray(parts.complex)
     value = value[:, min(index, value.shape[1] - 1), 0]
     return Response(
         place=name,
         position=position,
         magnitude=np.abs(value),
         phase=np.angle(value),
-        static=_of_case(motion.springs.stiffness(np.array([[position]])), index),
+        static=of_case(motion.springs.stiffness(np.array([[position]])), index),
     )
 
 
@@ -288,7 +282,7 @@ class _Loop:
         direction, _, where = place.partition(", ")
         position = np.asarray(done.places[where])
         one = done.motion.position_loop(position, extending=np.array(direction == "extending"))
-        gain = _of_case(done.computed.metrics["position_gain"][""], index)
+        gain = of_case(done.computed.metrics["position_gain"][""], index)
         return cls(index, place, gain, one)
 
     def polynomials(self) -> list[Polynomial]:
@@ -305,23 +299,23 @@ def _loop(subject: Subject, v: Values, done: Pass, at: _Loop, frequencies: Array
     """What one loop does over frequency, with its figures from the metrics."""
 
     def of(metric: str) -> float:
-        return _of_case(done.computed.metrics[metric][at.place], at.index)
+        return of_case(done.computed.metrics[metric][at.place], at.index)
 
     one, gain = at.open_loop, at.gain
     limit = loop.ultimate_gain(loop=one)
     figures = loop.margins(loop=one, gain=gain)
     s = 2 * pi * frequencies.reshape(-1, 1, 1)
     top, low = at_frequency(one.numerator, s), at_frequency(one.denominator, s)
-    response = gain * (top.real + 1j * top.imaginary) / (low.real + 1j * low.imaginary)
+    response = gain * top.complex / low.complex
     response = response[:, min(at.index, response.shape[1] - 1), 0]
-    crossover, width = _of_case(figures.crossover, at.index), of("bandwidth")
+    crossover, width = of_case(figures.crossover, at.index), of("bandwidth")
     return LoopStudy(
         case=v.cases[at.index],
         place=at.place,
         gain=gain,
         tuned=subject.design.control is None or subject.design.control.gain is None,
         ultimate_gain=of("ultimate_gain"),
-        ultimate_frequency=_of_case(limit.frequency, at.index),
+        ultimate_frequency=of_case(limit.frequency, at.index),
         gain_margin=of("gain_margin"),
         phase_margin=of("phase_margin"),
         crossover=crossover if np.isfinite(crossover) else None,

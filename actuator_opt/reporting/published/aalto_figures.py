@@ -21,6 +21,7 @@ from ..figures import Axes
 from ..ink import BLACK, BLUE, GREY, PALE, Ink, Point, spread_within
 from ..text import DASH, trimmed
 from ..wall_figures import GREEN, OCHRE
+from .aalto_text import area_text
 
 Style: TypeAlias = dict[str, Any]
 FULL: Style = {"stroke": BLUE, "pen": 0.45}
@@ -214,8 +215,8 @@ def dynamic_figure(test: DynamicTest, *, width: float = 180.0) -> Ink:
         ("reducing_valve", "reducing valve, ours"),
     )
     needles: tuple[tuple[str, dict[End, tuple[Response, ...]]], ...] = (
-        ("0.22 cm²", test.stated),
-        (f"{trimmed(1e4 * test.needle.area, 2)} cm²", test.read_back),
+        (area_text(test.area), test.stated),
+        (area_text(test.needle.area), test.read_back),
     )
     for row, (needle, found) in enumerate(needles):
         for column, (end, words) in enumerate(columns):
@@ -223,9 +224,8 @@ def dynamic_figure(test: DynamicTest, *, width: float = 180.0) -> Ink:
                 _curve(FREQUENCIES, np.abs(one.over) / 1e6, style, _throttle(one.opening))
                 for one, style in zip(found[end], (FULL, DASHED, CHAIN), strict=True)
             ]
-            shut = float(np.interp(20.0, (10.0, 30.0), np.abs(test.closed[[0, -1]]))) / 1e6
-            flat = np.full(FREQUENCIES.shape, shut)
-            curves.append(_curve(FREQUENCIES, flat, THIN, "throttle 100 %"))
+            shut = np.abs(test.closed.over) / 1e6
+            curves.append(_curve(FREQUENCIES, shut, THIN, "throttle 100 %"))
             static = np.full(FREQUENCIES.shape, test.static / 1e6)
             curves.append(_curve(FREQUENCIES, static, DOTTED, "static, with hoses"))
             most = max(max(curve.ys) for curve in curves)

@@ -1,0 +1,134 @@
+"""The words a design file may choose from: one type each, with what every word means."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeAlias
+
+from .kinds import Choice
+
+Paper: TypeAlias = Annotated[
+    Literal["ElAsswad2018", "AaltoThesis"] | None,
+    Choice(
+        "the paper whose cylinder this is: reports set its published numbers beside ours; "
+        "ElAsswad2018: composite knee cylinder of a humanoid robot; "
+        "AaltoThesis: 40/25-220 test cylinder of a paper machine's actuator"
+    ),
+]
+BulkModulusLaw: TypeAlias = Annotated[
+    Literal["constant", "linear", "tait"] | None,
+    Choice(
+        "how the oil stiffens with pressure (default: linear where the oil states its slope, "
+        "else constant); constant: not at all; linear: by the oil's slope; "
+        "tait: by the Tait equation with its three constants"
+    ),
+]
+ViscosityLaw: TypeAlias = Annotated[
+    Literal["none", "barus", "roelands"] | None,
+    Choice(
+        "how the oil thickens with pressure (default: roelands where the oil states its "
+        "coefficient, else none); none: not at all; barus: exponentially; "
+        "roelands: less than exponentially at high pressure"
+    ),
+]
+Mount: TypeAlias = Annotated[
+    Literal["cap_clevis", "head_flange", "head_trunnion", "cap_flange"],
+    Choice(
+        "what holds the cylinder; cap_clevis: an eye at the cap end, free to swing; "
+        "head_flange: bolted at the head; head_trunnion: pivots at the head, free to swing; "
+        "cap_flange: bolted at the cap end"
+    ),
+]
+EndStop: TypeAlias = Annotated[
+    Literal["internal", "external"],
+    Choice(
+        "what ends the travel; internal: the piston runs onto cap or head and pulls at the barrel; "
+        "external: a stop outside the actuator, before the piston touches"
+    ),
+]
+WallModel: TypeAlias = Annotated[
+    Literal["auto", "isotropic", "thin_laminate", "layered", "as_published"],
+    Choice(
+        "how the wall is computed; auto: isotropic for one metal layer, else layered; "
+        "isotropic: thick tube of one material; "
+        "thin_laminate: plies as a thin wall, fast, for t/r up to 0.05; "
+        "layered: plies as a thick tube, exact; "
+        "as_published: isotropic, but the bore grows as [ElAsswad2018] prints it"
+    ),
+]
+Criterion: TypeAlias = Annotated[
+    Literal["max_stress", "max_strain", "tsai_wu", "hashin", "puck"],
+    Choice(
+        "when a ply of barrel or rod fails; max_stress: one stress reaches its strength; "
+        "max_strain: one strain reaches its limit; tsai_wu: all stresses together, in one formula; "
+        "hashin: fibre or matrix, each by its own formula; "
+        "puck: fibre, or matrix pulled open (mode A), sheared (B) or crushed at a slant (C)"
+    ),
+]
+RetentionType: TypeAlias = Annotated[
+    Literal["bond", "thread", "tie_rods"],
+    Choice(
+        "what holds cap and head to the barrel; bond: skirts glued over it; "
+        "thread: skirts screwed over it; tie_rods: rods outside clamp it between cap and head"
+    ),
+]
+SealType: TypeAlias = Annotated[
+    Literal["o_ring"], Choice("kind of seal; o_ring: a rubber ring of round section")
+]
+SealLaw: TypeAlias = Annotated[
+    Literal["plane_strain", "hertz_lindley", "chord"],
+    Choice(
+        "contact width and force of the squeezed ring; "
+        "plane_strain: fitted to plane-strain finite elements, wider under pressure; "
+        "hertz_lindley: Hertz line contact under Lindley's force, as wide at any pressure; "
+        "chord: as [ElAsswad2018] prints it, no force without pressure"
+    ),
+]
+HardnessModel: TypeAlias = Annotated[
+    Literal["gent", "ruess"],
+    Choice(
+        "Young's modulus of the rubber from its Shore A hardness; gent: Gent's formula; "
+        "ruess: Ruess's formula, 1.8 times as stiff at 70 Shore A"
+    ),
+]
+Direction: TypeAlias = Annotated[
+    Literal["push", "pull"],
+    Choice(
+        "which way the actuator drives its load; push: the rod moves out, chamber A (cap side) is "
+        "driven; pull: the rod moves in, chamber B (rod side) is driven"
+    ),
+]
+Topology: TypeAlias = Annotated[
+    Literal["per_chamber", "aalto_as_published", "elasswad_as_published"],
+    Choice(
+        "how oil, walls and lines combine; "
+        "per_chamber: the parts of each chamber in series, both chambers side by side; "
+        "aalto_as_published: totals of oil, walls and lines in series, as [AaltoThesis] prints it; "
+        "elasswad_as_published: oil and wall in series, as [ElAsswad2018] prints it"
+    ),
+]
+SealState: TypeAlias = Annotated[
+    Literal["sliding", "sticking"],
+    Choice(
+        "whether the seals add stiffness; sliding: no; "
+        "sticking: a spring beside the oil, until they break away"
+    ),
+]
+Chamber: TypeAlias = Annotated[
+    Literal["a", "b"], Choice("the chamber it belongs to; a: cap side; b: rod side")
+]
+LineType: TypeAlias = Annotated[
+    Literal["pipe", "hose"],
+    Choice(
+        "where the stiffness budget counts its wall (the material says how far it gives); "
+        "pipe: a stiff tube; hose: a flexible one"
+    ),
+]
+End: TypeAlias = Annotated[
+    Literal["closed", "valve", "constant_pressure", "reducing_valve"],
+    Choice(
+        "what ends both lines while the load shakes the actuator; closed: blocked; "
+        "valve: the valve of this file, its spool centred; "
+        "constant_pressure: a port that holds its pressure; "
+        "reducing_valve: a pressure reducing valve, as ports.reducing_valve states it"
+    ),
+]

@@ -1,0 +1,111 @@
+"""Where the linear model leaves its range: sticking, swinging and stalled loads, long lines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ..design.model import Design
+from ..numeric import Array
+from .motion import Motion
+from .rows import Computed
+from .state import State
+from .values import Values
+
+LONGEST = 0.1
+"""Longest lines of a chamber over the wavelength for one lumped element (choice: 3 % in the
+admittance of a closed line, 7 % of one held at constant pressure)."""
+
+
+def warnings(
+    v: Values, design: Design, motion: Motion, state: State, out: Computed
+) -> Iterable[tuple[str, str]]:
+    """(metric, sentence) where the linear model is used outside its range."""
+    slowest = float(np.min(np.real(motion.damping)))
+    if slowest < 0:
+        yield (
+            "damping_ratio",
+            f"friction falls with speed ({slowest:.3g} N*s/m): the load may stick and slip",
+        )
+    if "ultimate_gain" in out.metrics:
+        yield from _loop(v, motion, out)
+    yield from _ports(v, design, motion, state)
+    yield from _lines(design, motion, out)
+
+
+def _weakest_gain(motion: Motion) -> Array:
+    """Smallest flow gain of the valve over chambers and directions, in every case."""
+    gains = [np.abs(np.real(gain)) for ways in motion.gains.values() for gain in ways]
+    return np.min(np.stack(np.broadcast_arrays(*gains)), axis=0)
+
+
+def _loop(v: Values, motion: Motion, out: Computed) -> Iterable[tuple[str, str]]:
+    """The position loop swings, or nothing drives it."""
+    least = min(float(np.min(np.real(x))) for x in out.metrics["ultimate_gain"].values())
+    margin = min(float(np.min(np.real(x))) for x in out.metrics["gain_margin"].values())
+    if least > 0 and margin <= 1:
+        yield "bandwidth", "the position loop swings at this gain: its bandwidth counts as 0"
+    stalled = [
+        case
+        for case, gain in zip(
+            v.cases, np.broadcast_to(_weakest_gain(motion), (len(v.cases), 1)), strict=True
+        )
+        if gain[0] == 0
+    ]
+    for case in stalled:
+        yield (
+            "bandwidth",
+            f"{case}: the held force takes the whole supply pressure, the valve moves nothing",
+        )
+    if least == 0:
+        yield (
+            "ultimate_gain",
+            "no gain is stable: the load grows by itself, or leakage across the piston "
+            "outweighs the centred valve's; give the valve leakage or the load damping",
+        )
+
+
+def _ports(v: Values, design: Design, motion: Motion, state: State) -> Iterable[tuple[str, str]]:
+    """What ends the lines counts less than one might think."""
+    if design.valve is not None and design.ports.end == "closed":
+        for metric in ("damping_ratio", "dynamic_stiffness"):
+            yield (
+                metric,
+                "ports.end is closed: damping ratio and dynamic stiffness leave out the leakage of "
+                "the centred valve; write end: valve to count it",
+            )
+    slow = np.ravel(np.real(state.speed)) == 0
+    shaken = [case.frequency is not None for case in design.load_cases]
+    if motion.throttles and np.any(slow & np.array(shaken)):
+        yield (
+            "dynamic_stiffness",
+            "a throttle in a case that shakes without speed: it works as at creeping flow",
+        )
+    for i, one in enumerate(design.ports.accumulators):
+        held = state.holding_a if one.chamber == "a" else state.holding_b
+        precharge = float(np.max(np.real(v[f"ports.accumulators[{i}].precharge"])))
+        if float(np.min(np.real(held))) <= precharge:
+            yield (
+                "",
+                f"ports.accumulators[{i}]: its precharge is not below the pressure it holds in "
+                "every case: it takes no oil there",
+            )
+
+
+def _lines(design: Design, motion: Motion, out: Computed) -> Iterable[tuple[str, str]]:
+    """Lines too long for one element at the frequencies asked."""
+    asked = {f"load case {case.name}": case.frequency or 0.0 for case in design.load_cases}
+    if motion.spool is not None:
+        asked["the valve's spool"] = float(np.max(np.real(motion.spool[0])))
+    what, fastest = max(asked.items(), key=lambda one: one[1])
+    for place, resonance in out.metrics.get("line_resonance", {}).items():
+        limit = 4 * LONGEST * float(np.min(np.real(resonance)))
+        if fastest > limit:
+            metric = "dynamic_stiffness" if "dynamic_stiffness" in out.metrics else "bandwidth"
+            yield (
+                metric,
+                f"{place}: one lumped element together, good to {limit:.0f} Hz; {what} asks for "
+                f"{fastest:.4g} Hz: read the figure as rough, the report sets transmission lines "
+                "beside it",
+            )
