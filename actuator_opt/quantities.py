@@ -214,11 +214,11 @@ METRICS = _table("""
  damping_ratio        | zeta   | ratio       | -    | | | damping ratio of the load on the actuator
  natural_frequency    | f_0    | frequency   | Hz   | | | lowest natural frequency at the load mass over the stroke
  dynamic_stiffness    | k_dyn  | stiffness   | kN/mm| | | dynamic stiffness at the frequency of the load case
- dynamic_phase        | phi    | angle       | deg  | | | phase by which the force leads at that frequency
+ dynamic_phase        | phi    | angle       | deg  | -180 | 180 | phase by which the force leads at that frequency
  ultimate_gain        | K_u    | signal_gain | V/m  | | | gain at which the position loop begins to swing
  position_gain        | K_p    | signal_gain | V/m  | | | gain of the position loop
  gain_margin          | K_u/K_p| ratio       | -    | | | ultimate over present gain of the position loop
- phase_margin         | phi_m  | angle       | deg  | | | phase margin of the position loop
+ phase_margin         | phi_m  | angle       | deg  | -180 | 180 | phase margin of the position loop
  bandwidth            | f_b    | frequency   | Hz   | | | -3 dB bandwidth of the position loop
  efficiency           | eta    | ratio       | %    | | | force efficiency
  proof_factor         | S_p    | ratio       | -    | | | yield or first-ply pressure over proof pressure

@@ -119,6 +119,89 @@ def test_the_pages_say_where_ours_disagrees(tables):
     assert "1.8 % (eq. 37) and 14 % (eq. 38) stiffer" in tables["stiffness along the stroke"].note
 
 
+def notes(**changes):
+    """Notes of a changed design by the end of their table's title, spaces plain."""
+    found = published_tables(evaluated(**changes))
+    return {t.title.partition(": ")[2]: re.sub(r"\s", " ", t.note) for t in found}
+
+
+def test_the_shipped_design_bears_its_verdicts(tables):
+    """Where the numbers do what the thesis tells, the notes say so (conditions in test_aalto)."""
+    dynamic, peak = tables["dynamic tests"].note, tables["orifice and 20 Hz peak"].note
+    for words in (
+        "what the thesis tells of the stiffness happens: soft up to 15 Hz, more than twice",
+        "stiffens at 10 Hz (0.56",
+        "lowers the peak (2.57 to 2.18 times) and does nothing at 30 Hz",
+        "18.5 to 19.5 Hz with a damping ratio of 0.2 to 0.25 do much the same",
+        "without the opening beside it the valve would feed the swing",
+        "It shows that such a valve would do it",
+    ):
+        assert words in dynamic
+    for words in ("26.7 °C: within", "already 4 % below", "drops 24 times less", "explains the"):
+        assert words in peak
+    static = tables["static test"].note
+    assert "fit neither direction" in static
+    assert "near the cap end ours still moves a third of the least measured" in static
+
+
+def test_a_valve_at_30_hz_turns_the_verdict():
+    """20 Hz then is below 1.1 times static and 30 Hz is no longer static: the note denies both."""
+    found = notes(**{"ports.reducing_valve.natural_frequency": "30 Hz"})["dynamic tests"]
+    assert "happens only in part: soft up to 15 Hz" in found
+    assert re.search(r"not more than twice the static stiffness at 20 Hz \(0\.8\d", found)
+    assert re.search(r"not at the static stiffness at 30 Hz \(1\.\d", found)
+    assert "raises the stiffness at 20 Hz" in found
+    assert "29.5 to 30.5 Hz with a damping ratio of 0.2 to 0.25 do not do it either" in found
+    assert "such a valve would not do it with these numbers" in found
+    assert "lowers the peak" not in found
+
+
+def test_air_turns_the_verdict():
+    """5 % of air halves the cylinder's stiffness: the same valve no longer doubles it at 20 Hz."""
+    found = notes(**{"fluid.air_content": "5 %"})
+    assert "not soft up to 15 Hz" in found["dynamic tests"]
+    assert "not more than twice the static stiffness at 20 Hz" in found["dynamic tests"]
+    assert "does not explain the throttle's effect" in found["orifice and 20 Hz peak"]
+
+
+def test_an_unstable_valve_is_called_so():
+    """Without an opening beside it the valve feeds the swing: no verdict in its favour."""
+    found = notes(**{"ports.reducing_valve.passive_conductance": "0.01 ml/s/bar"})["dynamic tests"]
+    assert "it is not stable" in found
+    assert "such a valve would not do it" in found
+
+
+def test_temperature_and_oil_turn_the_verdict():
+    """A thinner oil leaves C_q near 0.611; VG 46 has the viscosity at about 35 degC, not in 25-30.
+
+    C_q is 1/sqrt(1/0.611^2 + 25/Re): 1 % below at Re 400.
+    """
+    warm = notes(**{"fluid.temperature": "60 degC"})["orifice and 20 Hz peak"]
+    assert "At our Re = 400 C_q is 1 % below 0.611" in warm
+    other = notes(**{"fluid.material": "iso_vg_46"})["orifice and 20 Hz peak"]
+    assert re.search(r"ISO VG 46 at 3[45]\S* °C: outside the 25 to 30 °C", other)
+
+
+def test_needle_and_mass_turn_the_verdict():
+    """A needle of 0.044 cm^2 drops the 0.4 bar; 400 kg swing against closed ports before 30 Hz."""
+    peak = notes(**{"ports.throttle.area": "0.0436 cm^2"})["orifice and 20 Hz peak"]
+    assert "drops about the 0.4 bar" in peak
+    heavy = notes(**{"load.mass": "400 kg"})["dynamic tests"]
+    assert "Closed ports are not as stiff at 10 as at 30 Hz" in heavy
+
+
+def test_another_cylinder_turns_the_verdict():
+    """With 63 mm of bore the measured pressures show more than the load: no by-pass."""
+    changes = {"cylinder.bore": "63 mm", "retention.thread.diameter": "73 mm"}
+    tables = published_tables(evaluated(**changes))
+    found = {t.title.partition(": ")[2]: t for t in tables}
+    assert "this design a 63/25-220" in found["static test"].note
+    assert "no by-pass explains more than all of it" in found["static test"].note
+    assert "barrel 63/73 mm" in found["stiffness along the stroke"].note
+    assert "A_A/A_B = 1.19" in found["stiffness along the stroke"].note
+    assert any("of 3.45 kN: more than all" in row[1] for row in found["static test"].rows)
+
+
 def test_every_equation_is_traced_once():
     """1 to 46, each in one row: to functions, or out of scope with the reason."""
     numbers = [n for t in aalto_equations.TRACES for n in range(t.first, t.last + 1)]

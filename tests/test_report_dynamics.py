@@ -260,9 +260,9 @@ def test_ports_case_and_a_published_topology_are_named():
 
 
 def test_every_part_has_its_own_fill():
-    """Ten parts are told apart, each always by the same fill; others take what is free."""
-    assert len(set(AREAS)) == len(AREAS) == len(PARTS) == 10
-    assert fills(["oil A", "rod"]) == [AREAS[0], AREAS[7]]
+    """Eleven parts are told apart, each always by the same fill; others take what is free."""
+    assert len(set(AREAS)) == len(AREAS) == len(PARTS) == 11
+    assert fills(["oil A", "rod"]) == [AREAS[0], AREAS[8]]
     assert len(set(fills(["oil A", "swelling", "rod", "other"]))) == 4
     ink = ink_of(blocks_of(evaluated("all parts"))["Stiffness over the stroke"])
     drawn = {m["fill"] for m in ink.marks if "path" in m and m["closed"]}
@@ -349,7 +349,10 @@ def test_shaken_cases_stand_at_their_frequency_and_value():
     result = evaluation.metrics["dynamic_stiffness"].value / 1e6
     found = circles(ink, BLACK)
     assert found[0] == pytest.approx([x, level_y(ink, math.log10(result), ends)], abs=0.02)
-    phase = math.degrees(evaluation.metrics["dynamic_phase"].value)
+    (shaken,) = evaluation.dynamics.shaken
+    assert shaken.stiffness / 1e6 == result  # its phase is that of the same place, not the largest
+    assert shaken.phase <= evaluation.metrics["dynamic_phase"].value
+    phase = math.degrees(shaken.phase)
     assert found[1] == pytest.approx(
         [x, level_y(ink, phase, (("0", 0.0), ("180", 180.0)))], abs=0.02
     )

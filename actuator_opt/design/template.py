@@ -12,7 +12,7 @@ _TEXT = """\
 #
 # Every physical value carries its unit (25 mm, 100 bar, 40 degC, 0.5 %); only 0, ratios and
 # counts may be bare. Any value has a PATH, e.g. cylinder.bore or barrel.layup[1].thickness,
-# which --set, --vary and the block `variables` below understand.
+# which --set and the block `variables` below understand.
 #
 #   actuator-opt check FILE       all faults of this file
 #   actuator-opt evaluate FILE    every quantity and check as it stands

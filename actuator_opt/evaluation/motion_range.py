@@ -13,6 +13,8 @@ from .rows import Computed
 from .state import State
 from .values import Values
 
+LEAST_DAMPING = 0.005
+"""Damping ratio below which a loop is told to be hardly damped (choice)."""
 LONGEST = 0.1
 """Longest lines of a chamber over the wavelength for one lumped element (choice: 3 % in the
 admittance of a closed line, 7 % of one held at constant pressure)."""
@@ -41,7 +43,23 @@ def _weakest_gain(motion: Motion) -> Array:
 
 
 def _loop(v: Values, motion: Motion, out: Computed) -> Iterable[tuple[str, str]]:
-    """The position loop swings, or nothing drives it."""
+    """The position loop swings, hardly damped or behind its resonance, or nothing drives it."""
+    damped = min(float(np.min(np.real(x))) for x in out.metrics["damping_ratio"].values())
+    if 0 <= damped < LEAST_DAMPING:
+        yield (
+            "damping_ratio",
+            f"the load hardly has any damping (ratio {damped:.1g}): a loop over it stays slow; "
+            "state valve.leakage_flow with ports.end: valve, or piston.leakage_conductance",
+        )
+    resonance = min(float(np.min(np.real(x))) for x in out.metrics["natural_frequency"].values())
+    widths = [float(np.max(np.real(x))) for x in out.metrics["bandwidth"].values()]
+    behind = sum(width > 0.8 * resonance for width in widths)
+    if behind:
+        yield (
+            "bandwidth",
+            f"at {behind} of {len(widths)} places the closed loop falls to -3 dB only behind the "
+            "load's resonance: what it follows there is a swing, not the signal",
+        )
     least = min(float(np.min(np.real(x))) for x in out.metrics["ultimate_gain"].values())
     margin = min(float(np.min(np.real(x))) for x in out.metrics["gain_margin"].values())
     if least > 0 and margin <= 1:

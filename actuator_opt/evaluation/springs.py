@@ -53,12 +53,16 @@ class Compliances(NamedTuple):
     ab: Array
 
 
+OIL = ("oil A", "oil B", "oil in lines")
+"""Causes of compliance that are oil, not walls."""
+
+
 @dataclass(frozen=True, slots=True)
 class Springs:
     """Everything that gives way between load and ground."""
 
     chambers: dict[str, Give]
-    """By cause: oil of A and of B, barrel, its stretch, pipes, hoses."""
+    """By cause: oil of A, of B and in the lines, barrel, its stretch, walls of pipes and hoses."""
     seals: Array | None
     """Of sticking seals, beside the oil; None where they slide."""
     chain: dict[str, Array]
@@ -68,6 +72,11 @@ class Springs:
     pressure: Array
     """Pressure difference over the piston, for the one published form that needs it."""
     rod_place: str = ""
+
+    @property
+    def oil(self) -> tuple[str, ...]:
+        """The causes that are oil."""
+        return tuple(cause for cause in OIL if cause in self.chambers)
 
     def total(self, causes: Iterable[str] | None = None) -> Give:
         """Compliance of some causes, or all, together."""
@@ -134,7 +143,8 @@ class Springs:
         def side_b(cause: str) -> Array:
             return self.chambers[cause].at(position, g.stroke).b / square_b
 
-        oil_a, oil_b = side_a("oil A"), side_b("oil B")
+        oil_a = sum(side_a(cause) for cause in self.oil)
+        oil_b = sum(side_b(cause) for cause in self.oil)
         oil = both(oil_a, oil_b)
         parts = {
             "oil A": oil * oil_b / (oil_a + oil_b),
@@ -195,16 +205,19 @@ def springs(
     """
     g = geometry
     extra = g.barrel_length - g.piston_length - g.head_length - g.stroke
-    volume_a = v["cylinder.dead_volume_a"] + branches["a"].volume
-    volume_b = v["cylinder.dead_volume_b"] + g.area_b * extra + branches["b"].volume
+    volume_a = v["cylinder.dead_volume_a"]
+    volume_b = v["cylinder.dead_volume_b"] + g.area_b * extra
     swelling = 2 * pi * g.inner_radius * wall.swelling.growth
     oil_a, oil_b = state.bulk_modulus_a, state.bulk_modulus_b
     chambers = {
         "oil A": Give(a0=volume_a / oil_a, a1=g.area_a / oil_a),
         "oil B": Give(b0=volume_b / oil_b, b1=g.area_b / oil_b),
+        "oil in lines": Give(a0=branches["a"].volume / oil_a, b0=branches["b"].volume / oil_b),
         "barrel": Give(a1=swelling, b0=swelling * extra, b1=swelling),
         "stretch": _stretch(design, g, wall, extra),
     }
+    if not design.lines:
+        del chambers["oil in lines"]
     kinds = {line.type for line in design.lines if not line.rigid}
     if "pipe" in kinds:
         chambers["pipes"] = Give(a0=branches["a"].pipes, b0=branches["b"].pipes)
@@ -280,7 +293,7 @@ def compute(s: Springs, moving_mass: Array, out: Computed) -> Array:
     parts = s.compliances(position)
     total = 1 / sum(parts.values())
     out.put("stiffness_min", total)
-    out.put("stiffness_oil", s.hydraulic(position, ("oil A", "oil B")))
+    out.put("stiffness_oil", s.hydraulic(position, s.oil))
     out.put("stiffness_barrel", 1 / parts["barrel"])
     out.put("stiffness_rod", {s.rod_place: s.chain["rod"]})
     if s.seals is not None:

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ..evaluation.result import Evaluation, Metric, Requirement
+from ..evaluation.result import Evaluation, Requirement
 from ..evaluation.study.dynamics import DynamicsStudy, LoopStudy
 from . import text
 from .blocks import Block, Cell, clean, column, figure, short, soft, table
@@ -95,23 +95,15 @@ def _modes(evaluation: Evaluation, study: DynamicsStudy) -> Block:
     return figure("Dynamics along the stroke", ink, note)
 
 
-def shaken_cases(evaluation: Evaluation, study: DynamicsStudy) -> list[Shaken]:
-    """Load cases that shake the actuator, with the values of the metrics."""
-
-    def value(metric: str, case: str) -> float | None:
-        found: Metric | None = evaluation.metrics.get(metric)
-        return None if found is None else found.by_case.get(case)
-
+def shaken_cases(study: DynamicsStudy) -> list[Shaken]:
+    """Load cases that shake the actuator, with stiffness and phase at their worst place."""
     return [
-        Shaken(
-            clean(name), frequency, value("dynamic_stiffness", name), value("dynamic_phase", name)
-        )
-        for name, frequency in study.shaken
+        Shaken(clean(one.name), one.frequency, one.stiffness, one.phase) for one in study.shaken
     ]
 
 
 def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
-    cases = shaken_cases(evaluation, study)
+    cases = shaken_cases(study)
     ink = response_figure(
         study,
         cases,
@@ -124,6 +116,8 @@ def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
             " Letters: load cases that shake the actuator; circles: each at its own frequency, at"
             " its worst place. Red: what is required there, with the allowed side."
         )
+    note += " The position loop is open"
+    note += ": slowly, what leaks lets the piston creep." if study.end != "closed" else "."
     return figure("Dynamic stiffness", ink, note + lumped_sentence(study))
 
 
@@ -192,11 +186,25 @@ def _loop(
         "A curve for each place and direction of the spool that governs a margin or the bandwidth."
         " Arrows: the margins where they are least; red: what is required."
     )
+    if any(_passes_behind(one) for one in loops):
+        note += (
+            " Behind the load's resonance the curve passes -1 on its far side: there the margin is"
+            " the angle up to -180 degrees, and the loop holds as long as the gain margin is above"
+            " one."
+        )
     return [
         figure("Position loop, open", open_figure(study, loops, limits), note),
         figure("Position loop, closed", closed_figure(study, loops, limits)),
         _loop_table(evaluation, loops),
     ]
+
+
+def _passes_behind(one: LoopStudy) -> bool:
+    """Whether the phase margin is told at a crossover beyond -180 degrees."""
+    if one.crossover is None or one.gain_margin <= 1:
+        return False
+    above = np.asarray(one.open_magnitude) >= 1
+    return bool(np.any(np.asarray(one.open_phase)[above] < -math.pi))
 
 
 def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:

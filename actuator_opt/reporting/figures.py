@@ -15,12 +15,13 @@ from .ink import BLACK, BLUE, GREY, PALE, RED, Ink, Point, hatch, spread_within,
 from .text import MINUS, number, trimmed
 
 AREAS = (
-    "#0b3c5d", "#9ec3da", "#4f86a8", "#f0e2b6", "#b98b3e",
+    "#0b3c5d", "#9ec3da", "#d5e6f0", "#4f86a8", "#f0e2b6", "#b98b3e",
     "#d9c9e3", "#7a5a8c", "#7d868e", "#e3e6e8", "#2b3138",
 )  # fmt: skip
 """Fills of stacked areas: distinct in hue for colour-blind eyes, in lightness on a grey print."""
 PARTS = (
-    "oil A", "oil B", "barrel", "stretch", "pipes", "hoses", "seals", "rod", "mount", "load cell",
+    "oil A", "oil B", "oil in lines", "barrel", "stretch", "pipes", "hoses", "seals", "rod",
+    "mount", "load cell",
 )  # fmt: skip
 """Parts of the stiffness budget, each with its own fill in every report."""
 Ticks: TypeAlias = Sequence[tuple[float, str]]

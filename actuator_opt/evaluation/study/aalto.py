@@ -162,8 +162,8 @@ def _along(design: Design) -> Array:
 def oil_alone(design: Design, lines: Sequence[Line]) -> Theory:
     """Figure 5: eq. 6 with rigid walls, with the volume of some lines; both forms agree."""
     springs = variant(design, lines=lines, bulk_modulus=PAPER.bulk_modulus)
-    position, oil = _along(design), ("oil A", "oil B")
-    curve, at = (first(springs.hydraulic(x, oil)) for x in (position, places(design)))
+    position = _along(design)
+    curve, at = (first(springs.hydraulic(x, springs.oil)) for x in (position, places(design)))
     return Theory(position, curve, curve, at, at, at)
 
 

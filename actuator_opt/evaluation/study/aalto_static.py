@@ -88,8 +88,8 @@ class Bench:
         self.position = np.linspace(MARGIN, stroke - MARGIN, 22)
         self.place = float(np.squeeze(np.minimum(PAPER.place, 0.99 * stroke)))
         places = np.append(self.position, self.place)
-        oil = springs.total(("oil A", "oil B")).at(places, stroke)
-        walls = springs.total(("oil A", "oil B", "barrel")).at(places, stroke)
+        oil = springs.total(springs.oil).at(places, stroke)
+        walls = springs.total((*springs.oil, "barrel")).at(places, stroke)
         scale = PAPER.bulk_modulus
         self.oil = Air(scale * first(oil.a), scale * first(oil.b))
         self.volume = Air(scale * first(walls.a), scale * first(walls.b))

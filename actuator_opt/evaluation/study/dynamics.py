@@ -35,6 +35,20 @@ class Pole:
 
 
 @dataclass(frozen=True, slots=True)
+class ShakenCase:
+    """A load case that shakes the actuator, where its dynamic stiffness is least."""
+
+    name: str
+    frequency: float
+    """[Hz]"""
+    place: str
+    stiffness: float
+    """[N/m]"""
+    phase: float
+    """By which the force leads there [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
 class Response:
     """Dynamic stiffness [N/m] and the phase [rad] by which the force leads, over frequency."""
 
@@ -61,6 +75,8 @@ class LoopStudy:
     phase_margin: float
     crossover: float | None
     bandwidth: float | None
+    governs: tuple[str, ...]
+    """Metrics that are least here: gain_margin, phase_margin, bandwidth."""
     open_magnitude: Array
     open_phase: Array
     """[rad], falling from -pi/2 without jumps."""
@@ -95,8 +111,8 @@ class DynamicsStudy:
     """At the cap end, the weakest position and the rod end."""
     distributed: Array | None
     """Magnitude at the weakest position with the lines as transmission lines; None without."""
-    shaken: tuple[tuple[str, float], ...]
-    """Load cases that shake the actuator, with their frequency [Hz]."""
+    shaken: tuple[ShakenCase, ...]
+    """Load cases that shake the actuator, each at its worst place."""
     position_loop: LoopStudy | None
     """Where its gain margin is least; None without a valve."""
     other_loops: tuple[LoopStudy, ...] = ()
@@ -145,8 +161,12 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
         "rod end": stroke,
     }
     models = {name: motion.model(np.array([[[x]]])) for name, x in places.items()}
-    rows = [_worst(done, name, design) for name in ("gain_margin", "phase_margin", "bandwidth")]
-    loops = [_Loop.of(done, *row) for row in dict.fromkeys(row for row in rows if row is not None)]
+    rows: dict[tuple[int, str], tuple[str, ...]] = {}
+    for metric in ("gain_margin", "phase_margin", "bandwidth"):
+        row = _worst(done, metric, design)
+        if row is not None:
+            rows[row] = (*rows.get(row, ()), metric)
+    loops = [_Loop.of(done, *row, governs=metrics) for row, metrics in rows.items()]
     polynomials = [(p, asked) for m in models.values() for p in (m.characteristic, m.mobile)]
     polynomials += [(p, one.index) for one in loops for p in one.polynomials()]
     frequencies = _frequencies(polynomials)
@@ -169,12 +189,23 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
             for name, x in places.items()
         ),
         distributed=_distributed(v, design, done, asked, places["weakest position"], frequencies),
-        shaken=tuple(
-            (one.name, one.frequency) for one in design.load_cases if one.frequency is not None
-        ),
+        shaken=_shaken(design, done),
         position_loop=told[0] if told else None,
         other_loops=tuple(told[1:]),
     )
+
+
+def _shaken(design: Design, done: Pass) -> tuple[ShakenCase, ...]:
+    """Every shaken case at its place of least dynamic stiffness."""
+    found = []
+    for i, case in enumerate(design.load_cases):
+        if case.frequency is None:
+            continue
+        rows = done.computed.metrics["dynamic_stiffness"]
+        place = min(rows, key=lambda name: of_case(rows[name], i))
+        phase = of_case(done.computed.metrics["dynamic_phase"][place], i)
+        found.append(ShakenCase(case.name, case.frequency, place, of_case(rows[place], i), phase))
+    return tuple(found)
 
 
 def _distributed(
@@ -275,15 +306,16 @@ class _Loop:
     place: str
     gain: float
     open_loop: loop.OpenLoop
+    governs: tuple[str, ...]
 
     @classmethod
-    def of(cls, done: Pass, index: int, place: str) -> _Loop:
+    def of(cls, done: Pass, index: int, place: str, governs: tuple[str, ...]) -> _Loop:
         """From the names of the metrics' rows."""
         direction, _, where = place.partition(", ")
         position = np.asarray(done.places[where])
         one = done.motion.position_loop(position, extending=np.array(direction == "extending"))
         gain = of_case(done.computed.metrics["position_gain"][""], index)
-        return cls(index, place, gain, one)
+        return cls(index, place, gain, one, governs)
 
     def polynomials(self) -> list[Polynomial]:
         """Numerator, denominator, and the denominator of the closed loop."""
@@ -320,6 +352,7 @@ def _loop(subject: Subject, v: Values, done: Pass, at: _Loop, frequencies: Array
         phase_margin=of("phase_margin"),
         crossover=crossover if np.isfinite(crossover) else None,
         bandwidth=width if np.isfinite(width) and width > 0 else None,
+        governs=at.governs,
         open_magnitude=np.abs(response),
         open_phase=_unwrapped(response),
         closed_magnitude=np.abs(response / (1 + response)),

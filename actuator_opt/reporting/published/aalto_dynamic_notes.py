@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...design.materials import load_library
 from ...design.model import Design
 from ...evaluation.study.aalto import PAPER
 from ...evaluation.study.aalto_dynamic import DynamicTest, Neighbour, Response
@@ -76,9 +77,9 @@ def _valve(test: DynamicTest) -> str:
     else:
         met = [name for name, holds, _ in found if holds]
         missed = [f"not {name} ({_range(share)})" for name, holds, share in found if not holds]
-        words = "what the thesis tells of the stiffness does not happen"
-        words += f", but in part: {listed(met)}." if met else "."
-        words += f" With these numbers it is {listed(missed)}."
+        part = f"happens only in part: {listed(met)}" if met else "does not happen"
+        words = f"what the thesis tells of the stiffness {part}."
+        words += f" With these numbers the cylinder is {listed(missed)}."
     if test.peak.slowest_decay >= 0:
         words += (
             " And it is not stable: the valve feeds the swing, which then grows by itself, so that "
@@ -114,7 +115,7 @@ def _throttle(test: DynamicTest) -> str:
     )
     peak = "the peak" if np.all(np.argmax(at, axis=1) == 2) else "the stiffness at 20 Hz"
     twenty, _ = _moves(
-        at[:, 2], more=f"raises {peak}", less=f"lowers {peak}", none=f"leaves {peak}"
+        at[:, 2], more=f"raises {peak}", less=f"lowers {peak}", none=f"leaves {peak} as it is"
     )
     last, acts = _moves(
         at[:, 4], more="stiffens at 30 Hz", less="softens at 30 Hz", none="does nothing at 30 Hz"
@@ -242,10 +243,10 @@ def needles_caption(test: DynamicTest) -> str:
 
 def _oil(design: Design) -> str:
     """Name of the oil; that of the thesis has the viscosity of a VG 32."""
-    name = design.fluid.material
+    name, library = design.fluid.material, load_library()
     if name == "aalto_thesis_oil":
         return "a VG 32"
-    return f"{name.replace('_', ' ')}"
+    return library.get(name).label.partition(",")[0] if name in library else name
 
 
 def peak_note(design: Design, test: DynamicTest) -> str:
@@ -280,15 +281,15 @@ def _drop(design: Design, test: DynamicTest) -> str:
             "At 20 mm/s the open needle drops about the 0.4 bar that opened the check valve: flow, "
             "area and pressure fit together."
         )
-    times = f"{text.trimmed(less, 2)} times less"
+    times = f"{text.trimmed(less, 2)} times less than"
     if less < 1:
-        times = f"{text.trimmed(1 / less, 2)} times more"
+        times = f"{text.trimmed(1 / less, 2)} times"
     size = "smaller" if less > 1 else "larger"
     role = ", which explains the throttle's effect, is a guess"
     if not throttle_explained(test):
         role = ", which does not explain the throttle's effect either, is a guess"
     return (
-        f"But at 20 mm/s the open needle drops {times} than the 0.4 bar that opened the check "
+        f"But at 20 mm/s the open needle drops {times} the 0.4 bar that opened the check "
         f"valve: flow, area and pressure {'of the thesis' if theirs else 'of this design'} do not "
         f"fit together. We do not know which is wrong; the {size} area{role}."
     )

@@ -83,17 +83,12 @@ def _air_up(test: StaticTest) -> str:
             f"Load up: not even {percent(CONTENTS[1])} of entrained air gives the largest "
             "displacement measured."
         )
-    beside = ", the by-pass of the seals counted,"
+    words = f"Load up: {air_text(content)} of entrained air"
+    if content > 0:
+        words += f", {text.trimmed(content / ENTRAINED, 2)} times the usual {percent(ENTRAINED)},"
     if test.up.share > 0:
-        beside = " and the by-pass of the seals"
-    times = f", {text.trimmed(content / ENTRAINED, 2)} times the usual {percent(ENTRAINED)}"
-    if content == 0:
-        times = ""
-    comma = "," if times and beside.startswith(" and") else ""
-    return (
-        f"Load up: {air_text(content)} of entrained air{times}{comma}{beside} give the largest "
-        "displacement measured."
-    )
+        return f"{words} and the by-pass of the seals give the largest displacement measured."
+    return f"{words} under the force that the pressures show gives the largest displacement."
 
 
 def _air_down(test: StaticTest) -> str:
@@ -195,7 +190,7 @@ def _by_pass(test: StaticTest) -> str:
             f"{percent(up)} up, {percent(down)} down."
         )
     return (
-        "The pressures of the thesis on these areas show "
-        f"{percent(1 - up)} (up) and {percent(1 - down)} (down) of its load: where that is more "
-        "than all, no by-pass explains it."
+        "On the areas of this design the pressures of the thesis show "
+        f"{percent(1 - up)} (up) and {percent(1 - down)} (down) of its load: no by-pass explains "
+        "more than all of it."
     )

@@ -97,10 +97,8 @@ def _measured(moved: tuple[float, float]) -> str:
 
 
 def _carried(found: Bypass, load: float) -> str:
-    return (
-        f"{text.trimmed(found.force / 1e3, 3)} of {text.trimmed(load / 1e3)} kN, "
-        f"{percent(found.share)} by-pass"
-    )
+    beside = f", {percent(found.share)} by-pass" if found.share >= 0 else ": more than all"
+    return f"{text.trimmed(found.force / 1e3, 3)} of {text.trimmed(load / 1e3)} kN{beside}"
 
 
 def static_table(evaluation: Evaluation) -> ExtraTable:
