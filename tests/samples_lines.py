@@ -88,7 +88,7 @@ SAMPLES: dict = {
     "resonators.quarter_wave_length": {
         "frequency": 20.0, "sound_speed": 1300.0, "quarter_waves": 3.0,
     },
-    "line_ends.stiff_frequency": {
+    "line_ends.antiresonance_frequency": {
         "conductance": 2e-10, "natural_frequency": 10.0, "damping_ratio": 0.5,
         "compliance": 1e-12,
     },

@@ -584,7 +584,7 @@ def test_reducing_valve_holds_slowly_and_stands_fast():
 
 
 @given(st.floats(1, 50), st.floats(0.05, 0.95), st.floats(0.5, 30))
-def test_stiff_frequency_is_where_chamber_and_valve_ring(natural, damping, strength):
+def test_antiresonance_frequency_is_where_chamber_and_valve_ring(natural, damping, strength):
     """No reactive flow there; with g = -Re(Y) the poles of chamber and valve lie on the axis."""
     compliance = 1e-12
     omega_0 = 2 * math.pi * natural
@@ -592,7 +592,7 @@ def test_stiff_frequency_is_where_chamber_and_valve_ring(natural, damping, stren
     valve = {
         "conductance": conductance, "natural_frequency": natural, "damping_ratio": damping,
     }  # fmt: skip
-    frequency = line_ends.stiff_frequency(**valve, compliance=compliance)
+    frequency = line_ends.antiresonance_frequency(**valve, compliance=compliance)
     omega = 2 * math.pi * frequency
     y = admittance(frequency, **valve)
     assert y.imag / omega == pytest.approx(-compliance, rel=1e-8)
@@ -610,7 +610,7 @@ def test_stiff_frequency_is_where_chamber_and_valve_ring(natural, damping, stren
 
 def test_weak_valve_never_outweighs_the_compliance():
     """Far too small a conductance: no such frequency."""
-    value = line_ends.stiff_frequency(**{**VALVE, "conductance": 1e-14}, compliance=1e-12)
+    value = line_ends.antiresonance_frequency(**{**VALVE, "conductance": 1e-14}, compliance=1e-12)
     assert math.isnan(value)
 
 
@@ -625,7 +625,9 @@ def test_twenty_hertz_peak_traced_to_a_valve():
     valve = {"conductance": conductance, "damping_ratio": 0.5}
 
     def mismatch(natural):
-        peak = line_ends.stiff_frequency(natural_frequency=natural, compliance=compliance, **valve)
+        peak = line_ends.antiresonance_frequency(
+            natural_frequency=natural, compliance=compliance, **valve
+        )
         return peak - 20.0
 
     natural = brentq(mismatch, 5.0, 19.0)

@@ -165,7 +165,7 @@ def end_admittance(*, end: LineEnd, frequency: Array) -> Array:
     return where(held, math.inf, above / where(held, 1.0, below))
 
 
-def stiff_frequency(
+def antiresonance_frequency(
     *, conductance: Array, natural_frequency: Array, damping_ratio: Array, compliance: Array
 ) -> Array:
     """Frequency where chamber and valve together take no reactive flow: C + Im(Y)/w = 0.
@@ -197,7 +197,7 @@ def stiff_frequency(
 
     Examples
     --------
-    >>> f = stiff_frequency(conductance=2e-10, natural_frequency=10.0, damping_ratio=0.5,
+    >>> f = antiresonance_frequency(conductance=2e-10, natural_frequency=10.0, damping_ratio=0.5,
     ...                     compliance=1e-12)
     >>> print(f"{f:.2f} Hz")
     14.35 Hz

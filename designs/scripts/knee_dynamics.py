@@ -163,7 +163,7 @@ def measured(found: Any, metric: str, asked: float | None = None) -> Data:
         * shaken_stiffness(
             stiffness=evaluation.metrics["stiffness_min"].value,
             mass=dynamics.mass,
-            frequency=dynamics.shaken[0][1],
+            frequency=dynamics.shaken[0].frequency,
             corner=2 * dynamics.conductance_share * frequency,
         ),
         "valve_power": 2 * valve.leakage_flow * sqrt(drop / 2 / valve.leakage_drop) * drop,

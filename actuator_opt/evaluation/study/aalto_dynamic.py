@@ -16,7 +16,7 @@ import numpy as np
 from ...design.circuit import Ports, ReducingValve, Throttle
 from ...design.model import Design
 from ...models import elements, linear, lines, loop, one_way_valve, orifice, resonators
-from ...models.line_ends import CONSTANT_PRESSURE, LineEnd, stiff_frequency
+from ...models.line_ends import CONSTANT_PRESSURE, LineEnd, antiresonance_frequency
 from ...numeric import Array
 from ..circuit import CHAMBERS, Chamber, Ways
 from ..kernel import Pass
@@ -88,7 +88,7 @@ class Neighbour:
 class Peak:
     """The reducing valve's resonance with the cylinder."""
 
-    stiff_frequency: tuple[float, float]
+    antiresonance_frequency: tuple[float, float]
     """Where chamber A, and B, with its line and the valve takes no reactive flow [Hz]."""
     position: Array
     ratio: Array
@@ -231,7 +231,7 @@ class Bench:
         give = self.motion.springs.total().at(np.array([self.stroke / 2]), self.stroke)
         frequencies = [
             float(
-                stiff_frequency(
+                antiresonance_frequency(
                     conductance=self.valve.conductance,
                     natural_frequency=self.valve.natural_frequency,
                     damping_ratio=self.valve.damping_ratio,
@@ -242,7 +242,7 @@ class Bench:
         ]
         shaken = self.stiffness("reducing_valve", position, [PAPER.peak], area=self.throttle.area)
         return Peak(
-            stiff_frequency=(frequencies[0], frequencies[1]),
+            antiresonance_frequency=(frequencies[0], frequencies[1]),
             position=position,
             ratio=np.abs(shaken[0]) / first(self.motion.springs.stiffness(position)),
             slowest_decay=self.slowest_decay(areas),

@@ -185,7 +185,7 @@ def peak_table(evaluation: Evaluation) -> ExtraTable:
     needle, degrees = test.needle, evaluation.design.fluid.temperature - 273.15
     frequencies = [
         f"{text.trimmed(f, 3)} Hz ({chamber})"
-        for chamber, f in zip("AB", test.peak.stiff_frequency, strict=True)
+        for chamber, f in zip("AB", test.peak.antiresonance_frequency, strict=True)
         if np.isfinite(f)
     ]
     rows = (
