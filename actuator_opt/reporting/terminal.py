@@ -261,10 +261,10 @@ def sensitivity_table(
         Column("active" if unicode else "act"),
         Column(f"{unit}/unit", "right"),
         Column("%/%", "right"),
-        Column("+10 %", "right", drop=1),
-        Column("solved", "right"),
-        Column("-10 %", "right", drop=1),
-        Column("solved", "right"),
+        Column("at +10 %", "right", drop=1),
+        Column("+ solved", "right"),
+        Column("at -10 %", "right", drop=1),
+        Column("- solved", "right"),
         Column("holds until: next active", flexible=True, drop=2),
     ]
     rows, styles = [], []
