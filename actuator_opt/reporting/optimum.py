@@ -160,7 +160,7 @@ def convergence(optimisation: Optimisation) -> list[str]:
 
 _HEADS = {
     "joint": ("Smallest joint relaxation", "Relax all of these together and a design exists."),
-    "sole": ("One requirement alone", f"{DASH}: relaxing only this one does not help."),
+    "sole": ("One requirement alone", f"{DASH}: no design found by relaxing only this one."),
     "bounds": ("Bounds in the way", "Dimensions that stand at a bound of theirs."),
 }
 
