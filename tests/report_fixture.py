@@ -6,6 +6,7 @@ gives the same actuator at another size, `build_evaluation(**changes)` another c
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 from typing import Any
@@ -822,3 +823,12 @@ def scaled(bore: float) -> Evaluation:
         1e-3 * factor,
     )
     return build_evaluation(outlines=parts, lengths=lengths, curve=curve(110e-3 * factor))
+
+
+def overlaps(boxes):
+    """Pairs of text boxes that share area."""
+    return [
+        (a[0], b[0])
+        for a, b in itertools.combinations(boxes, 2)
+        if min(a[3], b[3]) - max(a[1], b[1]) > 0.05 and min(a[4], b[4]) - max(a[2], b[2]) > 0.05
+    ]

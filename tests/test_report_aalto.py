@@ -9,6 +9,7 @@ import re
 from pathlib import Path
 
 import pytest
+from report_fixture import overlaps
 
 from actuator_opt import verbs
 from actuator_opt.evaluation.study import aalto, aalto_dynamic, aalto_static
@@ -227,15 +228,6 @@ def test_functions_named_in_remarks_exist():
         remark = next(t.remark for t in aalto_equations.TRACES if t.first == 39)
         assert function in remark
         assert hasattr(importlib.import_module(f"actuator_opt.models.{module}"), function)
-
-
-def overlaps(boxes):
-    """Pairs of text boxes that share area."""
-    return [
-        (a[0], b[0])
-        for a, b in itertools.combinations(boxes, 2)
-        if min(a[3], b[3]) - max(a[1], b[1]) > 0.05 and min(a[4], b[4]) - max(a[2], b[2]) > 0.05
-    ]
 
 
 @pytest.mark.parametrize("changes", [{}, *OTHERS], ids=lambda c: " ".join(c) or "as shipped")

@@ -8,6 +8,7 @@ import pytest
 import report_fixture as fixture
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from report_fixture import overlaps
 
 from actuator_opt.evaluation.result import Outline
 from actuator_opt.reporting import drawing, figures, ink
@@ -23,15 +24,6 @@ def span(marks, pick):
 def is_oil(mark):
     """Whether a mark is the oil's tint."""
     return mark["fill"] == "#dcecf7"
-
-
-def overlaps(boxes):
-    """Pairs of text boxes that share area."""
-    return [
-        (a[0], b[0])
-        for a, b in itertools.combinations(boxes, 2)
-        if min(a[3], b[3]) - max(a[1], b[1]) > 0.05 and min(a[4], b[4]) - max(a[2], b[2]) > 0.05
-    ]
 
 
 def test_110_mm_at_1_to_2_are_55_mm_on_paper():

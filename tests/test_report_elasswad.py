@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import io
-import itertools
 import re
 from math import pi, sqrt
 from pathlib import Path
 
 import numpy as np
 import pytest
+from report_fixture import overlaps
 
 from actuator_opt import verbs
 from actuator_opt.models import barrel, stiffness, stiffness_published
@@ -233,15 +233,6 @@ def test_a_record_in_a_script():
     assert np.ptp(derived) == 0.0
     assert derived[2] / k[2] > 200
     np.testing.assert_allclose(growth, 1.2 * expansion, rtol=1e-12)
-
-
-def overlaps(boxes):
-    """Pairs of text boxes that share area."""
-    return [
-        (a[0], b[0])
-        for a, b in itertools.combinations(boxes, 2)
-        if min(a[3], b[3]) - max(a[1], b[1]) > 0.05 and min(a[4], b[4]) - max(a[2], b[2]) > 0.05
-    ]
 
 
 @pytest.mark.parametrize("changes", [{}, *OTHERS], ids=lambda c: " ".join(c) or "as shipped")

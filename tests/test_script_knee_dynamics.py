@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import itertools
 import json
 import os
@@ -16,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from script_loader import script
 
 import actuator_opt as ao
 
@@ -24,17 +24,7 @@ SCRIPT = ROOT / "designs" / "scripts" / "knee_dynamics.py"
 REPORT = ROOT / "reports" / "samples" / "knee_dynamics.pdf"
 
 
-def _module() -> Any:
-    spec = importlib.util.spec_from_file_location(SCRIPT.stem, SCRIPT)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-study = _module()
+study = script("knee_dynamics")
 
 
 def _words(pdf: bytes) -> str:

@@ -3,33 +3,22 @@
 from __future__ import annotations
 
 import copy
-import importlib.util
 import json
 import re
-import sys
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
+from script_loader import script
 
 ROOT = Path(__file__).parents[1]
 SCRIPT = ROOT / "designs" / "scripts" / "knee_materials.py"
 REPORT = ROOT / "reports" / "samples" / "knee_materials.pdf"
 
 
-def _module() -> Any:
-    spec = importlib.util.spec_from_file_location(SCRIPT.stem, SCRIPT)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-study = _module()
+study = script("knee_materials")
 
 
 def _words(pdf: bytes) -> str:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType
 
 import pytest
+from script_loader import script
 
 from actuator_opt import verbs
 from actuator_opt.evaluation.plugin import load
@@ -34,17 +33,6 @@ def _run(name: str, tmp_path: Path) -> str:
     assert done.returncode == 0, done.stderr
     assert list(tmp_path.iterdir()) == []
     return done.stdout
-
-
-def _module(name: str) -> ModuleType:
-    """A script as a module, for its functions."""
-    spec = importlib.util.spec_from_file_location(Path(name).stem, SCRIPTS / name)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 def test_every_script_of_the_folder_is_tested() -> None:
@@ -91,8 +79,8 @@ def test_the_saving_script_prints_both_mass_tables(tmp_path) -> None:
 
 def test_the_saving_is_computed_at_two_true_optima() -> None:
     """Composite, steel and steel with aluminium ends are optima; the ends save a part only."""
-    script = _module("composite_saving.py")
-    saving = script.compute(starts=2)
+    study = script("composite_saving")
+    saving = study.compute(starts=2)
     for optimum in (saving.steel, saving.composite, saving.mixed):
         assert optimum.status == "optimal"
         assert optimum.kkt.residual <= 1e-6

@@ -95,7 +95,8 @@ def compute_flow(
             out.skip(name, "no lines stated: add lines")
         return
     velocity, drop, hammer = {}, {}, {}
-    travel: dict[str, Array] = {}
+    lengths: dict[str, Array] = {}
+    times: dict[str, Array] = {}  # a wave's way through the lines of a chamber
     modulus = {"a": state.bulk_modulus_a, "b": state.bulk_modulus_b}
     viscosity = {"a": state.dynamic_viscosity_a, "b": state.dynamic_viscosity_b}
     for i, line in enumerate(design.lines):
@@ -120,13 +121,16 @@ def compute_flow(
             density=state.density, sound_speed=speed, velocity_change=velocity[place]
         )
         chamber = f"lines of chamber {line.chamber}"
-        travel[chamber] = travel.get(chamber, 0.0) + v[at + "length"] / speed
+        lengths[chamber] = lengths.get(chamber, 0.0) + v[at + "length"]
+        times[chamber] = times.get(chamber, 0.0) + v[at + "length"] / speed
     out.put("line_hammer", hammer)
     out.put(
         "line_resonance",
         {
-            chamber: elements.quarter_wave_frequency(length=time, sound_speed=1.0)
-            for chamber, time in travel.items()
+            chamber: elements.quarter_wave_frequency(
+                length=length, sound_speed=length / times[chamber]
+            )
+            for chamber, length in lengths.items()
         },
     )
     out.put("line_velocity", velocity)

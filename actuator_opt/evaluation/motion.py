@@ -95,12 +95,15 @@ class Motion:
             damping_ratio=damping,
         )
 
-    def mode(self, model: LinearActuator, position: Array) -> loop.Mode:
-        """Mode of the load on the actuator as it is held."""
-        closed = dynamics.natural_frequency(
+    def closed_frequency(self, position: Array) -> Array:
+        """Natural frequency with closed ports, per chamber whatever the topology [Hz]."""
+        return dynamics.natural_frequency(
             stiffness=self.springs.per_chamber_stiffness(position), mass=self.mass
         )
-        return loop.load_mode(model=model, near=closed)
+
+    def mode(self, model: LinearActuator, position: Array) -> loop.Mode:
+        """Mode of the load on the actuator as it is held."""
+        return loop.load_mode(model=model, near=self.closed_frequency(position))
 
 
 def derive(
@@ -156,7 +159,7 @@ def compute(
 ) -> dict[str, Array]:
     """Damping ratio, dynamic stiffness and the position loop; returns the places asked.
 
-    Poles and margins cost more than all else: only those in `wanted` are found (None: all).
+    Poles, limits and margins cost more than all else: only those in `wanted` are found (None: all).
     """
     weakest = weakest_per_chamber(motion.springs)
     names, positions = _places(motion.springs.geometry.stroke, weakest)
@@ -220,7 +223,6 @@ def _position_loop(
     stated = design.control is not None and design.control.gain is not None
     gain = v["control.gain"] if stated else maximum(0.5 * _least(limit.gain), LEAST_GAIN)
     margin = limit.gain / gain
-    found = loop.margins(loop=one, gain=gain)
 
     def put(name: str, value: Array) -> None:
         value = np.broadcast_to(value, np.broadcast_shapes(np.shape(value), (2, *positions.shape)))
@@ -233,9 +235,12 @@ def _position_loop(
 
     put("ultimate_gain", limit.gain)
     put("gain_margin", margin)
-    put("phase_margin", where(real(margin) > 1, found.phase_margin, -found.phase_margin))
-    put("bandwidth", where(real(margin) > 1, found.bandwidth, 0.0))  # none where the loop swings
     out.put("position_gain", gain)
+    if wanted is None or "phase_margin" in wanted or "bandwidth" in wanted:
+        found = loop.margins(loop=one, gain=gain)
+        put("phase_margin", where(real(margin) > 1, found.phase_margin, -found.phase_margin))
+        # where the loop swings, nothing follows
+        put("bandwidth", where(real(margin) > 1, found.bandwidth, 0.0))
 
 
 LEAST_GAIN = 1e-3

@@ -10,11 +10,14 @@ from ..design.model import Design
 from ..numeric import Array
 from .motion import Motion
 from .rows import Computed
+from .springs import weakest_per_chamber
 from .state import State
 from .values import Values
 
 LEAST_DAMPING = 0.005
 """Damping ratio below which a loop is told to be hardly damped (choice)."""
+NEAR_RESONANCE = 0.8
+"""Bandwidth over the load's natural frequency that counts as about it (choice)."""
 LONGEST = 0.1
 """Longest lines of a chamber over the wavelength for one lumped element (choice: 3 % in the
 admittance of a closed line, 7 % of one held at constant pressure)."""
@@ -51,14 +54,15 @@ def _loop(v: Values, motion: Motion, out: Computed) -> Iterable[tuple[str, str]]
             f"the load hardly has any damping (ratio {damped:.1g}): a loop over it stays slow; "
             "state valve.leakage_flow with ports.end: valve, or piston.leakage_conductance",
         )
-    resonance = min(float(np.min(np.real(x))) for x in out.metrics["natural_frequency"].values())
+    weakest = weakest_per_chamber(motion.springs)
+    resonance = float(np.min(np.real(motion.closed_frequency(weakest))))
     widths = [float(np.max(np.real(x))) for x in out.metrics["bandwidth"].values()]
-    behind = sum(width > 0.8 * resonance for width in widths)
-    if behind:
+    near = sum(width > NEAR_RESONANCE * resonance for width in widths)
+    if near:
         yield (
             "bandwidth",
-            f"at {behind} of {len(widths)} places the closed loop falls to -3 dB only behind the "
-            "load's resonance: what it follows there is a swing, not the signal",
+            f"at {near} of {len(widths)} places the closed loop falls to -3 dB only about the "
+            "load's resonance or behind it: what it follows there is a swing, not the signal",
         )
     least = min(float(np.min(np.real(x))) for x in out.metrics["ultimate_gain"].values())
     margin = min(float(np.min(np.real(x))) for x in out.metrics["gain_margin"].values())

@@ -212,12 +212,12 @@ def springs(
     chambers = {
         "oil A": Give(a0=volume_a / oil_a, a1=g.area_a / oil_a),
         "oil B": Give(b0=volume_b / oil_b, b1=g.area_b / oil_b),
-        "oil in lines": Give(a0=branches["a"].volume / oil_a, b0=branches["b"].volume / oil_b),
-        "barrel": Give(a1=swelling, b0=swelling * extra, b1=swelling),
-        "stretch": _stretch(design, g, wall, extra),
     }
-    if not design.lines:
-        del chambers["oil in lines"]
+    if design.lines:
+        in_a, in_b = branches["a"].volume / oil_a, branches["b"].volume / oil_b
+        chambers["oil in lines"] = Give(a0=in_a, b0=in_b)
+    chambers["barrel"] = Give(a1=swelling, b0=swelling * extra, b1=swelling)
+    chambers["stretch"] = _stretch(design, g, wall, extra)
     kinds = {line.type for line in design.lines if not line.rigid}
     if "pipe" in kinds:
         chambers["pipes"] = Give(a0=branches["a"].pipes, b0=branches["b"].pipes)

@@ -160,7 +160,12 @@ def batch_zero(values: Sequence[Array]) -> Array:
 
 
 def inverse_strengths(layer: WallLayer) -> tuple[Array, ...]:
-    """1/X_t, 1/Y_t, 1/S, 1/X_c, 1/Y_c, 1/S, 1/yield of a layer; zero where a mode is missing."""
+    """1/X_t, 1/Y_t, 1/S, 1/X_c, 1/Y_c, 1/S, 1/yield of a layer; zero where a mode is missing.
+
+    References
+    ----------
+    [derived] the maximum-stress criterion mode by mode, as `strength_modes.max_stress_modes`
+    """
     s = layer.strength
     if s is None:
         held = 0.0 if layer.yield_strength is None else 1 / layer.yield_strength
@@ -262,7 +267,12 @@ def _together(xp: Any, walls: Sequence[WallLayer], dims: int) -> Array:
 
 
 def climb(xp: Any, mechanics: Mechanics, layers: Sequence[WallLayer], shape: Array) -> BurstLadder:
-    """The ladder of a wall; `shape` is a zero of the designs' joint shape and type."""
+    """The ladder of a wall; `shape` is a zero of the designs' joint shape and type.
+
+    References
+    ----------
+    [derived] ply discount: the weakest mode fails, its layers lose it, until no more is carried
+    """
     walls = [layers[i] for i in mechanics.order]
     count, metals, faces = len(walls), mechanics.metals, mechanics.faces
     dims = shape.ndim

@@ -87,6 +87,10 @@ def closed(
     Columns of one march: bore hoop strain 1, axial strain 1, (twist 1,) and the loads. `transfer`
     is a `LayeredTube`'s, `driven` (outputs, layers, ...) from `forcing`, or None; all of one number
     of batch axes.
+
+    References
+    ----------
+    [Lekhnitskii1963] generalised plane strain; [derived] transfer of displacement and stress
     """
     outputs, count, dims = transfer.shape[1], transfer.shape[2], transfer.ndim - 3
     ones = (1,) * dims
@@ -142,7 +146,12 @@ def _unknowns(
 
 
 def forcing(xp: Any, transfer: Array, inner: Array, outer: Array, held: tuple[Array, ...]) -> Array:
-    """What held stresses z, t, r (and s) add to the outputs of every layer."""
+    """What held stresses z, t, r (and s) add to the outputs of every layer.
+
+    References
+    ----------
+    [derived] radial equilibrium of a layer under stresses frozen in it
+    """
     square_a, square_b = inner * inner, outer * outer
     own = [0 * held[2], held[2], held[0] * ((square_b - square_a) / 2)]
     if transfer.shape[1] == 4:
