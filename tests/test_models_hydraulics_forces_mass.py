@@ -117,6 +117,6 @@ def test_neglected_crescent_of_the_eye_is_below_one_percent():
 
 def test_ring_mass_is_pappus():
     """2 mm ring on 23 mm: section times centre line; oil is density times volume."""
-    ring = mass.ring_mass(density=1300.0, section=2e-3, centre_diameter=23e-3)
+    ring = mass.ring_mass(density=1300.0, area=math.pi * 1e-6, centre_diameter=23e-3)
     assert ring == pytest.approx(1300 * (math.pi * 1e-6) * (math.pi * 23e-3))
     assert mass.oil_mass(density=870.0, volume=1e-4) == pytest.approx(0.087)

@@ -72,7 +72,28 @@ RetentionType: TypeAlias = Annotated[
     ),
 ]
 SealType: TypeAlias = Annotated[
-    Literal["o_ring"], Choice("kind of seal; o_ring: a rubber ring of round section")
+    Literal["o_ring", "step_ring", "u_cup", "compact"],
+    Choice(
+        "kind of seal; o_ring: a rubber ring of round section; "
+        "step_ring: a sliding ring of PTFE, pressed on by an O-ring behind it; "
+        "u_cup: two lips that the pressure spreads; "
+        "compact: a rubber body between two guides, sealing both ways"
+    ),
+]
+BackUp: TypeAlias = Annotated[
+    Literal["none", "one", "both"],
+    Choice(
+        "back-up rings that close the gap behind the seal; none: no ring; "
+        "one: a ring on the side without pressure; both: a ring on either side"
+    ),
+]
+FrictionModel: TypeAlias = Annotated[
+    Literal["coefficient", "film"],
+    Choice(
+        "how the friction of the seal follows; coefficient: a coefficient times its contact load, "
+        "with the Stribeck curve; film: the oil film between rough surfaces, which also tells "
+        "the leakage"
+    ),
 ]
 SealLaw: TypeAlias = Annotated[
     Literal["plane_strain", "hertz_lindley", "chord"],

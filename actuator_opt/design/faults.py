@@ -2,7 +2,7 @@
 
 Every check is a small function of a `View`; it yields nothing where a value it needs is missing
 or already faulty, so the checks also run on a file with other faults. Those of the walls of
-barrel and rod are in `wall_faults`.
+barrel and rod are in `wall_faults`, of the seals in `seal_faults`.
 """
 
 from __future__ import annotations
@@ -11,15 +11,11 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from .. import quantities
-from . import circuit_faults, material_laws, suggest, wall_faults
+from . import circuit_faults, material_laws, seal_faults, suggest, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
 from .structure import Loc, child, leaves
 from .view import Fault, Materials, View, length_text
-
-SQUEEZE_RANGE = {"plane_strain": (0.02, 0.40), "hertz_lindley": (0.02, 0.40), "chord": (0.0, 0.45)}
-"""Squeeze a contact law can be used at: outside, its width leaves the free section or the load
-law (compared with finite elements at 0.10 to 0.30) means nothing."""
 
 
 def _smaller(
@@ -60,68 +56,6 @@ def rod(view: View) -> Iterator[Fault]:
             factor=0.5,
             why=": no core is left",
         )
-
-
-def _groove(view: View, seal: str) -> tuple[float, float] | None:
-    """Gland depth at nominal squeeze and least width taken by all grooves of a seal."""
-    section = view.number("seals", seal, "section")
-    squeeze = view.number("seals", seal, "squeeze")
-    count = view.number("seals", seal, "count")
-    if section is None or squeeze is None or count is None or count == 0:
-        return None
-    width = view.number("seals", seal, "groove_width")
-    return section * (1 - squeeze), count * (section if width is None else width)
-
-
-def grooves(view: View) -> Iterator[Fault]:
-    """The seal grooves lie inside piston and head and leave a core and a wall."""
-    bore, rod_diameter = view.number("cylinder", "bore"), view.number("rod", "outer_diameter")
-    for seal, part in (("piston", "piston"), ("rod", "head")):
-        groove = _groove(view, seal)
-        if groove is None:
-            continue
-        depth, width = groove
-        length = view.number(part, "length")
-        given = "groove_width" if view.has("seals", seal, "groove_width") else "section"
-        if length is not None and width >= length:
-            yield Fault(
-                ("seals", seal, given),
-                f"grooves outside the {part}: they take at least {length_text(width)} of "
-                f"{part}.length {length_text(length)}",
-                f"lengthen {part}.length or use a smaller ring",
-            )
-        if bore is None or rod_diameter is None:
-            continue
-        if part == "piston":
-            core = view.number("rod", "thread", "diameter") or rod_diameter
-            left = bore - 2 * depth
-            if core < bore and left <= core:
-                yield Fault(
-                    ("seals", seal, "section"),
-                    f"groove too deep: {length_text(max(left, 0.0))} core left in the piston, "
-                    f"the rod needs {length_text(core)}",
-                    "use a smaller section, a larger bore or a rod thread that fits",
-                )
-        elif rod_diameter < bore <= rod_diameter + 2 * depth:
-            yield Fault(
-                ("seals", seal, "section"),
-                f"groove outside the head: it reaches {length_text(rod_diameter + 2 * depth)}, "
-                f"the bore is {length_text(bore)}",
-                "use a smaller section, a larger bore or a thinner rod",
-            )
-
-
-def squeeze(view: View) -> Iterator[Fault]:
-    """The nominal squeeze lies where the seal's law holds."""
-    for seal in ("piston", "rod"):
-        value, law = view.number("seals", seal, "squeeze"), view.text("seals", seal, "law")
-        low, high = SQUEEZE_RANGE.get(law or "", (0.0, 1.0))
-        if value is not None and not low <= value <= high:
-            yield Fault(
-                ("seals", seal, "squeeze"),
-                f"{value * 100:.4g} %: outside the range of the law {law}",
-                f"write {low * 100:g} % to {high * 100:g} %",
-            )
 
 
 def barrel_length(view: View) -> Iterator[Fault]:
@@ -267,13 +201,12 @@ def _case_force(loc: Loc, case: dict[str, Any]) -> Iterator[Fault]:
 
 CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     rod,
-    grooves,
-    squeeze,
     barrel_length,
     supply,
     environment,
     retention,
     load_cases,
+    *seal_faults.CHECKS,
     *circuit_faults.CHECKS,
     *wall_faults.CHECKS,
 )

@@ -13,6 +13,7 @@ from pydantic import Field
 from . import choices
 from .circuit import Control, Line, Ports, Valve
 from .kinds import CaseName, Flag, Goal, MaterialName, Of, Position, PositionKind, Text
+from .seals import Seals
 from .section import Section
 
 
@@ -224,45 +225,6 @@ class Clevis(Section):
 
     material: Annotated[str, MaterialName("structural")]
     pin_diameter: Annotated[float, Of("diameter", "diameter of the pins")]
-
-
-class Seal(Section):
-    """A ring seal in a radial groove, `count` in a row."""
-
-    type: choices.SealType = "o_ring"
-    compound: Annotated[str, MaterialName("seal")]
-    section: Annotated[float, Of("cross_section", "free cross-section of the ring")]
-    squeeze: Annotated[float, Of("squeeze", "nominal squeeze over the free section")]
-    tolerance: Annotated[float, Of("tolerance", "tolerance of the gland depth")] = 0.0
-    groove_width: Annotated[
-        float | None, Of("groove_width", "axial width of the groove; default: the standard gland")
-    ] = None
-    stretch: Annotated[float, Of("stretch", "stretch of the ring in its groove")] = 0.02
-    count: Annotated[float, Of("seal_count", "seals in a row")] = 1.0
-    law: choices.SealLaw = "plane_strain"
-    hardness_model: choices.HardnessModel = "gent"
-    friction_coefficient: Annotated[
-        float | None,
-        Of("friction_coefficient", "dry friction on the counterface; default: the compound's"),
-    ] = None
-    breakaway_ratio: Annotated[
-        float | None,
-        Of("breakaway_ratio", "breakaway over running friction; default: the compound's"),
-    ] = None
-    stribeck_speed: Annotated[
-        float | None,
-        Of("stribeck_speed", "decay speed of the breakaway friction; default: the compound's"),
-    ] = None
-    viscous_friction: Annotated[
-        float, Of("viscous_friction", "viscous part of the seal friction")
-    ] = 0.0
-
-
-class Seals(Section):
-    """Piston and rod seals."""
-
-    piston: Seal
-    rod: Seal
 
 
 class Load(Section):

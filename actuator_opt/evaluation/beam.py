@@ -16,7 +16,7 @@ from . import weight
 from .barrel import Wall
 from .geometry import Geometry
 from .rods import Rod
-from .state import State
+from .state import State, overhang
 from .values import Values
 
 FIXED_PINNED = 0.6992
@@ -48,11 +48,6 @@ class Beam:
             bending_moment=self.moment, axial_force=near, critical_load=1.0
         )
         return bent + self.moment * (share - near) / (1 - NEAR) ** 2
-
-
-def overhang(g: Geometry, state: State) -> Array:
-    """Distance of the rod eye from the middle of the head bearing, at the case's position."""
-    return state.reach + g.rod_extension + g.eye_offset + (g.head_length + g.plate) / 2
 
 
 def derive(

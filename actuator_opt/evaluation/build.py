@@ -67,7 +67,8 @@ def names_of_materials(design: Design) -> list[str]:
         names.append(design.retention.material)
     if design.clevis is not None:
         names.append(design.clevis.material)
-    names += [design.seals.piston.compound, design.seals.rod.compound]
+    for seal in (design.seals.piston, design.seals.rod):
+        names += seal.materials()
     names += [line.material for line in design.lines]
     return list(dict.fromkeys(names))
 

@@ -12,23 +12,14 @@ from dataclasses import dataclass
 
 from ..design.material import Material
 from ..design.model import Design, Ply
-from ..models import forces, gland, mass
+from ..models import forces, mass
 from ..numeric import Array, absolute
+from .grooves import Groove, grooves, taken
 from .values import Values
 
 LAND = 1e-3
 """Least wall beside or under a groove, least rod wall, bore of a laminated rod and room between
 rod and bore (m): a choice for turned parts in this size range."""
-
-
-@dataclass(frozen=True, slots=True)
-class Groove:
-    """A radial seal groove: free section, gland depth at nominal squeeze, width, how many."""
-
-    section: Array
-    gland_depth: Array
-    width: Array
-    count: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,20 +50,9 @@ class Geometry:
     eye_offset: Array
     pin_diameter: Array
     closed_length: Array
-    piston_groove: Groove
-    rod_groove: Groove
+    piston_grooves: tuple[Groove, ...]
+    rod_grooves: tuple[Groove, ...]
     bearing_span: Array
-
-
-def _groove(v: Values, seal: str) -> Groove:
-    section = v[f"seals.{seal}.section"]
-    width = v.get(f"seals.{seal}.groove_width", None)
-    return Groove(
-        section=section,
-        gland_depth=section * (1 - v[f"seals.{seal}.squeeze"]),
-        width=gland.groove_width(section=section) if width is None else width,
-        count=v[f"seals.{seal}.count"],
-    )
 
 
 def _thicknesses(v: Values, part: str, layup: tuple[Ply, ...]) -> tuple[Array, ...]:
@@ -129,8 +109,8 @@ def derive(v: Values, design: Design) -> Geometry:
         eye_offset=eye_offset,
         pin_diameter=pin,
         closed_length=barrel_length + 2 * plate + extension + 2 * eye_offset,
-        piston_groove=_groove(v, "piston"),
-        rod_groove=_groove(v, "rod"),
+        piston_grooves=grooves(v, design, "piston"),
+        rod_grooves=grooves(v, design, "rod"),
         bearing_span=(piston_length + head_length + plate) / 2,
     )
 
@@ -138,16 +118,16 @@ def derive(v: Values, design: Design) -> Geometry:
 def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
     """Walls that must not vanish: every one is a constraint of the optimiser."""
     g = geometry
-    piston, rod = g.piston_groove, g.rod_groove
+    piston_length, piston_count, piston_depth = taken(g.piston_grooves)
+    head_length, head_count, head_depth = taken(g.rod_grooves)
     bore = {"geometry_rod_bore": g.rod_inner_diameter} if g.rod_thicknesses else {}
     return bore | {
         "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,
         "geometry_rod_wall": (g.rod_diameter - g.rod_inner_diameter) / 2,
-        "geometry_piston_groove": (g.piston_length - piston.count * piston.width)
-        / (piston.count + 1),
-        "geometry_piston_core": g.inner_radius - piston.gland_depth - thread_radius,
-        "geometry_head_groove": (g.head_length - rod.count * rod.width) / (rod.count + 1),
-        "geometry_head_wall": g.inner_radius - g.rod_diameter / 2 - rod.gland_depth,
+        "geometry_piston_groove": (g.piston_length - piston_length) / (piston_count + 1),
+        "geometry_piston_core": g.inner_radius - piston_depth - thread_radius,
+        "geometry_head_groove": (g.head_length - head_length) / (head_count + 1),
+        "geometry_head_wall": g.inner_radius - g.rod_diameter / 2 - head_depth,
     }
 
 

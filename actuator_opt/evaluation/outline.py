@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin
 from typing import Literal, TypeAlias
 
 from ..design.material import Material
 from ..design.model import Design
-from .geometry import Geometry, Groove
+from .geometry import Geometry
+from .grooves import Groove, taken
 from .result import Outline
 from .rods import end_material
 
@@ -24,23 +25,38 @@ def _rectangle(x0: float, x1: float, r0: float, r1: float) -> _Polygon:
     return ((x0, r0), (x1, r0), (x1, r1), (x0, r1))
 
 
-def _grooves(start: float, length: float, groove: Groove) -> Iterator[tuple[float, float]]:
-    """Axial intervals of the grooves, evenly spread over a part."""
-    count = round(float(groove.count))
-    width = float(groove.width)
-    land = (length - count * width) / (count + 1)
-    for i in range(count):
-        x = start + land + i * (land + width)
-        yield x, x + width
+def _grooves(
+    start: float, length: float, grooves: Sequence[Groove]
+) -> Iterator[tuple[Groove, float, float]]:
+    """Axial intervals of all grooves in order, evenly spread over a part."""
+    used, count, _ = taken(grooves)
+    land = (length - float(used)) / (round(float(count)) + 1)
+    x = start + land
+    for groove in grooves:
+        for _ in range(round(float(groove.count))):
+            yield groove, x, x + float(groove.width)
+            x += float(groove.width) + land
 
 
 def _grooved(
-    x0: float, x1: float, inner: float, outer: float, groove: Groove, floor: float, *, outside: bool
+    x0: float,
+    x1: float,
+    inner: float,
+    outer: float,
+    grooves: Sequence[Groove],
+    counterface: float,
+    *,
+    outside: bool,
 ) -> _Polygon:
-    """A ring with rectangular grooves cut to radius `floor` from outside or from inside."""
+    """A ring with rectangular grooves cut from outside or from inside.
+
+    A groove is as deep as its gland, from the counterface on.
+    """
     surface = outer if outside else inner
     edge = [(x0, surface)]
-    for start, end in _grooves(x0, x1 - x0, groove):
+    for groove, start, end in _grooves(x0, x1 - x0, grooves):
+        depth = float(groove.gland_depth)
+        floor = counterface - depth if outside else counterface + depth
         edge += [(start, surface), (start, floor), (end, floor), (end, surface)]
     edge.append((x1, surface))
     other = inner if outside else outer
@@ -75,8 +91,6 @@ class _Stations:
     rod: float
     bore: float
     hole: float
-    piston_floor: float
-    head_floor: float
 
 
 def _stations(g: Geometry) -> _Stations:
@@ -94,8 +108,6 @@ def _stations(g: Geometry) -> _Stations:
         rod=rod,
         bore=bore,
         hole=rod + float(g.head_clearance),
-        piston_floor=bore - float(g.piston_groove.gland_depth),
-        head_floor=rod + float(g.rod_groove.gland_depth),
     )
 
 
@@ -137,23 +149,13 @@ def _tie_rods(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
 def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     """Piston, head plug, rod and seals."""
     radius = at.bore - float(g.piston_clearance)
-    piston = _grooved(
-        at.start, at.piston_end, 0.0, radius, g.piston_groove, at.piston_floor, outside=True
-    )
-    plug = _grooved(at.head, at.end, at.hole, at.bore, g.rod_groove, at.head_floor, outside=False)
+    piston = _grooved(at.start, at.piston_end, 0.0, radius, g.piston_grooves, at.bore, outside=True)
+    plug = _grooved(at.head, at.end, at.hole, at.bore, g.rod_grooves, at.rod, outside=False)
     yield "piston", design.piston.material, [piston]
     yield "glands", design.head.material, [plug]
     yield from _rod(design, g, at)
-    yield (
-        "piston seal",
-        design.seals.piston.compound,
-        _rings(at.start, g.piston_length, g.piston_groove, at.piston_floor, at.bore),
-    )
-    yield (
-        "rod seal",
-        design.seals.rod.compound,
-        _rings(at.head, g.head_length, g.rod_groove, at.rod, at.head_floor),
-    )
+    yield from _rings(at.start, float(g.piston_length), g.piston_grooves, at.bore, -1)
+    yield from _rings(at.head, float(g.head_length), g.rod_grooves, at.rod, 1)
 
 
 def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
@@ -181,12 +183,18 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         )
 
 
-def _rings(start: float, length: float, groove: Groove, low: float, high: float) -> list[_Polygon]:
-    rings = []
-    for left, right in _grooves(start, float(length), groove):
-        middle, half = (left + right) / 2, min(float(groove.section), right - left) / 2
-        rings.append(_rectangle(middle - half, middle + half, low, high))
-    return rings
+def _rings(
+    start: float, length: float, grooves: Sequence[Groove], counterface: float, side: int
+) -> Iterator[_Part]:
+    """What lies in every groove: round rings as wide as their section, others fill it."""
+    shapes: dict[tuple[str, str], list[_Polygon]] = {}
+    for groove, left, right in _grooves(start, length, grooves):
+        middle, half = (left + right) / 2, min(float(groove.ring_width), right - left) / 2
+        near, far = counterface, counterface + side * float(groove.gland_depth)
+        shape = _rectangle(middle - half, middle + half, min(near, far), max(near, far))
+        shapes.setdefault((groove.place, groove.material), []).append(shape)
+    for (place, material), polygons in shapes.items():
+        yield place, material, polygons
 
 
 def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:

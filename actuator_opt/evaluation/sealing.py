@@ -3,118 +3,89 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from ..design.model import Design
-from ..models import damping, friction, gland, seals
+from ..models import damping, friction, gland
 from ..numeric import Array, absolute, maximum, real, where
 from .allow import Stock
 from .barrel import SEAL_STEP, Wall
-from .geometry import Geometry, Groove
+from .geometry import Geometry
+from .grooves import Groove
+from .rings import Ring, contact, ring, wiper_load
 from .rows import Computed
-from .state import State
+from .state import State, side_reactions
 from .values import Values
 
 STRIBECK_EXPONENT = 2.0
 """Shape of the Stribeck curve where no record says otherwise ([MECE5005], [Huang2017] Table 2)."""
 
+Place = Literal["piston", "rod"]
+
 
 @dataclass(frozen=True, slots=True)
 class Friction:
-    """Friction of all seals per case, N; `slope` is dF/dv at the case's speed, N·s/m."""
+    """Friction per case, N; `slope` is dF/dv at the case's speed, N·s/m."""
 
-    running: Array
-    breakaway: Array
-    slope: Array
+    running: Array = 0.0
+    breakaway: Array = 0.0
+    slope: Array = 0.0
+
+    def __add__(self, other: Friction) -> Friction:
+        return Friction(
+            self.running + other.running,
+            self.breakaway + other.breakaway,
+            self.slope + other.slope,
+        )
 
 
 @dataclass(frozen=True, slots=True)
-class _SealState:
-    squeeze: Array
-    youngs_modulus: Array
-    coefficient: Array
-    breakaway_ratio: Array
-    stribeck_speed: Array
+class Sealed:
+    """One sealing element under its load: pressure difference and bore growth, by case."""
+
+    ring: Ring
     pressure: Array
     growth: Array
-    diameter: Array
-    groove: Groove
+
+    @property
+    def squeeze(self) -> Array:
+        """Nominal squeeze less what the bore's growth takes."""
+        return gland.squeeze_after(
+            squeeze=self.ring.squeeze,
+            section=self.ring.groove.section,
+            growth=self.growth,
+            tolerance=0.0,
+        )
 
 
-def _seal_state(
-    v: Values,
-    design: Design,
-    name: str,
-    diameter: Array,
-    groove: Groove,
-    pressure: Array,
-    growth: Array,
-) -> _SealState:
-    section = getattr(design.seals, name)
-    compound = f"materials.{section.compound}."
-    at = f"seals.{name}."
+def sealed(
+    v: Values, design: Design, stock: Stock, geometry: Geometry, state: State, growth: Array
+) -> list[Sealed]:
+    """Every sealing element; the first of a place carries the pressure.
 
-    def own(field: str) -> Array:
-        return v[at + field] if at + field in v else v[compound + field]
-
-    modulus = seals.MODULUS_LAWS[section.hardness_model].modulus(hardness=v[compound + "hardness"])
-    return _SealState(
-        squeeze=v[at + "squeeze"],
-        youngs_modulus=modulus,
-        coefficient=own("friction_coefficient"),
-        breakaway_ratio=own("breakaway_ratio"),
-        stribeck_speed=own("stribeck_speed"),
-        pressure=pressure,
-        growth=growth,
-        diameter=diameter,
-        groove=groove,
-    )
-
-
-def _gland_metrics(v: Values, name: str, state: _SealState, full_growth: Array) -> dict[str, Array]:
-    at = f"seals.{name}."
-    section, tolerance = state.groove.section, v[at + "tolerance"]
-    thin = gland.stretched_section(section=section, stretch=v[at + "stretch"])
-    return {
-        "seal_squeeze": gland.squeeze_in_place(
-            squeeze=state.squeeze,
-            section=section,
-            stretch=v[at + "stretch"],
-            growth=full_growth,
-            tolerance=tolerance,
-        ),
-        "seal_squeeze_max": state.squeeze + tolerance / section,
-        "seal_fill": gland.gland_fill(
-            section=thin,
-            groove_width=state.groove.width,
-            gland_depth=state.groove.gland_depth - tolerance,
-        ),
-        "seal_stretch": v[at + "stretch"],
-        "seal_section": section,
-    }
-
-
-def _contact(law: seals.SealLaw, state: _SealState) -> tuple[Array, Array, Array]:
-    """Line load of the whole row, contact width and peak pressure of the ring that seals.
-
-    One ring of a row carries the pressure, the others only their squeeze.
+    The piston's sees the difference, the rod's p_B. `growth` is the bore's at the piston seal.
     """
-    squeeze = gland.squeeze_after(
-        squeeze=state.squeeze, section=state.groove.section, growth=state.growth, tolerance=0.0
-    )
-    inputs = {
-        "squeeze": squeeze,
-        "section": state.groove.section,
-        "youngs_modulus": state.youngs_modulus,
-        "pressure": state.pressure,
+    across = {
+        "piston": absolute(state.moving_a - state.moving_b),
+        "rod": maximum(state.moving_b, 0.0),
     }
-    width = gland.limited_width(
-        contact_width=law.contact_width(**inputs), groove_width=state.groove.width
-    )
-    load = law.line_load(**inputs)
-    if not isinstance(state.groove.count, float) or state.groove.count != 1.0:
-        idle = law.line_load(**(inputs | {"pressure": 0.0 * state.pressure}))
-        load = load + (state.groove.count - 1) * idle
-    return load, width, law.peak_pressure(**inputs)
+    found = []
+    for name, grooves, diameter in _places(geometry):
+        seal = getattr(design.seals, name)
+        elements = seal.elements()
+        grown = growth if name == "piston" else 0.0
+        for groove in grooves:
+            if groove.role != "element":
+                continue
+            tail = groove.path.removeprefix(f"seals.{name}.")
+            part = ring(v, stock, name, elements[tail], groove, diameter, state.temperature)
+            pressure = across[name] if tail == "" else 0.0 * across[name]
+            found.append(Sealed(part, pressure, grown))
+    return found
+
+
+def _places(g: Geometry) -> list[tuple[Place, tuple[Groove, ...], Array]]:
+    return [("piston", g.piston_grooves, g.bore), ("rod", g.rod_grooves, g.rod_diameter)]
 
 
 def compute(
@@ -126,26 +97,24 @@ def compute(
     wall: Wall,
     out: Computed,
 ) -> Friction:
-    """Gland, contact and friction metrics of both seals; returns the cylinder's friction."""
+    """Gland, contact and friction metrics of every seal; returns the cylinder's friction."""
     full_growth = SEAL_STEP * wall.growth
-    case_growth = SEAL_STEP * wall.case_growth
-    parts = _both(v, design, geometry, state, case_growth)
     places: dict[str, dict[str, Array]] = {}
-    total = Friction(0.0, 0.0, 0.0)
-    for place, part in parts.items():
-        name = place.split()[0]
-        section = getattr(design.seals, name)
-        grown = full_growth if name == "piston" else 0.0
-        for metric, value in _gland_metrics(v, name, part, grown).items():
+    total = Friction()
+    for part in sealed(v, design, stock, geometry, state, SEAL_STEP * wall.case_growth):
+        place = part.ring.groove.place
+        grown = full_growth if part.ring.name == "piston" else 0.0
+        load, width, peak = _contact(part)
+        own = _friction(load, part.ring, state.speed)
+        total = total + own
+        rows = _gland_metrics(v, part.ring, grown) | {
+            "contact_width": width,
+            "contact_pressure": peak,
+        }
+        for metric, value in rows.items():
             places.setdefault(metric, {})[place] = value
-        load, width, peak = _contact(seals.LAWS[section.law], part)
-        places.setdefault("contact_width", {})[place] = width
-        places.setdefault("contact_pressure", {})[place] = peak
-        own = _friction(load, part, state.speed, v[f"seals.{name}.viscous_friction"])
-        total = Friction(
-            total.running + own.running, total.breakaway + own.breakaway, total.slope + own.slope
-        )
-        _extrusion(v, stock, section.compound, place, geometry, state, full_growth, places)
+        _extrusion(v, stock, part, geometry, state, grown, places)
+    total = total + _beside(v, design, stock, geometry, state)
     for metric, by_place in places.items():
         out.put(metric, by_place)
     if "extrusion_factor" not in places:
@@ -163,36 +132,48 @@ def compute(
     return total
 
 
-def _both(
-    v: Values, design: Design, geometry: Geometry, state: State, case_growth: Array
-) -> dict[str, _SealState]:
-    """State of both seals in every case: the piston's sees the difference, the rod's p_B."""
+def _gland_metrics(v: Values, part: Ring, growth: Array) -> dict[str, Array]:
+    groove = part.groove
+    section, tolerance = groove.section, v[groove.path + "tolerance"]
+    stretch = v[groove.path + "stretch"]
+    thin = gland.stretched_section(section=section, stretch=stretch)
     return {
-        "piston seal": _seal_state(
-            v,
-            design,
-            "piston",
-            geometry.bore,
-            geometry.piston_groove,
-            absolute(state.moving_a - state.moving_b),
-            case_growth,
+        "seal_squeeze": gland.squeeze_in_place(
+            squeeze=part.squeeze,
+            section=section,
+            stretch=stretch,
+            growth=growth,
+            tolerance=tolerance,
         ),
-        "rod seal": _seal_state(
-            v,
-            design,
-            "rod",
-            geometry.rod_diameter,
-            geometry.rod_groove,
-            maximum(state.moving_b, 0.0),
-            0.0,
+        "seal_squeeze_max": part.squeeze + tolerance / section,
+        "seal_fill": gland.gland_fill(
+            section=thin,
+            groove_width=groove.width,
+            gland_depth=groove.gland_depth - tolerance,
         ),
+        "seal_stretch": stretch,
+        "seal_section": section,
     }
 
 
-def _friction(load: Array, part: _SealState, speed: Array, viscous: Array) -> Friction:
+def _contact(part: Sealed) -> tuple[Array, Array, Array]:
+    """Line load of the whole row, contact width and peak pressure of the ring that seals.
+
+    One ring of a row carries the pressure, the others only their squeeze.
+    """
+    touch = contact(part.ring, squeeze=part.squeeze, pressure=part.pressure)
+    count = part.ring.groove.count
+    load = touch.line_load
+    if not isinstance(count, float) or count != 1.0:
+        idle = contact(part.ring, squeeze=part.squeeze, pressure=0.0 * part.pressure)
+        load = load + (count - 1) * idle.line_load
+    return load, touch.width, touch.peak
+
+
+def _friction(load: Array, part: Ring, speed: Array) -> Friction:
     """Friction of one row of seals: sliding where the case moves, Coulomb where it does not."""
     coulomb = friction.seal_friction(
-        line_load=load, diameter=part.diameter, friction_coefficient=part.coefficient
+        line_load=load, diameter=part.diameter, friction_coefficient=part.friction_coefficient
     )
     static = friction.breakaway(running=coulomb, ratio=part.breakaway_ratio)
     curve = {
@@ -202,19 +183,34 @@ def _friction(load: Array, part: _SealState, speed: Array, viscous: Array) -> Fr
         "stribeck_speed": part.stribeck_speed,
         "exponent": STRIBECK_EXPONENT,
     }
-    sliding = friction.stribeck_level(**curve) + viscous * speed
+    sliding = friction.stribeck_level(**curve) + part.viscous * speed
     return Friction(
         running=where(real(speed) > 0, sliding, coulomb),
         breakaway=static,
-        slope=friction.stribeck_slope(**curve, viscous=viscous),
+        slope=friction.stribeck_slope(**curve, viscous=part.viscous),
     )
+
+
+def _beside(v: Values, design: Design, stock: Stock, geometry: Geometry, state: State) -> Friction:
+    """Coulomb friction of wipers and of guide rings under the side load."""
+    total: Array = 0.0
+    carried = side_reactions(geometry, state)
+    for name, grooves, diameter in _places(geometry):
+        for groove in grooves:
+            if groove.role == "guide":
+                total = total + v[groove.path + "friction_coefficient"] * carried[name]
+            elif groove.role == "wiper":
+                load, coefficient = wiper_load(v, stock, groove, diameter, state.temperature)
+                total = total + friction.seal_friction(
+                    line_load=load, diameter=diameter, friction_coefficient=coefficient
+                )
+    return Friction(total, total, 0.0)
 
 
 def _extrusion(
     v: Values,
     stock: Stock,
-    compound: str,
-    place: str,
+    part: Sealed,
     geometry: Geometry,
     state: State,
     growth: Array,
@@ -224,13 +220,13 @@ def _extrusion(
 
     Side load pushes piston and rod over: the gap of one side is then the clearance larger.
     """
+    compound = part.ring.element.compound
     limit = stock.material(compound).properties.get("extrusion_gap_max")
     if limit is None:
         return
-    clearance = geometry.piston_clearance if place == "piston seal" else geometry.head_clearance
+    piston = part.ring.name == "piston"
+    clearance = geometry.piston_clearance if piston else geometry.head_clearance
     pushed = where(real(state.side_load) > 0, 2.0, 1.0)
-    gap = gland.extrusion_gap(
-        clearance=pushed * clearance, growth=growth if place == "piston seal" else 0.0
-    )
+    gap = gland.extrusion_gap(clearance=pushed * clearance, growth=growth)
     allowed = limit.at(v["supply.pressure"], value=stock.get(compound, "extrusion_gap_max"))
-    places.setdefault("extrusion_factor", {})[place] = allowed / gap
+    places.setdefault("extrusion_factor", {})[part.ring.groove.place] = allowed / gap

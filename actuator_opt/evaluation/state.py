@@ -8,7 +8,7 @@ import numpy as np
 
 from ..design.kinds import Fraction
 from ..design.model import Design
-from ..models import stiffness
+from ..models import retention, stiffness
 from ..numeric import Array, where
 from . import oil
 from .allow import Stock
@@ -45,6 +45,19 @@ class State:
     """At the pressures of the moving chambers."""
     bulk_modulus_a: Array
     bulk_modulus_b: Array
+
+
+def overhang(g: Geometry, state: State) -> Array:
+    """Distance of the rod eye from the middle of the head bearing, at the case's position."""
+    return state.reach + g.rod_extension + g.eye_offset + (g.head_length + g.plate) / 2
+
+
+def side_reactions(g: Geometry, state: State) -> dict[str, Array]:
+    """Side force that rod and piston guide carry."""
+    head, piston = retention.guide_forces(
+        side_force=state.side_load, overhang=overhang(g, state), span=g.bearing_span
+    )
+    return {"rod": head, "piston": piston}
 
 
 def case_force(v: Values, design: Design) -> Array:

@@ -6,6 +6,7 @@ tension), and what the end stop puts through barrel and retention.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import pi, sqrt
 
 from ..design.model import Design
@@ -14,11 +15,12 @@ from ..numeric import Array, real, where
 from . import bonds, rod_strength
 from .allow import Stock
 from .barrel import Wall, load_path
-from .beam import Beam, overhang
+from .beam import Beam
 from .geometry import Geometry
+from .grooves import Groove, taken
 from .rods import Rod
 from .rows import Computed
-from .state import State
+from .state import State, side_reactions
 from .values import Values
 
 HOLE = 2.0
@@ -242,30 +244,40 @@ def _pins(v: Values, stock: Stock, design: Design, push: Array, out: Computed) -
     out.put("pin_factor", strength / sqrt(3) / stress)
 
 
+def _guided(grooves: Sequence[Groove], length: Array) -> Array:
+    """Length that carries side load: the guide rings', else what the grooves leave of the part."""
+    for groove in grooves:
+        if groove.role == "guide":
+            return groove.count * groove.width
+    return length - taken(grooves)[0]
+
+
 def _guides(stock: Stock, design: Design, g: Geometry, state: State, out: Computed) -> None:
     out.put("bearing_overlap", g.bearing_span / g.rod_diameter)
-    head, piston = retention.guide_forces(
-        side_force=state.side_load, overhang=overhang(g, state), span=g.bearing_span
-    )
-    grooves = g.rod_groove.count * g.rod_groove.width
+    carried = side_reactions(g, state)
     pressures = {
         "head": retention.bearing_pressure(
-            force=head, diameter=g.rod_diameter, length=g.head_length + g.plate - grooves
+            force=carried["rod"],
+            diameter=g.rod_diameter,
+            length=_guided(g.rod_grooves, g.head_length + g.plate),
         ),
         "piston": retention.bearing_pressure(
-            force=piston,
+            force=carried["piston"],
             diameter=g.bore,
-            length=g.piston_length - g.piston_groove.count * g.piston_groove.width,
+            length=_guided(g.piston_grooves, g.piston_length),
         ),
     }
     out.put("bearing_pressure", pressures)
     factors = {}
-    for place, part in (("head", design.head), ("piston", design.piston)):
-        allowed = stock.allowable(part.bearing or part.material, "bearing_strength")
+    for place, part, seal in (
+        ("head", design.head, design.seals.rod),
+        ("piston", design.piston, design.seals.piston),
+    ):
+        own = part.bearing or part.material
+        material = own if seal.guide is None else seal.guide.material
+        allowed = stock.allowable(material, "bearing_strength")
         if allowed is None:
-            out.skip(
-                "bearing_factor", f"{part.bearing or part.material} states no bearing strength"
-            )
+            out.skip("bearing_factor", f"{material} states no bearing strength")
             return
         loaded = real(pressures[place]) > 0
         safe = where(loaded, pressures[place], 1.0 + 0 * pressures[place])

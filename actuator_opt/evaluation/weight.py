@@ -31,9 +31,12 @@ def _barrel(v: Values, design: Design, g: Geometry) -> Array:
 def _piston(v: Values, design: Design, g: Geometry) -> Array:
     density = v[f"materials.{design.piston.material}.density"]
     diameter = g.bore - 2 * g.piston_clearance
-    groove = g.piston_groove
-    removed = groove.count * mass.piston_groove_volume(
-        diameter=diameter, depth=groove.gland_depth - g.piston_clearance, width=groove.width
+    removed = sum(
+        groove.count
+        * mass.piston_groove_volume(
+            diameter=diameter, depth=groove.gland_depth - g.piston_clearance, width=groove.width
+        )
+        for groove in g.piston_grooves
     )
     disc = mass.disc_mass(density=density, diameter=diameter, thickness=g.piston_length)
     return disc - density * removed
@@ -56,9 +59,12 @@ def _plate(density: Array, g: Geometry, hole: Array) -> Array:
 def _gland(v: Values, design: Design, g: Geometry) -> Array:
     density = v[f"materials.{design.head.material}.density"]
     hole = g.rod_diameter + 2 * g.head_clearance
-    groove = g.rod_groove
-    removed = groove.count * mass.rod_groove_volume(
-        diameter=hole, depth=groove.gland_depth - g.head_clearance, width=groove.width
+    removed = sum(
+        groove.count
+        * mass.rod_groove_volume(
+            diameter=hole, depth=groove.gland_depth - g.head_clearance, width=groove.width
+        )
+        for groove in g.rod_grooves
     )
     plug = mass.tube_mass(
         density=density, inner_diameter=hole, outer_diameter=g.bore, length=g.head_length
@@ -66,18 +72,16 @@ def _gland(v: Values, design: Design, g: Geometry) -> Array:
     return plug - density * removed
 
 
-def _seals(v: Values, design: Design, g: Geometry) -> Array:
+def _seals(v: Values, g: Geometry) -> Array:
     rings: Array = 0.0
-    for groove, compound, centre in (
-        (g.piston_groove, design.seals.piston.compound, g.bore - g.piston_groove.gland_depth),
-        (g.rod_groove, design.seals.rod.compound, g.rod_diameter + g.rod_groove.gland_depth),
-    ):
-        ring = mass.ring_mass(
-            density=v[f"materials.{compound}.density"],
-            section=groove.section,
-            centre_diameter=centre,
-        )
-        rings = rings + groove.count * ring
+    placed = [(groove, g.bore - groove.gland_depth) for groove in g.piston_grooves]
+    placed += [(groove, g.rod_diameter + groove.gland_depth) for groove in g.rod_grooves]
+    for groove, centre in placed:
+        for material, area in groove.areas:
+            ring = mass.ring_mass(
+                density=v[f"materials.{material}.density"], area=area, centre_diameter=centre
+            )
+            rings = rings + groove.count * ring
     return rings
 
 
@@ -132,7 +136,7 @@ def parts(v: Values, design: Design, geometry: Geometry, rod: Rod) -> dict[str, 
         _piston(v, design, g),
         _plate(caps, g, 0.0) + _plate(caps, g, hole),
         _gland(v, design, g),
-        _seals(v, design, g),
+        _seals(v, g),
         _fastening(v, design, g, rod),
         clevises,
     )

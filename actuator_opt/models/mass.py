@@ -280,14 +280,14 @@ def eye_length(*, pin_diameter: Array) -> Array:
     return 2 * pin_diameter
 
 
-def ring_mass(*, density: Array, section: Array, centre_diameter: Array) -> Array:
-    """Mass of an O-ring, the torus rho pi^2 W^2 D_m/4.
+def ring_mass(*, density: Array, area: Array, centre_diameter: Array) -> Array:
+    """Mass of a ring of any section, rho A pi D_m; an O-ring has A = pi W^2/4.
 
     Parameters
     ----------
     density : [kg/m^3]
-    section : free section W [m]
-    centre_diameter : diameter of the free ring's centre line [m]
+    area : of the section A [m^2]
+    centre_diameter : diameter through the centroid of the section D_m [m]
 
     Returns
     -------
@@ -295,7 +295,7 @@ def ring_mass(*, density: Array, section: Array, centre_diameter: Array) -> Arra
 
     Notes
     -----
-    Valid: W < D_m.
+    Valid: the section does not reach the axis.
 
     References
     ----------
@@ -303,11 +303,11 @@ def ring_mass(*, density: Array, section: Array, centre_diameter: Array) -> Arra
 
     Examples
     --------
-    >>> m = ring_mass(density=1300.0, section=2e-3, centre_diameter=23e-3)
+    >>> m = ring_mass(density=1300.0, area=math.pi * 1e-6, centre_diameter=23e-3)
     >>> print(f"{m * 1e3:.3f} g")
     0.295 g
     """
-    return (0.25 * math.pi**2) * density * section * section * centre_diameter
+    return math.pi * density * area * centre_diameter
 
 
 def oil_mass(*, density: Array, volume: Array) -> Array:

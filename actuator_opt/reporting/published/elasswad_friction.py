@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...design.model import Seal
+from ...design.seals import Seal
 from ...evaluation import Evaluation
 from ...models import forces, friction, seals
 from .. import text

@@ -1,0 +1,227 @@
+"""Faults of the seals: what a type needs, room for the grooves, squeeze, stated profiles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from ..quantities import INPUTS
+from .structure import Loc
+from .view import Fault, View, length_text
+
+SQUEEZE_RANGE = {"plane_strain": (0.02, 0.40), "hertz_lindley": (0.02, 0.40), "chord": (0.0, 0.45)}
+"""Squeeze a contact law can be used at: outside, its width leaves the free section or the load
+law (compared with finite elements at 0.10 to 0.30) means nothing."""
+
+NEEDED = {
+    "o_ring": (),
+    "step_ring": ("energiser", "thickness", "width"),
+    "u_cup": ("thickness", "width"),
+    "compact": ("width",),
+}
+"""Fields an element of a type cannot do without."""
+
+EXAMPLES = {"energiser": "nbr_70", "thickness": "1.5 mm", "width": "4 mm"}
+
+STRANGE = {
+    "o_ring": ("energiser", "thickness", "width", "land"),
+    "step_ring": (),
+    "u_cup": ("energiser",),
+    "compact": ("energiser", "thickness"),
+}
+"""Fields an element of a type has not."""
+
+
+def elements(view: View) -> Iterator[Loc]:
+    """Place of every sealing element the file states."""
+    for name in ("piston", "rod"):
+        yield ("seals", name)
+        if view.has("seals", name, "secondary"):
+            yield ("seals", name, "secondary")
+
+
+def _article(kind: str) -> str:
+    return f"an {kind}" if kind == "o_ring" else f"a {kind}"
+
+
+def fields(view: View) -> Iterator[Fault]:
+    """Every type states what it is made of, and nothing else; a piston has no wiper."""
+    for loc in elements(view):
+        kind = view.text(*loc, "type") or ""
+        for field in NEEDED.get(kind, ()):
+            if not view.has(*loc, field):
+                yield Fault(
+                    (*loc, field),
+                    f"missing: {_article(kind)} needs it",
+                    f'add e.g. "{field}: {EXAMPLES[field]}"',
+                )
+        for field in STRANGE.get(kind, ()):
+            if view.has(*loc, field):
+                yield Fault(
+                    (*loc, field),
+                    f"{_article(kind)} has none",
+                    "remove the line, or write another type",
+                    at_key=True,
+                )
+        material = view.text(*loc, "back_up_material")
+        if material is not None and view.text(*loc, "back_up") == "none":
+            yield Fault(
+                (*loc, "back_up_material"),
+                "there is no back-up ring",
+                'write "back_up: one", or remove the line',
+                at_key=True,
+            )
+    if view.has("seals", "piston", "wiper"):
+        yield Fault(
+            ("seals", "piston", "wiper"),
+            "a piston has no wiper: there is no dirt inside",
+            "remove the block",
+            at_key=True,
+        )
+
+
+def widths(view: View) -> Iterator[Fault]:
+    """What lies in a groove fits its width; a land is no wider than its ring."""
+    for loc in elements(view):
+        groove = view.number(*loc, "groove_width")
+        field = "section" if view.text(*loc, "type") == "o_ring" else "width"
+        ring, land = view.number(*loc, field), view.number(*loc, "land")
+        if groove is not None and ring is not None and groove < ring:
+            yield Fault(
+                (*loc, field),
+                f"{length_text(ring)}: larger than the groove ({length_text(groove)})",
+                "widen groove_width, or use a smaller ring",
+            )
+        if field == "width" and land is not None and ring is not None and land > ring:
+            yield Fault(
+                (*loc, "land"),
+                f"{length_text(land)}: wider than the ring ({length_text(ring)})",
+                f"write at most {length_text(ring)}",
+            )
+    for name in ("piston", "rod"):
+        loc = ("seals", name, "wiper")
+        groove, lip = view.number(*loc, "groove_width"), view.number(*loc, "width")
+        if groove is not None and lip is not None and lip > groove:
+            yield Fault(
+                (*loc, "width"),
+                f"{length_text(lip)}: longer than its groove ({length_text(groove)})",
+                "widen groove_width, or shorten the lip",
+            )
+
+
+def _grooves(view: View, seal: str) -> Iterator[tuple[Loc, float, float]]:
+    """Place to blame, depth at nominal squeeze and least width of every groove of a seal."""
+    for loc in elements(view):
+        if loc[1] != seal:
+            continue
+        section, squeeze = view.number(*loc, "section"), view.number(*loc, "squeeze")
+        count = view.number(*loc, "count")
+        if section is None or squeeze is None or count is None or count == 0:
+            continue
+        depth, ring = section * (1 - squeeze), section
+        if view.text(*loc, "type") != "o_ring":
+            ring = view.number(*loc, "width") or 0.0
+        if view.text(*loc, "type") == "step_ring":
+            depth += view.number(*loc, "thickness") or 0.0
+        stated = view.number(*loc, "groove_width")
+        field = "section" if stated is None else "groove_width"
+        yield (*loc, field), depth, count * (ring if stated is None else stated)
+    at = ("seals", seal, "wiper")
+    section, squeeze = view.number(*at, "section"), view.number(*at, "squeeze")
+    width = view.number(*at, "groove_width")
+    if section is not None and squeeze is not None and width is not None:
+        yield (*at, "groove_width"), section * (1 - squeeze), width
+    at = ("seals", seal, "guide")
+    thickness, width = view.number(*at, "thickness"), view.number(*at, "width")
+    count = view.number(*at, "count")
+    if thickness is not None and width is not None and count is not None:
+        yield (*at, "width"), thickness, count * width
+
+
+def grooves(view: View) -> Iterator[Fault]:
+    """The seal grooves lie inside piston and head and leave a core and a wall."""
+    bore, rod_diameter = view.number("cylinder", "bore"), view.number("rod", "outer_diameter")
+    for seal, part in (("piston", "piston"), ("rod", "head")):
+        found = list(_grooves(view, seal))
+        if not found:
+            continue
+        width = sum(one for _, _, one in found)
+        place, depth, _ = max(found, key=lambda groove: groove[1])
+        length = view.number(part, "length")
+        if length is not None and width >= length:
+            yield Fault(
+                found[0][0],
+                f"grooves outside the {part}: they take at least {length_text(width)} of "
+                f"{part}.length {length_text(length)}",
+                f"lengthen {part}.length or use smaller rings",
+            )
+        deep = (*place[:-1], "thickness" if place[-2] == "guide" else "section")
+        if bore is None or rod_diameter is None:
+            continue
+        if part == "piston":
+            core = view.number("rod", "thread", "diameter") or rod_diameter
+            left = bore - 2 * depth
+            if core < bore and left <= core:
+                yield Fault(
+                    deep,
+                    f"groove too deep: {length_text(max(left, 0.0))} core left in the piston, "
+                    f"the rod needs {length_text(core)}",
+                    "use a smaller section, a larger bore or a rod thread that fits",
+                )
+        elif rod_diameter < bore <= rod_diameter + 2 * depth:
+            yield Fault(
+                deep,
+                f"groove outside the head: it reaches {length_text(rod_diameter + 2 * depth)}, "
+                f"the bore is {length_text(bore)}",
+                "use a smaller section, a larger bore or a thinner rod",
+            )
+
+
+def squeeze(view: View) -> Iterator[Fault]:
+    """The nominal squeeze of an O-ring lies where its law holds."""
+    for loc in elements(view):
+        if view.text(*loc, "type") not in ("o_ring", "step_ring"):
+            continue
+        value, law = view.number(*loc, "squeeze"), view.text(*loc, "law")
+        low, high = SQUEEZE_RANGE.get(law or "", (0.0, 1.0))
+        if value is not None and not low <= value <= high:
+            yield Fault(
+                (*loc, "squeeze"),
+                f"{value * 100:.4g} %: outside the range of the law {law}",
+                f"write {low * 100:g} % to {high * 100:g} %",
+            )
+
+
+def profiles(view: View) -> Iterator[Fault]:
+    """Stated contact pressures: positions from 0 upwards, one stress each, pressures in order."""
+    for loc in elements(view):
+        last = -1.0
+        for index, _ in enumerate(view.items(*loc, "contact")):
+            at = (*loc, "contact", index)
+            positions = view.items(*at, "positions")
+            stresses = view.items(*at, "stresses")
+            pressure = view.number(*at, "pressure")
+            if pressure is not None and pressure <= last:
+                yield Fault(
+                    (*at, "pressure"),
+                    f"{INPUTS['pressure'].text(pressure)}: not above the profile before",
+                    "sort the profiles by pressure, each once",
+                )
+            last = last if pressure is None else pressure
+            if len(positions) != len(stresses):
+                yield Fault(
+                    (*at, "stresses"),
+                    f"{len(stresses)} stresses at {len(positions)} positions",
+                    "write one stress for every position",
+                )
+            numbers = [x for x in positions if isinstance(x, float)]
+            pairs = pairwise(numbers)
+            if numbers and (numbers[0] != 0 or any(b <= a for a, b in pairs)):
+                yield Fault(
+                    (*at, "positions"),
+                    "not from 0 upwards",
+                    "begin with 0 mm at the sealed side, every next one larger",
+                )
+
+
+CHECKS = (fields, widths, grooves, squeeze, profiles)

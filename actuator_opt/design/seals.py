@@ -1,0 +1,144 @@
+"""Seals of piston and rod: sealing elements, wipers, guide rings."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from . import choices
+from .kinds import MaterialName, Of
+from .section import Section
+
+
+class ContactProfile(Section):
+    """Static contact pressure of an element at one sealed pressure, as found elsewhere.
+
+    Between two sealed pressures the profile is interpolated, beyond the last it is an error.
+    """
+
+    pressure: Annotated[float, Of("pressure", "sealed pressure of this profile, gauge")]
+    positions: Annotated[
+        tuple[Annotated[float, Of("length", "distance from the sealed side")], ...],
+        Field(min_length=2, max_length=400),
+    ]
+    stresses: Annotated[
+        tuple[Annotated[float, Of("pressure", "contact pressure at that distance, gauge")], ...],
+        Field(min_length=2, max_length=400),
+    ]
+
+
+class SealElement(Section):
+    """A sealing ring in a radial groove, `count` in a row.
+
+    `section` is the free radial height of what is squeezed: the round ring of an O-ring, the
+    O-ring behind a step ring, the lips of a U-cup, the body of a compact seal.
+    """
+
+    type: choices.SealType = "o_ring"
+    compound: Annotated[str, MaterialName("seal")]
+    section: Annotated[float, Of("cross_section", "free cross-section of the ring")]
+    squeeze: Annotated[float, Of("squeeze", "nominal squeeze over the free section")]
+    tolerance: Annotated[float, Of("tolerance", "tolerance of the gland depth")] = 0.0
+    section_tolerance: Annotated[float, Of("tolerance", "tolerance of the free cross-section")] = (
+        0.0
+    )
+    groove_width: Annotated[
+        float | None, Of("groove_width", "axial width of the groove; default: the standard gland")
+    ] = None
+    stretch: Annotated[float, Of("stretch", "stretch of the ring in its groove")] = 0.02
+    count: Annotated[float, Of("seal_count", "seals in a row")] = 1.0
+    energiser: Annotated[str | None, MaterialName("seal")] = None
+    """Compound of the O-ring behind a step ring."""
+    thickness: Annotated[
+        float | None, Of("part_length", "radial thickness of a step ring, or of a lip at its root")
+    ] = None
+    width: Annotated[
+        float | None,
+        Of("part_length", "axial width of a step ring or compact seal, or length of a lip"),
+    ] = None
+    land: Annotated[
+        float | None, Of("part_length", "axial width of the face that touches without pressure")
+    ] = None
+    law: choices.SealLaw = "plane_strain"
+    hardness_model: choices.HardnessModel = "gent"
+    contact: Annotated[tuple[ContactProfile, ...], Field(max_length=50)] = ()
+    back_up: choices.BackUp = "none"
+    back_up_material: Annotated[str | None, MaterialName("seal")] = None
+    friction: choices.FrictionModel = "coefficient"
+    friction_coefficient: Annotated[
+        float | None,
+        Of("friction_coefficient", "dry friction on the counterface; default: the compound's"),
+    ] = None
+    breakaway_ratio: Annotated[
+        float | None,
+        Of("breakaway_ratio", "breakaway over running friction; default: the compound's"),
+    ] = None
+    stribeck_speed: Annotated[
+        float | None,
+        Of("stribeck_speed", "decay speed of the breakaway friction; default: the compound's"),
+    ] = None
+    viscous_friction: Annotated[
+        float, Of("viscous_friction", "viscous part of the seal friction")
+    ] = 0.0
+
+
+class Wiper(Section):
+    """A lip that keeps dirt out: touches without pressure."""
+
+    compound: Annotated[str, MaterialName("seal")]
+    section: Annotated[float, Of("cross_section", "free radial height over the lip")]
+    squeeze: Annotated[float, Of("squeeze", "interference over the free radial height")]
+    thickness: Annotated[float, Of("part_length", "radial thickness of the lip at its root")]
+    width: Annotated[float, Of("part_length", "length of the lip")]
+    groove_width: Annotated[float, Of("groove_width", "axial width of the groove")]
+    hardness_model: choices.HardnessModel = "gent"
+    friction_coefficient: Annotated[
+        float | None,
+        Of("friction_coefficient", "dry friction on the counterface; default: the compound's"),
+    ] = None
+
+
+class Guide(Section):
+    """Guide rings that carry the side load: `count` of them."""
+
+    material: Annotated[str, MaterialName("structural")]
+    thickness: Annotated[float, Of("part_length", "radial thickness of a ring")]
+    width: Annotated[float, Of("part_length", "axial width of a ring")]
+    count: Annotated[float, Of("seal_count", "rings")] = 1.0
+    friction_coefficient: Annotated[
+        float, Of("friction_coefficient", "friction of the oiled guide on the counterface")
+    ] = 0.1
+
+
+class Seal(SealElement):
+    """The seals of piston or rod: the element that holds the pressure and what stands beside it."""
+
+    counterface_roughness: Annotated[
+        float, Of("rms_roughness", "RMS roughness of the rod or the bore")
+    ] = 0.2e-6
+    secondary: SealElement | None = None
+    """A second element in tandem, on the outer side of the first."""
+    wiper: Wiper | None = None
+    guide: Guide | None = None
+
+    def elements(self) -> dict[str, SealElement]:
+        """The sealing elements by the tail of their PATH, from the pressure outwards."""
+        second = {} if self.secondary is None else {"secondary.": self.secondary}
+        return {"": self, **second}
+
+    def materials(self) -> list[str]:
+        """Every material these seals name."""
+        names: list[str | None] = []
+        for element in self.elements().values():
+            names += [element.compound, element.energiser, element.back_up_material]
+        names.append(None if self.wiper is None else self.wiper.compound)
+        names.append(None if self.guide is None else self.guide.material)
+        return [name for name in names if name is not None]
+
+
+class Seals(Section):
+    """Piston and rod seals."""
+
+    piston: Seal
+    rod: Seal

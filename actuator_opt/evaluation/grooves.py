@@ -1,0 +1,121 @@
+"""The grooves of piston and head: one for every seal element, wiper and guide."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from ..design.model import Design
+from ..design.seals import Seal, SealElement
+from ..models import gland
+from ..numeric import Array, maximum
+from .values import Values
+
+AXIAL_PLAY = 1.1
+"""Groove over ring width where no groove is stated (choice: 10 % room to move and swell)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Groove:
+    """A radial groove: whose it is, free section, gland depth at nominal squeeze, width, count."""
+
+    place: str
+    path: str
+    role: Literal["element", "wiper", "guide"]
+    material: str
+    section: Array
+    gland_depth: Array
+    width: Array
+    ring_width: Array
+    count: Array
+    areas: tuple[tuple[str, Array], ...]
+    """Free section of every ring in the groove, by material."""
+
+
+def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
+    section = v[f"{path}section"]
+    depth = gland.gland_depth(squeeze=v[f"{path}squeeze"], section=section)
+    round_area = (0.25 * math.pi) * section * section
+    areas: tuple[tuple[str, Array], ...]
+    if element.type == "o_ring":
+        width = section
+        default, areas = gland.groove_width(section=section), ((element.compound, round_area),)
+    else:
+        width = v[f"{path}width"]
+        default, areas = AXIAL_PLAY * width, ((element.compound, section * width),)
+    if element.type == "step_ring":
+        assert element.energiser is not None
+        thickness = v[f"{path}thickness"]
+        depth = depth + thickness
+        areas = ((element.compound, thickness * width), (element.energiser, round_area))
+    return Groove(
+        place=place,
+        path=path,
+        role="element",
+        material=element.compound,
+        section=section,
+        gland_depth=depth,
+        width=v.get(f"{path}groove_width", default),
+        ring_width=width,
+        count=v[f"{path}count"],
+        areas=areas,
+    )
+
+
+def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[Groove, ...]:
+    """Every groove of a place, from the pressure outwards: guide, elements, wiper."""
+    seal: Seal = getattr(design.seals, name)
+    at = f"seals.{name}."
+    found = []
+    if seal.guide is not None:
+        path = f"{at}guide."
+        depth = v[f"{path}thickness"]
+        found.append(
+            Groove(
+                place=f"{name} guide",
+                path=path,
+                role="guide",
+                material=seal.guide.material,
+                section=depth,
+                gland_depth=depth,
+                width=v[f"{path}width"],
+                ring_width=v[f"{path}width"],
+                count=v[f"{path}count"],
+                areas=((seal.guide.material, depth * v[f"{path}width"]),),
+            )
+        )
+    found.append(_element(v, f"{name} seal", at, seal))
+    if seal.secondary is not None:
+        found.append(_element(v, f"{name} secondary seal", f"{at}secondary.", seal.secondary))
+    if seal.wiper is not None:
+        path = f"{at}wiper."
+        section = v[f"{path}section"]
+        found.append(
+            Groove(
+                place=f"{name} wiper",
+                path=path,
+                role="wiper",
+                material=seal.wiper.compound,
+                section=section,
+                gland_depth=gland.gland_depth(squeeze=v[f"{path}squeeze"], section=section),
+                width=v[f"{path}groove_width"],
+                ring_width=v[f"{path}groove_width"],
+                count=1.0,
+                areas=((seal.wiper.compound, section * v[f"{path}groove_width"]),),
+            )
+        )
+    return tuple(found)
+
+
+def taken(grooves: Sequence[Groove]) -> tuple[Array, Array, Array]:
+    """Axial length all grooves take, how many there are, and the deepest."""
+    length: Array = 0.0
+    count: Array = 0.0
+    deepest: Array = 0.0
+    for groove in grooves:
+        length = length + groove.count * groove.width
+        count = count + groove.count
+        deepest = maximum(deepest, groove.gland_depth)
+    return length, count, deepest

@@ -1,0 +1,160 @@
+"""A costly smooth function as a Chebyshev polynomial in a box, with its own derivative.
+
+Inputs along which the box has an extent are axes of a tensor of Chebyshev polynomials [Boyd2001];
+the others enter to the first order, by the slopes the function itself tells. Evaluation is plain
+arithmetic, so that complex steps pass through it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from math import cos, exp, log, pi
+
+import numpy as np
+
+from .numeric import Array, clip
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What the costly function tells at one point.
+
+    Parameters
+    ----------
+    values : outputs (m,)
+    slopes : their derivatives (m,) by the logarithm of every input that is no axis
+    why : why there is none; values and slopes are then not used
+    """
+
+    values: np.ndarray
+    slopes: Mapping[str, np.ndarray]
+    why: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """An input the polynomial runs along, in its logarithm: 0 < lower < upper, and the nodes."""
+
+    name: str
+    lower: float
+    upper: float
+    nodes: int
+
+    @property
+    def points(self) -> list[float]:
+        """The nodes: roots of the Chebyshev polynomial of their number, in the input's unit."""
+        middle, half = 0.5 * log(self.lower * self.upper), 0.5 * log(self.upper / self.lower)
+        return [exp(middle + half * cos(pi * (k + 0.5) / self.nodes)) for k in range(self.nodes)]
+
+    def basis(self, value: Array) -> Array:
+        """Chebyshev polynomials (..., nodes) at an input, which is held at the ends of the axis."""
+        low, high = log(self.lower), log(self.upper)
+        held = clip(value, self.lower, self.upper)
+        x = (2 * np.log(held) - low - high) / (high - low)
+        rows = [np.ones_like(x), x]
+        while len(rows) < self.nodes:
+            rows.append(2 * x * rows[-1] - rows[-2])
+        return np.stack(rows[: self.nodes], axis=-1)
+
+    def holds(self, value: float) -> bool:
+        """Whether an input lies on the axis."""
+        return self.lower * (1 - 1e-9) <= value <= self.upper * (1 + 1e-9)
+
+
+@dataclass(frozen=True, slots=True)
+class Surrogate:
+    """Polynomial of several outputs.
+
+    Parameters
+    ----------
+    axes : inputs it runs along
+    base : every input as it was where the box has no extent
+    coefficients : (nodes of axis 1, nodes of axis 2, ..., outputs, 1 + first-order inputs)
+    linear : inputs that enter to the first order
+    failed : why points of the box had no answer; they are left out of the fit
+    """
+
+    axes: tuple[Axis, ...]
+    base: dict[str, float]
+    coefficients: np.ndarray
+    linear: tuple[str, ...]
+    failed: tuple[str, ...] = ()
+
+    def __call__(self, inputs: Mapping[str, Array]) -> Array:
+        """Outputs (m, ...) at inputs that broadcast with each other; missing ones at the base."""
+        point = {name: np.asarray(inputs.get(name, value)) for name, value in self.base.items()}
+        names = [axis.name for axis in self.axes] + list(self.linear)
+        shape = np.broadcast_shapes(*(point[name].shape for name in names))
+        table = np.broadcast_to(self.coefficients, shape + self.coefficients.shape)
+        for axis in self.axes:
+            rows = np.broadcast_to(axis.basis(point[axis.name]), (*shape, axis.nodes))
+            rest = table.ndim - len(shape) - 1
+            table = np.sum(rows.reshape(rows.shape + (1,) * rest) * table, axis=len(shape))
+        result = table[..., 0]
+        for k, name in enumerate(self.linear):
+            change = np.log(point[name] / self.base[name])
+            result = result + table[..., k + 1] * np.broadcast_to(change, shape)[..., None]
+        return np.moveaxis(result, -1, 0)
+
+    def covers(self, inputs: Mapping[str, float]) -> bool:
+        """Whether a point lies in the box of the axes."""
+        return all(axis.holds(inputs[axis.name]) for axis in self.axes if axis.name in inputs)
+
+
+def surrogate(
+    function: Callable[[dict[str, float]], Answer],
+    *,
+    base: Mapping[str, float],
+    axes: Sequence[Axis],
+) -> Surrogate | None:
+    """Fit a surrogate at the Chebyshev nodes of the axes; None where too few points have answers.
+
+    Parameters
+    ----------
+    function : tells the answer at a point (every input of `base`), walked in an order in which
+        neighbours follow each other
+    base : positive inputs
+    axes : inputs with an extent
+
+    Points without an answer are left out; the rest is fitted by least squares, and refused where
+    more than one in ten is missing.
+    """
+    points, rows, failed = [], [], []
+    linear: tuple[str, ...] = ()
+    grids = [axis.points for axis in axes]
+    for index in product(*(range(len(grid)) for grid in grids)):
+        turned = _back_and_forth(index, [len(grid) for grid in grids])
+        point = dict(base)
+        for axis, grid, i in zip(axes, grids, turned, strict=True):
+            point[axis.name] = grid[i]
+        answer = function(point)
+        if answer.why:
+            failed.append(answer.why)
+            continue
+        names = {axis.name for axis in axes}
+        linear = tuple(name for name in base if name in answer.slopes and name not in names)
+        points.append([point[axis.name] for axis in axes])
+        rows.append(np.stack([answer.values, *(answer.slopes[name] for name in linear)], axis=-1))
+    if not rows or len(failed) > 0.1 * (len(rows) + len(failed)):
+        return None
+    nodes = tuple(axis.nodes for axis in axes)
+    matrix = np.ones((len(rows), 1))
+    for i, axis in enumerate(axes):
+        basis = axis.basis(np.array([point[i] for point in points]))
+        matrix = (matrix[:, :, None] * basis[:, None, :]).reshape(len(rows), -1)
+    values = np.array(rows)
+    table = np.linalg.lstsq(matrix, values.reshape(len(rows), -1), rcond=None)[0]
+    return Surrogate(
+        tuple(axes), dict(base), table.reshape(*nodes, *values.shape[1:]), linear, tuple(failed)
+    )
+
+
+def _back_and_forth(index: tuple[int, ...], sizes: Sequence[int]) -> tuple[int, ...]:
+    """The index walked like a ploughman, so that one point is beside the next."""
+    turned, parity = [], 0
+    for i, size in zip(index, sizes, strict=True):
+        turned.append(i if parity % 2 == 0 else size - 1 - i)
+        parity = parity * size + i
+    return tuple(turned)
