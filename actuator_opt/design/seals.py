@@ -58,7 +58,26 @@ class SealElement(Section):
         Of("part_length", "axial width of a step ring or compact seal, or length of a lip"),
     ] = None
     land: Annotated[
-        float | None, Of("part_length", "axial width of the face that touches without pressure")
+        float | None,
+        Of(
+            "part_length",
+            "axial width of the face that touches without pressure; default: half of a step "
+            "ring's width, all of a compact seal's, a tenth of a lip's length",
+        ),
+    ] = None
+    relief: Annotated[
+        float | None,
+        Of(
+            "length",
+            "face of a step ring before its land, wetted by the pressure; default: half of what "
+            "the land leaves",
+        ),
+    ] = None
+    root_clearance: Annotated[
+        float | None,
+        Of(
+            "length", "gap under a U-cup's lip where it leaves the body; default: its interference"
+        ),
     ] = None
     law: choices.SealLaw = "plane_strain"
     hardness_model: choices.HardnessModel = "gent"

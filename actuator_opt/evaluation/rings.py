@@ -1,106 +1,122 @@
-"""One sealing ring in an evaluation: its numbers, and how it touches its counterface."""
+"""The sealing rings of an evaluation: their numbers, and the pressure and growth they see."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
 
+from ..design.model import Design
 from ..design.seals import SealElement
 from ..models import gland, seals
-from ..numeric import Array
+from ..numeric import Array, absolute, maximum
 from .allow import Stock
+from .geometry import Geometry
 from .grooves import Groove
+from .state import State
 from .values import Values
+
+Place = Literal["piston", "rod"]
 
 
 @dataclass(frozen=True, slots=True)
 class Ring:
-    """A sealing element's numbers; arrays broadcast to (cases, designs)."""
+    """A sealing element with its numbers by name; arrays broadcast to (cases, designs).
 
-    name: str
-    """Whose it is: piston or rod."""
+    `numbers`: those of the design file, and `diameter`, `youngs_modulus` of what is squeezed,
+    `pressure` (the difference it seals, gauge), `outer_pressure` (gauge), `squeeze_left` (nominal
+    squeeze less what the bore's growth takes).
+    """
+
+    name: Place
     element: SealElement
     groove: Groove
-    diameter: Array
-    squeeze: Array
-    youngs_modulus: Array
-    friction_coefficient: Array
-    breakaway_ratio: Array
-    stribeck_speed: Array
-    viscous: Array
+    numbers: Mapping[str, Array]
+
+    def __getitem__(self, name: str) -> Array:
+        return self.numbers[name]
+
+    @property
+    def label(self) -> str:
+        """How results call it."""
+        return self.groove.place
+
+    def at(self, **numbers: Array) -> Ring:
+        """The same ring with other numbers."""
+        return replace(self, numbers={**self.numbers, **numbers})
 
 
-@dataclass(frozen=True, slots=True)
-class Contact:
-    """How a ring touches: normal force per length [N/m], width [m], peak pressure [Pa gauge]."""
-
-    line_load: Array
-    width: Array
-    peak: Array
+def places(g: Geometry) -> tuple[tuple[Place, tuple[Groove, ...], Array], ...]:
+    """Grooves and counterface diameter of piston and rod."""
+    return ("piston", g.piston_grooves, g.bore), ("rod", g.rod_grooves, g.rod_diameter)
 
 
-def youngs_modulus(
-    v: Values, stock: Stock, element: SealElement, compound: str, temperature: Array
-) -> Array:
-    """Young's modulus of a compound at a temperature."""
+def rubber_modulus(v: Values, element: SealElement, compound: str, temperature: Array) -> Array:
+    """Young's modulus of a compound at a temperature: stated, else by its hardness."""
     law = seals.MODULUS_LAWS[element.hardness_model]
     return law.modulus(hardness=v[f"materials.{compound}.hardness"])
 
 
-def ring(
-    v: Values,
-    stock: Stock,
-    name: str,
-    element: SealElement,
-    groove: Groove,
-    diameter: Array,
-    temperature: Array,
-) -> Ring:
-    """A sealing element with its numbers: its own, else its compound's."""
+def rings(
+    v: Values, design: Design, stock: Stock, geometry: Geometry, state: State, growth: Array
+) -> tuple[Ring, ...]:
+    """Every sealing element; the first of a place carries the pressure.
 
-    def own(field: str) -> Array:
-        at = groove.path + field
-        return v[at] if at in v else v[f"materials.{element.compound}.{field}"]
-
-    soft = element.energiser if element.energiser is not None else element.compound
-    return Ring(
-        name=name,
-        element=element,
-        groove=groove,
-        diameter=diameter,
-        squeeze=v[groove.path + "squeeze"],
-        youngs_modulus=youngs_modulus(v, stock, element, soft, temperature),
-        friction_coefficient=own("friction_coefficient"),
-        breakaway_ratio=own("breakaway_ratio"),
-        stribeck_speed=own("stribeck_speed"),
-        viscous=v[groove.path + "viscous_friction"],
-    )
-
-
-def contact(ring: Ring, *, squeeze: Array, pressure: Array) -> Contact:
-    """Contact of a ring at a squeeze and a pressure difference >= 0."""
-    return _CONTACTS[ring.element.type](ring, squeeze, pressure)
-
-
-def _o_ring(ring: Ring, squeeze: Array, pressure: Array) -> Contact:
-    law = seals.LAWS[ring.element.law]
-    inputs = {
-        "squeeze": squeeze,
-        "section": ring.groove.section,
-        "youngs_modulus": ring.youngs_modulus,
-        "pressure": pressure,
+    The piston's sees the difference, the rod's p_B. `growth` is the bore's at the piston seal.
+    """
+    across: dict[str, tuple[Array, Array]] = {
+        "piston": (
+            absolute(state.moving_a - state.moving_b),
+            state.moving_a + state.moving_b,
+        ),
+        "rod": (maximum(state.moving_b, 0.0), maximum(state.moving_b, 0.0)),
     }
-    width = gland.limited_width(
-        contact_width=law.contact_width(**inputs), groove_width=ring.groove.width
-    )
-    return Contact(law.line_load(**inputs), width, law.peak_pressure(**inputs))
+    found = []
+    for name, grooves, diameter in places(geometry):
+        elements = getattr(design.seals, name).elements()
+        pressure, total = across[name]
+        for groove in grooves:
+            if groove.role != "element":
+                continue
+            tail = groove.path.removeprefix(f"seals.{name}.")
+            own = _numbers(v, elements[tail], groove, diameter, state.temperature)
+            grown = growth if name == "piston" else 0.0
+            held = pressure if tail == "" else 0.0 * pressure
+            own["pressure"] = held
+            own["outer_pressure"] = (total - pressure) / 2
+            own["squeeze_left"] = gland.squeeze_after(
+                squeeze=own["squeeze"], section=groove.section, growth=grown, tolerance=0.0
+            )
+            found.append(Ring(name, elements[tail], groove, own))
+    return tuple(found)
 
 
-_CONTACTS: dict[str, Callable[[Ring, Array, Array], Contact]] = {"o_ring": _o_ring}
+_OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
+"""Numbers an element takes from its compound where it states none."""
+
+_SHAPE = ("thickness", "width", "land", "relief", "root_clearance")
 
 
-def wiper_load(
-    v: Values, stock: Stock, groove: Groove, diameter: Array, temperature: Array
-) -> tuple[Array, Array]:
-    """Line load of a wiper and its friction coefficient."""
-    raise NotImplementedError
+def _numbers(
+    v: Values, element: SealElement, groove: Groove, diameter: Array, temperature: Array
+) -> dict[str, Array]:
+    at, compound = groove.path, f"materials.{element.compound}."
+    soft = element.compound if element.energiser is None else element.energiser
+    numbers = {
+        "section": groove.section,
+        "squeeze": v[f"{at}squeeze"],
+        "tolerance": v[f"{at}tolerance"],
+        "stretch": v[f"{at}stretch"],
+        "groove_width": groove.width,
+        "gland_depth": groove.gland_depth,
+        "count": groove.count,
+        "viscous_friction": v[f"{at}viscous_friction"],
+        "diameter": diameter,
+        "youngs_modulus": rubber_modulus(v, element, soft, temperature),
+    }
+    for field in _OWN:
+        numbers[field] = v[at + field] if at + field in v else v[compound + field]
+    for field in _SHAPE:
+        if at + field in v:
+            numbers[field] = v[at + field]
+    return numbers
