@@ -15,19 +15,19 @@ law (compared with finite elements at 0.10 to 0.30) means nothing."""
 
 NEEDED = {
     "o_ring": (),
-    "step_ring": ("energiser", "thickness", "width"),
+    "step_ring": ("thickness", "width"),
     "u_cup": ("thickness", "width"),
     "compact": ("width",),
 }
 """Fields an element of a type cannot do without."""
 
-EXAMPLES = {"energiser": "nbr_70", "thickness": "1.5 mm", "width": "4 mm"}
+EXAMPLES = {"thickness": "1.5 mm", "width": "4 mm"}
 
 STRANGE = {
-    "o_ring": ("energiser", "thickness", "width", "land"),
-    "step_ring": (),
-    "u_cup": ("energiser",),
-    "compact": ("energiser", "thickness"),
+    "o_ring": ("thickness", "width", "land", "relief", "taper", "root_clearance"),
+    "step_ring": ("root_clearance",),
+    "u_cup": ("relief", "taper"),
+    "compact": ("thickness", "relief", "taper", "root_clearance"),
 }
 """Fields an element of a type has not."""
 

@@ -48,8 +48,6 @@ class SealElement(Section):
     ] = None
     stretch: Annotated[float, Of("stretch", "stretch of the ring in its groove")] = 0.02
     count: Annotated[float, Of("seal_count", "seals in a row")] = 1.0
-    energiser: Annotated[str | None, MaterialName("seal")] = None
-    """Compound of the O-ring behind a step ring."""
     thickness: Annotated[
         float | None, Of("part_length", "radial thickness of a step ring, or of a lip at its root")
     ] = None
@@ -73,11 +71,12 @@ class SealElement(Section):
             "the land leaves",
         ),
     ] = None
+    taper: Annotated[
+        float, Of("taper", "angle between the flanks of a step ring's land and its counterface")
+    ] = 0.1
     root_clearance: Annotated[
         float | None,
-        Of(
-            "length", "gap under a U-cup's lip where it leaves the body; default: its interference"
-        ),
+        Of("length", "gap under a U-cup's lip where it leaves the body; default: its interference"),
     ] = None
     law: choices.SealLaw = "plane_strain"
     hardness_model: choices.HardnessModel = "gent"
@@ -150,7 +149,7 @@ class Seal(SealElement):
         """Every material these seals name."""
         names: list[str | None] = []
         for element in self.elements().values():
-            names += [element.compound, element.energiser, element.back_up_material]
+            names += [element.compound, element.back_up_material]
         names.append(None if self.wiper is None else self.wiper.compound)
         names.append(None if self.guide is None else self.guide.material)
         return [name for name in names if name is not None]

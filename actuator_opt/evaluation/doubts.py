@@ -8,7 +8,7 @@ import numpy as np
 
 from ..design.material import compatible
 from ..design.model import PLAIN_CAP
-from ..models import laminate, seals
+from ..models import elastomer, laminate, seals
 from . import motion_range, oil, oil_range, springs
 from .barrel import LAMINATES, kind
 from .beam import NEAR
@@ -180,7 +180,7 @@ def _seal_warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[st
     for name, pressure in pressures.items():
         section = getattr(design.seals, name)
         law = seals.LAWS[section.law]
-        modulus = seals.MODULUS_LAWS[section.hardness_model].modulus(
+        modulus = elastomer.MODULUS_LAWS[section.hardness_model].modulus(
             hardness=v[f"materials.{section.compound}.hardness"]
         )
         ratio = float(np.max(np.abs(pressure))) / modulus

@@ -46,10 +46,9 @@ def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
         width = v[f"{path}width"]
         default, areas = AXIAL_PLAY * width, ((element.compound, section * width),)
     if element.type == "step_ring":
-        assert element.energiser is not None
         thickness = v[f"{path}thickness"]
         depth = depth + thickness
-        areas = ((element.compound, thickness * width), (element.energiser, round_area))
+        areas = ((element.compound, thickness * width), (element.compound, round_area))
     return Groove(
         place=place,
         path=path,

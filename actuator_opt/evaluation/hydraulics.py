@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from ..design.model import Design
 from ..models import damping, elements, forces, lines, water_hammer
-from ..numeric import Array, absolute
+from ..numeric import Array, absolute, maximum
 from .circuit import wall_compliance
+from .film import Running
 from .geometry import Geometry
 from .rows import Computed
 from .sealing import Friction
@@ -36,15 +37,21 @@ def compute_damping(geometry: Geometry, state: State, friction: Friction, out: C
 
 
 def compute_leakage(
-    v: Values, design: Design, geometry: Geometry, state: State, out: Computed
+    v: Values,
+    design: Design,
+    geometry: Geometry,
+    state: State,
+    film: Running | None,
+    out: Computed,
 ) -> Array:
     """Leakage across the piston in motion; returns its conductance.
 
-    The stated conductance, and through the gap of a piston without seals, opened by the bore's
-    growth under it.
+    The stated conductance, the oil film of the seal, and through the gap of a piston without
+    seals, opened by the bore's growth under it.
     """
     path = "piston.leakage_conductance"
     conductance = v[path]
+    across = absolute(state.moving_a - state.moving_b)
     bare = design.seals.piston.count == 0
     if bare:
         g = geometry
@@ -54,13 +61,15 @@ def compute_leakage(
             dynamic_viscosity=0.5 * (state.dynamic_viscosity_a + state.dynamic_viscosity_b),
             length=g.piston_length,
         )
-    if bare or path in v.varied or design.piston.leakage_conductance > 0:
-        out.put("leakage", conductance * absolute(state.moving_a - state.moving_b))
+    elif film is not None:
+        conductance = conductance + maximum(film.flow, 0.0) / across
+    if bare or film is not None or path in v.varied or design.piston.leakage_conductance > 0:
+        out.put("leakage", conductance * across)
     else:
         out.skip(
             "leakage",
-            "needs the film of the running seal; static O-rings hold: "
-            "state piston.leakage_conductance if known",
+            'needs the oil film: write "friction: film" in seals.piston, or state '
+            "piston.leakage_conductance if known",
         )
     return conductance
 

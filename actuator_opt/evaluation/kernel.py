@@ -17,6 +17,7 @@ from . import beam as beam_module
 from . import (
     circuit,
     duty,
+    film_tables,
     hydraulics,
     motion,
     oil_range,
@@ -28,11 +29,14 @@ from . import (
     weight,
 )
 from . import geometry as geometry_module
+from . import rings as rings_module
 from .allow import Stock
 from .barrel import Wall
 from .beam import Beam
+from .film import Table
 from .geometry import Geometry
 from .plugin import Plugin
+from .rings import Ring
 from .rods import Rod
 from .rows import Computed
 from .state import State
@@ -51,6 +55,8 @@ class Subject:
     plugins: tuple[Plugin, ...] = ()
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
     """Ply constants by material, filled when first needed."""
+    films: dict[film_tables.Key, Table] = field(default_factory=dict, compare=False)
+    """Tables of the seals' oil films, made when first needed."""
 
     @property
     def quantities(self) -> Mapping[str, Quantity]:
@@ -104,7 +110,9 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         oil_range.compute(design.fluid, stock, case_state, out)
         barrel = barrel_module.compute(v, design, stock, g, case_state)
         out.put("bore_growth", barrel.growth)
-        friction = sealing.compute(v, design, stock, g, case_state, barrel, out)
+        rings = rings_module.rings(v, design, stock, g, case_state, barrel.case_growth)
+        films = _films(subject)
+        friction = sealing.compute(v, stock, g, case_state, barrel, rings, films, out)
         net = _forces(g, case_state, friction, out)
         rod = rods.derive(v, design, stock, g)
         parts = weight.parts(v, design, g, rod)
@@ -117,7 +125,8 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         moving = v["load.mass"] + parts["rod"] + parts["piston"] + parts["fastening"]
         weakest = springs.compute(budget, moving, out)
         damping = hydraulics.compute_damping(g, case_state, friction, out)
-        leakage = hydraulics.compute_leakage(v, design, g, case_state, out)
+        across = film_tables.running(films, rings[0], "drive", len(v.cases))
+        leakage = hydraulics.compute_leakage(v, design, g, case_state, across, out)
         linear = motion.derive(v, design, case_state, budget, branches, moving, damping, leakage)
         places = motion.compute(v, design, linear, wanted, out)
         hydraulics.compute_flow(v, design, g, case_state, out)
@@ -135,6 +144,24 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         for plugin in subject.plugins:
             out.put(plugin.name, plugin.call(v, out.metrics))
     return Pass(out, g, case_state, barrel, rod, beam, budget, linear, weakest, places, parts)
+
+
+def _films(subject: Subject) -> film_tables.Tables:
+    """The tables of the oil films, made at the first call."""
+    design = subject.design
+    if not film_tables.films_asked(design):
+        return {}
+    if not subject.films:
+
+        def rings(v: Values) -> tuple[Ring, ...]:
+            stock = Stock(v, subject.materials, subject.factors, subject.constants)
+            g = geometry_module.derive(v, design)
+            case_state = state.derive(v, design, stock, g)
+            growth = barrel_module.compute(v, design, stock, g, case_state).case_growth
+            return rings_module.rings(v, design, stock, g, case_state, growth)
+
+        subject.films.update(film_tables.tables(design, subject.values, rings))
+    return subject.films
 
 
 def _manufacture(v: Values, subject: Subject, out: Computed) -> None:

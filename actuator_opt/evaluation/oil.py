@@ -160,18 +160,26 @@ def dynamic_viscosity(
     return under_pressure(section, stock, viscosity, temperature, pressure)
 
 
-def under_pressure(
-    section: FluidSection, stock: Stock, viscosity: Array, temperature: Array, pressure: Array
-) -> Array:
-    """Dynamic viscosity at a pressure, from the one at zero gauge pressure."""
+def pressure_law(section: FluidSection, stock: Stock, temperature: Array) -> tuple[str, Array]:
+    """Name of the law of viscosity over pressure, and its coefficient at a temperature."""
     name = section.material
     oil = stock.material(name)
     law = viscosity_law(section.viscosity_pressure, oil.numbers)
     if law == "none":
-        return viscosity + 0 * pressure
+        return law, 0.0
     coefficient = oil.properties["pressure_viscosity"].at(
         temperature, value=stock.get(name, "pressure_viscosity")
     )
+    return law, coefficient
+
+
+def under_pressure(
+    section: FluidSection, stock: Stock, viscosity: Array, temperature: Array, pressure: Array
+) -> Array:
+    """Dynamic viscosity at a pressure, from the one at zero gauge pressure."""
+    law, coefficient = pressure_law(section, stock, temperature)
+    if law == "none":
+        return viscosity + 0 * pressure
     return _VISCOSITY[law](viscosity=viscosity, pressure=pressure, coefficient=coefficient)
 
 

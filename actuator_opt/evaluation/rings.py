@@ -8,9 +8,11 @@ from typing import Literal
 
 from ..design.model import Design
 from ..design.seals import SealElement
-from ..models import gland, seals
-from ..numeric import Array, absolute, maximum
+from ..models import elastomer, gland, lip_seal
+from ..numeric import Array, absolute, maximum, where
+from . import oil
 from .allow import Stock
+from .barrel import SEAL_STEP
 from .geometry import Geometry
 from .grooves import Groove
 from .state import State
@@ -25,13 +27,16 @@ class Ring:
 
     `numbers`: those of the design file, and `diameter`, `youngs_modulus` of what is squeezed,
     `pressure` (the difference it seals, gauge), `outer_pressure` (gauge), `squeeze_left` (nominal
-    squeeze less what the bore's growth takes).
+    squeeze less what the bore's growth takes). With an oil film: `speed`, `viscosity`,
+    `return_pressure` (p_B while the rod runs the other way) and the face's roughness.
     """
 
     name: Place
     element: SealElement
     groove: Groove
     numbers: Mapping[str, Array]
+    viscosity_law: str = "none"
+    """How the oil under it thickens with pressure."""
 
     def __getitem__(self, name: str) -> Array:
         return self.numbers[name]
@@ -51,10 +56,26 @@ def places(g: Geometry) -> tuple[tuple[Place, tuple[Groove, ...], Array], ...]:
     return ("piston", g.piston_grooves, g.bore), ("rod", g.rod_grooves, g.rod_diameter)
 
 
-def rubber_modulus(v: Values, element: SealElement, compound: str, temperature: Array) -> Array:
-    """Young's modulus of a compound at a temperature: stated, else by its hardness."""
-    law = seals.MODULUS_LAWS[element.hardness_model]
-    return law.modulus(hardness=v[f"materials.{compound}.hardness"])
+HARDNESS_TEMPERATURE = 296.15
+"""Temperature at which hardness and modulus of a compound are measured, K (ISO 23529)."""
+
+
+def _modulus(v: Values, element: SealElement, temperature: Array, *, by_hardness: bool) -> Array:
+    """Young's modulus of an element's rubber at a temperature: by its hardness, or as stated."""
+    compound = f"materials.{element.compound}."
+    if by_hardness or f"{compound}youngs_modulus" not in v:
+        law = elastomer.MODULUS_LAWS[element.hardness_model]
+        modulus = law.modulus(hardness=v[f"{compound}hardness"])
+    else:
+        modulus = v[f"{compound}youngs_modulus"]
+    if f"{compound}softening" not in v:
+        return modulus
+    return modulus * elastomer.temperature_factor(
+        temperature=temperature,
+        reference_temperature=HARDNESS_TEMPERATURE,
+        softening=v[f"{compound}softening"],
+        stiffening_temperature=v[f"{compound}stiffening_temperature"],
+    )
 
 
 def rings(
@@ -62,7 +83,7 @@ def rings(
 ) -> tuple[Ring, ...]:
     """Every sealing element; the first of a place carries the pressure.
 
-    The piston's sees the difference, the rod's p_B. `growth` is the bore's at the piston seal.
+    The piston's sees the difference, the rod's p_B. `growth` is the bore's far from it.
     """
     across: dict[str, tuple[Array, Array]] = {
         "piston": (
@@ -70,6 +91,13 @@ def rings(
             state.moving_a + state.moving_b,
         ),
         "rod": (maximum(state.moving_b, 0.0), maximum(state.moving_b, 0.0)),
+    }
+    law, coefficient = oil.pressure_law(design.fluid, stock, state.temperature)
+    drain = v["supply.return_pressure"]
+    oiled = {
+        "speed": state.speed,
+        "viscosity": state.dynamic_viscosity,
+        "viscosity_coefficient": coefficient,
     }
     found = []
     for name, grooves, diameter in places(geometry):
@@ -80,28 +108,34 @@ def rings(
                 continue
             tail = groove.path.removeprefix(f"seals.{name}.")
             own = _numbers(v, elements[tail], groove, diameter, state.temperature)
-            grown = growth if name == "piston" else 0.0
+            grown = SEAL_STEP * growth if name == "piston" else 0.0
             held = pressure if tail == "" else 0.0 * pressure
             own["pressure"] = held
             own["outer_pressure"] = (total - pressure) / 2
+            if elements[tail].friction == "film":
+                own |= oiled
+                own["return_pressure"] = where(state.push, state.driven_pressure, drain)
             own["squeeze_left"] = gland.squeeze_after(
                 squeeze=own["squeeze"], section=groove.section, growth=grown, tolerance=0.0
             )
-            found.append(Ring(name, elements[tail], groove, own))
+            roughness = {"counterface_roughness": v[f"seals.{name}.counterface_roughness"]}
+            found.append(Ring(name, elements[tail], groove, own | roughness, law))
     return tuple(found)
 
 
 _OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
 """Numbers an element takes from its compound where it states none."""
 
-_SHAPE = ("thickness", "width", "land", "relief", "root_clearance")
+_FACE = ("seal_roughness", "asperity_radius", "asperity_density", "asperity_friction")
+"""Numbers of a compound's face that the oil film asks for."""
 
 
 def _numbers(
     v: Values, element: SealElement, groove: Groove, diameter: Array, temperature: Array
 ) -> dict[str, Array]:
+    """What the contact of an element is computed from."""
     at, compound = groove.path, f"materials.{element.compound}."
-    soft = element.compound if element.energiser is None else element.energiser
+    round_ring = element.type in ("o_ring", "step_ring")
     numbers = {
         "section": groove.section,
         "squeeze": v[f"{at}squeeze"],
@@ -112,11 +146,41 @@ def _numbers(
         "count": groove.count,
         "viscous_friction": v[f"{at}viscous_friction"],
         "diameter": diameter,
-        "youngs_modulus": rubber_modulus(v, element, soft, temperature),
+        "youngs_modulus": _modulus(v, element, temperature, by_hardness=round_ring),
     }
     for field in _OWN:
         numbers[field] = v[at + field] if at + field in v else v[compound + field]
-    for field in _SHAPE:
-        if at + field in v:
-            numbers[field] = v[at + field]
+    numbers |= _shape(v, element, groove)
+    if element.type != "o_ring" or element.friction == "film":
+        numbers["face_poissons_ratio"] = v.get(f"{compound}poissons_ratio", INCOMPRESSIBLE)
+        numbers["face_modulus"] = _modulus(
+            v, element, temperature, by_hardness=element.type == "o_ring"
+        )
+    if element.friction == "film":
+        numbers |= {field: v[compound + field] for field in _FACE}
     return numbers
+
+
+INCOMPRESSIBLE = 0.495
+"""Poisson's ratio of rubber whose compound states none (0.49 to 0.499 in use)."""
+
+
+def _shape(v: Values, element: SealElement, groove: Groove) -> dict[str, Array]:
+    """Widths and clearances of an element that is no O-ring; defaults where none are stated."""
+    at = groove.path
+    if element.type == "o_ring":
+        return {}
+    width = v[f"{at}width"]
+    land = {"step_ring": 0.5, "compact": 1.0, "u_cup": 0.1}[element.type] * width
+    shape = {"width": width, "land": v.get(f"{at}land", land)}
+    if element.type != "compact":
+        shape["thickness"] = v[f"{at}thickness"]
+    if element.type == "step_ring":
+        shape["relief"] = v.get(f"{at}relief", (width - shape["land"]) / 2)
+        shape["taper"] = v[f"{at}taper"]
+    if element.type == "u_cup":
+        interference = lip_seal.lip_interference(
+            section=groove.section, gland_depth=groove.gland_depth
+        )
+        shape["root_clearance"] = v.get(f"{at}root_clearance", interference)
+    return shape
