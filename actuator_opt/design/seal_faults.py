@@ -63,14 +63,7 @@ def fields(view: View) -> Iterator[Fault]:
                     "remove the line, or write another type",
                     at_key=True,
                 )
-        material = view.text(*loc, "back_up_material")
-        if material is not None and view.text(*loc, "back_up") == "none":
-            yield Fault(
-                (*loc, "back_up_material"),
-                "there is no back-up ring",
-                'write "back_up: one", or remove the line',
-                at_key=True,
-            )
+        yield from _back_ups(view, loc)
     if view.has("seals", "piston", "wiper"):
         yield Fault(
             ("seals", "piston", "wiper"),
@@ -78,6 +71,23 @@ def fields(view: View) -> Iterator[Fault]:
             "remove the block",
             at_key=True,
         )
+
+
+def _back_ups(view: View, loc: Loc) -> Iterator[Fault]:
+    """Back-up rings state material and thickness; without them nothing does."""
+    stated = view.text(*loc, "back_up") != "none"
+    for field, example in (("back_up_material", "back_up_ptfe"), ("back_up_thickness", "1.4 mm")):
+        if stated and not view.has(*loc, field):
+            yield Fault(
+                (*loc, field), "missing: a back-up ring needs it", f'add e.g. "{field}: {example}"'
+            )
+        elif not stated and view.has(*loc, field):
+            yield Fault(
+                (*loc, field),
+                "there is no back-up ring",
+                'write "back_up: one", or remove the line',
+                at_key=True,
+            )
 
 
 def widths(view: View) -> Iterator[Fault]:
@@ -125,6 +135,8 @@ def _grooves(view: View, seal: str) -> Iterator[tuple[Loc, float, float]]:
             depth += view.number(*loc, "thickness") or 0.0
         stated = view.number(*loc, "groove_width")
         field = "section" if stated is None else "groove_width"
+        backs = {"one": 1, "both": 2}.get(view.text(*loc, "back_up") or "", 0)
+        ring += backs * (view.number(*loc, "back_up_thickness") or 0.0)
         yield (*loc, field), depth, count * (ring if stated is None else stated)
     at = ("seals", seal, "wiper")
     section, squeeze = view.number(*at, "section"), view.number(*at, "squeeze")

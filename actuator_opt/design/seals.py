@@ -82,7 +82,10 @@ class SealElement(Section):
     hardness_model: choices.HardnessModel = "gent"
     contact: Annotated[tuple[ContactProfile, ...], Field(max_length=50)] = ()
     back_up: choices.BackUp = "none"
-    back_up_material: Annotated[str | None, MaterialName("seal")] = None
+    back_up_material: Annotated[str | None, MaterialName("isotropic")] = None
+    back_up_thickness: Annotated[
+        float | None, Of("part_length", "axial thickness of a back-up ring with its play")
+    ] = None
     friction: choices.FrictionModel = "coefficient"
     friction_coefficient: Annotated[
         float | None,
@@ -99,6 +102,11 @@ class SealElement(Section):
     viscous_friction: Annotated[
         float, Of("viscous_friction", "viscous part of the seal friction")
     ] = 0.0
+
+    @property
+    def back_ups(self) -> int:
+        """Back-up rings in the groove."""
+        return {"none": 0, "one": 1, "both": 2}[self.back_up]
 
 
 class Wiper(Section):

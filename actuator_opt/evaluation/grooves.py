@@ -49,6 +49,13 @@ def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
         thickness = v[f"{path}thickness"]
         depth = depth + thickness
         areas = ((element.compound, thickness * width), (element.compound, round_area))
+    if element.back_ups:
+        assert element.back_up_material is not None
+        thickness = v[f"{path}back_up_thickness"]
+        default = gland.back_up_groove_width(
+            groove_width=default, thickness=thickness, count=element.back_ups
+        )
+        areas += ((element.back_up_material, element.back_ups * thickness * depth),)
     return Groove(
         place=place,
         path=path,

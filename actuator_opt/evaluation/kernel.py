@@ -112,7 +112,7 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         out.put("bore_growth", barrel.growth)
         rings = rings_module.rings(v, design, stock, g, case_state, barrel.case_growth)
         films = _films(subject)
-        friction = sealing.compute(v, stock, g, case_state, barrel, rings, films, out)
+        friction = sealing.compute(v, design, stock, g, case_state, barrel, rings, films, out)
         net = _forces(g, case_state, friction, out)
         rod = rods.derive(v, design, stock, g)
         parts = weight.parts(v, design, g, rod)

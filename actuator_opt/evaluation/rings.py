@@ -140,6 +140,7 @@ def _numbers(
         "section": groove.section,
         "squeeze": v[f"{at}squeeze"],
         "tolerance": v[f"{at}tolerance"],
+        "section_tolerance": v[f"{at}section_tolerance"],
         "stretch": v[f"{at}stretch"],
         "groove_width": groove.width,
         "gland_depth": groove.gland_depth,

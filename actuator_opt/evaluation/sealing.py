@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..design.model import Design
 from ..models import damping, friction, gland
 from ..numeric import Array, maximum, real, where
+from . import gland_check
 from .allow import Stock
 from .barrel import SEAL_STEP, Wall
 from .film import Running
@@ -39,6 +41,7 @@ class Friction:
 
 def compute(
     v: Values,
+    design: Design,
     stock: Stock,
     geometry: Geometry,
     state: State,
@@ -54,7 +57,7 @@ def compute(
     for ring in rings:
         grown = full_growth if ring.name == "piston" else 0.0
         contact = touch(ring)
-        rows = _gland_metrics(ring, grown) | {
+        rows = gland_check.metrics(v, design, stock, geometry, state, ring, grown) | {
             "contact_width": contact.width,
             "contact_pressure": contact.peak,
             "seal_wear": 2 * geometry.stroke * _mean_pressure(contact),
@@ -66,15 +69,12 @@ def compute(
             total = total + _friction(_row_load(ring, contact), ring, state.speed)
         if film is not None:
             rows["film_thickness"] = film.thickness
-        rows |= _extrusion(v, stock, ring, geometry, state, grown)
         for metric, value in rows.items():
             by_metric.setdefault(metric, {})[ring.label] = value
     total = total + _beside(v, geometry, state)
     for metric, by_place in by_metric.items():
         out.put(metric, by_place)
     _carried(geometry, rings, films, len(v.cases), state, out)
-    if "extrusion_factor" not in by_metric:
-        out.skip("extrusion_factor", "the seal compounds state no extrusion_gap_max")
     gap = gland.extrusion_gap(clearance=geometry.piston_clearance, growth=full_growth)
     out.put("seal_gap", gap)
     out.put("growth_at_seal", full_growth)
@@ -109,27 +109,6 @@ def _carried(
     for name in ("film_thickness", "rod_leakage", "inter_seal_pressure"):
         if name not in out.metrics:
             out.skip(name, asked)
-
-
-def _gland_metrics(ring: Ring, growth: Array) -> dict[str, Array]:
-    section, tolerance, stretch = ring["section"], ring["tolerance"], ring["stretch"]
-    return {
-        "seal_squeeze": gland.squeeze_in_place(
-            squeeze=ring["squeeze"],
-            section=section,
-            stretch=stretch,
-            growth=growth,
-            tolerance=tolerance,
-        ),
-        "seal_squeeze_max": ring["squeeze"] + tolerance / section,
-        "seal_fill": gland.gland_fill(
-            section=gland.stretched_section(section=section, stretch=stretch),
-            groove_width=ring["groove_width"],
-            gland_depth=ring["gland_depth"] - tolerance,
-        ),
-        "seal_stretch": stretch,
-        "seal_section": section,
-    }
 
 
 def _mean_pressure(contact: Touch) -> Array:
@@ -193,21 +172,3 @@ def _beside(v: Values, geometry: Geometry, state: State) -> Friction:
             if groove.role == "guide":
                 total = total + v[f"{groove.path}friction_coefficient"] * carried[name]
     return Friction(total, total, 0.0)
-
-
-def _extrusion(
-    v: Values, stock: Stock, ring: Ring, geometry: Geometry, state: State, growth: Array
-) -> dict[str, Array]:
-    """Largest gap the compound bears at supply pressure over the present one.
-
-    Side load pushes piston and rod over: the gap of one side is then the clearance larger.
-    """
-    compound = ring.element.compound
-    limit = stock.material(compound).properties.get("extrusion_gap_max")
-    if limit is None:
-        return {}
-    clearance = geometry.piston_clearance if ring.name == "piston" else geometry.head_clearance
-    pushed = where(real(state.side_load) > 0, 2.0, 1.0)
-    gap = gland.extrusion_gap(clearance=pushed * clearance, growth=growth)
-    allowed = limit.at(v["supply.pressure"], value=stock.get(compound, "extrusion_gap_max"))
-    return {"extrusion_factor": allowed / gap}
