@@ -1,52 +1,224 @@
-"""The film tables of a design: one per element that asks for a film, load case and stroke.
+"""The film tables of a design: one per place that asks for a film, load case and stroke.
 
-They are made once, from the design as it stands and the bounds of its variables.
+Each is a surrogate of the solved films. It runs along the inputs that the variables of the design
+move most; all others enter to the first order, by the exact slopes of the films. The tables are
+made once, from the design as it stands and the bounds of its variables, so that a design
+evaluated alone and the same design inside the optimiser read one film.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import log, pi
 from typing import Literal
 
 import numpy as np
 
 from ..design.model import Design
+from ..errors import Diagnostic, InputError
 from ..numeric import Array
-from .film import Running, Table, table
-from .rings import Ring
+from ..surrogate import Answer, Axis, Surrogate, surrogate
+from .film import Row, Solved, slopes, solve
+from .rings import Place, Ring
 from .values import Values, of_case
 
 SAMPLES = 64
 """Points within the bounds of the variables that tell the box of the tables."""
 
-Stroke = Literal["drive", "return"]
-Key = tuple[str, int, Stroke]
-"""Element, load case and stroke of a table."""
+POINTS = 6
+"""Nodes of a surrogate along each of its axes."""
 
-Tables = Mapping[Key, Table]
+MOST_AXES = 2
+"""Axes of a surrogate: one more would cost `POINTS` times as many films."""
+
+CHECKS = 4
+"""Points of the box at which a surrogate is compared with the film itself."""
+
+EXTENT = 0.02
+"""Relative change of an output over the extent of an input below which the first order is
+enough."""
+
+Stroke = Literal["drive", "return"]
+Key = tuple[Place, int, Stroke]
+"""Place, load case and stroke of a table."""
+
+
+@dataclass(frozen=True, slots=True)
+class Running:
+    """A running film of one ring per case, over the whole circumference.
+
+    Parameters
+    ----------
+    viscous : drag of the oil, positive against the motion [N]
+    load : normal force between the asperities [N]
+    thickness : mean film [m]
+    viscous_slope, load_slope : derivatives of the first two by the speed [N s/m]
+    flow : towards the outer side [m^3/s]
+    between : pressure between two rings, absolute [Pa]; NaN for one
+    """
+
+    viscous: Array
+    load: Array
+    thickness: Array
+    viscous_slope: Array
+    load_slope: Array
+    flow: Array
+    between: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """The surrogate of a row's films in one case, and how far it is off."""
+
+    surrogate: Surrogate
+    row: Row
+    error: float
+    """Largest relative difference of the friction to films solved at the design and in the box."""
+
+    def running(self, rings: Sequence[Ring]) -> tuple[Running, ...]:
+        """The films at the numbers of the rings, as arrays (designs,) or floats."""
+        values = self.surrogate(Row(tuple(rings), self.row.outward).inputs())
+        count = len(rings)
+        flow, between, slopes = values[3 * count], values[3 * count + 1], values[3 * count + 2 :]
+        found = []
+        for i, ring in enumerate(rings):
+            around = pi * ring["diameter"]
+            drag, load, thickness = values[3 * i : 3 * i + 3]
+            found.append(
+                Running(
+                    viscous=around * drag,
+                    load=around * load,
+                    thickness=thickness,
+                    viscous_slope=around * slopes[2 * i],
+                    load_slope=around * slopes[2 * i + 1],
+                    flow=around * flow,
+                    between=between,
+                )
+            )
+        return tuple(found)
+
+
+class _Walker:
+    """Films at points near each other, each begun from the one before."""
+
+    def __init__(self, row: Row) -> None:
+        self.row = row
+        self.last: Solved | None = None
+
+    def solve(self, point: Mapping[str, Array]) -> Solved:
+        found = solve(self.row.at(point), self.last)
+        self.last = self.last if found.why else found
+        return found
+
+    def __call__(self, point: dict[str, float]) -> Answer:
+        """Values of the films, then the slopes of drag and load by the speed."""
+        found = self.solve(point)
+        if found.why:
+            return Answer(np.zeros(1), {}, why=found.why)
+        by_input = slopes(found, list(point))
+        loads = by_input["speed"][:-2].reshape(-1, 3)[:, :2].ravel() / point["speed"]
+        none = np.zeros(loads.size)
+        return Answer(
+            np.concatenate([found.values, loads]),
+            {name: np.concatenate([row, none]) for name, row in by_input.items()},
+        )
+
+
+def table(row: Row, samples: Sequence[Row]) -> Table:
+    """The surrogate of a row over the box that other rows span.
+
+    Raises
+    ------
+    InputError
+        the films have no solution at the row itself, or at too many points of the box
+    """
+    walker = _Walker(row)
+    base = {name: float(value) for name, value in row.inputs().items() if value > 0}
+    here = walker(base)
+    if here.why:
+        raise _unsolved(row, here.why)
+    others = [sample.inputs() for sample in samples]
+    axes = _axes(base, others, here)
+    found = surrogate(walker, base=base, axes=axes)
+    if found is None:
+        raise _unsolved(row, "too many points within the bounds of the variables have none")
+    checks = [base, *others[:CHECKS]] if axes else []
+    return Table(found, row, max((_error(walker, found, p) for p in checks), default=0.0))
+
+
+def _unsolved(row: Row, why: str) -> InputError:
+    first = row.rings[0]
+    message = f"the oil film of the {first.label} has no solution: {why}"
+    remedy = 'write "friction: coefficient", or bring squeeze, pressure, speed nearer to practice'
+    path = f"{first.groove.path}friction"
+    return InputError(Diagnostic(message, remedy, path=path))
+
+
+def _axes(
+    base: Mapping[str, float], others: Sequence[Mapping[str, Array]], here: Answer
+) -> tuple[Axis, ...]:
+    """The inputs whose extent moves the drag or the load of a ring the most."""
+    found = []
+    count = (len(here.values) - 2) // 5
+    parts = here.values[: 3 * count].reshape(-1, 3)[:, :2]
+    scale = np.abs(parts) + 0.05 * np.abs(parts[:, 1:])
+    for name, value in base.items():
+        values = [value, *(float(other[name]) for other in others)]
+        lower, upper = min(values), max(values)
+        if lower <= 0 or upper <= lower * (1 + 1e-9):
+            continue
+        moved = here.slopes[name][: 3 * count].reshape(-1, 3)[:, :2]
+        effect = float(np.max(np.abs(moved) / scale)) * log(upper / lower)
+        if effect > EXTENT:
+            found.append((effect, Axis(name, lower, upper, POINTS)))
+    found.sort(key=lambda pair: -pair[0])
+    return tuple(axis for _, axis in found[:MOST_AXES])
+
+
+def _error(walker: _Walker, found: Surrogate, point: Mapping[str, Array]) -> float:
+    """Relative difference of the friction between surrogate and film; 0 without a film."""
+    inputs = {name: float(point[name]) for name in found.base}
+    solved = walker.solve(inputs)
+    if solved.why:
+        return 0.0
+    exact = sum(solved.friction())
+    rings = solved.row.rings
+    estimate = Table(found, walker.row, 0.0).running(rings)
+    total = sum(
+        film.viscous + ring["asperity_friction"] * film.load
+        for ring, film in zip(rings, estimate, strict=True)
+    )
+    return float(abs(total - exact) / abs(exact))
 
 
 def films_asked(design: Design) -> bool:
     """Whether any element asks for a film."""
-    seals = (design.seals.piston, design.seals.rod)
-    return any(one.friction == "film" for seal in seals for one in seal.elements().values())
+    return "film" in (design.seals.piston.friction, design.seals.rod.friction)
 
 
-def on_stroke(ring: Ring, stroke: Stroke) -> Ring:
-    """The ring as it is on a stroke: the way back has its own pressure."""
-    return ring if stroke == "drive" else ring.at(pressure=ring["return_pressure"])
-
-
-def _outward(ring: Ring, push: bool) -> dict[Stroke, bool]:
+def _outward(place: Place, push: bool) -> dict[Stroke, bool]:
     """The strokes a film is asked of, and whether the counterface then moves outwards.
 
     The piston runs away from the driven chamber, which it seals: the bore moves inwards past its
     seal either way. The rod seal also tells what the way back returns of the oil dragged out.
     """
-    return {"drive": False} if ring.name == "piston" else {"drive": push, "return": not push}
+    return {"drive": False} if place == "piston" else {"drive": push, "return": not push}
 
 
-def _floats(ring: Ring, case: int, sample: int = 0) -> Ring:
+def on_stroke(rings: Sequence[Ring], stroke: Stroke) -> tuple[Ring, ...]:
+    """The rings as they are on a stroke: the way back has its own pressure."""
+    if stroke == "drive":
+        return tuple(rings)
+    return tuple(ring.at(pressure=ring["return_pressure"]) for ring in rings)
+
+
+def of_place(rings: Sequence[Ring], place: Place) -> tuple[Ring, ...]:
+    """The rings of a place that run on a film, from the sealed side outwards."""
+    return tuple(r for r in rings if r.name == place and r.element.friction == "film")
+
+
+def floats(ring: Ring, case: int, sample: int = 0) -> Ring:
     """One case's and one design's numbers of a ring."""
 
     def one(value: Array) -> float:
@@ -72,21 +244,24 @@ def tables(
     spread = _spread(design)
     others = rings_of(values(spread)) if spread else ()
     found: dict[Key, Table] = {}
-    for index, ring in enumerate(here):
-        if ring.element.friction != "film":
-            continue
+    places: tuple[Place, ...] = ("piston", "rod")
+    for place in places:
+        own, sampled = of_place(here, place), of_place(others, place)
         for case, one in enumerate(design.load_cases):
-            if of_case(ring["speed"], case) == 0:
+            if not own or of_case(own[0]["speed"], case) == 0:
                 continue
-            for stroke, outward in _outward(ring, one.direction == "push").items():
-                own = on_stroke(_floats(ring, case), stroke)
-                samples = [
-                    on_stroke(_floats(others[index], case, k), stroke)
-                    for k in range(SAMPLES if spread else 0)
+            for stroke, outward in _outward(place, one.direction == "push").items():
+                rows = [
+                    Row(on_stroke([floats(r, case, k) for r in sampled], stroke), outward)
+                    for k in range(SAMPLES if sampled else 0)
                 ]
-                usable = [s for s in samples if all(np.isfinite(list(s.numbers.values())))]
-                found[ring.label, case, stroke] = table(own, usable, outward=outward)
+                row = Row(on_stroke([floats(r, case) for r in own], stroke), outward)
+                found[place, case, stroke] = table(row, [r for r in rows if _finite(r)])
     return found
+
+
+def _finite(row: Row) -> bool:
+    return all(np.isfinite(list(ring.numbers.values())).all() for ring in row.rings)
 
 
 def _spread(design: Design) -> dict[str, np.ndarray]:
@@ -98,26 +273,36 @@ def _spread(design: Design) -> dict[str, np.ndarray]:
     }
 
 
-def running(tables: Tables, ring: Ring, stroke: Stroke, cases: int) -> Running | None:
-    """The film of a ring in every case, (cases, designs); 0 where the case stands still.
+def running(
+    tables: Mapping[Key, Table], rings: Sequence[Ring], stroke: Stroke, cases: int
+) -> tuple[Running, ...]:
+    """The films of a place's rings in every case, (cases, designs); 0 where the case stands still.
 
-    None where no case has a film on this stroke.
+    Empty where no case has a film on this stroke.
     """
-    known = [tables.get((ring.label, case, stroke)) for case in range(cases)]
+    own = rings and of_place(rings, rings[0].name)
+    known = [tables.get((ring.name, case, stroke)) for ring in own[:1] for case in range(cases)]
     if not any(known):
-        return None
-    rows = []
-    for case, one in enumerate(known):
-        if one is None:
-            rows.append([np.zeros(1)] * len(Running.__slots__))
-            continue
-        film = one.running(_case_row(on_stroke(ring, stroke), case))
-        rows.append([np.atleast_1d(getattr(film, name)) for name in Running.__slots__])
-    columns = zip(*rows, strict=True)
+        return ()
+    by_case = [
+        None if one is None else one.running(on_stroke([_row(r, case) for r in own], stroke))
+        for case, one in enumerate(known)
+    ]
+    return tuple(
+        _stacked([None if films is None else films[i] for films in by_case])
+        for i in range(len(own))
+    )
+
+
+def _stacked(films: Sequence[Running | None]) -> Running:
+    columns = [
+        [np.zeros(1) if film is None else np.atleast_1d(getattr(film, name)) for film in films]
+        for name in Running.__slots__
+    ]
     return Running(*(np.stack(np.broadcast_arrays(*column)) for column in columns))
 
 
-def _case_row(ring: Ring, case: int) -> Ring:
+def _row(ring: Ring, case: int) -> Ring:
     """One case's numbers of a ring, floats or (designs,)."""
 
     def row(value: Array) -> Array:

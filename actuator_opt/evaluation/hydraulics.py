@@ -6,7 +6,7 @@ from ..design.model import Design
 from ..models import damping, elements, forces, lines, water_hammer
 from ..numeric import Array, absolute, maximum
 from .circuit import wall_compliance
-from .film import Running
+from .film_tables import Running
 from .geometry import Geometry
 from .rows import Computed
 from .sealing import Friction

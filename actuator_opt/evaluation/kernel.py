@@ -33,7 +33,7 @@ from . import rings as rings_module
 from .allow import Stock
 from .barrel import Wall
 from .beam import Beam
-from .film import Table
+from .film_tables import Key, Table
 from .geometry import Geometry
 from .plugin import Plugin
 from .rings import Ring
@@ -41,6 +41,9 @@ from .rods import Rod
 from .rows import Computed
 from .state import State
 from .values import Values
+
+STROKES: tuple[film_tables.Stroke, ...] = ("drive", "return")
+"""The case's own way, and the way back."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +58,7 @@ class Subject:
     plugins: tuple[Plugin, ...] = ()
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
     """Ply constants by material, filled when first needed."""
-    films: dict[film_tables.Key, Table] = field(default_factory=dict, compare=False)
+    films: dict[Key, Table] = field(default_factory=dict, compare=False)
     """Tables of the seals' oil films, made when first needed."""
 
     @property
@@ -111,8 +114,10 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         barrel = barrel_module.compute(v, design, stock, g, case_state)
         out.put("bore_growth", barrel.growth)
         rings = rings_module.rings(v, design, stock, g, case_state, barrel.case_growth)
-        films = _films(subject)
-        friction = sealing.compute(v, design, stock, g, case_state, barrel, rings, films, out)
+        tables = _films(subject)
+        there, back = (sealing.films_of(tables, rings, stroke, len(v.cases)) for stroke in STROKES)
+        friction = sealing.compute(v, design, stock, g, case_state, barrel, rings, there, out)
+        sealing.compute_film(g, case_state, there, back, out)
         net = _forces(g, case_state, friction, out)
         rod = rods.derive(v, design, stock, g)
         parts = weight.parts(v, design, g, rod)
@@ -125,7 +130,7 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         moving = v["load.mass"] + parts["rod"] + parts["piston"] + parts["fastening"]
         weakest = springs.compute(budget, moving, out)
         damping = hydraulics.compute_damping(g, case_state, friction, out)
-        across = film_tables.running(films, rings[0], "drive", len(v.cases))
+        across = there.get("piston seal")
         leakage = hydraulics.compute_leakage(v, design, g, case_state, across, out)
         linear = motion.derive(v, design, case_state, budget, branches, moving, damping, leakage)
         places = motion.compute(v, design, linear, wanted, out)
@@ -146,7 +151,7 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
     return Pass(out, g, case_state, barrel, rod, beam, budget, linear, weakest, places, parts)
 
 
-def _films(subject: Subject) -> film_tables.Tables:
+def _films(subject: Subject) -> dict[Key, Table]:
     """The tables of the oil films, made at the first call."""
     design = subject.design
     if not film_tables.films_asked(design):

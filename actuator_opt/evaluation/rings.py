@@ -68,7 +68,8 @@ def _modulus(v: Values, element: SealElement, temperature: Array, *, by_hardness
         modulus = law.modulus(hardness=v[f"{compound}hardness"])
     else:
         modulus = v[f"{compound}youngs_modulus"]
-    if f"{compound}softening" not in v:
+    energiser = by_hardness and element.type == "step_ring"  # the law is of the sliding ring
+    if energiser or f"{compound}softening" not in v:
         return modulus
     return modulus * elastomer.temperature_factor(
         temperature=temperature,

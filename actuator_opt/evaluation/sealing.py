@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..design.model import Design
-from ..models import damping, friction, gland
+from ..models import damping, friction, gland, guide_ring
+from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array, maximum, real, where
 from . import gland_check
 from .allow import Stock
 from .barrel import SEAL_STEP, Wall
-from .film import Running
-from .film_tables import Tables, running
+from .film_tables import Key, Running, Stroke, Table, of_place
+from .film_tables import running as run
 from .geometry import Geometry
-from .rings import Ring, places
+from .rings import Place, Ring, places
 from .rows import Computed
 from .state import State, side_reactions
 from .touch import Touch, touch
@@ -47,7 +49,7 @@ def compute(
     state: State,
     wall: Wall,
     rings: tuple[Ring, ...],
-    films: Tables,
+    films: Films,
     out: Computed,
 ) -> Friction:
     """Gland, contact and friction metrics of every seal; returns the cylinder's friction."""
@@ -62,19 +64,18 @@ def compute(
             "contact_pressure": contact.peak,
             "seal_wear": 2 * geometry.stroke * _mean_pressure(contact),
         }
-        film = running(films, ring, "drive", len(v.cases))
         if ring.element.friction == "film":
+            film = films.get(ring.label)
             total = total + _lubricated(contact, ring, film)
+            if film is not None:
+                rows["film_thickness"] = film.thickness
         else:
             total = total + _friction(_row_load(ring, contact), ring, state.speed)
-        if film is not None:
-            rows["film_thickness"] = film.thickness
         for metric, value in rows.items():
             by_metric.setdefault(metric, {})[ring.label] = value
     total = total + _beside(v, geometry, state)
     for metric, by_place in by_metric.items():
         out.put(metric, by_place)
-    _carried(geometry, rings, films, len(v.cases), state, out)
     gap = gland.extrusion_gap(clearance=geometry.piston_clearance, growth=full_growth)
     out.put("seal_gap", gap)
     out.put("growth_at_seal", full_growth)
@@ -88,27 +89,46 @@ def compute(
     return total
 
 
-def _carried(
-    geometry: Geometry,
-    rings: tuple[Ring, ...],
-    films: Tables,
-    cases: int,
-    state: State,
-    out: Computed,
+Films = Mapping[str, Running]
+"""The running film of every ring that asks for one, by its label."""
+
+
+def films_of(
+    tables: Mapping[Key, Table], rings: tuple[Ring, ...], stroke: Stroke, cases: int
+) -> dict[str, Running]:
+    """The films of all rings on a stroke."""
+    places: tuple[Place, ...] = ("piston", "rod")
+    found: dict[str, Running] = {}
+    for place in places:
+        own = of_place(rings, place)
+        running = run(tables, own, stroke, cases)
+        found |= dict(zip((ring.label for ring in own), running, strict=False))
+    return found
+
+
+def compute_film(
+    geometry: Geometry, state: State, there: Films, back: Films, out: Computed
 ) -> None:
-    """Oil that a double stroke of the rod leaves outside: dragged out less drawn back."""
-    asked = 'needs the oil film: write "friction: film" in seals.rod'
-    for ring in rings:
-        there, back = (running(films, ring, stroke, cases) for stroke in ("drive", "return"))
-        if ring.label != "rod seal" or there is None or back is None:
-            continue
-        moving = real(state.speed) > 0
+    """What the films of both strokes say together: oil left outside, pressure between seals.
+
+    A double stroke of the rod leaves outside what it drags out less what it draws back.
+    """
+    moving = real(state.speed) > 0
+    if "rod seal" in there and "rod seal" in back:
         time = geometry.stroke / where(moving, state.speed, 1.0)
-        lost = maximum((there.flow + back.flow) * time, 0.0)
+        lost = maximum((there["rod seal"].flow + back["rod seal"].flow) * time, 0.0)
         out.put("rod_leakage", lost, cases=moving[:, 0])
-    for name in ("film_thickness", "rod_leakage", "inter_seal_pressure"):
-        if name not in out.metrics:
-            out.skip(name, asked)
+    pairs = {
+        label.removesuffix(" secondary seal"): film.between - ATMOSPHERIC_PRESSURE
+        for label, film in there.items()
+        if label.endswith(" secondary seal")
+    }
+    if pairs:
+        out.put("inter_seal_pressure", pairs, cases=moving[:, 0])
+    asked = 'needs the oil film: write "friction: film" in seals.rod'
+    out.skip("film_thickness", 'needs the oil film: write "friction: film" in a seal')
+    out.skip("rod_leakage", asked)
+    out.skip("inter_seal_pressure", f"{asked} and add seals.rod.secondary")
 
 
 def _mean_pressure(contact: Touch) -> Array:
@@ -170,5 +190,8 @@ def _beside(v: Values, geometry: Geometry, state: State) -> Friction:
     for name, grooves, _ in places(geometry):
         for groove in grooves:
             if groove.role == "guide":
-                total = total + v[f"{groove.path}friction_coefficient"] * carried[name]
+                total = total + guide_ring.friction(
+                    side_load=carried[name],
+                    friction_coefficient=v[f"{groove.path}friction_coefficient"],
+                )
     return Friction(total, total, 0.0)

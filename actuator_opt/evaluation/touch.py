@@ -26,15 +26,19 @@ it the sealed pressure would open the contact."""
 
 @dataclass(frozen=True, slots=True)
 class Touch:
-    """How a ring touches: normal force per length [N/m], width [m], peak pressure [Pa gauge].
+    """How a ring touches: normal force per length [N/m], width [m], peak pressure [Pa over outer].
 
-    `profile` gives the static contact pressure [Pa gauge] at t = x/b, 0 at the sealed side.
+    `profile` gives the static contact pressure over the outer one [Pa] at t = x/b, 0 on the
+    sealed side.
     """
 
     line_load: Array
     width: Array
     peak: Array
     profile: Callable[[Array], Array]
+    excess: Array
+    """Of the profile over the oil pressure [Pa]; where it is not above zero the sealed pressure
+    opens the contact, and the profile shows a bare touch."""
 
 
 def touch(ring: Ring) -> Touch:
@@ -46,9 +50,13 @@ def touch(ring: Ring) -> Touch:
 
 def static_profile(ring: Ring, nodes: int) -> tuple[Array, Array]:
     """Width [m] and static contact pressure [Pa gauge] at uniform nodes, for a ring of floats."""
-    found = touch(ring)
-    outer = ring["outer_pressure"]
-    return found.width, outer + found.profile(np.linspace(0.0, 1.0, nodes))
+    position = np.linspace(0.0, 1.0, nodes)
+    pressure, outer = ring["pressure"], ring["outer_pressure"]
+    if real(pressure) >= 0:
+        found = touch(ring)
+        return found.width, outer + found.profile(position)
+    found = touch(ring.at(pressure=-pressure))  # sealed from the other side
+    return found.width, outer + pressure + found.profile(1 - position)
 
 
 def _squeezed(ring: Ring) -> dict[str, Array]:
@@ -76,7 +84,7 @@ def _o_ring(ring: Ring) -> Touch:
             excess=peak - pressure,
         )
 
-    return Touch(load, width, peak, profile)
+    return Touch(load, width, peak, profile, peak - pressure)
 
 
 def _step_ring(ring: Ring) -> Touch:
@@ -109,14 +117,17 @@ def _step_ring(ring: Ring) -> Touch:
 def _landed(load: Array, width: Array, pressure: Array) -> Touch:
     """A worn-in land under a line load."""
     ends = {"line_load": load, "width": width, "sealed_pressure": pressure, "outer_pressure": 0.0}
+    excess = contact_land.land_excess(**ends)
 
     def profile(position: Array) -> Array:
-        excess = maximum(contact_land.land_excess(**ends), WITHIN * pressure + 1.0)
         return contact_land.land_profile(
-            position=position, sealed_pressure=pressure, outer_pressure=0.0, excess=excess
+            position=position,
+            sealed_pressure=pressure,
+            outer_pressure=0.0,
+            excess=maximum(excess, WITHIN * pressure + 1.0),
         )
 
-    return Touch(load, width, contact_land.land_peak(**ends), profile)
+    return Touch(load, width, contact_land.land_peak(**ends), profile, excess)
 
 
 def _u_cup(ring: Ring) -> Touch:
@@ -139,14 +150,14 @@ def _u_cup(ring: Ring) -> Touch:
         line_load=load, peak_pressure=peak, pressure=pressure, lip_length=ring["width"]
     )
     ends = {"sealed_pressure": pressure, "outer_pressure": 0.0}
+    excess = contact_profile.lip_excess(line_load=load, width=width, **ends)
 
     def profile(position: Array) -> Array:
-        excess = contact_profile.lip_excess(line_load=load, width=width, **ends)
         return contact_profile.lip_profile(
             position=position, excess=maximum(excess, WITHIN * pressure + 1.0), **ends
         )
 
-    return Touch(load, width, peak, profile)
+    return Touch(load, width, peak, profile, excess)
 
 
 def _compact(ring: Ring) -> Touch:
@@ -191,7 +202,7 @@ def _table(ring: Ring) -> Touch:
     ]
     load = width * sum(share * mean for share, mean in zip(shares, means, strict=True))
     peak = sum(share * max(one.stresses) for share, one in zip(shares, tables, strict=True))
-    return Touch(load, width, peak, profile)
+    return Touch(load, width, peak, profile, peak - pressure)
 
 
 def _share(pressure: Array, known: list[float], index: int) -> Array:
