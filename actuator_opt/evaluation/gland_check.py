@@ -12,6 +12,9 @@ from .rings import Ring
 from .state import State
 from .values import Values
 
+ROOM = 293.15
+"""Temperature of assembly where the design states none, K."""
+
 EXTRUSION_TABLE = "sealanddesign"
 """Table of gaps over hardness and pressure for compounds that state none of their own."""
 
@@ -30,8 +33,47 @@ def metrics(
     Squeeze and fill are those of the worst tolerances in heat and cold; side load pushes the rod
     over, so that one side has the clearance more and the other less.
     """
+    clearance, aside = clearances(geometry, state, ring)
+    cold, hot = (
+        volume_ratio(v, design, stock, ring, v[f"environment.temperature_{end}"])
+        if design.environment is not None
+        else 1.0
+        for end in ("min", "max")
+    )
+    least, most = minimum(cold, hot), maximum(cold, hot)
+    round_ring = {"seal_stretch": ring["stretch"], "seal_section": ring["section"]}
+    return (round_ring if ring.element.type == "o_ring" else {}) | {
+        "seal_squeeze": squeezes(ring, growth=growth, aside=aside, ratio=least)[0],
+        "seal_squeeze_max": squeezes(ring, growth=0.0, aside=aside, ratio=most)[1],
+        "seal_fill": _fill(ring) * most,
+        "extrusion_factor": _extrusion(v, stock, ring, clearance + aside + growth),
+    }
+
+
+def _fill(ring: Ring) -> Array:
+    """Share of the groove, as shallow as its tolerance allows, that lies filled at assembly."""
+    depth = ring["gland_depth"] - ring["tolerance"]
+    if ring.element.type != "o_ring":
+        return sum(area for _, area in ring.groove.areas) / (ring["groove_width"] * depth)
+    backs = sum(area for _, area in ring.groove.areas[1:]) / ring["gland_depth"]
+    return gland.gland_fill(
+        section=gland.stretched_section(section=ring["section"], stretch=ring["stretch"]),
+        groove_width=ring["groove_width"] - backs,
+        gland_depth=depth,
+    )
+
+
+def clearances(geometry: Geometry, state: State, ring: Ring) -> tuple[Array, Array]:
+    """Radial clearance behind a ring, and how far side load pushes its part over, by case."""
     clearance = geometry.piston_clearance if ring.name == "piston" else geometry.head_clearance
-    aside = where(real(state.side_load) > 0, 1.0, 0.0) * clearance
+    return clearance, where(real(state.side_load) > 0, 1.0, 0.0) * clearance
+
+
+def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[Array, Array]:
+    """Loosest and tightest squeeze of a ring: stretched and beside growth, the bare section.
+
+    `ratio` is that of ring over groove volume; `aside` the eccentricity of rod or piston.
+    """
     section = ring["section"]
     thin = gland.stretched_section(section=section, stretch=ring["stretch"])
     spread = {
@@ -42,40 +84,25 @@ def metrics(
     grown = 1 - (section * (1 - ring["squeeze"]) + growth) / thin
     loosest, _ = gland_range.squeeze_extremes(squeeze=grown, section=thin, **spread)
     _, tightest = gland_range.squeeze_extremes(squeeze=ring["squeeze"], section=section, **spread)
-    fill = gland.gland_fill(
-        section=thin,
-        groove_width=ring["groove_width"],
-        gland_depth=ring["gland_depth"] - ring["tolerance"],
+    return (
+        gland_range.squeeze_at_volume(squeeze=loosest, volume_ratio=ratio),
+        gland_range.squeeze_at_volume(squeeze=tightest, volume_ratio=ratio),
     )
-    cold, hot = _volumes(v, design, stock, ring)
-    return {
-        "seal_squeeze": gland_range.squeeze_at_volume(squeeze=loosest, volume_ratio=cold),
-        "seal_squeeze_max": gland_range.squeeze_at_volume(squeeze=tightest, volume_ratio=hot),
-        "seal_fill": fill * hot,
-        "seal_stretch": ring["stretch"],
-        "seal_section": section,
-        "extrusion_factor": _extrusion(v, stock, ring, clearance + aside + growth),
-    }
 
 
-def _volumes(v: Values, design: Design, stock: Stock, ring: Ring) -> tuple[Array, Array]:
-    """Ring over groove volume at the coldest and the hottest, relative to assembly."""
+def volume_ratio(v: Values, design: Design, stock: Stock, ring: Ring, temperature: Array) -> Array:
+    """Ring over groove volume at a temperature, relative to assembly; 1 where not known."""
     expansion = stock.get(ring.element.compound, "volume_expansion")
-    if design.environment is None or expansion is None:
-        return 1.0, 1.0
+    if expansion is None:
+        return 1.0
     part = design.piston if ring.name == "piston" else design.head
-    housing = stock.get(part.material, "thermal_expansion", default=0.0)
-    ratios = [
-        gland_range.volume_ratio(
-            volume_expansion=expansion,
-            housing_expansion=housing,
-            temperature_change=v[f"environment.temperature_{end}"]
-            - v["environment.assembly_temperature"],
-            swell=0.0,
-        )
-        for end in ("min", "max")
-    ]
-    return minimum(*ratios), maximum(*ratios)
+    assembly = v["environment.assembly_temperature"] if design.environment is not None else ROOM
+    return gland_range.volume_ratio(
+        volume_expansion=expansion,
+        housing_expansion=stock.get(part.material, "thermal_expansion", default=0.0),
+        temperature_change=temperature - assembly,
+        swell=0.0,
+    )
 
 
 def _extrusion(v: Values, stock: Stock, ring: Ring, gap: Array) -> Array:

@@ -99,6 +99,28 @@ class Pass:
     mass_parts: dict[str, Array]
 
 
+@dataclass(frozen=True, slots=True)
+class Base:
+    """What everything else stands on: dimensions, load cases, the wall under them, the seals."""
+
+    stock: Stock
+    geometry: Geometry
+    state: State
+    wall: Wall
+    rings: tuple[Ring, ...]
+
+
+def base(subject: Subject, v: Values) -> Base:
+    """Dimensions, state, wall and seals of the designs in `v`."""
+    design = subject.design
+    stock = Stock(v, subject.materials, subject.factors, subject.constants)
+    g = geometry_module.derive(v, design)
+    case_state = state.derive(v, design, stock, g)
+    wall = barrel_module.compute(v, design, stock, g, case_state)
+    rings = rings_module.rings(v, design, stock, g, case_state, wall.case_growth)
+    return Base(stock, g, case_state, wall, rings)
+
+
 def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -> Pass:
     """Every metric of the designs in `v`; invalid designs come out as NaN.
 
@@ -107,13 +129,11 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
     design = subject.design
     with np.errstate(all="ignore"):
         out = Computed()
-        stock = Stock(v, subject.materials, subject.factors, subject.constants)
-        g = geometry_module.derive(v, design)
-        case_state = state.derive(v, design, stock, g)
+        found = base(subject, v)
+        stock, g, case_state = found.stock, found.geometry, found.state
+        barrel, rings = found.wall, found.rings
         oil_range.compute(design.fluid, stock, case_state, out)
-        barrel = barrel_module.compute(v, design, stock, g, case_state)
         out.put("bore_growth", barrel.growth)
-        rings = rings_module.rings(v, design, stock, g, case_state, barrel.case_growth)
         tables = _films(subject)
         there, back = (sealing.films_of(tables, rings, stroke, len(v.cases)) for stroke in STROKES)
         friction = sealing.compute(v, design, stock, g, case_state, barrel, rings, there, out)
@@ -157,15 +177,8 @@ def _films(subject: Subject) -> dict[Key, Table]:
     if not film_tables.films_asked(design):
         return {}
     if not subject.films:
-
-        def rings(v: Values) -> tuple[Ring, ...]:
-            stock = Stock(v, subject.materials, subject.factors, subject.constants)
-            g = geometry_module.derive(v, design)
-            case_state = state.derive(v, design, stock, g)
-            growth = barrel_module.compute(v, design, stock, g, case_state).case_growth
-            return rings_module.rings(v, design, stock, g, case_state, growth)
-
-        subject.films.update(film_tables.tables(design, subject.values, rings))
+        found = film_tables.tables(design, subject.values, lambda v: base(subject, v).rings)
+        subject.films.update(found)
     return subject.films
 
 

@@ -60,22 +60,24 @@ HARDNESS_TEMPERATURE = 296.15
 """Temperature at which hardness and modulus of a compound are measured, K (ISO 23529)."""
 
 
-def _modulus(v: Values, element: SealElement, temperature: Array, *, by_hardness: bool) -> Array:
-    """Young's modulus of an element's rubber at a temperature: by its hardness, or as stated."""
-    compound = f"materials.{element.compound}."
-    if by_hardness or f"{compound}youngs_modulus" not in v:
-        law = elastomer.MODULUS_LAWS[element.hardness_model]
-        modulus = law.modulus(hardness=v[f"{compound}hardness"])
-    else:
-        modulus = v[f"{compound}youngs_modulus"]
-    energiser = by_hardness and element.type == "step_ring"  # the law is of the sliding ring
-    if energiser or f"{compound}softening" not in v:
+def hardness_modulus(v: Values, compound: str, law: str) -> Array:
+    """Young's modulus of a compound by its hardness, where it was measured."""
+    hardness = v[f"materials.{compound}.hardness"]
+    return elastomer.MODULUS_LAWS[law].modulus(hardness=hardness)
+
+
+def face_modulus(v: Values, compound: str, law: str, temperature: Array) -> Array:
+    """Young's modulus of a compound's sliding face at a temperature: stated, else by hardness."""
+    at = f"materials.{compound}."
+    stated = f"{at}youngs_modulus"
+    modulus = v[stated] if stated in v else hardness_modulus(v, compound, law)
+    if f"{at}softening" not in v:
         return modulus
     return modulus * elastomer.temperature_factor(
         temperature=temperature,
         reference_temperature=HARDNESS_TEMPERATURE,
-        softening=v[f"{compound}softening"],
-        stiffening_temperature=v[f"{compound}stiffening_temperature"],
+        softening=v[f"{at}softening"],
+        stiffening_temperature=v[f"{at}stiffening_temperature"],
     )
 
 
@@ -136,7 +138,10 @@ def _numbers(
 ) -> dict[str, Array]:
     """What the contact of an element is computed from."""
     at, compound = groove.path, f"materials.{element.compound}."
-    round_ring = element.type in ("o_ring", "step_ring")
+    face = face_modulus(v, element.compound, element.hardness_model, temperature)
+    squeezed = face
+    if element.type == "step_ring":  # the energiser; the temperature law is of the sliding ring
+        squeezed = hardness_modulus(v, element.compound, element.hardness_model)
     numbers = {
         "section": groove.section,
         "squeeze": v[f"{at}squeeze"],
@@ -148,16 +153,17 @@ def _numbers(
         "count": groove.count,
         "viscous_friction": v[f"{at}viscous_friction"],
         "diameter": diameter,
-        "youngs_modulus": _modulus(v, element, temperature, by_hardness=round_ring),
+        "youngs_modulus": squeezed,
     }
     for field in _OWN:
         numbers[field] = v[at + field] if at + field in v else v[compound + field]
     numbers |= _shape(v, element, groove)
+    by_hardness = element.type in ("o_ring", "step_ring")
+    if by_hardness or f"{compound}youngs_modulus" not in v:
+        numbers["hardness"] = v[f"{compound}hardness"]
     if element.type != "o_ring" or element.friction == "film":
+        numbers["face_modulus"] = face
         numbers["face_poissons_ratio"] = v.get(f"{compound}poissons_ratio", INCOMPRESSIBLE)
-        numbers["face_modulus"] = _modulus(
-            v, element, temperature, by_hardness=element.type == "o_ring"
-        )
     if element.friction == "film":
         numbers |= {field: v[compound + field] for field in _FACE}
     return numbers

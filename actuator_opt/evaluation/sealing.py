@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..design.model import Design
-from ..models import damping, friction, gland, guide_ring
+from ..design.seals import Wiper
+from ..models import damping, friction, gland, guide_ring, lip_seal
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array, maximum, real, where
 from . import gland_check
@@ -15,7 +16,8 @@ from .barrel import SEAL_STEP, Wall
 from .film_tables import Key, Running, Stroke, Table, of_place
 from .film_tables import running as run
 from .geometry import Geometry
-from .rings import Place, Ring, places
+from .grooves import Groove
+from .rings import INCOMPRESSIBLE, Place, Ring, face_modulus, places
 from .rows import Computed
 from .state import State, side_reactions
 from .touch import Touch, touch
@@ -73,7 +75,7 @@ def compute(
             total = total + _friction(_row_load(ring, contact), ring, state.speed)
         for metric, value in rows.items():
             by_metric.setdefault(metric, {})[ring.label] = value
-    total = total + _beside(v, geometry, state)
+    total = total + _beside(v, design, geometry, state)
     for metric, by_place in by_metric.items():
         out.put(metric, by_place)
     gap = gland.extrusion_gap(clearance=geometry.piston_clearance, growth=full_growth)
@@ -183,15 +185,39 @@ def _lubricated(contact: Touch, ring: Ring, film: Running | None) -> Friction:
     return Friction(where(real(ring["speed"]) > 0, sliding, dry), dry, slope)
 
 
-def _beside(v: Values, geometry: Geometry, state: State) -> Friction:
-    """Coulomb friction of guide rings under the side load."""
+def _beside(v: Values, design: Design, geometry: Geometry, state: State) -> Friction:
+    """Coulomb friction of wipers, and of guide rings under the side load."""
     total: Array = 0.0
     carried = side_reactions(geometry, state)
-    for name, grooves, _ in places(geometry):
+    for name, grooves, diameter in places(geometry):
+        wiper = getattr(design.seals, name).wiper
         for groove in grooves:
+            if groove.role == "wiper" and wiper is not None:
+                total = total + _wiper(v, wiper, groove, diameter, state.temperature)
             if groove.role == "guide":
                 total = total + guide_ring.friction(
                     side_load=carried[name],
                     friction_coefficient=v[f"{groove.path}friction_coefficient"],
                 )
     return Friction(total, total, 0.0)
+
+
+def _wiper(v: Values, wiper: Wiper, groove: Groove, diameter: Array, temperature: Array) -> Array:
+    """Friction of a wiper: the lip of a U-cup without pressure."""
+    at, compound = groove.path, f"materials.{wiper.compound}."
+    interference = lip_seal.lip_interference(section=groove.section, gland_depth=groove.gland_depth)
+    load = lip_seal.line_load(
+        interference=interference,
+        root_clearance=interference,
+        pressure=0.0,
+        youngs_modulus=face_modulus(v, wiper.compound, wiper.hardness_model, temperature),
+        poissons_ratio=v.get(f"{compound}poissons_ratio", INCOMPRESSIBLE),
+        lip_thickness=v[f"{at}thickness"],
+        lip_length=v[f"{at}width"],
+        lip_radius=(diameter + v[f"{at}thickness"]) / 2,
+    )
+    stated = f"{at}friction_coefficient"
+    coefficient = v[stated] if stated in v else v[f"{compound}friction_coefficient"]
+    return friction.seal_friction(
+        line_load=load, diameter=diameter, friction_coefficient=coefficient
+    )

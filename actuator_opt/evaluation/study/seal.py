@@ -1,0 +1,436 @@
+"""A seal looked at closely: contact, oil film, friction, leakage, gland; at one point or a map.
+
+Works for every sealing element, whether the design asks for its film or for a coefficient.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import nan, pi
+from typing import Literal
+
+import numpy as np
+
+from ...design.model import Design
+from ...errors import Diagnostic, InputError
+from ...models import damping, elastomer, friction
+from ...models.fluid import ATMOSPHERIC_PRESSURE
+from .. import gland_check
+from ..barrel import SEAL_STEP
+from ..film import Row, Solved, solve
+from ..film_tables import floats, of_place
+from ..kernel import Base, Subject, base
+from ..rings import Place, Ring
+from ..touch import Touch, touch
+from ..values import of_case
+
+Stroke = Literal["out", "in"]
+HARDNESS_SCATTER = 5.0
+"""Scatter of a compound's hardness between batches, Shore A (usual delivery tolerance)."""
+
+CURVE_SPEEDS = tuple(float(v) for v in np.geomspace(1e-4, 1.0, 17))
+"""Speeds of the friction curves, m/s."""
+
+MAP_SPEEDS = tuple(float(v) for v in np.geomspace(5e-4, 0.5, 13))
+MAP_SHARES = (0.02, 0.1, 0.25, 0.5, 0.75, 1.0)
+"""Speeds [m/s] and shares of the supply pressure of a map."""
+
+
+@dataclass(frozen=True, slots=True)
+class RingPoint:
+    """One ring at an operating point; arrays over its contact, empty without a film.
+
+    Parameters
+    ----------
+    ring : its numbers
+    touch : load per length, width and peak pressure
+    modulus : lowest, assumed and highest Young's modulus of what is squeezed [Pa]
+    x : distance from the sealed side [m]
+    static, oil, asperity : pressures, absolute [Pa]
+    film : distance of the mean planes [m]
+    viscous, asperity_friction : of the whole circumference [N]
+    coefficient_friction : by the coefficient of friction instead [N]
+    breakaway : dry, all oil squeezed out [N]
+    load_residual, mass_residual : of the film's balances
+    """
+
+    ring: Ring
+    touch: Touch
+    modulus: tuple[float, float, float]
+    x: np.ndarray
+    static: np.ndarray
+    oil: np.ndarray
+    asperity: np.ndarray
+    film: np.ndarray
+    viscous: float
+    asperity_friction: float
+    coefficient_friction: float
+    breakaway: float
+    load_residual: float
+    mass_residual: float
+
+
+@dataclass(frozen=True, slots=True)
+class SealPoint:
+    """The seals of a place at one speed, pressure and stroke.
+
+    Parameters
+    ----------
+    stroke : of the counterface past the seal: out of the sealed room, or in
+    speed, pressure, temperature : [m/s], sealed gauge [Pa], [K]
+    rings : from the sealed side outwards
+    why : why there is no film; empty where there is
+    between : pressure between two rings, gauge [Pa]; NaN for one
+    flow : towards the outer side [m^3/s]
+    lower, upper : friction over the scatter of the modulus [N]
+    """
+
+    stroke: Stroke
+    speed: float
+    pressure: float
+    temperature: float
+    rings: tuple[RingPoint, ...]
+    why: str
+    between: float
+    flow: float
+    lower: float
+    upper: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether there is a film."""
+        return not self.why
+
+    @property
+    def viscous(self) -> float:
+        """Friction of the oil [N]."""
+        return sum(ring.viscous for ring in self.rings)
+
+    @property
+    def asperity(self) -> float:
+        """Friction of the asperities [N]."""
+        return sum(ring.asperity_friction for ring in self.rings)
+
+    @property
+    def friction(self) -> float:
+        """Friction of all rings [N]."""
+        return self.viscous + self.asperity
+
+    @property
+    def breakaway(self) -> float:
+        """Friction after a standstill [N]."""
+        return sum(ring.breakaway for ring in self.rings)
+
+    @property
+    def damping(self) -> float:
+        """Secant damping at the speed [N s/m]."""
+        return float(damping.secant(friction=self.friction, speed=self.speed))
+
+
+@dataclass(frozen=True, slots=True)
+class SealMap:
+    """Friction over speed and pressure, outstroke; NaN where there is no film.
+
+    Parameters
+    ----------
+    speeds : (v,) [m/s]
+    pressures : (p,) gauge [Pa]
+    friction : (p, v) [N]
+    breakaway : (p,) [N]
+    why : pressure, speed and reason of every point without a film
+    """
+
+    speeds: np.ndarray
+    pressures: np.ndarray
+    friction: np.ndarray
+    breakaway: np.ndarray
+    why: tuple[tuple[float, float, str], ...]
+
+    @property
+    def damping(self) -> np.ndarray:
+        """Secant damping (p, v) [N s/m]."""
+        return np.asarray(self.friction / self.speeds)
+
+
+@dataclass(frozen=True, slots=True)
+class SqueezeRow:
+    """Loosest, nominal and tightest squeeze of a ring at a temperature and supply pressure or 0."""
+
+    label: str
+    temperature: float
+    pressure: float
+    loosest: float
+    nominal: float
+    tightest: float
+
+
+@dataclass(frozen=True, slots=True)
+class SealStudy:
+    """Everything a seal sheet shows of the seals of piston or rod.
+
+    Parameters
+    ----------
+    place : piston or rod
+    out, back : the operating point on both strokes, at one speed and pressure
+    stroke : of the actuator [m]
+    clearance : radial, behind the seal [m]
+    growth : of the bore over the piston seal at the pressure [m]; 0 at the rod
+    squeezes : over tolerance, temperature and pressure
+    curves : friction over speed at three pressures
+    map : over speed and pressure, where asked
+    """
+
+    design: Design
+    place: Place
+    out: SealPoint
+    back: SealPoint
+    stroke: float
+    clearance: float
+    growth: float
+    squeezes: tuple[SqueezeRow, ...]
+    curves: SealMap | None
+    map: SealMap | None
+
+    @property
+    def carried_out(self) -> float:
+        """Oil that leaves the sealed room on a stroke out [m^3]."""
+        return self.out.flow * self.stroke / self.out.speed
+
+    @property
+    def drawn_back(self) -> float:
+        """Oil that a stroke in draws back [m^3]; negative: it leaks out then too."""
+        return -self.back.flow * self.stroke / self.back.speed
+
+    @property
+    def net_leakage(self) -> float:
+        """Oil left outside by a double stroke, both at this pressure [m^3]."""
+        return max(self.carried_out - self.drawn_back, 0.0)
+
+
+def study(
+    subject: Subject,
+    place: Place,
+    *,
+    speed: float | None = None,
+    pressure: float | None = None,
+    curves: bool = False,
+    mapped: bool = False,
+) -> SealStudy:
+    """The seals of piston or rod at one point, and around it.
+
+    Parameters
+    ----------
+    subject : a design whose elements of the place all ask for a film
+    speed : of the counterface [m/s]; default: the fastest load case
+    pressure : sealed, gauge [Pa]; default: the highest of a load case
+    curves : whether to follow friction over speed at three pressures
+    mapped : whether to fill a map over speed and pressure
+
+    Raises
+    ------
+    InputError
+        no speed, or a pressure or squeeze where the contact has none
+    """
+    v = subject.values()
+    found = base(subject, v)
+    own = of_place(found.rings, place)
+    case = _case(own[0], speed, pressure)
+    held = float(of_case(own[0]["pressure"], case)) if pressure is None else pressure
+    run = float(of_case(own[0]["speed"], case)) if speed is None else speed
+    if not run > 0:
+        raise InputError(
+            Diagnostic(
+                f"speed {run:g} m/s: a film and a secant damping need a moving seal",
+                'state a speed above zero, e.g. "--speed 0.1"',
+                path=f"seals.{place}",
+            )
+        )
+    supply = float(v["supply.pressure"])
+    growth = float(np.max(np.real(SEAL_STEP * found.wall.growth)))
+    grown = growth * held / supply if place == "piston" else 0.0
+    rings = _rings(own, case, pressure=held, speed=run, growth=grown)
+    temperature = float(of_case(found.state.temperature, case))
+    out, back = (_point(rings, temperature, stroke) for stroke in ("out", "in"))
+    shares = (MAP_SHARES[0], 0.5, 1.0)
+    return SealStudy(
+        design=subject.design,
+        place=place,
+        out=out,
+        back=back,
+        stroke=float(np.squeeze(found.geometry.stroke)),
+        clearance=float(np.squeeze(gland_check.clearances(found.geometry, found.state, own[0])[0])),
+        growth=grown,
+        squeezes=tuple(_squeezes(subject, found, own, growth if place == "piston" else 0.0)),
+        curves=seal_map(rings, CURVE_SPEEDS, [x * supply for x in shares]) if curves else None,
+        map=seal_map(rings, MAP_SPEEDS, [x * supply for x in MAP_SHARES]) if mapped else None,
+    )
+
+
+def _case(ring: Ring, speed: float | None, pressure: float | None) -> int:
+    """The load case that stands for the point: the fastest, or the one of the highest pressure."""
+    what = "pressure" if pressure is None or speed is not None else "speed"
+    column = np.atleast_2d(np.asarray(ring[what], dtype=float))[:, 0]
+    return int(np.argmax(column)) if column.size > 1 else 0
+
+
+def _rings(
+    own: Sequence[Ring], case: int, *, pressure: float, speed: float, growth: float
+) -> tuple[Ring, ...]:
+    """Rings of floats at a pressure and speed; the outer side is that of the atmosphere."""
+    rings = []
+    for ring in own:
+        one = floats(ring, case)
+        left = one["squeeze"] - growth / one["section"]
+        rings.append(one.at(pressure=pressure, outer_pressure=0.0, speed=speed, squeeze_left=left))
+    return tuple(rings)
+
+
+def _point(rings: tuple[Ring, ...], temperature: float, stroke: Stroke) -> SealPoint:
+    outward = stroke == "out"
+    solved = solve(Row(rings, outward))
+    between = solved.between
+    shared = solved.row.between(between) if solved.films else rings
+    points = tuple(_ring_point(ring, solved, i, outward=outward) for i, ring in enumerate(shared))
+    lowest, highest = _bounds(rings, outward, solved)
+    return SealPoint(
+        stroke=stroke,
+        speed=rings[0]["speed"],
+        pressure=rings[0]["pressure"],
+        temperature=temperature,
+        rings=points,
+        why=solved.why,
+        between=between - ATMOSPHERIC_PRESSURE,
+        flow=pi * rings[0]["diameter"] * solved.films[0].flow if solved.films else nan,
+        lower=lowest,
+        upper=highest,
+    )
+
+
+def modulus_range(ring: Ring) -> tuple[float, float, float]:
+    """Lowest, assumed and highest Young's modulus of what is squeezed [Pa]."""
+    value = ring["youngs_modulus"]
+    hardness = ring.numbers.get("hardness")
+    if hardness is None:
+        return value / STATED_FACTOR, value, value * STATED_FACTOR
+    low, high = elastomer.modulus_bounds(hardness=hardness, hardness_scatter=HARDNESS_SCATTER)
+    law = elastomer.MODULUS_LAWS[ring.element.hardness_model].modulus(hardness=hardness)
+    return value * float(low / law), value, value * float(high / law)
+
+
+STATED_FACTOR = 1.5
+"""Scatter of a stated modulus, as that of the polyurethane of the rod-seal studies."""
+
+
+def _bounds(rings: tuple[Ring, ...], outward: bool, solved: Solved) -> tuple[float, float]:
+    """Friction with all moduli at their lowest and their highest."""
+    if not solved.films:
+        return nan, nan
+    found = []
+    for end in (0, 2):
+        scaled = tuple(
+            ring.at(
+                **{
+                    name: ring[name] * modulus_range(ring)[end] / ring["youngs_modulus"]
+                    for name in ("youngs_modulus", "face_modulus")
+                }
+            )
+            for ring in rings
+        )
+        other = solve(Row(scaled, outward), solved)
+        found.append(nan if other.why else sum(other.friction()))
+    return found[0], found[1]
+
+
+def _ring_point(ring: Ring, solved: Solved, index: int, *, outward: bool) -> RingPoint:
+    contact = touch(ring.at(pressure=abs(ring["pressure"])))
+    diameter = ring["diameter"]
+    around = {"line_load": float(contact.line_load), "diameter": diameter}
+    dry = friction.seal_friction(friction_coefficient=ring["asperity_friction"], **around)
+    coulomb = friction.seal_friction(friction_coefficient=ring["friction_coefficient"], **around)
+    none = np.zeros(0)
+    film = solved.films[index] if solved.films else None
+    sign = 1.0 if outward else -1.0
+    return RingPoint(
+        ring=ring,
+        touch=contact,
+        modulus=modulus_range(ring),
+        x=none if film is None else film.x,
+        static=none if film is None else film.contact.static_pressure,
+        oil=none if film is None else film.pressure,
+        asperity=none if film is None else film.contact_pressure,
+        film=none if film is None else film.film,
+        viscous=nan if film is None else pi * diameter * sign * film.viscous_drag,
+        asperity_friction=nan
+        if film is None
+        else pi * diameter * ring["asperity_friction"] * film.contact_load,
+        coefficient_friction=float(coulomb),
+        breakaway=float(dry),
+        load_residual=nan if film is None else film.load_residual,
+        mass_residual=nan if film is None else film.mass_residual,
+    )
+
+
+def seal_map(
+    rings: tuple[Ring, ...], speeds: Sequence[float], pressures: Sequence[float]
+) -> SealMap:
+    """Friction outstroke over speed and pressure, each point begun from the one before."""
+    table = np.full((len(pressures), len(speeds)), nan)
+    dry, why = [], []
+    last: Solved | None = None
+    for i, pressure in enumerate(pressures):
+        held = tuple(ring.at(pressure=pressure) for ring in rings)
+        dry.append(sum(_dry(ring) for ring in held[:1]))
+        for j in range(len(speeds)):
+            k = j if i % 2 == 0 else len(speeds) - 1 - j
+            found = solve(Row(tuple(r.at(speed=speeds[k]) for r in held), True), last)
+            if found.why:
+                why.append((pressure, speeds[k], found.why))
+                continue
+            last = found
+            table[i, k] = sum(found.friction())
+    return SealMap(np.array(speeds), np.array(pressures), table, np.array(dry), tuple(why))
+
+
+def _dry(ring: Ring) -> float:
+    """Friction of a ring with all oil squeezed out."""
+    return float(
+        friction.seal_friction(
+            line_load=touch(ring).line_load,
+            diameter=ring["diameter"],
+            friction_coefficient=ring["asperity_friction"],
+        )
+    )
+
+
+def _squeezes(
+    subject: Subject, found: Base, own: Sequence[Ring], growth: float
+) -> Sequence[SqueezeRow]:
+    """Squeeze over tolerance at coldest, case and hottest, without and with pressure."""
+    design, v = subject.design, subject.values()
+    temperatures = [float(np.max(found.state.temperature))]
+    if design.environment is not None:
+        temperatures += [design.environment.temperature_min, design.environment.temperature_max]
+    rows = []
+    for ring in own:
+        one = floats(ring, 0)
+        _, aside = gland_check.clearances(found.geometry, found.state, ring)
+        for temperature in sorted(set(temperatures)):
+            ratio = gland_check.volume_ratio(v, design, found.stock, ring, temperature)
+            for pressure, grown in ((0.0, 0.0), (float(v["supply.pressure"]), growth)):
+                spread = {"growth": grown, "ratio": ratio}
+                wide = float(np.max(aside))
+                loosest, tightest = gland_check.squeezes(one, aside=wide, **spread)
+                exact = one.at(tolerance=0.0, section_tolerance=0.0)
+                nominal, _ = gland_check.squeezes(exact, aside=0.0, **spread)
+                rows.append(
+                    SqueezeRow(
+                        ring.label,
+                        temperature,
+                        pressure,
+                        float(loosest),
+                        float(nominal),
+                        float(tightest - grown / one["section"]),
+                    )
+                )
+    return rows
