@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from typer.exceptions import TyperException
 
 from . import cli_materials, streams
+from .cli_seal import seal
+from .cli_shared import check_targets, leave_by, read_actuator, say_files, write_report
 from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from .options import (
     REPORTS,
@@ -34,9 +36,7 @@ from .options import (
 from .version import VERSION
 
 if TYPE_CHECKING:
-    from .evaluation import Evaluation
     from .optimisation.result import Optimisation
-    from .verbs import Actuator
 
 app = typer.Typer(
     name="actuator-opt",
@@ -48,79 +48,6 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
 app.add_typer(cli_materials.app, name="materials")
-
-
-def _read(design: str, sets: list[str] | None, plugins: list[Path] | None) -> Actuator:
-    from .design import split_assignment
-    from .verbs import read
-
-    pairs = [split_assignment(text) for text in sets or []]
-    return read(design, set=pairs, plugins=plugins or [])
-
-
-def _status(evaluation: Evaluation) -> None:
-    if not evaluation.met:
-        raise typer.Exit(ExitCode.MISSED)
-
-
-def _command() -> str:
-    """The command line without what does not change the result: same input, same bytes."""
-    import shlex
-
-    words, kept, skip = sys.argv[1:], [], False
-    for word in words:
-        if skip:
-            skip = False
-        elif word in ("--out", "--write"):
-            skip = True
-        elif word not in ("--json", "--report", "--quiet", "-q") and not word.startswith(
-            ("--out=", "--write=")
-        ):
-            kept.append(word)
-    return shlex.join(["actuator-opt", *kept])
-
-
-def _check_targets(out: Path | None, date: str | None, write: Path | None = None) -> None:
-    """Refuse a date or a place to write that cannot be, before the work."""
-    from . import store
-    from .verbs import date_from_environment
-
-    if write is not None:
-        store.require_writable(write)
-    if out is not None:
-        store.require_folder(out)
-        _check_date(date)
-        date_from_environment()
-
-
-def _write_report(
-    subject: Evaluation | Optimisation,
-    actuator: Actuator,
-    out: Path,
-    date: str | None,
-) -> list[dict[str, Any]]:
-    from .verbs import report
-
-    files = report(subject, folder=out, actuator=actuator, command=_command(), date=date)
-    return [file.to_dict() for file in files]
-
-
-def _check_date(date: str | None) -> None:
-    if date is None:
-        return
-    from datetime import date as day
-
-    try:
-        known = day.fromisoformat(date).isoformat() == date
-    except ValueError:
-        known = False
-    if not known:
-        raise UsageError(Diagnostic(f'--date "{date}" is no date', "write YYYY-MM-DD"))
-
-
-def _say_files(files: list[dict[str, Any]]) -> None:
-    for file in files:
-        streams.err(f"wrote {file['path']}")
 
 
 @app.callback(invoke_without_command=True)
@@ -216,18 +143,18 @@ def evaluate(
     from . import verbs
 
     if report:
-        _check_targets(out, date)
-    actuator = _read(design, sets, plugin)
+        check_targets(out, date)
+    actuator = read_actuator(design, sets, plugin)
     evaluation = verbs.evaluate(actuator)
-    files = _write_report(evaluation, actuator, out, date) if report else []
+    files = write_report(evaluation, actuator, out, date) if report else []
     if as_json:
         streams.out_json(evaluation.to_dict() | ({"files": files} if files else {}))
     elif not quiet:
         from .reporting.terminal import evaluation_text
 
         streams.out(evaluation_text(evaluation, **streams.style()), end="")
-        _say_files(files)
-    _status(evaluation)
+        say_files(files)
+    leave_by(evaluation)
 
 
 @app.command()
@@ -252,15 +179,15 @@ def optimise(
     from . import verbs
 
     reporting = report or not as_json
-    _check_targets(out if reporting else None, date, write)
-    actuator = _read(design, sets, plugin)
+    check_targets(out if reporting else None, date, write)
+    actuator = read_actuator(design, sets, plugin)
     result = verbs.optimise(
         actuator, algorithm=algorithm, starts=starts, seed=seed, whole_plies=whole_plies
     )
     good = _outcome(result) == ExitCode.MET
     if write is not None and good:
         verbs.save(result.best, write, source=actuator.source)
-    files = _write_report(result, actuator, out, date) if reporting else []
+    files = write_report(result, actuator, out, date) if reporting else []
     if as_json:
         streams.out_json(result.to_dict() | ({"files": files} if files else {}))
     elif not quiet:
@@ -270,7 +197,7 @@ def optimise(
         streams.out(optimisation_text(result, **streams.style()), end="")
         if remark := unrounded(result):
             streams.err(remark)
-        _say_files(([{"path": write}] if write is not None and good else []) + files)
+        say_files(([{"path": write}] if write is not None and good else []) + files)
     if write is not None and not good:
         why = (result.rounding or result).sentence
         streams.err(f"{write}: not written, there is no design to save: {why}")
@@ -287,6 +214,7 @@ def _outcome(result: Optimisation) -> ExitCode:
 
 
 app.command("optimize", hidden=True)(optimise)
+app.command()(seal)
 
 
 @app.command()
@@ -305,10 +233,10 @@ def sensitivity(
     from . import verbs
 
     if report:
-        _check_targets(out, date)
-    actuator = _read(design, sets, plugin)
+        check_targets(out, date)
+    actuator = read_actuator(design, sets, plugin)
     result = verbs.optimise(actuator, seed=seed)
-    files = _write_report(result, actuator, out, date) if report else []
+    files = write_report(result, actuator, out, date) if report else []
     if as_json:
         data = result.to_dict()
         keys = ("name", "version", "status", "outcome", "objective", "sensitivities", "kkt")
@@ -319,7 +247,7 @@ def sensitivity(
         style = streams.style()
         shown = sensitivity_table(result, **style) if result.sensitivities else ""
         streams.out(shown or infeasibility_card(result, **style) or result.sentence)
-        _say_files(files)
+        say_files(files)
     raise typer.Exit(_outcome(result))
 
 
@@ -337,15 +265,15 @@ def report(
     """Write the report (PDF and PNG) of a design as it stands."""
     from . import verbs
 
-    _check_targets(out, date)
-    actuator = _read(design, sets, plugin)
+    check_targets(out, date)
+    actuator = read_actuator(design, sets, plugin)
     evaluation = verbs.evaluate(actuator)
-    files = _write_report(evaluation, actuator, out, date)
+    files = write_report(evaluation, actuator, out, date)
     if as_json:
         streams.out_json({"files": files})
     elif not quiet:
-        _say_files(files)
-    _status(evaluation)
+        say_files(files)
+    leave_by(evaluation)
 
 
 @app.command()

@@ -103,6 +103,8 @@ INPUTS = _table("""
  stiffness            | k      | stiffness   | kN/mm| 0.0001| 1e6   | stiffness
  coefficient          | c      | ratio       | -    | 0     | 10    | coefficient
  surface_roughness    | Ra     | length      | um   | 0.01  | 20    | surface roughness Ra
+ rms_roughness        | R_q    | length      | um   | 0     | 20    | RMS surface roughness
+ taper                | alpha  | angle       | deg  | 0.5   | 60    | taper
  allowed_angle        | theta  | angle       | deg  | 0     | 90    | winding angle the shop can make
  ply_thickness        | t_p    | length      | mm   | 0.01  | 50    | cured thickness of one ply
  autofrettage_pressure| p_af   | pressure    | bar  | 1     | 5000  | autofrettage pressure
@@ -185,6 +187,12 @@ MATERIAL_PROPERTIES = _table("""
  tait_coefficient     | B      | ratio       | -      | 1.5    | 30   | coefficient of the Tait law, one more than K' at zero pressure
  bond_thickness       | t_a    | length      | mm     | 0.005  | 5    | bond line thickness
  speed_max            | v_max  | speed       | m/s    | 0.001  | 50   | highest sliding speed
+ softening            | b_E    | per_temperature | 1/K | -0.01 | 0.05 | relative fall of the elastomer's modulus per kelvin
+ stiffening_temperature | T_10 | temperature | degC   | -150   | 150  | where cold makes the modulus ten times its plateau (torsion test)
+ asperity_friction    | f      | ratio       | -      | 0.001  | 1    | dry friction of the asperities in the film model
+ seal_roughness       | sigma  | length      | um     | 0.01   | 20   | RMS roughness of the sliding face in the film model
+ asperity_radius      | R_a    | length      | um     | 0.01   | 1000 | radius of the asperity tips
+ asperity_density     | n_a    | per_area    | 1/m^2  | 1e9    | 1e17 | asperities per area
 """)
 
 METRICS = _table("""
@@ -206,6 +214,10 @@ METRICS = _table("""
  seal_section         | W      | length      | mm   | | | seal cross-section
  contact_width        | b      | length      | mm   | | | seal contact width
  contact_pressure     | p_0    | pressure    | MPa  | | | peak seal contact pressure
+ film_thickness       | h      | length      | um   | | | mean oil film under the running seal
+ seal_wear            | pL     | line_load   | N/mm | | | contact pressure times sliding distance, a double stroke
+ rod_leakage          | V_l    | volume      | mm^3 | | | oil the rod leaves outside, a double stroke
+ inter_seal_pressure  | p_i    | pressure    | bar  | | | pressure between the seals of a pair
  friction_running     | F_C    | force       | N    | | | running friction of all seals
  friction_breakaway   | F_S    | force       | N    | | | breakaway friction of all seals
  damping_pipe         | c      | damping     | N*s/m| | | viscous damping of the oil by pipe flow

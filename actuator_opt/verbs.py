@@ -17,6 +17,8 @@ from .evaluation.plugin import Plugin, View, collect, load
 from .quantities import METRICS
 
 if TYPE_CHECKING:
+    from .evaluation.rings import Place
+    from .evaluation.study.seal import SealStudy
     from .optimisation.result import Optimisation, Sensitivity
     from .reporting import ExtraTable, ReportFile
 
@@ -114,7 +116,11 @@ def check(
         faults = _unanswered(actuator, subject)
         if faults:
             return faults
-        if actuator.design.variables:
+        if actuator.design.choices:
+            from .optimisation.choices import possible
+
+            possible(subject)
+        elif actuator.design.variables:
             from .optimisation.actuator import build
 
             build(subject, _fault(actuator))
@@ -186,6 +192,48 @@ def sensitivity(
 ) -> tuple[Sensitivity, ...]:
     """What each requirement and parameter costs at the design's optimum."""
     return optimise(design, seed=seed, plugins=plugins).sensitivities
+
+
+def seal(
+    design: Actuator | Design | str | Path,
+    *,
+    place: Place,
+    speed: float | None = None,
+    pressure: float | None = None,
+    curves: bool = False,
+    mapped: bool = False,
+) -> SealStudy:
+    """Contact, oil film, friction, leakage and damping of the seals of piston or rod.
+
+    The film is solved whether the design asks for it or for a coefficient of friction.
+
+    Parameters
+    ----------
+    design : as `evaluate`
+    place : "piston" or "rod"
+    speed : of the counterface [m/s]; default: the fastest load case
+    pressure : sealed, gauge [Pa]; default: the highest of a load case
+    curves : whether to follow friction over speed at three pressures
+    mapped : whether to fill a map over speed and pressure
+
+    Raises
+    ------
+    InputError
+        no speed above zero, or a pressure beyond the stated contact profiles
+    """
+    from .evaluation.study.seal import study
+
+    actuator = _actuator(design)
+    elements = getattr(actuator.design.seals, place).elements()
+    asked = {f"seals.{place}.{tail}friction": "film" for tail in elements}
+    return study(
+        actuator.changed(asked).subject(),
+        place,
+        speed=speed,
+        pressure=pressure,
+        curves=curves,
+        mapped=mapped,
+    )
 
 
 def report(

@@ -13,16 +13,19 @@ import pkgutil
 from dataclasses import replace
 from math import pi
 
+import samples_contact
 import samples_criteria
 import samples_dynamics
+import samples_film
 import samples_fluid
+import samples_gland
 import samples_liner
 import samples_lines
 import samples_rods
 import samples_tube
 
 import actuator_opt.models
-from actuator_opt.models import seals
+from actuator_opt.models import elastomer, seals
 from actuator_opt.models.ply_discount import WallLayer
 from actuator_opt.models.strength_modes import PlyStrength
 
@@ -239,12 +242,11 @@ SAMPLES = {
     "mass.tie_rod_mass": {"density": 7850.0, "diameter": 6e-3, "length": 0.2, "count": 4.0},
     "mass.eye_volume": {"pin_diameter": 8e-3},
     "mass.eye_length": {"pin_diameter": 8e-3},
-    "mass.ring_mass": {"density": 1300.0, "section": 2e-3, "centre_diameter": 0.023},
+    "wear.sliding_severity": {"line_load": 8e3, "contact_width": 1e-3, "distance": 0.22},
+    "mass.ring_mass": {"density": 1300.0, "area": 3e-6, "centre_diameter": 0.023},
     "mass.oil_mass": {"density": 870.0, "volume": 6e-5},
     "gland.groove_width": {"section": 2e-3},
     "seals.width_as_published": {"section": 2e-3, "gland_height": 1.7e-3},
-    "seals.modulus_gent": {"hardness": 75.0},
-    "seals.modulus_ruess": {"hardness": 75.0},
     "stiffness.chamber_compliance": {
         "volume": 7e-5, "bulk_modulus": 1.4e9, "wall_compliance": 2e-14,
     },
@@ -428,9 +430,12 @@ SAMPLES = {
     "endurance.end_stop_peak_pressure": {"pressure": 1e6, "peak_force": 18e3, "area": 9e-4},
 }  # fmt: skip
 for _group in (
+    samples_contact,
     samples_criteria,
     samples_dynamics,
+    samples_film,
     samples_fluid,
+    samples_gland,
     samples_liner,
     samples_lines,
     samples_rods,
@@ -454,5 +459,5 @@ def cases():
     for law in seals.LAWS.values():
         for quantity in ("line_load", "contact_width", "peak_pressure"):
             yield f"seals.LAWS.{law.name}.{quantity}", getattr(law, quantity), ring
-    for law in seals.MODULUS_LAWS.values():
-        yield f"seals.MODULUS_LAWS.{law.name}", law.modulus, {"hardness": 72.0}
+    for law in elastomer.MODULUS_LAWS.values():
+        yield f"elastomer.MODULUS_LAWS.{law.name}", law.modulus, {"hardness": 72.0}

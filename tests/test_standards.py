@@ -54,7 +54,7 @@ def test_recomputed_squeeze_matches_the_published_range(use):
     Published per cent of the AS568 rows (minimum, maximum); they are rounded to whole numbers,
     up to 0.6 apart.
     """
-    published = standards._tables()["squeeze_as568"][use]
+    published = standards.tables()["squeeze_as568"][use]
     for gland, (low, high) in zip(standards.glands(use, "as568"), published, strict=True):
         assert 100 * gland.squeeze_min == pytest.approx(float(low), abs=0.62)
         assert 100 * gland.squeeze_max == pytest.approx(float(high), abs=0.62)

@@ -11,9 +11,9 @@ from pydantic import ValidationError
 from .. import quantities
 from ..errors import Diagnostic, InputError
 from ..quantities import Quantity
-from . import suggest, wishes
+from . import choice_list, suggest, wishes
 from .faults import cross_field, material_faults
-from .kinds import Of, ValueFault, example, what
+from .kinds import Fraction, Of, ValueFault, example, what
 from .model import Design, Ply
 from .paths import put, resolve, spell
 from .section import Section
@@ -25,6 +25,7 @@ MOST_FAULTS = 100
 _TABLE_KEYS = {
     "variables": "PATHs such as cylinder.bore, each with lower and upper",
     "requirements": "metrics such as stiffness_min, each with min or max",
+    "choices": "PATHs such as seals.rod.compound, each with a list of allowed values",
     "waivers": "metrics such as seal_section, each with a reason",
     "materials": "names of materials, each with its changed properties",
 }
@@ -60,6 +61,7 @@ def build(
     faults = list(_nothing(copy, ()))
     _to_si(copy)
     faults += wishes.recheck(copy, metrics)
+    faults += choice_list.recheck(copy)
     design = None
     try:
         design = Design.model_validate(copy)
@@ -69,6 +71,7 @@ def build(
         faults += _unless_known(cross_field(copy), list(_nothing(copy, ())))
     if materials is not None:
         faults += material_faults(copy, materials)
+        faults += choice_list.material_faults(copy, materials)
     return Built(None if faults else design, tuple(faults))
 
 
@@ -212,7 +215,7 @@ def to_tree(section: Section) -> dict[str, Any]:
 
 def with_values(
     design: Design,
-    values: Mapping[str, float | str],
+    values: Mapping[str, float | str | Fraction],
     *,
     materials: Materials | None = None,
     metrics: Mapping[str, Quantity] | None = None,

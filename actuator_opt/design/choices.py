@@ -7,11 +7,12 @@ from typing import Annotated, Literal, TypeAlias
 from .kinds import Choice
 
 Paper: TypeAlias = Annotated[
-    Literal["ElAsswad2018", "AaltoThesis"] | None,
+    Literal["ElAsswad2018", "AaltoThesis", "Huang2017"] | None,
     Choice(
         "the paper whose cylinder this is: reports set its published numbers beside ours; "
         "ElAsswad2018: composite knee cylinder of a humanoid robot; "
-        "AaltoThesis: 40/25-220 test cylinder of a paper machine's actuator"
+        "AaltoThesis: 40/25-220 test cylinder of a paper machine's actuator; "
+        "Huang2017: 110/80-560 servo cylinder and 125 mm plunger, damping of their seals"
     ),
 ]
 BulkModulusLaw: TypeAlias = Annotated[

@@ -11,8 +11,9 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from . import choices
+from .choices import Paper
 from .circuit import Control, Line, Ports, Valve
-from .kinds import CaseName, Flag, Goal, MaterialName, Of, Position, PositionKind, Text
+from .kinds import CaseName, Flag, Fraction, Goal, MaterialName, Of, Position, PositionKind, Text
 from .seals import Seals
 from .section import Section
 
@@ -331,7 +332,7 @@ class Design(Section):
 
     name: Annotated[str, Text("title of the design")]
     notes: Annotated[str, Text("free text for the report", 20000, multiline=True)] = ""
-    reproduces: choices.Paper = None
+    reproduces: Paper = None
     fluid: FluidSection
     supply: Supply
     environment: Environment | None = None
@@ -352,6 +353,7 @@ class Design(Section):
     load: Load = Load()
     load_cases: Annotated[tuple[LoadCase, ...], Field(min_length=1, max_length=100)]
     variables: dict[str, Variable] = {}  # noqa: RUF012 (pydantic copies it)
+    choices: dict[str, tuple[float | bool | str | Fraction, ...]] = {}  # noqa: RUF012 (pydantic copies it)
     requirements: dict[str, Limit] = {}  # noqa: RUF012 (pydantic copies it)
     waivers: dict[str, Annotated[str, Text("why the check does not apply")]] = {}  # noqa: RUF012 (pydantic copies it)
     materials: dict[str, dict[str, float]] = {}  # noqa: RUF012 (pydantic copies it)

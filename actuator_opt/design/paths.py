@@ -88,6 +88,8 @@ def resolve(path: str, tree: Any, metrics: Mapping[str, Quantity] | None = None)
             "write e.g. cylinder.bore or barrel.layup[0].angle",
         )
     head, _, rest = path.partition(".")
+    if rest and head == "choices":
+        raise ValueFault(f"{path}: is a list, not a value", "change the list in the file")
     if rest and head in ("variables", "requirements", "materials", "waivers", "objective"):
         return _resolve_table(head, rest, tree, quantities.METRICS if metrics is None else metrics)
     tokens = [_Token(m[1] or m[2], m[1] is not None) for m in _TOKEN.finditer(path)]

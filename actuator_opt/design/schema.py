@@ -14,7 +14,7 @@ from typing import Any
 
 from .. import quantities, units
 from ..quantities import Quantity
-from . import layup, wishes
+from . import choice_list, layup, wishes
 from .kinds import CaseName, Flag, Kind, MaterialName, Of, PositionKind, Text, example
 from .material import ROLES
 from .model import Design, Ply
@@ -47,6 +47,7 @@ def json_schema(
     schema = _section(Design, materials)
     properties = schema["properties"]
     properties["variables"] |= _variables(definitions)
+    properties["choices"] |= _choices()
     properties["requirements"] |= _requirements(metrics, definitions)
     properties["objective"] |= _objective(metrics)
     properties["waivers"] |= _waivers(metrics)
@@ -221,20 +222,37 @@ def _snippet(entry: Entry) -> Any:
     return entry.kind.example if entry.kind is not None else ""
 
 
-def _movable(section: type[Section] = Design, prefix: str = "") -> dict[str, Of]:
-    """PATH of every number a variable may move, ``[*]`` standing for the index of a list."""
-    found: dict[str, Of] = {}
+def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, Entry]:
+    """PATH of every value of a part, ``[*]`` standing for the index of a list."""
+    found: dict[str, Entry] = {}
     for name, entry in entries(section).items():
         path = f"{prefix}.{name}" if prefix else name
-        if entry.shape == "list" and entry.section is None:
-            continue
-        if isinstance(entry.kind, Of) and entry.kind.quantity.dimension != "count":
-            found[path] = entry.kind
-        elif entry.section is not None and entry.shape == "section":
-            found |= _movable(entry.section, path)
-        elif entry.section is not None and entry.shape == "list":
-            found |= _movable(entry.section, f"{path}[*]")
+        if entry.section is not None and entry.shape in ("section", "list"):
+            found |= _of_parts(entry.section, path if entry.shape == "section" else f"{path}[*]")
+        elif entry.shape in ("value", "choice") and prefix and not prefix.startswith("objective"):
+            found[path] = entry
     return found
+
+
+def _by_path(schemas: Mapping[str, Schema]) -> Schema:
+    """Properties by PATH; those with an index as patterns, the first ones of a list by name."""
+    properties: Schema = {}
+    patterns: Schema = {}
+    for path, schema in schemas.items():
+        if "[*]" not in path:
+            properties[path] = schema
+            continue
+        head, _, tail = path.partition("[*]")
+        inside = "[0-9]+" if head != "load_cases" else r"[^\[\]]+"
+        patterns[f"^{re.escape(head)}\\[{inside}\\]{re.escape(tail)}$"] = schema
+        for index in range(_LISTED.get(head, 0)):
+            listed = f"{head}[{index}]{tail}"
+            properties[listed] = schema | {"title": listed}
+    return {
+        "additionalProperties": False,
+        "properties": properties,
+        "patternProperties": patterns,
+    }
 
 
 def _bounds(kind: Of, path: str, definitions: Schema) -> Schema:
@@ -253,25 +271,33 @@ def _bounds(kind: Of, path: str, definitions: Schema) -> Schema:
 
 
 def _variables(definitions: Schema) -> Schema:
-    properties: Schema = {}
-    patterns: Schema = {}
-    for path, kind in _movable().items():
-        if "[*]" not in path:
-            properties[path] = _bounds(kind, path, definitions)
-            continue
-        head, _, tail = path.partition("[*]")
-        inside = "[0-9]+" if head != "load_cases" else r"[^\[\]]+"
-        pattern = f"^{re.escape(head)}\\[{inside}\\]{re.escape(tail)}$"
-        patterns[pattern] = _bounds(kind, path, definitions)
-        for index in range(_LISTED.get(head, 0)):
-            listed = f"{head}[{index}]{tail}"
-            properties[listed] = _bounds(kind, listed, definitions)
-    return {
-        "description": "What the optimiser may move: PATH with lower and upper bound.",
-        "additionalProperties": False,
-        "properties": properties,
-        "patternProperties": patterns,
+    movable = {
+        path: _bounds(entry.kind, path, definitions)
+        for path, entry in _of_parts().items()
+        if isinstance(entry.kind, Of) and entry.kind.quantity.dimension != "count"
     }
+    help = "What the optimiser may move: PATH with lower and upper bound."
+    return {"description": help} | _by_path(movable)
+
+
+def _choices() -> Schema:
+    lists: dict[str, Schema] = {}
+    for path, entry in _of_parts().items():
+        kind = entry.kind
+        if isinstance(kind, Text) and not isinstance(kind, MaterialName):
+            continue
+        place = path.replace("[*]", ".items").replace(".", "/properties/")
+        place = place.replace("/properties/items", "/items")
+        lists[path] = {
+            "title": path,
+            "type": "array",
+            "minItems": 1,
+            "maxItems": choice_list.MOST_VALUES,
+            "uniqueItems": True,
+            "items": {"$ref": f"#/properties/{place}"},
+        }
+    help = "What the optimiser may choose among: PATH with a list of allowed values."
+    return {"description": help} | _by_path(lists)
 
 
 def _requirements(metrics: Mapping[str, Quantity], definitions: Schema) -> Schema:

@@ -236,4 +236,48 @@ def profiles(view: View) -> Iterator[Fault]:
                 )
 
 
-CHECKS = (fields, widths, grooves, squeeze, profiles)
+def reach(view: View) -> Iterator[Fault]:
+    """Stated profiles reach from no pressure to the supply's."""
+    supply, text = view.number("supply", "pressure"), INPUTS["pressure"].text
+    for loc in elements(view):
+        count = len(view.items(*loc, "contact"))
+        first = view.number(*loc, "contact", 0, "pressure")
+        last = view.number(*loc, "contact", count - 1, "pressure")
+        if first is not None and first > 0:
+            yield Fault(
+                (*loc, "contact", 0, "pressure"),
+                f"{text(first)}: the contact without pressure is not stated",
+                "add the profile at 0 bar before it",
+            )
+        if last is not None and supply is not None and last < supply * (1 - 1e-9):
+            yield Fault(
+                (*loc, "contact", count - 1, "pressure"),
+                f"{text(last)}: the profiles end below supply.pressure ({text(supply)})",
+                "add a profile at the supply pressure",
+            )
+
+
+def films(view: View) -> Iterator[Fault]:
+    """A film is asked of both elements of a pair or of none, and of single rings."""
+    for name in ("piston", "rod"):
+        both: list[Loc] = [("seals", name)]
+        if view.has("seals", name, "secondary"):
+            both.append(("seals", name, "secondary"))
+        models = [view.text(*loc, "friction") for loc in both]
+        if len(set(models)) > 1:
+            yield Fault(
+                (*both[1], "friction"),
+                f"{models[1]}, while seals.{name}.friction is {models[0]}",
+                "write the same for both: they share the oil",
+            )
+        for loc in both:
+            count = view.number(*loc, "count")
+            if view.text(*loc, "friction") == "film" and count is not None and count != 1:
+                yield Fault(
+                    (*loc, "count"),
+                    f"{count:g} rings in a row: a film is known of one ring or of a pair",
+                    "write count: 1, and a block secondary for the second ring",
+                )
+
+
+CHECKS = (fields, widths, grooves, squeeze, profiles, reach, films)

@@ -72,8 +72,12 @@ class SealElement(Section):
         ),
     ] = None
     taper: Annotated[
-        float, Of("taper", "angle between the flanks of a step ring's land and its counterface")
-    ] = 0.1
+        float | None,
+        Of(
+            "taper",
+            "angle between the flanks of a step ring's land and its counterface; default: 6 deg",
+        ),
+    ] = None
     root_clearance: Annotated[
         float | None,
         Of("length", "gap under a U-cup's lip where it leaves the body; default: its interference"),

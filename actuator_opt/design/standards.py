@@ -62,7 +62,8 @@ class ORing:
 class Gland:
     """The groove of an O-ring: depth is the radial room of the ring, rod or bore included.
 
-    A table without tolerances gives equal limits and no radii (0).
+    A table without tolerances gives equal limits and no radii (0). `back_up_widths` are the least
+    and the largest width with one back-up ring and with two; empty where the table has none.
     """
 
     use: str
@@ -78,6 +79,7 @@ class Gland:
     interpolated: bool
     confidence: str
     source: str
+    back_up_widths: tuple[tuple[float, float], ...] = ()
 
     @property
     def depth(self) -> float:
@@ -88,6 +90,19 @@ class Gland:
     def width(self) -> float:
         """Mid-tolerance width."""
         return (self.width_min + self.width_max) / 2
+
+    def widths(self, back_up_rings: int = 0) -> tuple[float, float]:
+        """Least and largest width with so many back-up rings.
+
+        Raises
+        ------
+        InputError : the table has no width for that number
+        """
+        known = ((self.width_min, self.width_max), *self.back_up_widths)
+        if not 0 <= back_up_rings < len(known):
+            message = f"no width with {back_up_rings} back-up rings in the {self.table} table"
+            raise InputError(Diagnostic(message, f"it has widths for 0 to {len(known) - 1}"))
+        return known[back_up_rings]
 
     @property
     def squeeze(self) -> float:
@@ -108,7 +123,8 @@ class Gland:
 
 
 @functools.lru_cache(maxsize=1)
-def _tables() -> Mapping[str, Any]:
+def tables() -> Mapping[str, Any]:
+    """Everything of ``standards.yaml``, numbers as text."""
     path = store.data_folder("materials") / "standards.yaml"
     text = yaml_source.decode(path.read_bytes(), str(path))
     document = yaml_source.parse(text, str(path))
@@ -117,23 +133,24 @@ def _tables() -> Mapping[str, Any]:
     return document.data
 
 
-def _mm(text: str) -> float:
+def metres(text: str) -> float:
     """Length in m of a number in mm, as exact as the decimal text."""
     return float(f"{text}e-3")
 
 
-def _source(key: str) -> str:
-    return str(_tables()["sources"][key])
+def citation(key: str) -> str:
+    """Source behind a key of the tables."""
+    return str(tables()["sources"][key])
 
 
 @functools.cache
 def _series(kind: str) -> tuple[StandardSize, ...]:
-    table = _tables()[kind]
-    source = _source(table["source"])
+    table = tables()[kind]
+    source = citation(table["source"])
     return tuple(
         sorted(
             (
-                StandardSize(_mm(text), confidence, source)
+                StandardSize(metres(text), confidence, source)
                 for confidence in ("verified", "secondary", "unverified")
                 for text in table.get(confidence, ())
             ),
@@ -157,10 +174,10 @@ def cylinder_pairs(series: str | None = None) -> tuple[CylinderPair, ...]:
     """Bore and rod pairs of ISO 6020-2 (160 bar) and ISO 6022 (250 bar); of one series if named."""
     return tuple(
         CylinderPair(
-            group["series"], _mm(bore), _mm(rod),
-            float(group["pressure_bar"]) * 1e5, group["confidence"], _source(group["source"]),
+            group["series"], metres(bore), metres(rod),
+            float(group["pressure_bar"]) * 1e5, group["confidence"], citation(group["source"]),
         )
-        for group in _tables()["cylinder_pairs"]
+        for group in tables()["cylinder_pairs"]
         if series in (None, group["series"])
         for bore, rod in group["rows"]
     )  # fmt: skip
@@ -169,34 +186,61 @@ def cylinder_pairs(series: str | None = None) -> tuple[CylinderPair, ...]:
 @functools.cache
 def o_rings() -> tuple[ORing, ...]:
     """GB/T 3452.1 series G rings, by section, then inside diameter, m."""
-    table = _tables()["o_rings"]
-    source = _source(table["source"])
+    table = tables()["o_rings"]
+    source = citation(table["source"])
     return tuple(
-        ORing(_mm(inside), _mm(group["section"]), _mm(group["tolerance"]),
+        ORing(metres(inside), metres(group["section"]), metres(group["tolerance"]),
               table["confidence"], source)
         for group in table["series"]
         for inside in group["inside_diameters"]
     )  # fmt: skip
 
 
+def section_tolerance(section: float) -> StandardSize:
+    """Tolerance (both ways, m) of a ring's free section, m: its own of ISO 3601-1, else the band's.
+
+    Raises
+    ------
+    InputError : the section is thicker than the bands
+    """
+    own, bands = tables()["section_tolerances"], tables()["section_tolerance_bands"]
+    for size, tolerance in own["rows"]:
+        if abs(metres(size) - section) <= _SAME * section:
+            return StandardSize(metres(tolerance), own["confidence"], citation(own["source"]))
+    for size, tolerance in bands["rows"]:
+        if section <= metres(size) * (1 + 1e-9):
+            return StandardSize(metres(tolerance), bands["confidence"], citation(bands["source"]))
+    message = f"no tolerance for a section of {section * 1e3:.4g} mm"
+    raise InputError(Diagnostic(message, "the bands end at 8.4 mm"))
+
+
 @functools.cache
 def glands(use: Use, table: str | None = None) -> tuple[Gland, ...]:
-    """Tabulated glands of a use, ascending by section; ``as568`` or ``metric`` or both."""
+    """Tabulated glands of a use, ascending by section.
+
+    Of the table ``as568``, ``metric`` or ``series_g`` (moving hydraulic seals only); without a
+    table of the first two.
+    """
     found: list[Gland] = []
-    for name in ("as568", "metric"):
-        if table not in (None, name):
-            continue
-        data = _tables()[f"glands_{name}"]
-        confidence, source = data["confidence"], _source(data["source"])
-        for row in data[use]:
-            numbers = [_mm(text) for text in row]
+    for name in ("as568", "metric") if table is None else (table,):
+        data = tables()[f"glands_{name}"]
+        wide = tables().get(f"back_up_{name}")
+        back_up = wide["rows"] if wide else ()
+        confidence, source = data["confidence"], citation(data["source"])
+        if wide and wide["source"] != data["source"]:
+            source += f"; with back-up rings: {citation(wide['source'])}"
+        for row in data.get(use, ()):
+            numbers = [metres(text) for text in row]
             if name == "metric":
                 section, depth, width = numbers
                 numbers = [section, 0.0, depth, depth, width, width, 0.0, 0.0]
             w, tolerance, d0, d1, g0, g1, r0, r1 = numbers
+            wider = [list(map(metres, other[1:])) for other in back_up if other[0] == row[0]]
+            pairs = tuple((other[i], other[i + 1]) for other in wider for i in (0, 2))
             found.append(
-                Gland(use, name, w, tolerance, d0, d1, g0, g1, r0, r1, False, confidence, source)
-            )
+                Gland(use, name, w, tolerance, d0, d1, g0, g1, r0, r1,
+                      False, confidence, source, pairs)
+            )  # fmt: skip
     return tuple(sorted(found, key=lambda gland: (gland.section, gland.table)))
 
 
@@ -212,12 +256,15 @@ def gland(section: float, use: Use = "reciprocating", *, table: str | None = Non
     ----------
     section : free section, m
     use : ``reciprocating`` or ``static``
-    table : ``as568`` or ``metric``; default: AS568 for its own sections, else metric
+    table : ``as568``, ``metric`` or ``series_g``; default: AS568 for its own sections, else metric
 
     Raises
     ------
-    InputError : the section lies outside the tables
+    InputError : the section lies outside the tables, or the table has no glands of that use
     """
+    if table is not None and not glands(use, table):
+        message = f"the {table} table has no {use} glands"
+        raise InputError(Diagnostic(message, "leave the table out"))
     for rows in (glands(use, table or "as568"), glands(use, table or "metric")):
         nearest = min(rows, key=lambda row: abs(row.section - section))
         if abs(nearest.section - section) <= _SAME * nearest.section:
@@ -242,6 +289,10 @@ def _between(rows: Sequence[Gland], section: float) -> Gland:
         first.use, first.table, section, mix("section_tolerance"),
         mix("depth_min"), mix("depth_max"), mix("width_min"), mix("width_max"),
         mix("radius_min"), mix("radius_max"), True, first.confidence, first.source,
+        tuple(
+            (low[0] + share * (high[0] - low[0]), low[1] + share * (high[1] - low[1]))
+            for low, high in zip(first.back_up_widths, second.back_up_widths, strict=True)
+        ),
     )  # fmt: skip
 
 

@@ -162,6 +162,10 @@ variables:                     # what the optimiser may move; everything else is
     lower: 3 mm
     upper: 12 mm
 
+# choices:                     # what it may choose among: PATH with the values allowed; every
+#   seals.rod.compound: [nbr_70, hnbr_75]      # combination is optimised, the best one kept
+#   seals.rod.section: [2.62 mm, 3.53 mm]
+
 requirements:                  # METRIC with min and/or max; every metric: actuator-opt schema
   stiffness_min:
     min: 4 kN/mm

@@ -83,7 +83,7 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
         return
     for path, bounds in block.items():
         loc = ("variables", path)
-        if _in_faulty_block(path, tree):
+        if in_faulty_block(path, tree):
             block[path] = {"lower": 0.0, "upper": 1.0, "start": 0.0}  # the block's fault is enough
             continue
         try:
@@ -103,7 +103,7 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
         yield from _start(loc, bounds, target, tree)
 
 
-def _in_faulty_block(path: str, tree: dict[str, Any]) -> bool:
+def in_faulty_block(path: str, tree: dict[str, Any]) -> bool:
     """Whether the block a PATH lies in is missing or no block: a fault of its own, said there."""
     name = path.partition(".")[0]
     entry = entries(Design).get(name)

@@ -17,6 +17,7 @@ from ..errors import InputError
 from ..quantities import Quantity
 from . import layup
 from .build import build, to_tree
+from .choice_list import quantity_of_choice
 from .kinds import Flag, Fraction
 from .model import Design
 from .paths import resolve
@@ -120,6 +121,8 @@ class _Leaves:
         head = loc[0]
         if head == "variables":
             return resolve(str(loc[1]), self.design, self.metrics).quantity
+        if head == "choices":
+            return quantity_of_choice(str(loc[1]), value, self.design)
         if head == "requirements":
             return self.metrics[str(loc[1])]
         if head == "materials":

@@ -143,7 +143,9 @@ def evaluate(subject: Subject) -> Evaluation:
         checks=checks,
         warnings=tuple(dict.fromkeys(text for _, text in warnings)),
         unverified=tuple(doubts.unverified(subject, v)),
-        models=tuple(doubts.models(metrics, subject, outside, [t for _, t in warnings])),
+        models=tuple(
+            doubts.models(metrics, subject, done.rings, outside, [t for _, t in warnings])
+        ),
         mass_parts={name: float(np.squeeze(m)) for name, m in done.mass_parts.items()},
         curve=_curve(done, v, metrics["stiffness_min"].case),
         outlines=outline.outlines(design, subject.materials, done.geometry),

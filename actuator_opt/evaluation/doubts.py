@@ -6,15 +6,15 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..design.material import compatible
 from ..design.model import PLAIN_CAP
-from ..models import elastomer, laminate, seals
-from . import motion_range, oil, oil_range, springs
+from ..models import laminate
+from . import motion_range, oil, oil_range, seal_doubts, springs
 from .barrel import LAMINATES, kind
 from .beam import NEAR
 from .kernel import Pass, Subject
 from .provenance import describe, model_of
 from .result import Metric, ModelUse, Unverified
+from .rings import Ring
 from .values import Values
 
 LONGEST_LIFE = 1e9
@@ -74,7 +74,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
         )
     section = subject.design.fluid
     yield from oil_range.warnings(section, subject.materials[section.material], v.cases, done.state)
-    yield from _seal_warnings(subject, v, done)
+    yield from seal_doubts.warnings(subject, v, done)
     yield from springs.warnings(done.springs)
     yield from motion_range.warnings(v, subject.design, done.motion, done.state, done.computed)
     if done.wall.missing:
@@ -171,43 +171,16 @@ def _bond_warnings(done: Pass) -> Iterable[tuple[str, str]]:
         )
 
 
-def _seal_warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
-    design = subject.design
-    pressures = {
-        "piston": done.state.moving_a - done.state.moving_b,
-        "rod": done.state.moving_b,
-    }
-    for name, pressure in pressures.items():
-        section = getattr(design.seals, name)
-        law = seals.LAWS[section.law]
-        modulus = elastomer.MODULUS_LAWS[section.hardness_model].modulus(
-            hardness=v[f"materials.{section.compound}.hardness"]
-        )
-        ratio = float(np.max(np.abs(pressure))) / modulus
-        low, high = law.squeeze_range
-        if not low <= section.squeeze <= high:
-            yield (
-                "friction_running",
-                f"{name} seal: squeeze {100 * section.squeeze:.3g} % outside the "
-                f"{100 * low:.0f}-{100 * high:.0f} % the {law.name} law was compared with data on",
-            )
-        if ratio > law.pressure_range[1]:
-            yield (
-                "friction_running",
-                f"{name} seal: pressure is {ratio:.1f} times Young's modulus, the {law.name} law "
-                f"was compared with data up to {law.pressure_range[1]:g}",
-            )
-        liquid, compound = design.fluid.material, section.compound
-        if compatible(subject.materials[liquid], subject.materials[compound]) is False:
-            yield "", f"{name} seal: {compound} does not withstand {liquid}"
-
-
 SOURCES = frozenset({"bore_growth", "first_ply_factor", "burst_factor", "cycle_life"})
 """Metrics whose own model, not one before it, is what a warning is about."""
 
 
 def models(
-    metrics: dict[str, Metric], subject: Subject, outside: set[str], said: Iterable[str]
+    metrics: dict[str, Metric],
+    subject: Subject,
+    rings: tuple[Ring, ...],
+    outside: set[str],
+    said: Iterable[str],
 ) -> Iterable[ModelUse]:
     """Every model behind a computed metric, with the values it gave.
 
@@ -236,20 +209,7 @@ def models(
             and (model.name not in seen or seen[model.name].in_range),
         )
     yield from seen.values()
-    for place, section in (
-        ("piston", subject.design.seals.piston),
-        ("rod", subject.design.seals.rod),
-    ):
-        law = seals.LAWS[section.law]
-        low, high = law.squeeze_range
-        yield ModelUse(
-            f"seals.{law.name}",
-            f"O-ring contact law of the {place} seal, modulus by {section.hardness_model}",
-            law.reference,
-            f"squeeze {100 * low:.0f} to {100 * high:.0f} %, p/E up to {law.pressure_range[1]:g}",
-            f"squeeze {100 * section.squeeze:.4g} %",
-            not any(text.startswith(f"{place} seal") for text in said),
-        )
+    yield from seal_doubts.models(rings, subject, said)
     liquid = subject.design.fluid
     for function, what in oil.laws(liquid, subject.materials[liquid.material]):
         model = describe(function)

@@ -7,7 +7,7 @@ flow ([Huang2017] eq. 17).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan
 
 import numpy as np
@@ -251,17 +251,28 @@ def slopes(solved: Solved, names: Sequence[str]) -> dict[str, np.ndarray]:
     if len(row.rings) == 2:
         stepped.append(row.at(point).contacts(solved.between * (1 + 1j * STEP)))
     by_film = [
-        sensitivities(film, [step[i] for step in stepped]) for i, film in enumerate(solved.films)
+        sensitivities(film, [_as_starved(step[i], film.contact) for step in stepped])
+        for i, film in enumerate(solved.films)
     ]
     moved = np.zeros(len(names))
-    if len(row.rings) == 2:
+    if solved.pair is not None and solved.pair.cavitation == 0:
         # flows stay equal: d between = -(d surplus)/(d surplus/d between), per ln between
         surplus = by_film[0][:, 2] - by_film[1][:, 2]
         moved = -surplus[:-1] / surplus[-1]
         by_film = [rows[:-1] + np.outer(moved, rows[-1]) for rows in by_film]
+    # a starved room stays at the cavitation pressure: nothing moves between the rings
     sign = 1.0 if row.outward else -1.0
     found = {}
     for k, name in enumerate(names):
         parts = [[sign * rows[k, 0], rows[k, 1], rows[k, 3]] for rows in by_film]
         found[name] = np.array([*np.ravel(parts), by_film[0][k, 2], moved[k] * solved.between])
     return found
+
+
+def _as_starved(contact: Contact, solved: Contact) -> Contact:
+    """A contact with the oil missing at its ends as it was solved."""
+    return replace(
+        contact,
+        sealed_cavitation=solved.sealed_cavitation,
+        outer_cavitation=solved.outer_cavitation,
+    )

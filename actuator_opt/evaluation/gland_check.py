@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ..design.housings import extrusion_tables
+from ..design.material import Material
 from ..design.model import Design
 from ..models import extrusion, gland, gland_range
 from ..numeric import Array, maximum, minimum, real, where
@@ -30,8 +33,9 @@ def metrics(
 ) -> dict[str, Array]:
     """Gland metrics of a ring; `growth` is the largest of the bore over it.
 
-    Squeeze and fill are those of the worst tolerances in heat and cold; side load pushes the rod
-    over, so that one side has the clearance more and the other less.
+    Squeeze and fill are those of the worst tolerances in heat and cold, rod and bore concentric,
+    as gland tables state them. Side load pushes the rod over: the gap of one side is then the
+    clearance larger (and the squeeze smaller, as the seal sheet shows).
     """
     clearance, aside = clearances(geometry, state, ring)
     cold, hot = (
@@ -41,25 +45,24 @@ def metrics(
         for end in ("min", "max")
     )
     least, most = minimum(cold, hot), maximum(cold, hot)
-    round_ring = {"seal_stretch": ring["stretch"], "seal_section": ring["section"]}
-    return (round_ring if ring.element.type == "o_ring" else {}) | {
-        "seal_squeeze": squeezes(ring, growth=growth, aside=aside, ratio=least)[0],
-        "seal_squeeze_max": squeezes(ring, growth=0.0, aside=aside, ratio=most)[1],
-        "seal_fill": _fill(ring) * most,
-        "extrusion_factor": _extrusion(v, stock, ring, clearance + aside + growth),
-    }
+    found = {"extrusion_factor": _extrusion(v, stock, ring, clearance + aside + growth)}
+    if ring.element.type in ("o_ring", "step_ring"):  # limits of squeeze are of round rings
+        found["seal_squeeze"] = squeezes(ring, growth=growth, aside=0.0, ratio=least)[0]
+        found["seal_squeeze_max"] = squeezes(ring, growth=0.0, aside=0.0, ratio=most)[1]
+    if ring.element.type == "o_ring":
+        found["seal_fill"] = _fill(ring) * most
+        found["seal_stretch"] = ring["stretch"]
+        found["seal_section"] = ring["section"]
+    return found
 
 
 def _fill(ring: Ring) -> Array:
-    """Share of the groove, as shallow as its tolerance allows, that lies filled at assembly."""
-    depth = ring["gland_depth"] - ring["tolerance"]
-    if ring.element.type != "o_ring":
-        return sum(area for _, area in ring.groove.areas) / (ring["groove_width"] * depth)
+    """Share of an O-ring's groove, at its shallowest, that the ring fills at assembly."""
     backs = sum(area for _, area in ring.groove.areas[1:]) / ring["gland_depth"]
     return gland.gland_fill(
         section=gland.stretched_section(section=ring["section"], stretch=ring["stretch"]),
         groove_width=ring["groove_width"] - backs,
-        gland_depth=depth,
+        gland_depth=ring["gland_depth"] - ring["tolerance"],
     )
 
 
@@ -134,15 +137,15 @@ def _stated(stock: Stock, name: str, pressure: Array) -> Array:
     return scale * extrusion.gap_limit(pressure=pressure, points=points)
 
 
-def extrusion_end(ring: Ring, stock: Stock) -> float:
+def extrusion_end(ring: Ring, materials: Mapping[str, Material]) -> float:
     """Highest pressure at which a limit of the gap is known for a ring."""
     ends = []
     for name in (ring.element.compound, ring.element.back_up_material):
-        limit = None if name is None else stock.material(name).properties.get("extrusion_gap_max")
+        limit = None if name is None else materials[name].properties.get("extrusion_gap_max")
         if limit is not None and limit.points:
             ends.append(limit.arguments[-1])
     if not ends:
-        hardness = float(stock.get(ring.element.compound, "hardness"))
+        hardness = materials[ring.element.compound].numbers["hardness"]
         table = extrusion_tables()[EXTRUSION_TABLE].rows
         ends.append(float(extrusion.extrusion_pressure_end(hardness=hardness, table=table)))
     return max(ends)

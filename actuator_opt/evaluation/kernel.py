@@ -88,6 +88,7 @@ class Pass:
     geometry: Geometry
     state: State
     wall: Wall
+    rings: tuple[Ring, ...]
     rod: Rod
     beam: Beam
     springs: springs.Springs
@@ -168,7 +169,9 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         out.put("closed_length", g.closed_length)
         for plugin in subject.plugins:
             out.put(plugin.name, plugin.call(v, out.metrics))
-    return Pass(out, g, case_state, barrel, rod, beam, budget, linear, weakest, places, parts)
+    return Pass(
+        out, g, case_state, barrel, rings, rod, beam, budget, linear, weakest, places, parts
+    )
 
 
 def _films(subject: Subject) -> dict[Key, Table]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -169,6 +170,9 @@ def _numbers(
     return numbers
 
 
+TAPER = math.radians(6.0)
+"""Taper beside a step ring's land where none is stated: a choice."""
+
 INCOMPRESSIBLE = 0.495
 """Poisson's ratio of rubber whose compound states none (0.49 to 0.499 in use)."""
 
@@ -185,7 +189,7 @@ def _shape(v: Values, element: SealElement, groove: Groove) -> dict[str, Array]:
         shape["thickness"] = v[f"{at}thickness"]
     if element.type == "step_ring":
         shape["relief"] = v.get(f"{at}relief", (width - shape["land"]) / 2)
-        shape["taper"] = v[f"{at}taper"]
+        shape["taper"] = v.get(f"{at}taper", TAPER)
     if element.type == "u_cup":
         interference = lip_seal.lip_interference(
             section=groove.section, gland_depth=groove.gland_depth

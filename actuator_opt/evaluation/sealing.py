@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..design.model import Design
 from ..design.seals import Wiper
-from ..models import damping, friction, gland, guide_ring, lip_seal
+from ..models import damping, friction, gland, guide_ring, lip_seal, wear
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array, maximum, real, where
 from . import gland_check
@@ -64,7 +64,11 @@ def compute(
         rows = gland_check.metrics(v, design, stock, geometry, state, ring, grown) | {
             "contact_width": contact.width,
             "contact_pressure": contact.peak,
-            "seal_wear": 2 * geometry.stroke * _mean_pressure(contact),
+            "seal_wear": wear.sliding_severity(
+                line_load=contact.line_load,
+                contact_width=contact.width,
+                distance=2 * geometry.stroke,
+            ),
         }
         if ring.element.friction == "film":
             film = films.get(ring.label)
@@ -78,6 +82,8 @@ def compute(
     total = total + _beside(v, design, geometry, state)
     for metric, by_place in by_metric.items():
         out.put(metric, by_place)
+    for name in ("seal_squeeze", "seal_squeeze_max", "seal_fill", "seal_stretch", "seal_section"):
+        out.skip(name, "no O-ring runs here")
     gap = gland.extrusion_gap(clearance=geometry.piston_clearance, growth=full_growth)
     out.put("seal_gap", gap)
     out.put("growth_at_seal", full_growth)
@@ -131,12 +137,6 @@ def compute_film(
     out.skip("film_thickness", 'needs the oil film: write "friction: film" in a seal')
     out.skip("rod_leakage", asked)
     out.skip("inter_seal_pressure", f"{asked} and add seals.rod.secondary")
-
-
-def _mean_pressure(contact: Touch) -> Array:
-    """Line load over width; 0 without contact."""
-    touching = real(contact.width) > 0
-    return where(touching, contact.line_load / where(touching, contact.width, 1.0), 0.0)
 
 
 def _row_load(ring: Ring, contact: Touch) -> Array:

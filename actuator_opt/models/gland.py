@@ -251,3 +251,63 @@ def groove_width(*, section: Array) -> Array:
     4.82 mm
     """
     return where(real(section) > 0, WIDTH_RATIO * section, 0 * section + float("nan"))
+
+
+def back_up_groove_width(*, groove_width: Array, thickness: Array, count: Array) -> Array:
+    """Groove width with back-up rings, g + n t.
+
+    Parameters
+    ----------
+    groove_width : of the ring alone g [m]
+    thickness : axial, of one back-up ring with its play t [m]
+    count : number of back-up rings n [-]
+
+    Returns
+    -------
+    groove width [m]
+
+    Notes
+    -----
+    Valid: rectangular groove, back-up rings beside the ring.
+
+    References
+    ----------
+    [derived] lengths added up
+
+    Examples
+    --------
+    >>> width = back_up_groove_width(groove_width=4.8e-3, thickness=1.4e-3, count=2)
+    >>> print(f"{width * 1e3:.1f} mm")
+    7.6 mm
+    """
+    return groove_width + count * thickness
+
+
+def ring_stretch(*, housing_diameter: Array, inside_diameter: Array) -> Array:
+    """Stretch of a ring on its groove or rod, e = D/d - 1.
+
+    Parameters
+    ----------
+    housing_diameter : that the ring's inner side lies on: groove bottom or rod D [m]
+    inside_diameter : free, of the ring d [m], > 0
+
+    Returns
+    -------
+    stretch [-]; < 0: the ring lies loose or is compressed
+
+    Notes
+    -----
+    Valid: d > 0, else NaN.
+
+    References
+    ----------
+    [derived] circumference in place over the free one
+
+    Examples
+    --------
+    >>> print(f"{ring_stretch(housing_diameter=25.5e-3, inside_diameter=25e-3):.3f}")
+    0.020
+    """
+    valid = real(inside_diameter) > 0
+    safe = where(valid, inside_diameter, 0 * inside_diameter + 1)
+    return where(valid, housing_diameter / safe - 1, 0 * inside_diameter + math.nan)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from math import isfinite
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
+from ..design import choice_list
 from ..design.model import Design
 from ..evaluation.result import Evaluation
 from ..quantities import INPUTS
@@ -165,6 +166,78 @@ class Rounding:
         }
 
 
+How: TypeAlias = Literal["multistart", "quick", "evaluated", "not possible", "not tried"]
+"""How much a combination was looked into."""
+
+
+@dataclass(frozen=True, slots=True)
+class Combination:
+    """One combination of the choices and the best design found with it.
+
+    `how`: "multistart" solved from many starts like any optimisation, "quick" only from the
+    nearest design already known (its best may be missed), "evaluated" where nothing else may
+    move, "not possible" where its values contradict each other, "not tried" where the time was
+    up. `feasible` tells that every requirement is met; `cost` is how much worse than the best the
+    objective is (in its SI unit), `percent` over the best; None where there is nothing to compare.
+    """
+
+    values: Mapping[str, choice_list.Value]
+    how: How
+    feasible: bool
+    status: str
+    objective: float | None = None
+    cost: float | None = None
+    percent: float | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """The combination in JSON (SI)."""
+        values = {path: choice_list.plain(value) for path, value in self.values.items()}
+        return asdict(self) | {"values": values}
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """Every combination of the choices, the best first: the design found is that of the first."""
+
+    sentence: str
+    combinations: tuple[Combination, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def best(self) -> Mapping[str, choice_list.Value]:
+        """The chosen values by PATH."""
+        return self.combinations[0].values
+
+    def count(self, *how: How) -> int:
+        """Number of combinations looked into in these ways."""
+        return sum(one.how in how for one in self.combinations)
+
+    @property
+    def tried(self) -> int:
+        """Number of combinations that were solved, or evaluated where nothing else may move."""
+        return self.count("multistart", "quick", "evaluated")
+
+    @property
+    def feasible(self) -> int:
+        """Number of combinations that meet every requirement."""
+        return sum(one.feasible for one in self.combinations)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The "choices" of `optimise --json` (SI)."""
+        first, *others = (one.to_dict() for one in self.combinations)
+        return {
+            "outcome": self.sentence,
+            "combinations": len(self.combinations),
+            "tried": self.tried,
+            "feasible": self.feasible,
+            "complete": self.count("not tried") == 0,
+            "best": first.pop("values"),
+            "found": first,
+            "runners_up": others,
+            "notes": list(self.notes),
+        }
+
+
 @dataclass(frozen=True, slots=True)
 class Optimisation:
     """The best design found, how good it is, and what each requirement costs."""
@@ -194,6 +267,8 @@ class Optimisation:
     certificate: None = None
     rounding: Rounding | None = None
     """The best design of whole plies, where it was asked for and a continuous one exists."""
+    choices: Choices | None = None
+    """Every combination of the design's choices, where it has some."""
 
     @property
     def best(self) -> Design:
@@ -262,6 +337,7 @@ class Optimisation:
                 ],
                 "certificate": self.certificate,
                 "rounding": None if self.rounding is None else self.rounding.to_dict(),
+                "choices": None if self.choices is None else self.choices.to_dict(),
                 "evaluations": self.evaluations,
                 "algorithm": self.algorithm,
                 "seed": self.seed,

@@ -18,10 +18,12 @@ from ..quantities import Quantity
 from ..units import unit
 from . import prices as pricing
 from .actuator import ActuatorProblem, Fault, build
+from .choice_record import record
+from .choices import Search, Settings, search
 from .infeasibility import Infeasibility as Explanation
 from .infeasibility import explain
 from .outcome import Outcome, Solution
-from .result import Infeasibility, Kkt, Optimisation, Rounding, Sensitivity, VariableResult
+from .result import Choices, Infeasibility, Kkt, Optimisation, Rounding, Sensitivity, VariableResult
 from .rounding import design_at, listed_variables, rounded
 from .solver import solve
 
@@ -64,19 +66,29 @@ def optimise(
     whole_plies : whether to look for the best design of whole plies and allowed angles too
     """
     began = time.perf_counter()
-    actuator = build(subject, fault)
+    until = None if max_seconds is None else began + max_seconds
     listed = listed_variables(subject.design, fault) if whole_plies else ()
-    solution = solve(
-        actuator.problem,
-        algorithm=algorithm,
-        starts=starts,
-        samples=SAMPLES,
-        seed=seed,
-        max_seconds=max_seconds,
-    )
+    choices: Choices | None = None
+    if subject.design.choices:
+        settings = Settings(algorithm, starts, SAMPLES, seed, until)
+        found = search(subject, settings)
+        choices, best = record(found, subject.design), found.ranked()[0]
+        if best.actuator is None or best.solution is None:
+            return _enumerated(subject, found, choices, seed, began)
+        actuator, solution = best.actuator, best.solution
+        listed = listed_variables(actuator.subject.design, fault) if whole_plies else ()
+    else:
+        actuator = build(subject, fault)
+        solution = solve(
+            actuator.problem,
+            algorithm=algorithm,
+            starts=starts,
+            samples=SAMPLES,
+            seed=seed,
+            max_seconds=max_seconds,
+        )
     rounding: Rounding | None = None
     if listed and solution.feasible:
-        until = None if max_seconds is None else began + max_seconds
         rounding, solution = rounded(actuator, solution, listed, until=until, seed=seed)
     why, solution = _explained(actuator, solution)
     design, evaluation = design_at(actuator, solution.x)
@@ -106,6 +118,41 @@ def optimise(
         seed=seed,
         seconds=time.perf_counter() - began,
         rounding=rounding,
+        choices=choices,
+    )
+
+
+def _enumerated(
+    subject: Subject, found: Search, choices: Choices, seed: int, began: float
+) -> Optimisation:
+    """The best combination of the choices, where nothing else may move."""
+    best = found.ranked()[0]
+    assert best.subject is not None
+    status, remedy = "optimal", ""
+    if not best.feasible:
+        status, remedy = "infeasible", "relax the requirement it misses, or add values to choices"
+    return Optimisation(
+        status=status,
+        sentence=choices.sentence,
+        remedy=remedy,
+        objective_metric=found.goal.single or "weighted",
+        objective_value=found.goal.shown(best.objective),
+        design=best.subject.design,
+        evaluation=evaluate(best.subject),
+        start=evaluate(subject),
+        variables=(),
+        kkt=None,
+        sensitivities=(),
+        infeasibility=None,
+        evaluations=choices.tried,
+        samples=0,
+        starts=(),
+        trace=(),
+        algorithm="enumeration of the choices",
+        warnings=(),
+        seed=seed,
+        seconds=time.perf_counter() - began,
+        choices=choices,
     )
 
 

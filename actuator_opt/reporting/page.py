@@ -7,7 +7,16 @@ from typing import Any
 
 from ..evaluation.result import Evaluation
 from ..optimisation.result import Optimisation
-from . import dynamics_page, optimum, stiffness_page, tables, text, wall, whole_plies
+from . import (
+    choices_table,
+    dynamics_page,
+    optimum,
+    stiffness_page,
+    tables,
+    text,
+    wall,
+    whole_plies,
+)
 from .blocks import Block, ExtraTable, clean, listing, notes, short, soft
 from .drawing import section
 
@@ -128,6 +137,8 @@ def page(
     if optimisation is not None and optimisation.infeasibility is not None:
         blocks += optimum.infeasibility(optimisation.infeasibility)
     blocks.append(tables.requirements(evaluation))
+    if optimisation is not None and (chosen := choices_table.block(optimisation)) is not None:
+        blocks.append(chosen)
     if optimisation is not None and optimisation.variables:
         blocks.append(optimum.variables(optimisation))
         rounding = whole_plies.block(optimisation)

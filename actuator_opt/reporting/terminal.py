@@ -10,7 +10,7 @@ from typing import TypedDict
 
 from ..evaluation.result import Evaluation, Requirement, StrokeCurve
 from ..optimisation.result import Infeasibility, Optimisation
-from . import optimum, page, plot, stiffness_page, text, whole_plies
+from . import choices_table, optimum, page, plot, stiffness_page, text, whole_plies
 from .console import Column, Console
 from .places import brief
 from .text import DASH
@@ -392,6 +392,7 @@ def optimisation_text(
         sensitivity_table(optimisation, **style) if optimisation.sensitivities else "",
         checks_table(optimisation.evaluation, **style),
         notes(optimisation.evaluation, **style),
+        choices_table.terminal(optimisation, **style),
         whole_plies.terminal(optimisation, **style),
         "\n".join(console.wrap(s, "dim") for s in optimum.convergence(optimisation)),
     ]

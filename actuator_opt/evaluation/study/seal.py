@@ -6,15 +6,12 @@ Works for every sealing element, whether the design asks for its film or for a c
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import nan, pi
-from typing import Literal
 
 import numpy as np
 
-from ...design.model import Design
 from ...errors import Diagnostic, InputError
-from ...models import damping, elastomer, friction
+from ...models import elastomer, friction
 from ...models.fluid import ATMOSPHERIC_PRESSURE
 from .. import gland_check
 from ..barrel import SEAL_STEP
@@ -22,10 +19,12 @@ from ..film import Row, Solved, solve
 from ..film_tables import floats, of_place
 from ..kernel import Base, Subject, base
 from ..rings import Place, Ring
-from ..touch import Touch, touch
+from ..touch import touch
 from ..values import of_case
+from .seal_record import RingPoint, SealMap, SealPoint, SealStudy, SqueezeRow, Stroke
 
-Stroke = Literal["out", "in"]
+__all__ = ["RingPoint", "SealMap", "SealPoint", "SealStudy", "SqueezeRow", "seal_map", "study"]
+
 HARDNESS_SCATTER = 5.0
 """Scatter of a compound's hardness between batches, Shore A (usual delivery tolerance)."""
 
@@ -35,177 +34,6 @@ CURVE_SPEEDS = tuple(float(v) for v in np.geomspace(1e-4, 1.0, 17))
 MAP_SPEEDS = tuple(float(v) for v in np.geomspace(5e-4, 0.5, 13))
 MAP_SHARES = (0.02, 0.1, 0.25, 0.5, 0.75, 1.0)
 """Speeds [m/s] and shares of the supply pressure of a map."""
-
-
-@dataclass(frozen=True, slots=True)
-class RingPoint:
-    """One ring at an operating point; arrays over its contact, empty without a film.
-
-    Parameters
-    ----------
-    ring : its numbers
-    touch : load per length, width and peak pressure
-    modulus : lowest, assumed and highest Young's modulus of what is squeezed [Pa]
-    x : distance from the sealed side [m]
-    static, oil, asperity : pressures, absolute [Pa]
-    film : distance of the mean planes [m]
-    viscous, asperity_friction : of the whole circumference [N]
-    coefficient_friction : by the coefficient of friction instead [N]
-    breakaway : dry, all oil squeezed out [N]
-    load_residual, mass_residual : of the film's balances
-    """
-
-    ring: Ring
-    touch: Touch
-    modulus: tuple[float, float, float]
-    x: np.ndarray
-    static: np.ndarray
-    oil: np.ndarray
-    asperity: np.ndarray
-    film: np.ndarray
-    viscous: float
-    asperity_friction: float
-    coefficient_friction: float
-    breakaway: float
-    load_residual: float
-    mass_residual: float
-
-
-@dataclass(frozen=True, slots=True)
-class SealPoint:
-    """The seals of a place at one speed, pressure and stroke.
-
-    Parameters
-    ----------
-    stroke : of the counterface past the seal: out of the sealed room, or in
-    speed, pressure, temperature : [m/s], sealed gauge [Pa], [K]
-    rings : from the sealed side outwards
-    why : why there is no film; empty where there is
-    between : pressure between two rings, gauge [Pa]; NaN for one
-    flow : towards the outer side [m^3/s]
-    lower, upper : friction over the scatter of the modulus [N]
-    """
-
-    stroke: Stroke
-    speed: float
-    pressure: float
-    temperature: float
-    rings: tuple[RingPoint, ...]
-    why: str
-    between: float
-    flow: float
-    lower: float
-    upper: float
-
-    @property
-    def converged(self) -> bool:
-        """Whether there is a film."""
-        return not self.why
-
-    @property
-    def viscous(self) -> float:
-        """Friction of the oil [N]."""
-        return sum(ring.viscous for ring in self.rings)
-
-    @property
-    def asperity(self) -> float:
-        """Friction of the asperities [N]."""
-        return sum(ring.asperity_friction for ring in self.rings)
-
-    @property
-    def friction(self) -> float:
-        """Friction of all rings [N]."""
-        return self.viscous + self.asperity
-
-    @property
-    def breakaway(self) -> float:
-        """Friction after a standstill [N]."""
-        return sum(ring.breakaway for ring in self.rings)
-
-    @property
-    def damping(self) -> float:
-        """Secant damping at the speed [N s/m]."""
-        return float(damping.secant(friction=self.friction, speed=self.speed))
-
-
-@dataclass(frozen=True, slots=True)
-class SealMap:
-    """Friction over speed and pressure, outstroke; NaN where there is no film.
-
-    Parameters
-    ----------
-    speeds : (v,) [m/s]
-    pressures : (p,) gauge [Pa]
-    friction : (p, v) [N]
-    breakaway : (p,) [N]
-    why : pressure, speed and reason of every point without a film
-    """
-
-    speeds: np.ndarray
-    pressures: np.ndarray
-    friction: np.ndarray
-    breakaway: np.ndarray
-    why: tuple[tuple[float, float, str], ...]
-
-    @property
-    def damping(self) -> np.ndarray:
-        """Secant damping (p, v) [N s/m]."""
-        return np.asarray(self.friction / self.speeds)
-
-
-@dataclass(frozen=True, slots=True)
-class SqueezeRow:
-    """Loosest, nominal and tightest squeeze of a ring at a temperature and supply pressure or 0."""
-
-    label: str
-    temperature: float
-    pressure: float
-    loosest: float
-    nominal: float
-    tightest: float
-
-
-@dataclass(frozen=True, slots=True)
-class SealStudy:
-    """Everything a seal sheet shows of the seals of piston or rod.
-
-    Parameters
-    ----------
-    place : piston or rod
-    out, back : the operating point on both strokes, at one speed and pressure
-    stroke : of the actuator [m]
-    clearance : radial, behind the seal [m]
-    growth : of the bore over the piston seal at the pressure [m]; 0 at the rod
-    squeezes : over tolerance, temperature and pressure
-    curves : friction over speed at three pressures
-    map : over speed and pressure, where asked
-    """
-
-    design: Design
-    place: Place
-    out: SealPoint
-    back: SealPoint
-    stroke: float
-    clearance: float
-    growth: float
-    squeezes: tuple[SqueezeRow, ...]
-    curves: SealMap | None
-    map: SealMap | None
-
-    @property
-    def carried_out(self) -> float:
-        """Oil that leaves the sealed room on a stroke out [m^3]."""
-        return self.out.flow * self.stroke / self.out.speed
-
-    @property
-    def drawn_back(self) -> float:
-        """Oil that a stroke in draws back [m^3]; negative: it leaks out then too."""
-        return -self.back.flow * self.stroke / self.back.speed
-
-    @property
-    def net_leakage(self) -> float:
-        """Oil left outside by a double stroke, both at this pressure [m^3]."""
-        return max(self.carried_out - self.drawn_back, 0.0)
 
 
 def study(
@@ -246,6 +74,7 @@ def study(
                 path=f"seals.{place}",
             )
         )
+    _within(own, place, held)
     supply = float(v["supply.pressure"])
     growth = float(np.max(np.real(SEAL_STEP * found.wall.growth)))
     grown = growth * held / supply if place == "piston" else 0.0
@@ -265,6 +94,20 @@ def study(
         curves=seal_map(rings, CURVE_SPEEDS, [x * supply for x in shares]) if curves else None,
         map=seal_map(rings, MAP_SPEEDS, [x * supply for x in MAP_SHARES]) if mapped else None,
     )
+
+
+def _within(own: Sequence[Ring], place: Place, pressure: float) -> None:
+    """Stated profiles reach the pressure."""
+    for ring in own:
+        tables = ring.element.contact
+        if tables and pressure > tables[-1].pressure * (1 + 1e-9):
+            message = (
+                f"pressure {pressure / 1e5:g} bar: the stated profiles of the {ring.label} end at "
+                f"{tables[-1].pressure / 1e5:g} bar"
+            )
+            raise InputError(
+                Diagnostic(message, "add a profile, or ask less", path=f"seals.{place}.contact")
+            )
 
 
 def _case(ring: Ring, speed: float | None, pressure: float | None) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...design.seals import Seal
 from ...evaluation import Evaluation
-from ...models import forces, friction, seals
+from ...models import elastomer, forces, friction, seals
 from .. import text
 from ..blocks import ExtraTable
 from .elasswad_paper import PAPER
@@ -53,7 +53,7 @@ def coefficient_table(evaluation: Evaluation) -> ExtraTable:
     """Friction coefficient and contact width."""
     ring = evaluation.design.seals.piston
     hardness = properties(evaluation, ring.compound).get("hardness", float("nan"))
-    modulus = seals.MODULUS_LAWS[ring.hardness_model].modulus(hardness=hardness)
+    modulus = elastomer.MODULUS_LAWS[ring.hardness_model].modulus(hardness=hardness)
     ours = seals.LAWS["plane_strain"]
     size = {"section": ring.section, "youngs_modulus": modulus}
     printed_width = chord(ring)

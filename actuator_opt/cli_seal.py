@@ -1,0 +1,87 @@
+"""The command `actuator-opt seal`: one seal looked at closely."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from . import streams
+from .cli_shared import check_targets, command_line, read_actuator, say_files
+from .errors import Diagnostic, ExitCode, UsageError
+from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Report, Seed, Set
+
+
+def seal(
+    design: DesignFile,
+    place: Annotated[
+        str, typer.Option("--seal", metavar="piston|rod", help="The seal to look at.")
+    ],
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            "--speed", metavar="V", help='Sliding speed, e.g. "0.1 m/s"; default: fastest case.'
+        ),
+    ] = None,
+    pressure: Annotated[
+        str | None,
+        typer.Option(
+            "--pressure", metavar="P", help='Sealed pressure, e.g. "60 bar"; default: highest.'
+        ),
+    ] = None,
+    mapped: Annotated[
+        bool, typer.Option("--map", help="Also fill a map over speed and pressure (and its CSV).")
+    ] = False,
+    sets: Set = None,
+    plugin: PluginFile = None,
+    report: Report = False,
+    out: Out = REPORTS,
+    date: Date = None,
+    seed: Seed = 0,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Contact, oil film, friction, leakage and damping of a seal at one speed and pressure."""
+    from . import verbs
+
+    if place not in ("piston", "rod"):
+        raise UsageError(Diagnostic(f'--seal "{place}"', "write piston or rod"))
+    if report or mapped:
+        check_targets(out, date)
+    actuator = read_actuator(design, sets, plugin)
+    study = verbs.seal(
+        actuator,
+        place=place,  # type: ignore[arg-type]
+        speed=_given("--speed", speed, "speed"),
+        pressure=_given("--pressure", pressure, "pressure"),
+        mapped=mapped,
+        curves=report,
+    )
+    files = []
+    if report or mapped:
+        files = verbs.write_seal(
+            study, folder=out, actuator=actuator, command=command_line(), date=date, sheet=report
+        )
+    shown = [file.to_dict() for file in files]
+    if as_json:
+        streams.out_json(study.to_dict() | ({"files": shown} if shown else {}))
+    elif not quiet:
+        from .reporting.seal_text import seal_text
+
+        streams.out(seal_text(study, **streams.style()), end="")
+        say_files(shown)
+    if not (study.out.converged and study.back.converged):
+        raise typer.Exit(ExitCode.SOLVER_FAILED)
+
+
+def _given(option: str, text: str | None, name: str) -> float | None:
+    """The SI number of an option in the quantity's unit."""
+    from .design.kinds import ValueFault, read_quantity
+    from .quantities import INPUTS
+
+    if text is None:
+        return None
+    try:
+        return read_quantity(text, INPUTS[name])
+    except ValueFault as fault:
+        raise UsageError(Diagnostic(f"{option}: {fault.message}", fault.remedy)) from None

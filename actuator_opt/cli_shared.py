@@ -1,0 +1,94 @@
+"""What the commands share: reading a design, checking where to write, saying what was written."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from . import streams
+from .errors import Diagnostic, ExitCode, UsageError
+
+if TYPE_CHECKING:
+    from .evaluation import Evaluation
+    from .optimisation.result import Optimisation
+    from .verbs import Actuator
+
+
+def read_actuator(design: str, sets: list[str] | None, plugins: list[Path] | None) -> Actuator:
+    """The design of a command, with its ``--set`` and ``--plugin``."""
+    from .design import split_assignment
+    from .verbs import read
+
+    pairs = [split_assignment(text) for text in sets or []]
+    return read(design, set=pairs, plugins=plugins or [])
+
+
+def leave_by(evaluation: Evaluation) -> None:
+    """Leave with the exit code of a missed requirement, where one is."""
+    if not evaluation.met:
+        raise typer.Exit(ExitCode.MISSED)
+
+
+def command_line() -> str:
+    """The command line without what does not change the result: same input, same bytes."""
+    import shlex
+
+    words, kept, skip = sys.argv[1:], [], False
+    for word in words:
+        if skip:
+            skip = False
+        elif word in ("--out", "--write"):
+            skip = True
+        elif word not in ("--json", "--report", "--quiet", "-q") and not word.startswith(
+            ("--out=", "--write=")
+        ):
+            kept.append(word)
+    return shlex.join(["actuator-opt", *kept])
+
+
+def check_targets(out: Path | None, date: str | None, write: Path | None = None) -> None:
+    """Refuse a date or a place to write that cannot be, before the work."""
+    from . import store
+    from .verbs import date_from_environment
+
+    if write is not None:
+        store.require_writable(write)
+    if out is not None:
+        store.require_folder(out)
+        _check_date(date)
+        date_from_environment()
+
+
+def write_report(
+    subject: Evaluation | Optimisation,
+    actuator: Actuator,
+    out: Path,
+    date: str | None,
+) -> list[dict[str, Any]]:
+    """Write the report; its files as JSON."""
+    from .verbs import report
+
+    files = report(subject, folder=out, actuator=actuator, command=command_line(), date=date)
+    return [file.to_dict() for file in files]
+
+
+def _check_date(date: str | None) -> None:
+    if date is None:
+        return
+    from datetime import date as day
+
+    try:
+        known = day.fromisoformat(date).isoformat() == date
+    except ValueError:
+        known = False
+    if not known:
+        raise UsageError(Diagnostic(f'--date "{date}" is no date', "write YYYY-MM-DD"))
+
+
+def say_files(files: list[dict[str, Any]]) -> None:
+    """Name every written file."""
+    for file in files:
+        streams.err(f"wrote {file['path']}")

@@ -1,0 +1,212 @@
+"""What the optimiser may choose among: PATHs, each with a list of allowed values (`choices`).
+
+The values stand in the notation of what they replace: numbers with their unit, counts, names of
+materials, words. `recheck` turns their texts into what a design holds, in place, and yields the
+faults it finds; values that contradict others only do so in some combinations, which are left
+out when the design is optimised.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, TypeAlias
+
+from ..quantities import Quantity
+from . import suggest
+from .kinds import Fraction, MaterialName, Text, ValueFault, what
+from .material import ROLES
+from .model import Design
+from .paths import Target, resolve
+from .structure import Entry, number_of, value_at
+from .view import Fault, Materials
+from .wishes import in_faulty_block
+
+Value: TypeAlias = float | bool | str | Fraction
+"""An allowed value: an SI number, a yes or no, a name or word, a share of the stroke."""
+
+MOST_VALUES = 50
+"""Largest number of values of one PATH."""
+
+MOST_COMBINATIONS = 1000
+"""Largest number of combinations of all the choices, as every one of them is tried."""
+
+
+def recheck(tree: dict[str, Any]) -> Iterator[Fault]:
+    """Known PATHs that are no variables, each with good values that differ; not too many in all."""
+    block = tree.get("choices")
+    if not isinstance(block, dict):
+        return
+    count = 1
+    for path, values in block.items():
+        loc = ("choices", path)
+        if in_faulty_block(path, tree):
+            block[path] = [0.0]  # the block's fault is enough
+            continue
+        try:
+            target = choosable(path, tree)
+        except ValueFault as fault:
+            yield Fault(loc, fault.message, fault.remedy, at_key=True)
+            continue
+        if not isinstance(values, list):
+            if values is not None:
+                given = f'"{suggest.shown(values)}"' if isinstance(values, str) else what(values)
+                good = suggest.shown(values) if isinstance(values, str) else _example(target)
+                yield Fault(loc, f"need a list of allowed values, not {given}", f"write [{good}]")
+            continue
+        if not values:
+            yield Fault(loc, "the list is empty", f"write e.g. [{_example(target)}]")
+        elif len(values) > MOST_VALUES:
+            message = f"{len(values)} values are too many"
+            yield Fault(loc, message, f"keep at most {MOST_VALUES}")
+        else:
+            yield from _values(loc, values, target)
+        count *= len(values)
+    if count > MOST_COMBINATIONS:
+        yield Fault(
+            ("choices",),
+            f"{count} combinations are too many, as every one is tried",
+            f"remove values until at most {MOST_COMBINATIONS} are left",
+            at_key=True,
+        )
+
+
+def choosable(path: str, tree: Any) -> Target:
+    """The value a choice sets; raises `ValueFault`."""
+    try:
+        target = resolve(path, tree)
+    except ValueFault as fault:
+        raise ValueFault(fault.message.removeprefix(f"{path}: "), fault.remedy) from None
+    remedy = "name a number, a material or a word of a part"
+    if target.entry is None or target.entry.shape == "list" or len(target.loc) == 1:
+        raise ValueFault("is no value of a part of the actuator", remedy)
+    if isinstance(target.entry.kind, Text) and not isinstance(target.entry.kind, MaterialName):
+        raise ValueFault("is free text, which no model reads", remedy)
+    if target.path != path:
+        raise ValueFault("is not the canonical PATH", f"write {target.path}")
+    variables = tree.get("variables") if isinstance(tree, dict) else None
+    if isinstance(variables, dict) and path in variables:
+        raise ValueFault("is a variable too", "keep it in variables or in choices")
+    return target
+
+
+def _example(target: Target) -> str:
+    entry = target.entry
+    if entry is None:
+        return "…"
+    return entry.choices[0] if entry.choices else entry.kind.example if entry.kind else "…"
+
+
+def _values(loc: tuple[str, str], values: list[Any], target: Target) -> Iterator[Fault]:
+    """Turn every value into what a design holds; faults of bad ones and of equals."""
+    assert target.entry is not None
+    good: list[tuple[int, Value]] = []
+    for index, raw in enumerate(values):
+        if raw is None:
+            continue  # a fault already
+        try:
+            value = values[index] = _read(raw, target.entry)
+        except ValueFault as fault:
+            yield Fault((*loc, index), fault.message, fault.remedy)
+            continue
+        twin = next((i for i, other in good if same(other, value)), None)
+        if twin is not None:
+            message = f"{suggest.shown(raw)}: the same as value {twin + 1} of the list"
+            yield Fault((*loc, index), message, "keep one of them")
+        good.append((index, value))
+
+
+def _read(raw: Any, entry: Entry) -> Value:
+    """A value as the field it is meant for would read it; raises `ValueFault`."""
+    if entry.choices:
+        if raw in entry.choices:
+            return str(raw)
+        word = raw if isinstance(raw, str) else ""
+        message = f'"{suggest.shown(word)}" is not a choice' if word else "need one word"
+        raise ValueFault(message, suggest.remedy(word, entry.choices))
+    assert entry.kind is not None
+    value: Value = entry.kind.validate(raw)
+    return value
+
+
+def same(one: Value, other: Value) -> bool:
+    """Whether two allowed values are one; numbers to rounding, as units differ.
+
+    >>> same(2.62e-3, 0.262 * 0.01), same("nbr_70", "nbr_90")
+    (True, False)
+    """
+    first, second = number_of(one), number_of(other)
+    if first is None or second is None or type(one) is not type(other):
+        return one == other
+    return math.isclose(first, second, rel_tol=1e-9, abs_tol=1e-15)
+
+
+def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
+    """Unknown materials, and materials that can never stand where they are to be chosen."""
+    block = tree.get("choices")
+    for path, values in block.items() if isinstance(block, dict) else ():
+        try:
+            entry = resolve(path, tree).entry
+        except ValueFault:
+            continue
+        if entry is None or not isinstance(entry.kind, MaterialName) or not _is_list(values):
+            continue
+        fits = ROLES[entry.kind.role]
+        fitting = [name for name in materials.names() if materials.kind(name) in fits]
+        for index, name in enumerate(values):
+            if not isinstance(name, str) or name in fitting:
+                continue
+            loc = ("choices", path, index)
+            if name not in materials:
+                message = f'"{suggest.shown(name)}": no such material'
+                yield Fault(loc, message, suggest.remedy(name, fitting))
+            else:
+                message = f"{name}: its kind ({materials.kind(name)}) does not suit this place"
+                yield Fault(loc, message, f"use e.g. {', '.join(fitting[:6])}")
+
+
+def _is_list(values: object) -> bool:
+    return isinstance(values, (list, tuple))
+
+
+def combinations(design: Design) -> Iterator[dict[str, Value]]:
+    """Every combination of the choices by PATH, in the order of the file: the last PATH first."""
+    block: Mapping[str, Sequence[Value]] = design.choices
+    for chosen in itertools.product(*block.values()):
+        yield dict(zip(block, chosen, strict=True))
+
+
+def quantity_of_choice(path: str, value: object, tree: Any) -> Quantity | None:
+    """The quantity of an allowed number, None for names and words."""
+    entry = resolve(path, tree).entry
+    return None if entry is None or number_of(value) is None else entry.quantity(value)
+
+
+def plain(value: Value) -> float | bool | str:
+    """An allowed value as JSON has it: numbers in SI, a share of the stroke as it is written.
+
+    >>> plain(0.00178), plain(Fraction(0.5))
+    (0.00178, '50 %')
+    """
+    return f"{100 * value.value:.12g} %" if isinstance(value, Fraction) else value
+
+
+def shown(path: str, value: Value, tree: Any) -> str:
+    """An allowed value as people read it, in the unit of its quantity."""
+    quantity, number = quantity_of_choice(path, value, tree), number_of(value)
+    if quantity is None or number is None:
+        return str(value).lower() if isinstance(value, bool) else str(value)
+    return quantity.text(number)
+
+
+def left_out(design: Design) -> tuple[str, ...]:
+    """A remark for each PATH whose value in the file is not among its own choices."""
+    found = []
+    block: Mapping[str, Sequence[Value]] = design.choices
+    for path, values in block.items():
+        own = value_at(design, resolve(path, design).loc)
+        if own is None or not any(same(own, value) for value in values):
+            said = "" if own is None else f" ({shown(path, own, design)})"
+            found.append(f"{path}: what the file states{said} is not among the choices")
+    return tuple(found)

@@ -1,0 +1,213 @@
+"""Housings of seals, guides and wipers, limits of extrusion and the check of a gland, as data.
+
+ISO 5597 (lip seals), ISO 7425-1 and -2 (sliding rings with an O-ring behind), ISO 10766 (guides),
+ISO 6195 (wipers). Lengths are in m, pressures in Pa. Every row knows its source and confidence.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+from ..errors import Diagnostic, InputError
+from .standards import Gland, citation, metres, section_tolerance, tables
+
+Element: TypeAlias = Literal["u_cup", "step_ring", "guide", "wiper"]
+Place: TypeAlias = Literal["rod", "piston"]
+Points: TypeAlias = tuple[tuple[float, float], ...]
+
+_NEAR = 1e-6
+"""Relative difference below which two diameters are the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class Housing:
+    """Groove of one series of a standard, for a range of rod or bore diameters.
+
+    `sizes` are the nominal diameters; empty where every diameter of the range is one. `section`
+    is that of the O-ring behind a sliding ring, or the thickness of a guide; 0 without a ring.
+    `gaps` are the largest radial gaps behind the seal over pressure; `gap` that of a guide, or 0.
+    """
+
+    standard: str
+    element: str
+    place: str
+    diameter_min: float
+    diameter_max: float
+    radial_depth: float
+    lengths: tuple[float, ...]
+    sizes: tuple[float, ...]
+    section: float
+    gaps: Points
+    gap: float
+    confidence: str
+    source: str
+
+    def fits(self, diameter: float) -> bool:
+        """Whether the diameter lies in the range."""
+        low, high = self.diameter_min * (1 - _NEAR), self.diameter_max * (1 + _NEAR)
+        return low <= diameter <= high
+
+    def is_nominal(self, diameter: float) -> bool:
+        """Whether the standard names this diameter."""
+        if not self.sizes:
+            return self.fits(diameter)
+        return any(abs(size - diameter) <= _NEAR * size for size in self.sizes)
+
+    def groove_diameter(self, diameter: float) -> float:
+        """Diameter of the groove bottom: outside a rod, inside a bore."""
+        side = 1 if self.place == "rod" else -1
+        return diameter + side * 2 * self.radial_depth
+
+
+@dataclass(frozen=True, slots=True)
+class ExtrusionTable:
+    """Largest radial gaps without back-up ring: rows of hardness (Shore A) and its points."""
+
+    name: str
+    rows: tuple[tuple[float, Points], ...]
+    confidence: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """A dimension of a gland outside its limits; `excess` is by how much, with a sign."""
+
+    what: str
+    value: float
+    lower: float
+    upper: float
+    source: str
+
+    @property
+    def excess(self) -> float:
+        """Distance to the limit passed: above it > 0, below it < 0."""
+        return self.value - (self.upper if self.value > self.upper else self.lower)
+
+
+@functools.cache
+def housings(element: Element, place: Place) -> tuple[Housing, ...]:
+    """Housings of an element in a place, in the order of the standard."""
+    return tuple(
+        _housing(group, row)
+        for group in tables()["housings"]
+        if (group["element"], group["place"]) == (element, place)
+        for row in group["rows"]
+    )
+
+
+def _housing(group: Mapping[str, Any], row: Mapping[str, Any]) -> Housing:
+    sizes = tuple(map(metres, row.get("sizes", ())))
+    pressures = [float(bar) * 1e5 for bar in group.get("pressures", ())]
+    gaps = [metres(gap) for gap in row.get("gaps", ())]
+    return Housing(
+        standard=group["standard"],
+        element=group["element"],
+        place=group["place"],
+        diameter_min=sizes[0] if sizes else metres(row["from"]),
+        diameter_max=sizes[-1] if sizes else metres(row["to"]),
+        radial_depth=metres(row["depth"]),
+        lengths=tuple(map(metres, row["lengths"])),
+        sizes=sizes,
+        section=metres(row.get("section", "0")),
+        gaps=tuple(zip(pressures, gaps, strict=True)),
+        gap=metres(row.get("gap", "0")),
+        confidence=group["confidence"],
+        source=citation(group["source"]),
+    )
+
+
+def housings_for(element: Element, place: Place, diameter: float) -> tuple[Housing, ...]:
+    """Housings whose range has a rod or bore diameter, those that name it first.
+
+    Parameters
+    ----------
+    element : ``u_cup``, ``step_ring``, ``guide`` or ``wiper`` (rod only)
+    place : ``rod`` or ``piston``
+    diameter : of the rod or the bore, m
+
+    Raises
+    ------
+    InputError : the standard has no housing for that diameter
+    """
+    every = housings(element, place)
+    found = [housing for housing in every if housing.fits(diameter)]
+    if not found:
+        message = f"no {place} housing of a {element} for {diameter * 1e3:.4g} mm"
+        advice = "a wiper sits on the rod"
+        if every:
+            low = min(housing.diameter_min for housing in every) * 1e3
+            high = max(housing.diameter_max for housing in every) * 1e3
+            advice = f"{every[0].standard} covers {low:.4g} to {high:.4g} mm"
+        raise InputError(Diagnostic(message, advice))
+    return tuple(sorted(found, key=lambda housing: not housing.is_nominal(diameter)))
+
+
+@functools.cache
+def extrusion_tables() -> Mapping[str, ExtrusionTable]:
+    """Tables of extrusion limits by name; ``sealanddesign`` is the one that was verified."""
+    return {
+        group["table"]: ExtrusionTable(
+            group["table"],
+            tuple(
+                (
+                    float(row["hardness"]),
+                    tuple((float(bar) * 1e5, metres(gap)) for bar, gap in row["points"]),
+                )
+                for row in group["rows"]
+            ),
+            group["confidence"],
+            citation(group["source"]),
+        )
+        for group in tables()["extrusion"]
+    }
+
+
+def gland_deviations(
+    gland: Gland,
+    *,
+    squeeze_min: float,
+    squeeze_max: float,
+    width: float,
+    fill: float,
+    stretch: float,
+    back_up_rings: int = 0,
+) -> tuple[Deviation, ...]:
+    """What of a groove lies outside its standard gland; empty where nothing does.
+
+    The squeeze range is that of the gland's depths and the ring's tolerance.
+
+    Parameters
+    ----------
+    gland : of the ring's section (`standards.gland`)
+    squeeze_min, squeeze_max : of the groove, over its tolerances
+    width : of the groove, m
+    fill : largest share of the groove that the ring fills
+    stretch : of the ring in place
+    back_up_rings : beside the ring
+
+    Raises
+    ------
+    InputError : the table has no width for that number of back-up rings
+    """
+    limits = tables()["gland_limits"]
+    tolerance = gland.section_tolerance or section_tolerance(gland.section).value
+    lowest = 1 - gland.depth_max / (gland.section - tolerance)
+    highest = 1 - gland.depth_min / (gland.section + tolerance)
+    narrow, wide = gland.widths(back_up_rings)
+    checks = [
+        Deviation("smallest squeeze", squeeze_min, lowest, highest, gland.source),
+        Deviation("largest squeeze", squeeze_max, lowest, highest, gland.source),
+        Deviation("groove width", width, narrow, wide, gland.source),
+    ]
+    for name, value in (("fill", fill), ("stretch", stretch)):
+        upper = float(limits[name]["largest"])
+        checks.append(Deviation(name, value, 0.0, upper, citation(limits[name]["source"])))
+    return tuple(
+        check
+        for check in checks
+        if not check.lower * (1 - _NEAR) <= check.value <= check.upper * (1 + _NEAR)
+    )

@@ -1,0 +1,149 @@
+"""What to doubt about the seals: laws outside their data, films, limits of the compounds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from ..design.material import compatible
+from ..models import (
+    compact_seal,
+    extrusion,
+    lip_seal,
+    rough_surface,
+    seals,
+    step_seal,
+)
+from .gland_check import extrusion_end
+from .kernel import Pass, Subject
+from .provenance import describe
+from .result import ModelUse
+from .rings import Ring
+from .touch import touch
+from .values import Values
+
+FILM_ERROR = 0.01
+"""Relative error of a film's surrogate that is worth a word."""
+
+_MODELS = {
+    "step_ring": step_seal.line_load,
+    "u_cup": lip_seal.line_load,
+    "compact": compact_seal.line_load,
+}
+
+
+def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
+    """(metric, text) of everything doubtful about the seals."""
+    liquid = subject.design.fluid.material
+    supply = float(v["supply.pressure"])
+    for ring in done.rings:
+        compound = ring.element.compound
+        if ring.element.type in ("o_ring", "step_ring") and not ring.element.contact:
+            yield from _law(ring)
+        if compatible(subject.materials[liquid], subject.materials[compound]) is False:
+            yield "", f"{ring.label}: {compound} does not withstand {liquid}"
+        if np.any(np.real(touch(ring).excess) <= 0):
+            yield (
+                "friction_running",
+                f"{ring.label}: the sealed pressure would open the contact; its load is too small",
+            )
+        yield from _limits(subject, v, ring, supply)
+    for (place, case, stroke), table in subject.films.items():
+        name = f"film of the {place} seals ({v.cases[case]}, {stroke})"
+        if table.error > FILM_ERROR:
+            yield (
+                "friction_running",
+                f"{name}: the surrogate is up to {100 * table.error:.1f} % off the solved film",
+            )
+        if table.surrogate.failed:
+            count = len(table.surrogate.failed)
+            yield (
+                "friction_running",
+                f"{name}: {count} of its points have no solution ({table.surrogate.failed[0]})",
+            )
+
+
+def _law(ring: Ring) -> Iterable[tuple[str, str]]:
+    """An O-ring law outside the squeeze and pressure it was compared with data on."""
+    law = seals.LAWS[ring.element.law]
+    ratio = float(np.max(np.abs(ring["pressure"] / ring["youngs_modulus"])))
+    low, high = law.squeeze_range
+    if not low <= ring.element.squeeze <= high:
+        yield (
+            "friction_running",
+            f"{ring.label}: squeeze {100 * ring.element.squeeze:.3g} % outside the "
+            f"{100 * low:.0f}-{100 * high:.0f} % the {law.name} law was compared with data on",
+        )
+    if ratio > law.pressure_range[1]:
+        yield (
+            "friction_running",
+            f"{ring.label}: pressure is {ratio:.1f} times Young's modulus, the {law.name} law "
+            f"was compared with data up to {law.pressure_range[1]:g}",
+        )
+
+
+def _limits(subject: Subject, v: Values, ring: Ring, supply: float) -> Iterable[tuple[str, str]]:
+    """Pressure and speed beyond what the compound bears, extrusion beyond its data."""
+    compound = subject.materials[ring.element.compound]
+    known = compound.numbers
+    fastest = float(np.max(np.real(v.case("speed"))))
+    if not ring.element.back_ups and supply > known.get("pressure_max", np.inf):
+        yield (
+            "",
+            f"{ring.label}: {supply / 1e5:.0f} bar, {compound.name} bears "
+            f"{known['pressure_max'] / 1e5:.0f} bar without a back-up ring",
+        )
+    if fastest > known.get("speed_max", np.inf):
+        yield (
+            "",
+            f"{ring.label}: {fastest:.2g} m/s, {compound.name} bears {known['speed_max']:.2g} m/s",
+        )
+    end = extrusion_end(ring, subject.materials)
+    if supply > end * (1 + 1e-9):
+        yield (
+            "extrusion_factor",
+            f"{ring.label}: limits of the extrusion gap are known up to {end / 1e5:.0f} bar, "
+            "held beyond; use a back-up ring",
+        )
+
+
+def models(rings: Iterable[Ring], subject: Subject, said: Iterable[str]) -> Iterable[ModelUse]:
+    """The models of every sealing ring. `said` are the warnings' texts."""
+    said = tuple(said)
+    for ring in rings:
+        doubted = any(text.startswith(ring.label) for text in said)
+        yield _contact_model(ring, doubted=doubted)
+    if subject.films:
+        worst = max(table.error for table in subject.films.values())
+        yield _use(
+            rough_surface.asperity_pressure,
+            "mean-film Reynolds equation with cavitation, rough and elastic contact; "
+            f"surrogate within {100 * worst:.2g} %",
+            doubted=worst > FILM_ERROR,
+        )
+    if any("extrusion_gap_max" not in subject.materials[r.element.compound].numbers for r in rings):
+        yield _use(extrusion.extrusion_gap_limit, "gap over hardness and pressure", doubted=False)
+
+
+def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
+    """The contact model of one ring, with its O-ring law where it has one."""
+    element = ring.element
+    at = f"squeeze {100 * element.squeeze:.4g} %"
+    if element.type == "o_ring":
+        law = seals.LAWS[element.law]
+        low, high = law.squeeze_range
+        return ModelUse(
+            f"seals.{law.name}",
+            f"O-ring contact law of the {ring.label}, modulus by {element.hardness_model}",
+            law.reference,
+            f"squeeze {100 * low:.0f} to {100 * high:.0f} %, p/E up to {law.pressure_range[1]:g}",
+            at,
+            not doubted,
+        )
+    return _use(_MODELS[element.type], f"{ring.label}, {at}", doubted=doubted)
+
+
+def _use(function: Callable[..., object], used_at: str, *, doubted: bool) -> ModelUse:
+    model = describe(function)
+    return ModelUse(model.name, model.summary, model.reference, model.valid, used_at, not doubted)

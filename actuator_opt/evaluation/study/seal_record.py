@@ -1,0 +1,270 @@
+"""The records of a seal looked at closely; `seal` fills them. SI throughout."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any, Literal
+
+import numpy as np
+
+from ...design.model import Design
+from ...models import damping
+from ...version import VERSION
+from ..rings import Place, Ring
+from ..touch import Touch
+
+Stroke = Literal["out", "in"]
+
+
+@dataclass(frozen=True, slots=True)
+class RingPoint:
+    """One ring at an operating point; arrays over its contact, empty without a film.
+
+    Parameters
+    ----------
+    ring : its numbers
+    touch : load per length, width and peak pressure
+    modulus : lowest, assumed and highest Young's modulus of what is squeezed [Pa]
+    x : distance from the sealed side [m]
+    static, oil, asperity : pressures, absolute [Pa]
+    film : distance of the mean planes [m]
+    viscous, asperity_friction : of the whole circumference [N]
+    coefficient_friction : by the coefficient of friction instead [N]
+    breakaway : dry, all oil squeezed out [N]
+    load_residual, mass_residual : of the film's balances
+    """
+
+    ring: Ring
+    touch: Touch
+    modulus: tuple[float, float, float]
+    x: np.ndarray
+    static: np.ndarray
+    oil: np.ndarray
+    asperity: np.ndarray
+    film: np.ndarray
+    viscous: float
+    asperity_friction: float
+    coefficient_friction: float
+    breakaway: float
+    load_residual: float
+    mass_residual: float
+
+
+@dataclass(frozen=True, slots=True)
+class SealPoint:
+    """The seals of a place at one speed, pressure and stroke.
+
+    Parameters
+    ----------
+    stroke : of the counterface past the seal: out of the sealed room, or in
+    speed, pressure, temperature : [m/s], sealed gauge [Pa], [K]
+    rings : from the sealed side outwards
+    why : why there is no film; empty where there is
+    between : pressure between two rings, gauge [Pa]; NaN for one
+    flow : towards the outer side [m^3/s]
+    lower, upper : friction over the scatter of the modulus [N]
+    """
+
+    stroke: Stroke
+    speed: float
+    pressure: float
+    temperature: float
+    rings: tuple[RingPoint, ...]
+    why: str
+    between: float
+    flow: float
+    lower: float
+    upper: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether there is a film."""
+        return not self.why
+
+    @property
+    def viscous(self) -> float:
+        """Friction of the oil [N]."""
+        return sum(ring.viscous for ring in self.rings)
+
+    @property
+    def asperity(self) -> float:
+        """Friction of the asperities [N]."""
+        return sum(ring.asperity_friction for ring in self.rings)
+
+    @property
+    def friction(self) -> float:
+        """Friction of all rings [N]."""
+        return self.viscous + self.asperity
+
+    @property
+    def breakaway(self) -> float:
+        """Friction after a standstill [N]."""
+        return sum(ring.breakaway for ring in self.rings)
+
+    @property
+    def damping(self) -> float:
+        """Secant damping at the speed [N s/m]."""
+        return float(damping.secant(friction=self.friction, speed=self.speed))
+
+
+@dataclass(frozen=True, slots=True)
+class SealMap:
+    """Friction over speed and pressure, outstroke; NaN where there is no film.
+
+    Parameters
+    ----------
+    speeds : (v,) [m/s]
+    pressures : (p,) gauge [Pa]
+    friction : (p, v) [N]
+    breakaway : (p,) [N]
+    why : pressure, speed and reason of every point without a film
+    """
+
+    speeds: np.ndarray
+    pressures: np.ndarray
+    friction: np.ndarray
+    breakaway: np.ndarray
+    why: tuple[tuple[float, float, str], ...]
+
+    @property
+    def damping(self) -> np.ndarray:
+        """Secant damping (p, v) [N s/m]."""
+        return np.asarray(self.friction / self.speeds)
+
+
+@dataclass(frozen=True, slots=True)
+class SqueezeRow:
+    """Loosest, nominal and tightest squeeze of a ring at a temperature and supply pressure or 0."""
+
+    label: str
+    temperature: float
+    pressure: float
+    loosest: float
+    nominal: float
+    tightest: float
+
+
+@dataclass(frozen=True, slots=True)
+class SealStudy:
+    """Everything a seal sheet shows of the seals of piston or rod.
+
+    Parameters
+    ----------
+    place : piston or rod
+    out, back : the operating point on both strokes, at one speed and pressure
+    stroke : of the actuator [m]
+    clearance : radial, behind the seal [m]
+    growth : of the bore over the piston seal at the pressure [m]; 0 at the rod
+    squeezes : over tolerance, temperature and pressure
+    curves : friction over speed at three pressures
+    map : over speed and pressure, where asked
+    """
+
+    design: Design
+    place: Place
+    out: SealPoint
+    back: SealPoint
+    stroke: float
+    clearance: float
+    growth: float
+    squeezes: tuple[SqueezeRow, ...]
+    curves: SealMap | None
+    map: SealMap | None
+
+    @property
+    def carried_out(self) -> float:
+        """Oil that leaves the sealed room on a stroke out [m^3]."""
+        return self.out.flow * self.stroke / self.out.speed
+
+    @property
+    def drawn_back(self) -> float:
+        """Oil that a stroke in draws back [m^3]; negative: it leaks out then too."""
+        return -self.back.flow * self.stroke / self.back.speed
+
+    @property
+    def net_leakage(self) -> float:
+        """Oil left outside by a double stroke, both at this pressure [m^3]."""
+        return max(self.carried_out - self.drawn_back, 0.0)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON form, SI; null where there is no film."""
+        point = self.out
+        both = {"out": self.out, "in": self.back}
+        found = {
+            "name": self.design.name,
+            "version": VERSION,
+            "seal": self.place,
+            "speed": point.speed,
+            "pressure": point.pressure,
+            "temperature": point.temperature,
+            "contact": [_contact_dict(ring) for ring in point.rings],
+            "friction": {stroke: _friction_dict(one) for stroke, one in both.items()},
+            "damping": {stroke: _known(one.damping) for stroke, one in both.items()},
+            "leakage": {
+                "flow_out": _known(self.out.flow),
+                "flow_in": _known(self.back.flow),
+                "carried_out": _known(self.carried_out),
+                "drawn_back": _known(self.drawn_back),
+                "net": _known(self.net_leakage),
+            },
+            "inter_seal_pressure": {k: _known(one.between) for k, one in both.items()},
+            "converged": self.out.converged and self.back.converged,
+            "reason": self.out.why or self.back.why,
+            "load_residual": _worst(both.values(), "load_residual"),
+            "mass_residual": _worst(both.values(), "mass_residual"),
+        }
+        return found if self.map is None else found | {"map": _map_dict(self.map)}
+
+
+def _known(value: float) -> float | None:
+    return float(value) if isfinite(value) else None
+
+
+def _worst(points: Iterable[SealPoint], name: str) -> float | None:
+    return _known(max(abs(getattr(ring, name)) for point in points for ring in point.rings))
+
+
+def _contact_dict(point: RingPoint) -> dict[str, Any]:
+    ring = point.ring
+    low, modulus, high = point.modulus
+    return {
+        "seal": ring.label,
+        "type": ring.element.type,
+        "compound": ring.element.compound,
+        "squeeze": ring["squeeze_left"],
+        "line_load": float(point.touch.line_load),
+        "width": float(point.touch.width),
+        "peak_pressure": float(point.touch.peak),
+        "youngs_modulus": {"value": modulus, "lower": low, "upper": high},
+    }
+
+
+def _friction_dict(point: SealPoint) -> dict[str, Any]:
+    return {
+        "total": _known(point.friction),
+        "viscous": _known(point.viscous),
+        "asperity": _known(point.asperity),
+        "lower": _known(point.lower),
+        "upper": _known(point.upper),
+        "breakaway": point.breakaway,
+        "by_coefficient": sum(ring.coefficient_friction for ring in point.rings),
+    }
+
+
+def _map_dict(found: SealMap) -> dict[str, Any]:
+    def rows(table: np.ndarray) -> list[list[float | None]]:
+        return [[_known(value) for value in row] for row in table]
+
+    return {
+        "speeds": found.speeds.tolist(),
+        "pressures": found.pressures.tolist(),
+        "friction": rows(found.friction),
+        "damping": rows(found.damping),
+        "breakaway": found.breakaway.tolist(),
+        "failed": [
+            {"pressure": pressure, "speed": speed, "reason": why}
+            for pressure, speed, why in found.why
+        ],
+    }

@@ -1,0 +1,133 @@
+"""Contact pressures from the forces of walls, and the profile on the sliding face."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import fluid
+from .equilibrium import NotConverged, State
+from .material import Floats
+from .mesh import Integers
+from .pair import Booleans
+from .result import contact_end
+from .section import Section
+
+HOLDING = 0.05
+"""Share of the fluid pressure by which a contact may fall below it and still keep it out."""
+
+
+def boundary_nodes(section: Section, body: int) -> Integers:
+    """Boundary nodes of a body in order, anticlockwise."""
+    return np.asarray(section.edges[body][:, :2].ravel())
+
+
+def middle_node(section: Section, nodes: int) -> int:
+    """The node at the middle of a round section, which is the first body."""
+    places = section.nodes[:nodes]
+    middle = (places.min(axis=0) + places.max(axis=0)) / 2
+    return int(np.argmin(np.sum((places - middle) ** 2, axis=1)))
+
+
+def level_pair(section: Section, nodes: int, middle: float) -> tuple[int, int]:
+    """Two inner nodes of a round section, left and right of its middle at the same height."""
+    places = section.nodes[:nodes]
+    centre = float(places[:, 0].min() + places[:, 0].max()) / 2
+    on_line = np.flatnonzero(np.abs(places[:, 1] - middle) < 1e-9)
+    offset = places[on_line, 0] - centre
+    pairs = [
+        (abs(float(a) - 0.25), int(on_line[np.argmin(np.abs(offset + a))]), int(on_line[k]))
+        for k, a in enumerate(offset)
+        if a > 0 and np.min(np.abs(offset + a)) < 1e-9
+    ]
+    _, left, right = min(pairs)
+    return left, right
+
+
+def wall_pressing(section: Section, state: State) -> Floats:
+    """Force with which walls above and below press every node."""
+    force = state.reaction.reshape(-1, 2)[:, 1]
+    lower = state.at_lower.reshape(-1, 2)[:, 1]
+    return np.asarray(np.where(lower, force, -force))
+
+
+def barriers(
+    section: Section, state: State, places: Floats, pressing: Floats, pressure: float
+) -> Floats:
+    """Contact pressure at every node from the force on it and the fluid behind it."""
+    length = np.abs(fluid.shares(section, places)[:, 0]) * section.radii(places)
+    total = pressing / np.maximum(length, 1e-12) + state.wet * pressure
+    return np.asarray(np.where(pressing != 0, total, 0.0))
+
+
+def both_ways(boundary: Integers, start: int) -> tuple[Integers, Integers]:
+    """A boundary from one of its places on, anticlockwise and clockwise."""
+    return np.roll(boundary, -start), np.roll(boundary[::-1], start + 1)
+
+
+def reached(
+    chain: Integers, barrier: Floats, state: State, pressure: float
+) -> tuple[Integers, int | None]:
+    """Nodes of a chain that the fluid reaches, and the place of the outer side wall in it.
+
+    The fluid goes up to the first node that is pressed more strongly than it presses. A node
+    that keeps it out goes on doing so until it is pressed `HOLDING` less: the mesh resolves the
+    front to one node, and without this band two states may alternate.
+
+    Parameters
+    ----------
+    chain : boundary nodes in order, from the sealed side
+    barrier : contact pressure at every node, 0 where nothing touches
+    state : what was wet before, and what leans on the outer side wall
+    pressure : of the fluid
+    """
+    needed = pressure * np.where(state.wet[chain] > 0, 1.0, 1.0 - HOLDING)
+    stops = np.flatnonzero(barrier[chain] > needed)
+    wall = np.flatnonzero(state.at_upper[2 * chain])
+    last = int(wall[0]) if len(wall) else None
+    end = int(stops[0]) if len(stops) else len(chain)
+    return chain[: end if last is None else min(end, last)], last
+
+
+def profile_on_face(
+    section: Section,
+    state: State,
+    places: Floats,
+    boundary: Integers,
+    held: Booleans,
+    pressure: float,
+    force: Floats,
+) -> tuple[float, Floats, Floats, float]:
+    """Start, positions, contact pressures and load of the dry contact on the sliding face.
+
+    Parameters
+    ----------
+    section, state, places : the solution
+    boundary : boundary nodes of the sliding body in order, anticlockwise: rising x on the face
+    held : whether a node is held by the sliding face
+    pressure : of the fluid
+    force : of the sliding face on every node
+    """
+    inside = np.flatnonzero(held[boundary] & (state.wet[boundary] == 0))
+    if not len(inside):
+        raise NotConverged("the ring does not touch the sliding face")
+    along = places[boundary[inside], 0]
+    turn = int(inside[np.argmin(along)])
+    chain = np.roll(boundary, -turn)
+    count = (int(inside[np.argmax(along)]) - turn) % len(boundary) + 1
+    nodes, open_nodes, after = chain[:count], chain[[-1, -2]], chain[[count, count + 1]]
+    x = places[nodes, 0]
+    start = contact_end(x[0], places[open_nodes, 1], places[open_nodes, 0])
+    end = contact_end(x[-1], places[after, 1], places[after, 0])
+    # Simpson's rule gives a corner 1/6 of each edge beside it, a middle node 2/3 of its own
+    before = places[chain[-1], 0]
+    lent = (1 / 3 if turn % 2 else 2 / 3) * (x[0] - before)
+    share = np.abs(fluid.shares(section, places)[nodes, 0])
+    inner = force[nodes] / (share * section.radii(places)[nodes])
+    apart = (x - start > 1e-6) & (end - x > 1e-6)
+    positions = np.concatenate(([0.0], x[apart] - start, [end - start]))
+    return (
+        start,
+        positions,
+        np.concatenate(([pressure], inner[apart], [0.0])),
+        float(np.sum(force[nodes])) + pressure * (before + lent - start),
+    )

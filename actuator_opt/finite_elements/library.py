@@ -1,0 +1,24 @@
+"""The finite-element library, loaded when it is first needed: the core works without it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..errors import ActuatorError, Diagnostic
+
+
+def finite_element_library() -> Any:
+    """The module ``skfem``; one clear line when the extra is not installed.
+
+    Raises
+    ------
+    ActuatorError
+        When scikit-fem is missing.
+    """
+    try:
+        import skfem
+    except ImportError as missing:
+        raise ActuatorError(
+            Diagnostic("finite elements need scikit-fem", "pip install 'actuator-opt[fem]'")
+        ) from missing
+    return skfem

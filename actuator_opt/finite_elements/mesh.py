@@ -1,0 +1,222 @@
+"""Meshes of six-node triangles: a round section and a slide ring with an edge and a taper.
+
+Direction 1 runs along the cylinder from the sealed side to the outer side, direction 2 outward
+from the sliding face.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .library import finite_element_library
+from .material import Floats
+
+Integers = npt.NDArray[np.int64]
+ORDER = 4
+"""Degree of the polynomials the quadrature integrates exactly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """One body: nodes of six-node triangles, its boundary, and its shape functions.
+
+    Parameters
+    ----------
+    nodes : places, n x 2 [m]
+    triangles : the six nodes of every element
+    corners : the three multiplier unknowns of every element, 0 to `corner_count` - 1
+    corner_count : number of corner nodes, which carry the multiplier
+    edges : boundary edges in order, anticlockwise: corner, middle, corner
+    gradients : derivatives of the six shape functions, elements x points x 6 x 2 [1/m]
+    values : the six shape functions, points x 6 [-]
+    corner_values : the three shape functions of the multiplier, points x 3 [-]
+    weights : areas of the integration points, elements x points [m^2]
+    """
+
+    nodes: Floats
+    triangles: Integers
+    corners: Integers
+    corner_count: int
+    edges: Integers
+    gradients: Floats
+    values: Floats
+    corner_values: Floats
+    weights: Floats
+
+
+def _in_order(edges: Integers) -> Integers:
+    """Boundary edges one after the other, from any order."""
+    following = {int(edge[0]): edge for edge in edges}
+    ordered = [edges[0]]
+    while len(ordered) < len(edges):
+        ordered.append(following[int(ordered[-1][2])])
+    return np.array(ordered)
+
+
+def _boundary(triangles: Integers) -> Integers:
+    """Boundary edges (corner, middle, corner), anticlockwise as the elements are."""
+    sides = np.concatenate(
+        [triangles[:, [0, 3, 1]], triangles[:, [1, 4, 2]], triangles[:, [2, 5, 0]]]
+    )
+    ends = np.sort(sides[:, [0, 2]], axis=1)
+    _, first, count = np.unique(ends, axis=0, return_index=True, return_counts=True)
+    return _in_order(sides[first[count == 1]])
+
+
+def meshed(points: Floats, triangles: Integers, radius: float | None = None) -> Mesh:
+    """A body from corner points and triangles.
+
+    Parameters
+    ----------
+    points : corner places, n x 2 [m]
+    triangles : three corners each, either sense of rotation
+    radius : [m], of a round section about the origin: middle nodes of its boundary lie on it
+    """
+    library = finite_element_library()
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    turn = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    triangles = np.where(turn[:, None] > 0, triangles, triangles[:, [0, 2, 1]])
+    straight = library.MeshTri(points.T.copy(), triangles.T.copy(), sort_t=False)
+    curved = library.MeshTri2.from_mesh(straight)
+    nodes = curved.doflocs.T.copy()
+    numbered = library.Basis(curved, library.ElementTriP2()).element_dofs.T.astype(np.int64)
+    edges = _boundary(numbered)
+    if radius is not None:
+        middle = nodes[edges[:, 1]]
+        nodes[edges[:, 1]] = radius * middle / np.linalg.norm(middle, axis=1)[:, None]
+        curved = library.MeshTri2(nodes.T.copy(), straight.t.copy(), sort_t=False)
+    basis = library.Basis(curved, library.ElementTriP2(), intorder=ORDER)
+    corner = library.Basis(curved, library.ElementTriP1(), intorder=ORDER)
+    if not np.array_equal(basis.element_dofs.T, numbered):  # the numbering must have stayed
+        raise AssertionError("nodes were renumbered")
+    shape = [np.asarray(basis.basis[k][0]) for k in range(6)]
+    return Mesh(
+        nodes=nodes,
+        triangles=numbered,
+        corners=corner.element_dofs.T.astype(np.int64),
+        corner_count=int(corner.N),
+        edges=edges,
+        gradients=np.moveaxis(np.array([basis.basis[k][0].grad for k in range(6)]), (2, 3), (0, 1)),
+        values=np.array([s[0] if s.ndim == 2 else s for s in shape]).T,
+        corner_values=np.array([np.atleast_2d(corner.basis[k][0])[0] for k in range(3)]).T,
+        weights=np.asarray(basis.dx),
+    )
+
+
+def disc(*, diameter: float, around: int) -> Mesh:
+    """A round section about the origin, fine at its edge and coarser inside.
+
+    Parameters
+    ----------
+    diameter : of the section [m]
+    around : number of elements around it, a multiple of 4
+    """
+    from scipy.spatial import Delaunay
+
+    radius = diameter / 2
+    spacing = 2 * math.pi * radius / around
+    place, count, rings, turned = radius, around, [], 0.0
+    while place > 0.6 * spacing:
+        angle = 2 * math.pi * (np.arange(count) + turned) / count
+        rings.append(place * np.stack((np.cos(angle), np.sin(angle)), axis=1))
+        place -= 0.87 * spacing
+        spacing *= 1.3
+        turned = 0.5 - turned
+        count = max(4 * round(2 * math.pi * max(place, 0.0) / spacing / 4), 4)
+    points = np.concatenate([*rings, np.zeros((1, 2))])
+    return meshed(points, Delaunay(points).simplices.astype(np.int64), radius)
+
+
+@dataclass(frozen=True, slots=True)
+class SlideRing:
+    """Section of a slide ring with a chamfer towards the sealed side and a relief behind its land.
+
+    Parameters
+    ----------
+    width : along the cylinder [m]
+    thickness : from land to back [m]
+    land_width : flat part of the sliding face [m]
+    chamfer_width, chamfer_height : on the sealed side of the land [m]
+    relief_angle : opening of the face behind the land [rad]
+    edge_radius : of both ends of the land [m]
+    """
+
+    width: float
+    thickness: float
+    land_width: float
+    chamfer_width: float
+    chamfer_height: float
+    relief_angle: float
+    edge_radius: float
+
+    def over(self, length: float) -> SlideRing:
+        """The same section in units of a length [m]."""
+        sizes = {name: getattr(self, name) / length for name in self.__slots__}
+        return SlideRing(**{**sizes, "relief_angle": self.relief_angle})
+
+    @property
+    def land(self) -> tuple[float, float]:
+        """Ends of the land, from the outer end of the ring, negative [m]."""
+        first = self.chamfer_width - self.width
+        return first, first + self.land_width
+
+    def face(self, x: Floats) -> Floats:
+        """Height of the undeformed sliding face over the rod at x, x = 0 the outer end [m]."""
+        first, last = self.land
+        before = math.atan2(self.chamfer_height, self.chamfer_width)
+        return np.asarray(
+            _rounded(first - x, before, self.edge_radius)
+            + _rounded(x - last, self.relief_angle, self.edge_radius)
+        )
+
+
+def _rounded(distance: Floats, angle: float, radius: float) -> Floats:
+    """Height over a flat that turns up by an angle at distance 0, through a tangent arc."""
+    reach = radius * math.tan(angle / 2)
+    arc = radius - np.sqrt(np.maximum(radius**2 - np.clip(distance + reach, 0, radius) ** 2, 0))
+    along = math.tan(angle) * distance
+    inside = distance < reach * math.cos(angle)
+    return np.asarray(np.where(distance <= -reach, 0.0, np.where(inside, arc, along)))
+
+
+def _graded(start: float, end: float, fine: float, coarse: float, growth: float) -> Floats:
+    """Places from start (fine spacing) to end, the spacing growing up to a coarse one."""
+    places, step, length = [0.0], fine, abs(end - start)
+    while places[-1] < length:
+        places.append(places[-1] + step)
+        step = min(step * growth, coarse)
+    return np.asarray(start + (end - start) * np.array(places) / places[-1])
+
+
+def slide_ring(shape: SlideRing, *, fine: float, coarse: float) -> Mesh:
+    """The section of a slide ring, its outer end at x = 0, fine along the land.
+
+    Parameters
+    ----------
+    shape : of the section
+    fine, coarse : spacing of the elements on the land, and elsewhere [m]
+    """
+    first, last = shape.land
+    margin = shape.edge_radius + 2 * fine
+    low, high = max(first - margin, -shape.width + fine), min(last + margin, -fine)
+    inner = np.linspace(low, high, max(2, math.ceil((high - low) / fine)) + 1)
+    columns = np.concatenate(
+        (
+            _graded(low, -shape.width, fine, coarse, 1.3)[::-1],
+            inner[1:-1],
+            _graded(high, 0.0, fine, coarse, 1.3),
+        )
+    )
+    rows = _graded(0.0, 1.0, fine / shape.thickness, coarse / shape.thickness, 1.4)
+    bottom = shape.face(columns)
+    height = bottom[:, None] + rows * (shape.thickness - bottom[:, None])
+    points = np.stack((np.repeat(columns, len(rows)), height.ravel()), axis=1)
+    corner = np.arange(len(columns) * len(rows)).reshape(len(columns), len(rows))
+    a, b = corner[:-1, :-1].ravel(), corner[1:, :-1].ravel()
+    c, d = corner[1:, 1:].ravel(), corner[:-1, 1:].ravel()
+    triangles = np.concatenate((np.stack((a, b, c), axis=1), np.stack((a, c, d), axis=1)))
+    return meshed(points, triangles)

@@ -1,0 +1,273 @@
+"""A step ring: a stiff slide ring on the rod, pressed by a squeezed rubber ring behind it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from . import equilibrium
+from .contact import (
+    barriers,
+    both_ways,
+    boundary_nodes,
+    level_pair,
+    middle_node,
+    profile_on_face,
+    reached,
+    wall_pressing,
+)
+from .equilibrium import Bounds, NotConverged, Problem, State
+from .material import Floats, MooneyRivlin
+from .mesh import SlideRing, disc, slide_ring
+from .pair import Pair
+from .path import SQUEEZE_STEP, check_inputs, follow
+from .result import Contact, SealSolution, stress_field
+from .section import Body, Section
+
+RAMP = 0.03
+"""Length over which the fluid's pressure falls on the slide ring's back, of the rubber's section:
+the spacing of its nodes."""
+SHIFT_STEP = 0.05
+"""Move of the rubber ring along the cylinder in one load step, of its section."""
+
+
+class StepRing:
+    """The problem of both rings in units of the rubber's section and modulus.
+
+    Parameters
+    ----------
+    rubber, plastic : strain energies, the rubber's modulus 1
+    shape : of the slide ring
+    around : elements around the rubber's section
+    fine : spacing of the elements on the land
+    sliding_radius, outward : as of `Section`
+    """
+
+    def __init__(
+        self,
+        rubber: MooneyRivlin,
+        plastic: MooneyRivlin,
+        shape: SlideRing,
+        around: int,
+        fine: float,
+        sliding_radius: float | None,
+        outward: int,
+    ) -> None:
+        middle = shape.thickness + 0.5
+        round_mesh, flat_mesh = (
+            disc(diameter=1.0, around=around),
+            slide_ring(shape, fine=fine, coarse=0.12),
+        )
+        self.section = Section(
+            [Body(round_mesh, rubber, (-shape.width / 2, middle)), Body(flat_mesh, plastic)],
+            sliding_radius,
+            outward,
+        )
+        self.round, self.flat = (boundary_nodes(self.section, body) for body in (0, 1))
+        nodes = self.section.nodes
+        back = nodes[self.section.edges[1], 1].min(axis=1) > shape.thickness - 1e-9
+        self.pair = Pair(self.round, self.section.edges[1][back])
+        level = level_pair(self.section, len(round_mesh.nodes), middle)
+        bounds = Bounds.none(self.section)
+        self.problem = Problem(self.section, bounds, self.wet_part, level, self.pair)
+        self.centre = middle_node(self.section, len(round_mesh.nodes))
+        at_end = self.flat[nodes[self.flat, 0] > -1e-9]
+        self.end = int(at_end[np.argmin(np.abs(nodes[at_end, 1] - shape.thickness / 2))])
+        sealed = np.abs(nodes[self.flat] - [-shape.width, shape.thickness / 2])
+        self.sealed_end = int(np.argmin(sealed.sum(axis=1)))
+        bounds.lower[2 * self.flat + 1] = -nodes[self.flat, 1]
+        bounds.upper[2 * self.flat] = -nodes[self.flat, 0]
+        self.top = shape.thickness + 1
+        self.front = (0.0, -1, -1)
+        self.groove_width = math.inf
+        self.back_wet: Floats = np.zeros(len(nodes))
+
+    def wet_part(self, state: State, places: Floats, pressure: float) -> Floats:
+        """The fluid passes left of both rings, and between them up to their contact."""
+        pressing = wall_pressing(self.section, state)
+        pressing[self.round] += state.pair_force
+        barrier = barriers(self.section, state, places, pressing, pressure)
+        wet = np.zeros(len(places))
+        start = int(np.argmin(places[self.round, 0]))
+        lower, upper = both_ways(self.round, start)
+        for chain in (upper, lower):
+            part, last = reached(chain, barrier, state, pressure)
+            wet[part] = 1.0
+        if len(part) in (last, len(lower)):
+            raise NotConverged("the fluid passes between the rings")
+        front = int(lower[len(part) - 1]), int(lower[len(part)])
+        if (pressure, *front) != self.front:
+            self.front = (pressure, *front)
+            self.back_wet = self._wet_back(places, float(np.mean(places[list(front), 0])))
+        wet += self.back_wet
+        face, _ = both_ways(self.flat, self.sealed_end)
+        part, last = reached(face, barrier, state, pressure)
+        if len(part) == last:
+            raise NotConverged("the fluid passes the slide ring")
+        wet[part] = 1.0
+        return np.minimum(wet, 1.0)
+
+    def _wet_back(self, places: Floats, front: float) -> Floats:
+        """Share of the pressure on the slide ring's back, up to the front between the rings.
+
+        It is kept while the front stays at its node: as it shifts with the nodes' own motion,
+        a tilting ring would chase it.
+        """
+        _, back = both_ways(self.flat, self.sealed_end)
+        x = places[back, 0]
+        count = int(np.flatnonzero(x > front + RAMP)[0])
+        share = np.zeros(len(places))
+        share[back[:count]] = np.clip((front - x[:count]) / (2 * RAMP) + 0.5, 0.0, 1.0)
+        return share
+
+    def _hold(self, unknown: int, value: float) -> None:
+        self.problem.bounds.lower[unknown] = self.problem.bounds.upper[unknown] = value
+
+    def mount(self, squeeze: float, groove_width: float) -> State:
+        """Bring the groove's bottom down on the rubber ring in the middle of the slide ring."""
+        self.groove_width = groove_width
+        nodes, bounds, problem = self.section.nodes, self.problem.bounds, self.problem
+        state = problem.start()
+        state.at_lower[2 * self.flat + 1] = nodes[self.flat, 1] < 1e-9
+        self._hold(2 * self.centre, 0.0)
+        self._hold(2 * self.end, 0.0)
+        for part in np.linspace(0, squeeze, max(1, math.ceil(squeeze / SQUEEZE_STEP)) + 1)[1:]:
+            bounds.upper[2 * self.round + 1] = self.top - part - nodes[self.round, 1]
+            state = equilibrium.solve(problem, state, 0.0)
+            problem.steps += 1
+        return state
+
+    def release(self, state: State) -> State:
+        """Move the rubber ring to the outer side wall; both rings lean on it, nothing is held."""
+        nodes, bounds, problem = self.section.nodes, self.problem.bounds, self.problem
+        distance = -float(np.max(self.section.places(state.values)[self.round, 0]))
+        for part in np.linspace(0, distance, math.ceil(abs(distance) / SHIFT_STEP) + 1)[1:]:
+            self._hold(2 * self.centre, part)
+            state = equilibrium.solve(problem, state, 0.0)
+            problem.steps += 1
+        places = self.section.places(state.values)
+        for unknown in (2 * self.centre, 2 * self.end):
+            bounds.lower[unknown], bounds.upper[unknown] = -np.inf, np.inf
+            state.at_lower[unknown] = state.at_upper[unknown] = False
+        bounds.upper[2 * self.end] = -nodes[self.end, 0]
+        first = int(self.round[np.argmax(places[self.round, 0])])
+        bounds.upper[2 * self.round] = -nodes[self.round, 0]
+        bounds.upper[2 * first] = max(places[first, 0], 0.0) - nodes[first, 0]
+        bounds.lower[2 * self.round] = -self.groove_width - nodes[self.round, 0]
+        state.at_upper[[2 * first, 2 * self.end]] = True
+        return state
+
+    def contact(self, state: State, pressure: float, length: float, modulus: float) -> Contact:
+        """The contact on the rod with its dimensions."""
+        places = self.section.places(state.values)
+        force = state.reaction.reshape(-1, 2)
+        held = state.at_lower.reshape(-1, 2)[:, 1]
+        start, positions, contact_pressure, line_load = profile_on_face(
+            self.section, state, places, self.flat, held, pressure, force[:, 1]
+        )
+        upper = state.at_upper.reshape(-1, 2)
+        return Contact(
+            pressure=pressure * modulus,
+            positions=positions * length,
+            contact_pressure=contact_pressure * modulus,
+            width=float(positions[-1]) * length,
+            line_load=line_load * length * modulus,
+            peak_pressure=float(np.max(contact_pressure)) * modulus,
+            opposite_load=float(-np.sum(force[upper[:, 1], 1])) * length * modulus,
+            side_load=float(-np.sum(force[upper[:, 0], 0])) * length * modulus,
+            start=start * length,
+            field=stress_field(self.section, state.values, length, modulus),
+        )
+
+
+def squeezed_step_ring(
+    *,
+    section: float,
+    squeeze: float,
+    groove_width: float,
+    rubber: MooneyRivlin,
+    plastic: MooneyRivlin,
+    shape: SlideRing,
+    pressures: Sequence[float] = (),
+    sliding_radius: float | None = None,
+    on_rod: bool = True,
+    elements_around: int = 64,
+    land_elements: int = 10,
+) -> SealSolution:
+    """Mount a slide ring with its rubber ring in a groove and raise the sealed pressure.
+
+    Walls, rod and the contact between the rings are frictionless, the groove's corners closed.
+    Both rings lean on the outer side wall. Plastic and rubber are elastic.
+
+    Parameters
+    ----------
+    section : free section W of the rubber ring [m]
+    squeeze : of the rubber ring, of its free section [-]
+    groove_width : along the cylinder [m]
+    rubber : strain energy of the rubber ring [Pa]
+    plastic : strain energy of the slide ring [Pa]
+    shape : section of the slide ring
+    pressures : sealed pressures above the outer side's, rising [Pa]
+    sliding_radius : of rod or bore [m]; None is plane strain
+    on_rod : whether the sliding face is a rod (groove outside) or a bore
+    elements_around : elements around the rubber ring, a multiple of 4
+    land_elements : elements on the land
+
+    Returns
+    -------
+    contacts of the mounted seal and of every pressure reached; why one was not [words]
+
+    Notes
+    -----
+    Valid: no friction, no creep, no yielding of the plastic, closed groove corners.
+
+    References
+    ----------
+    [derived] total Lagrangian Taylor-Hood elements, contact as bounds and as a pair
+
+    Examples
+    --------
+    >>> shape = SlideRing(4e-3, 1.5e-3, 0.8e-3, 0.5e-3, 0.3e-3, 0.12, 0.15e-3)
+    >>> seal = squeezed_step_ring(
+    ...     section=2.6e-3, squeeze=0.15, groove_width=4.2e-3, rubber=MooneyRivlin.of_modulus(8e6),
+    ...     plastic=MooneyRivlin.of_modulus(5e8, poissons_ratio=0.46), shape=shape,
+    ... )
+    >>> print(f"{seal.contacts[0].line_load / (2.6e-3 * 8e6):.3f} of section times modulus")
+    0.096 of section times modulus
+    """
+    thinnest = shape.thickness - max(shape.chamfer_height, float(shape.face(np.zeros(1))[0]))
+    check_inputs(
+        section,
+        squeeze,
+        rubber,
+        pressures,
+        elements_around,
+        (
+            shape.width > groove_width,
+            f"the slide ring is {shape.width:g} m wide, its groove {groove_width:g} m",
+            "widen the groove",
+        ),
+        (
+            shape.chamfer_width + shape.land_width > shape.width,
+            "chamfer and land are wider than the slide ring",
+            "shorten them",
+        ),
+        (
+            thinnest < 0.2 * shape.thickness,
+            "chamfer or relief takes the slide ring's thickness",
+            "make them flatter or the ring thicker",
+        ),
+    )
+    modulus = rubber.youngs_modulus
+    seal = StepRing(
+        rubber.over(modulus),
+        plastic.over(modulus),
+        shape.over(section),
+        elements_around,
+        shape.land_width / section / land_elements,
+        None if sliding_radius is None else sliding_radius / section,
+        1 if on_rod else -1,
+    )
+    return follow(seal, squeeze, groove_width / section, pressures, section, modulus)

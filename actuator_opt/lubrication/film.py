@@ -1,0 +1,256 @@
+"""The lubricated film under one seal: solve it at a speed, read drag, flow and profiles.
+
+The static contact pressure of the seal is an input. At speed 0 the film is the limit of a seal at
+rest that leaks: no flow by motion, and the asperities hold the friction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..models.flow_factors import (
+    pressure_stress_factor,
+    shear_stress_correction,
+    shear_stress_factor,
+)
+from ..models.rough_surface import film_ratio_under_contact
+from ..numeric import Array, real
+from .inputs import Contact, fault
+from .newton import Bed, Outcome, State, contact_pressure, follow, newton, weights
+from .reynolds import Flow, Vector, flux
+
+LEAST_CONTACT = 1e-12
+"""Static pressure over the asperity stiffness below which surfaces count as barely touching."""
+SLOWEST = 1e-4
+"""Speed at which the continuation of a cold start begins, m/s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Film:
+    """A solved film, or the reason why there is none.
+
+    Forces are per circumference. `flow` is the mass flow over the density at zero pressure,
+    positive towards the outer side. Never use the numbers of a film that did not converge.
+    """
+
+    contact: Contact
+    converged: bool
+    reason: str
+    state: State
+    viscous_drag: float  # [N/m], positive against a positive speed
+    contact_load: float  # int p_c dx [N/m]
+    flow: float  # [m^2/s]
+    mean_film: float  # h over the width [m]
+    load_residual: float
+    mass_residual: float
+    iterations: int
+
+    @property
+    def x(self) -> Vector:
+        """Nodes from the sealed side [m]."""
+        return np.linspace(0.0, self.contact.width, len(self.contact.static_pressure))
+
+    @property
+    def pressure(self) -> Vector:
+        """Absolute pressure of the oil [Pa]."""
+        scale = pressure_scale(self.contact)
+        return self.contact.cavitation_pressure + scale * self.state.pressure
+
+    @property
+    def cavitated_fraction(self) -> Vector:
+        """Part of the gap without oil [-]."""
+        return self.state.cavitation
+
+    @property
+    def film(self) -> Vector:
+        """Distance of the mean planes h [m]."""
+        return self.contact.surface.roughness * self.state.film
+
+    @property
+    def contact_pressure(self) -> Vector:
+        """Pressure of the asperities [Pa]."""
+        _, bed = scaled(self.contact)
+        return pressure_scale(self.contact) * contact_pressure(bed, self.state.film)
+
+    @property
+    def rigid_shift(self) -> float:
+        """C of the film equation h = h_s + C - (1 - nu^2)/(pi E) int d ln (x - s)^2 ds [m]."""
+        return float(self.contact.surface.roughness * self.state.shift)
+
+
+def pressure_scale(contact: Contact) -> float:
+    """Largest absolute pressure of the contact above that of cavitation [Pa]."""
+    pressures = (contact.sealed_pressure, contact.outer_pressure, *contact.static_pressure)
+    return max(float(real(p)) for p in pressures) - float(real(contact.cavitation_pressure))
+
+
+def scaled(contact: Contact, scales: Contact | None = None) -> tuple[Flow, Bed]:
+    """Scaled equations of a contact; `scales` fixes the scales while a contact carries a step."""
+    base = scales or contact
+    pressure = pressure_scale(base)
+    film = float(base.surface.roughness)
+    viscosity = contact.lubricant.dynamic_viscosity
+    base_viscosity = float(base.lubricant.dynamic_viscosity)
+    per_gradient = film**3 * pressure / 12
+    flow_scale = per_gradient / (base_viscosity * base.width) + abs(base.speed) * film / 2
+    ratio = contact.surface.roughness / film
+    flow = Flow(
+        nodes=len(contact.static_pressure),
+        width=contact.width,
+        lubricant=contact.lubricant,
+        pressure_scale=pressure,
+        film_scale=film,
+        flow_scale=flow_scale,
+        cavitation_pressure=contact.cavitation_pressure,
+        conductance=per_gradient / (viscosity * contact.width * flow_scale),
+        drive=contact.speed * film / (2 * flow_scale),
+        rod_share=contact.surface.rod_share,
+        roughness_ratio=ratio,
+    )
+    return flow, _bed(contact, pressure, film, ratio)
+
+
+def _bed(contact: Contact, pressure: float, film: float, ratio: Array) -> Bed:
+    stiffness = contact.asperity_stiffness
+    static = contact.static_pressure
+    least = LEAST_CONTACT * stiffness
+    touching = np.where(real(static) > real(least), static, least)
+    return Bed(
+        rest_film=ratio * film_ratio_under_contact(contact_pressure=touching, stiffness=stiffness),
+        static_pressure=(static - contact.cavitation_pressure) / pressure,
+        compliance=contact.elastic.compliance * contact.width * (pressure / film),
+        stiffness=stiffness / pressure,
+        roughness_ratio=ratio,
+        sealed=(contact.sealed_pressure - contact.cavitation_pressure) / pressure,
+        outer=(contact.outer_pressure - contact.cavitation_pressure) / pressure,
+    )
+
+
+def outputs(flow: Flow, bed: Bed, state: State) -> tuple[Array, Array, Array, Array]:
+    """Viscous drag and contact load [N/m], flow [m^2/s] and mean film [m] of a state."""
+    sliding, pushing = 1.0, 1.0
+    if flow.rod_share is not None:
+        ratio = state.film / flow.roughness_ratio
+        turned = shear_stress_correction(film_ratio=ratio, rod_share=flow.rod_share)
+        sliding = shear_stress_factor(film_ratio=ratio) - turned
+        pushing = pressure_stress_factor(film_ratio=ratio)
+    film = flow.film_scale * state.film
+    absolute = flow.cavitation_pressure + flow.pressure_scale * state.pressure
+    viscosity = flow.lubricant.dynamic_viscosity * flow.lubricant.viscosity_ratio(absolute)
+    dragged = viscosity * flow.speed / film * sliding * (1 - state.cavitation)
+    pushed = pushing * film / 2 * _slope(absolute) / flow.width
+    share = weights(flow.nodes)
+    load = flow.width * flow.pressure_scale * (share @ contact_pressure(bed, state.film))
+    passing = flow.flow_scale * np.mean(flux(flow, state.pressure, state.cavitation, state.film))
+    return flow.width * (share @ (dragged + pushed)), load, passing, share @ film
+
+
+def _slope(values: Vector) -> Vector:
+    """Central differences over a unit width, one-sided at the ends."""
+    rise = np.diff(values)
+    inner = (rise[1:] + rise[:-1]) / 2
+    return (len(values) - 1) * np.concatenate([rise[:1], inner, rise[-1:]])
+
+
+def _at_rest(contact: Contact, bed: Bed) -> State:
+    """A first guess: a straight pressure, and a film whose asperities carry the rest."""
+    nodes = len(contact.static_pressure)
+    straight = np.linspace(bed.sealed, bed.outer, nodes)
+    pressure = np.minimum(straight, np.maximum(0.9 * bed.static_pressure, 0.0))
+    pressure[[0, -1]] = bed.sealed, bed.outer
+    left = np.maximum(bed.static_pressure - pressure, LEAST_CONTACT * bed.stiffness)
+    ratio = film_ratio_under_contact(contact_pressure=left, stiffness=bed.stiffness)
+    film = np.maximum(ratio, 0.3)
+    return State(pressure, _starved(np.zeros(nodes), contact), film, 0.0)
+
+
+def _starved(cavitation: Vector, contact: Contact) -> Vector:
+    """Cavitated fractions with those of the ends put in."""
+    ends = [contact.sealed_cavitation], [contact.outer_cavitation]
+    return np.concatenate([ends[0], cavitation[1:-1], ends[1]])
+
+
+def _rescaled(start: Film, contact: Contact) -> State:
+    """State of another film in the scales of this contact."""
+    pressure = (start.pressure - contact.cavitation_pressure) / pressure_scale(contact)
+    ratio = start.contact.surface.roughness / contact.surface.roughness
+    state = start.state
+    cavitation = _starved(state.cavitation, contact)
+    return State(pressure, cavitation, state.film * ratio, state.shift * ratio)
+
+
+def _solved(contact: Contact, state: State) -> Outcome:
+    return newton(*scaled(contact), state)
+
+
+def _cold(contact: Contact) -> Outcome:
+    """From rest at once, or else along the speed."""
+    _, bed = scaled(contact)
+    rest = _at_rest(contact, bed)
+    outcome = _solved(contact, rest)
+    target = abs(contact.speed)
+    if not outcome.reason or target <= SLOWEST:
+        return outcome
+    sign = -1.0 if contact.speed < 0 else 1.0
+
+    def at(speed: float, state: State) -> Outcome:
+        flow, _ = scaled(replace(contact, speed=sign * speed))
+        return newton(flow, bed, state)
+
+    further = follow(at, rest, SLOWEST, target)
+    return replace(further, iterations=further.iterations + outcome.iterations)
+
+
+def solve_film(contact: Contact, start: Film | None = None) -> Film:
+    """Film of a seal at an operating point.
+
+    Parameters
+    ----------
+    contact : seal, surfaces, oil and operating point
+    start : a converged film of a near point, to begin from; as many nodes
+
+    Returns
+    -------
+    film; with `converged` False and a reason in words where no balance was found
+    """
+    wrong = fault(contact)
+    if wrong:
+        nothing = np.full(np.shape(contact.static_pressure), np.nan)
+        return _film(contact, Outcome(State(nothing, nothing, nothing, np.nan), wrong, 0, 1, 1))
+    nodes = len(contact.static_pressure)
+    if start is not None and start.converged and len(start.state.film) == nodes:
+        outcome = _solved(contact, _rescaled(start, contact))
+        if not outcome.reason:
+            return _film(contact, outcome)
+    return _film(contact, _cold(contact))
+
+
+def _film(contact: Contact, outcome: Outcome) -> Film:
+    values: tuple[Array, ...] = (np.nan, np.nan, np.nan, np.nan)
+    if not outcome.reason:
+        values = outputs(*scaled(contact), outcome.state)
+    drag, load, passing, mean = (float(value) for value in values)
+    return Film(
+        contact=contact,
+        converged=not outcome.reason,
+        reason=outcome.reason,
+        state=outcome.state,
+        viscous_drag=drag,
+        contact_load=load,
+        flow=passing,
+        mean_film=mean,
+        load_residual=float(outcome.load_residual),
+        mass_residual=float(outcome.mass_residual),
+        iterations=outcome.iterations,
+    )
+
+
+def drag(film: Film, friction_coefficient: Array) -> Array:
+    """Drag on the rod per circumference, opposing a positive speed [N/m].
+
+    At speed 0 the largest friction the contact can hold outstroke.
+    """
+    sign = -1.0 if film.contact.speed < 0 else 1.0
+    return film.viscous_drag + sign * friction_coefficient * film.contact_load

@@ -1,0 +1,335 @@
+"""Newton's method for a film: pressure, cavitated fraction, film and rigid shift at once.
+
+Per node the unknowns are pressure p, cavitated fraction theta and film h; for the whole seal the
+rigid shift C. In scaled form the equations are
+
+    flux out - flux in = 0 at the inner nodes, p given at the ends,
+    p + theta - sqrt(p^2 + theta^2) = 0 (p >= 0, theta >= 0, p theta = 0),
+    h = h_s + C + K d, d = p + p_c(h) - p_sc,
+    sum of weights times d = 0.
+
+The linear step is solved for the change g of d: the film follows as dh = dC + K g, the pressure as
+dp = g - p_c' dh, and theta locally where the film is full. What remains is one dense system of
+about as many rows as nodes, and one more per cavitated node.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from ..models.rough_surface import asperity_integral
+from ..numeric import Array
+from .reynolds import Flow, Vector, banded, faces, flux
+
+TOLERANCE = 1e-9
+"""Of every scaled residual of a converged film."""
+MOST_ITERATIONS = 60
+_GROWTH, _LEAST_GROWTH = 8.0, 1.02
+"""First and smallest factor of the steps of a continuation."""
+_CLOSED, _PRESSURE_STEP = 0.5, 0.6
+"""Largest fall of a film in one step over the film; largest change of a scaled pressure."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bed:
+    """What carries the film: the elastic seal on asperities, in scaled form.
+
+    The static pressure is the load to balance; `compliance` is
+    (1 - nu^2) L p_scale/(pi E film_scale),
+    `stiffness` the asperity stiffness over the pressure scale (0 for smooth surfaces) and
+    `roughness_ratio` sigma over the film scale.
+    """
+
+    rest_film: Vector
+    static_pressure: Vector
+    compliance: Array
+    stiffness: Array
+    roughness_ratio: Array
+    sealed: Array
+    outer: Array
+    held: bool = False  # the film is held where it is: no rigid shift, no balance of the load
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Scaled pressure, cavitated fraction, film and rigid shift."""
+
+    pressure: Vector
+    cavitation: Vector
+    film: Vector
+    shift: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Residual:
+    """Scaled residuals: flow (inner nodes), complementarity, film, load, and the two ends."""
+
+    flow: Vector
+    complementarity: Vector
+    film: Vector
+    load: Array
+    ends: tuple[Array, Array]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Where Newton's method ended; `reason` is empty when it converged."""
+
+    state: State
+    reason: str
+    iterations: int
+    mass_residual: float
+    load_residual: float
+
+
+@lru_cache(maxsize=16)
+def kernel(nodes: int) -> Vector:
+    """Film over unit pressure, -int ln(x - s)^2 ds over each node's cell on a unit width.
+
+    Another width only adds a constant times the integral of d, which the load balance makes zero.
+    """
+    places = np.linspace(0, 1, nodes)
+    edges = np.concatenate([[0.0], (places[1:] + places[:-1]) / 2, [1.0]])
+    distance = places[:, None] - edges[None, :]
+    far = np.where(distance == 0, 1.0, np.abs(distance))
+    primitive = 2 * distance * (np.log(far) - 1)
+    result = primitive[:, 1:] - primitive[:, :-1]
+    result.setflags(write=False)
+    return result
+
+
+@lru_cache(maxsize=16)
+def weights(nodes: int) -> Vector:
+    """Trapezium weights on a unit width."""
+    result = np.full(nodes, 1 / (nodes - 1))
+    result[[0, -1]] /= 2
+    result.setflags(write=False)
+    return result
+
+
+def contact_pressure(bed: Bed, film: Vector) -> Vector:
+    """Scaled pressure of the asperities."""
+    if np.all(bed.stiffness == 0):
+        return 0 * film
+    return bed.stiffness * asperity_integral(film_ratio=film / bed.roughness_ratio)
+
+
+def residual(flow: Flow, bed: Bed, state: State) -> Residual:
+    """Residuals of a state, real or under a complex step."""
+    pressure, theta = state.pressure, state.cavitation
+    excess = pressure + contact_pressure(bed, state.film) - bed.static_pressure
+    bent = bed.compliance * (kernel(flow.nodes) @ excess)
+    inner = pressure[1:-1] + theta[1:-1]
+    root = np.sqrt(pressure[1:-1] ** 2 + theta[1:-1] ** 2)
+    load = state.shift if bed.held else weights(flow.nodes) @ excess
+    return Residual(
+        flow=np.diff(flux(flow, pressure, theta, state.film)),
+        complementarity=inner - root,
+        film=state.film - bed.rest_film - state.shift - bent,
+        load=load,
+        ends=(pressure[0] - bed.sealed, pressure[-1] - bed.outer),
+    )
+
+
+def _complementarity_slopes(state: State) -> tuple[Vector, Vector]:
+    pressure, theta = state.pressure[1:-1], state.cavitation[1:-1]
+    root = np.hypot(pressure, theta)
+    safe = np.where(root > 0, root, 1.0)
+    corner = 1 - np.sqrt(0.5)
+    return (
+        np.where(root > 0, 1 - pressure / safe, corner),
+        np.where(root > 0, 1 - theta / safe, corner),
+    )
+
+
+def _spread(bands: tuple[Vector, Vector, Vector], matrix: Vector) -> Vector:
+    """Rows of the inner nodes of a tridiagonal matrix times a dense one."""
+    lower, middle, upper = (band[:, None] for band in bands)
+    return lower * matrix[:-2] + middle * matrix[1:-1] + upper * matrix[2:]
+
+
+def _along(bands: tuple[Vector, Vector, Vector], vector: Vector) -> Vector:
+    """Rows of the inner nodes of a tridiagonal matrix times a vector."""
+    lower, middle, upper = bands
+    return lower * vector[:-2] + middle * vector[1:-1] + upper * vector[2:]
+
+
+def _widened(bands: tuple[Vector, Vector, Vector]) -> Vector:
+    """A tridiagonal matrix of the inner rows as a dense one."""
+    lower, middle, upper = bands
+    rows = np.arange(len(middle))
+    result = np.zeros((len(middle), len(middle) + 2))
+    result[rows, rows], result[rows, rows + 1], result[rows, rows + 2] = lower, middle, upper
+    return result
+
+
+class Linear:
+    """The linearised equations at a state; `solve` gives the change that cancels residuals."""
+
+    def __init__(self, flow: Flow, bed: Bed, state: State) -> None:
+        nodes = self.nodes = flow.nodes
+        slope = faces(flow, state.pressure, state.cavitation, state.film)
+        self.softness = np.zeros(nodes)  # d(contact pressure)/d(film)
+        if bed.stiffness != 0:
+            ratio = state.film / bed.roughness_ratio
+            integral = asperity_integral(film_ratio=ratio, order="1/2")
+            self.softness = -1.5 * bed.stiffness / bed.roughness_ratio * integral
+        self.over_pressure, self.over_theta = _complementarity_slopes(state)
+        self.empty = self.over_theta < self.over_pressure
+        self.held = bed.held
+        self.bent = bed.compliance * kernel(nodes)
+        self.cavitation = banded(*slope.cavitation)
+        film = banded(*slope.film)
+        ratio = np.zeros(nodes)
+        full = ~self.empty
+        ratio[1:-1][full] = self.over_pressure[full] / self.over_theta[full]
+        pressure = [
+            band - theta * part
+            for band, theta, part in zip(
+                banded(*slope.pressure),
+                self.cavitation,
+                (ratio[:-2], ratio[1:-1], ratio[2:]),
+                strict=True,
+            )
+        ]
+        self.pressure = (pressure[0], pressure[1], pressure[2])
+        parts = zip(film, self.pressure, self._neighbours(self.softness), strict=True)
+        both = [over_film - over_pressure * soft for over_film, over_pressure, soft in parts]
+        self.film = (both[0], both[1], both[2])
+        self.matrix = self._assembled()
+
+    @staticmethod
+    def _neighbours(vector: Vector) -> tuple[Vector, Vector, Vector]:
+        return vector[:-2], vector[1:-1], vector[2:]
+
+    def _assembled(self) -> Vector:
+        nodes = self.nodes
+        holes = np.flatnonzero(self.empty) + 1
+        size = nodes + 1 + len(holes)
+        matrix = np.zeros((size, size))
+        matrix[1 : nodes - 1, :nodes] = _spread(self.film, self.bent) + _widened(self.pressure)
+        matrix[1 : nodes - 1, nodes] = self.film[0] + self.film[1] + self.film[2]
+        matrix[1 : nodes - 1, nodes + 1 :] = _widened(self.cavitation)[:, holes]
+        fixed = np.concatenate([[0, nodes - 1], holes])
+        rows = np.concatenate([[0, nodes - 1], np.arange(nodes + 1, size)])
+        share = np.ones(len(fixed))
+        share[2:] = self.over_pressure[holes - 1]
+        matrix[rows, :nodes] = -(share * self.softness[fixed])[:, None] * self.bent[fixed]
+        matrix[rows, fixed] += share
+        matrix[rows, nodes] = -share * self.softness[fixed]
+        matrix[rows[2:], rows[2:]] = self.over_theta[holes - 1]
+        if self.held:
+            matrix[nodes, nodes] = 1.0
+        else:
+            matrix[nodes, :nodes] = weights(nodes)
+        return matrix
+
+    def solve(self, residuals: list[Residual]) -> list[State]:
+        """Changes of the state that cancel each residual to first order."""
+        nodes, full = self.nodes, ~self.empty
+        holes = np.flatnonzero(self.empty) + 1
+        right = np.zeros((len(residuals), len(self.matrix)))
+        local = np.zeros((len(residuals), nodes))
+        for row, theta, part in zip(right, local, residuals, strict=True):
+            theta[1:-1][full] = -part.complementarity[full] / self.over_theta[full]
+            row[1 : nodes - 1] = _along(self.film, part.film) - part.flow
+            row[1 : nodes - 1] -= _along(self.cavitation, theta)
+            row[0] = -part.ends[0] - self.softness[0] * part.film[0]
+            row[nodes - 1] = -part.ends[1] - self.softness[-1] * part.film[-1]
+            row[nodes] = -part.load
+            row[nodes + 1 :] = -part.complementarity[holes - 1]
+            row[nodes + 1 :] -= self.over_pressure[holes - 1] * (self.softness * part.film)[holes]
+        solution = np.linalg.solve(self.matrix, right.T).T
+        changes = []
+        for row, theta, part in zip(solution, local, residuals, strict=True):
+            film = self.bent @ row[:nodes] + row[nodes] - part.film
+            pressure = row[:nodes] - self.softness * film
+            inner = theta[1:-1]
+            inner[full] -= self.over_pressure[full] / self.over_theta[full] * pressure[1:-1][full]
+            theta[holes] = row[nodes + 1 :]
+            changes.append(State(pressure, theta, film, row[nodes]))
+        return changes
+
+
+def _allowed(state: State, change: State) -> float:
+    """Part of a Newton step that neither closes the film nor throws the pressure away."""
+    fall = np.max(-change.film / state.film)
+    jump = np.max(np.abs(change.pressure))
+    return float(min(1.0, _CLOSED / max(fall, 1e-300), _PRESSURE_STEP / max(jump, 1e-300)))
+
+
+def _measures(flow: Flow, bed: Bed, state: State, found: Residual) -> tuple[float, float, float]:
+    """Relative flux spread, load residual, and the largest of the other scaled residuals."""
+    passing = flux(flow, state.pressure, state.cavitation, state.film)
+    carried = abs(flow.drive) * np.min(flow.gap(state.film)[1])
+    spread = np.ptp(passing) / (abs(np.mean(passing)) + carried + 1e-300)
+    load = abs(found.load) / max(weights(flow.nodes) @ bed.static_pressure, 1e-12)
+    film = np.max(np.abs(found.film)) / np.max(state.film)
+    ends = max(abs(found.ends[0]), abs(found.ends[1]))
+    return spread, load, max(film, ends, np.max(np.abs(found.complementarity)))
+
+
+def newton(flow: Flow, bed: Bed, state: State) -> Outcome:
+    """Solve the film from a starting state; a lost trial ends with a reason, not with a warning."""
+    with np.errstate(all="ignore"):
+        return _newton(flow, bed, state)
+
+
+def _newton(flow: Flow, bed: Bed, state: State) -> Outcome:
+    spread = load = np.inf
+    for iteration in range(MOST_ITERATIONS + 1):
+        found = residual(flow, bed, state)
+        spread, load, rest = _measures(flow, bed, state, found)
+        if spread < TOLERANCE and load < TOLERANCE and rest < TOLERANCE:
+            return Outcome(state, "", iteration, spread, load)
+        if not np.isfinite(spread + load + rest):
+            return Outcome(state, "the film left the range of its laws", iteration, spread, load)
+        if iteration == MOST_ITERATIONS:
+            break
+        try:
+            (change,) = Linear(flow, bed, state).solve([found])
+        except np.linalg.LinAlgError:
+            return Outcome(state, "the linearised film is singular", iteration, spread, load)
+        part = _allowed(state, change)
+        state = State(
+            state.pressure + part * change.pressure,
+            state.cavitation + part * change.cavitation,
+            state.film + part * change.film,
+            state.shift + part * change.shift,
+        )
+    residuals = f"flux spread {spread:.1e}, load {load:.1e}"
+    reason = f"no balance within {MOST_ITERATIONS} iterations ({residuals})"
+    return Outcome(state, reason, MOST_ITERATIONS, spread, load)
+
+
+def follow(
+    solve: Callable[[float, State], Outcome], state: State, first: float, last: float
+) -> Outcome:
+    """Follow a film from a first to a last positive value, in factors that adapt.
+
+    Parameters
+    ----------
+    solve : outcome at a value, from a starting state
+    state : where to start at the first value
+    first, last : values, such as speeds
+    """
+    outcome = solve(first, state)
+    taken, reached, growth = outcome.iterations, first, _GROWTH
+    while not outcome.reason and reached != last:
+        factor = growth if last > reached else 1 / growth
+        step = last if abs(math.log(last / reached)) <= math.log(growth) else reached * factor
+        trial = solve(step, outcome.state)
+        taken += trial.iterations
+        if not trial.reason:
+            outcome, reached, growth = trial, step, min(growth**1.5, _GROWTH)
+            continue
+        growth = growth**0.5
+        if growth < _LEAST_GROWTH:
+            reason = f"{trial.reason}; lost on the way at {reached:.2e}"
+            return replace(trial, reason=reason, iterations=taken)
+    return replace(outcome, iterations=taken)

@@ -1,0 +1,235 @@
+"""Smooth films: a gap of given shape, a slider, and the elastic back-up ring on its rod."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .film import outputs
+from .inputs import Elastic, Lubricant
+from .newton import Bed, Outcome, State, follow, kernel, newton, weights
+from .reynolds import Flow, Vector
+
+_NARROWEST = 0.04
+"""Square of the narrowest half width over the width at which the pressure is started."""
+_FASTER = (1.0, 30.0)
+"""Multiples of the speed at which a loaded film is tried first, thicker and thicker."""
+
+
+@dataclass(frozen=True, slots=True)
+class SmoothFilm:
+    """A solved smooth film, or the reason why there is none. Forces are per circumference."""
+
+    converged: bool
+    reason: str
+    x: Vector  # [m]
+    pressure: Vector  # absolute [Pa]
+    cavitated_fraction: Vector  # [-]
+    film: Vector  # h [m]
+    viscous_drag: float  # on the rod, positive against a positive speed [N/m]
+    line_load: float  # int p dx, absolute [N/m]
+    flow: float  # [m^2/s]
+    load_residual: float
+    mass_residual: float
+    iterations: int
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """A smooth gap between a seal or ring and the rod. Pressures are absolute.
+
+    Parameters
+    ----------
+    width : [m]
+    profile : height of the unloaded face over the rod at uniform nodes [m]; its level counts only
+        where the gap is held
+    lubricant : oil
+    speed : of the rod [m/s], positive outstroke
+    sealed_pressure, outer_pressure : at the ends [Pa]
+    line_load : int p dx that the film has to carry [N/m]; None holds the gap where it is
+    elastic : of the ring; None for a rigid one
+    cavitation_pressure : [Pa]
+    """
+
+    width: float
+    profile: Vector
+    lubricant: Lubricant
+    speed: float
+    sealed_pressure: float
+    outer_pressure: float
+    line_load: float | None = None
+    elastic: Elastic | None = None
+    cavitation_pressure: float = 0.0
+
+
+def fault(gap: Gap) -> str:
+    """Why a gap cannot be solved as stated, in one line; empty when it can."""
+    for name, value in (
+        ("width", gap.width),
+        ("viscosity", gap.lubricant.dynamic_viscosity),
+        ("least film of a held gap", np.min(gap.profile) if gap.line_load is None else 1.0),
+    ):
+        if not value > 0:
+            return f"{name} {value:g}: must be above zero"
+    if min(gap.sealed_pressure, gap.outer_pressure) < gap.cavitation_pressure:
+        return "an end pressure lies below the cavitation pressure"
+    if gap.line_load is None:
+        return ""
+    static = gap.width * (gap.sealed_pressure + gap.outer_pressure) / 2
+    if gap.line_load <= static:
+        return (
+            f"line load {gap.line_load:g} N/m: the pressures at the ends alone carry "
+            f"{static:g} N/m, so the ring lifts off"
+        )
+    if gap.elastic is not None and np.ptp(gap.profile) == 0:
+        return "a flat elastic face leaves no wedge to draw oil in: round the edges of its profile"
+    return "" if gap.speed != 0 else "speed 0: no film carries a load at rest"
+
+
+def solve_gap(gap: Gap, nodes: int = 0) -> SmoothFilm:
+    """Film, drag and flow of a smooth gap.
+
+    The film is h = h_0 + profile - (1 - nu^2)/(pi E) int p ln(x - s)^2 ds, h_0 from the line load
+    ([Huang2017] eq. 19 to 22, with density and viscosity in their places).
+
+    Parameters
+    ----------
+    gap : shape, oil, operating point
+    nodes : 0 for as many as the profile has
+
+    Returns
+    -------
+    film; with `converged` False and a reason in words where no balance was found
+    """
+    if nodes and nodes != len(gap.profile):
+        old, new = np.linspace(0, 1, len(gap.profile)), np.linspace(0, 1, nodes)
+        gap = replace(gap, profile=np.interp(new, old, gap.profile))
+    reason = fault(gap)
+    if reason:
+        nothing = np.full(len(gap.profile), np.nan)
+        lost = Outcome(State(nothing, nothing, nothing, np.nan), reason, 0, 1.0, 1.0)
+        return _found(gap, 1.0, 1.0, lost)
+    if gap.line_load is None:
+        film = float(np.mean(gap.profile))
+        return _held(gap, film)
+    return _loaded(gap)
+
+
+def _scales(gap: Gap) -> float:
+    """Largest of the pressures that are known before [Pa]."""
+    mean = (gap.line_load or 0.0) / gap.width
+    highest = max(gap.sealed_pressure, gap.outer_pressure, mean) - gap.cavitation_pressure
+    shear = gap.lubricant.dynamic_viscosity * abs(gap.speed) * gap.width
+    if gap.line_load is None:
+        highest += shear / float(np.min(gap.profile)) ** 2
+    return float(max(highest, 1.0))
+
+
+def _scaled(gap: Gap, film: float, pressure: float) -> tuple[Flow, Bed]:
+    nodes = len(gap.profile)
+    viscosity = gap.lubricant.dynamic_viscosity
+    conductance = film**3 * pressure / (12 * viscosity * gap.width)
+    scale = conductance + abs(gap.speed) * film / 2
+    flow = Flow(
+        nodes=nodes,
+        width=gap.width,
+        lubricant=gap.lubricant,
+        pressure_scale=pressure,
+        film_scale=film,
+        flow_scale=scale,
+        cavitation_pressure=gap.cavitation_pressure,
+        conductance=conductance / scale,
+        drive=gap.speed * film / (2 * scale),
+        rod_share=None,
+    )
+    compliance = 0.0 if gap.elastic is None else gap.elastic.compliance
+    compliance *= gap.width * pressure / film
+    load = np.full(nodes, ((gap.line_load or 0.0) / gap.width - gap.cavitation_pressure) / pressure)
+    bed = Bed(
+        rest_film=gap.profile / film + compliance * (kernel(nodes) @ load),
+        static_pressure=load,
+        compliance=compliance,
+        stiffness=0.0,
+        roughness_ratio=1.0,
+        sealed=(gap.sealed_pressure - gap.cavitation_pressure) / pressure,
+        outer=(gap.outer_pressure - gap.cavitation_pressure) / pressure,
+        held=gap.line_load is None,
+    )
+    return flow, bed
+
+
+def _held(gap: Gap, film: float) -> SmoothFilm:
+    pressure = _scales(gap)
+    flow, bed = _scaled(gap, film, pressure)
+    ends = np.linspace(bed.sealed, bed.outer, flow.nodes)
+    start = State(ends, np.zeros(flow.nodes), gap.profile / film, 0.0)
+    return _found(gap, film, pressure, newton(flow, bed, start))
+
+
+def _loaded(gap: Gap) -> SmoothFilm:
+    """From the pressure of dry contact, on the film its slope would leave; else from a thick film.
+
+    At the inlet a film of h* = sqrt(8 eta U/(9 w)) is left by a pressure that rises by w.
+    """
+    pressure = _scales(gap)
+    rise = 4 * (gap.line_load or 0.0) / gap.width**2
+    viscosity = gap.lubricant.dynamic_viscosity
+    film = math.sqrt(8 * viscosity * abs(gap.speed) / (9 * rise))
+    speed, taken = abs(gap.speed), 0
+
+    def at(value: float, state: State) -> Outcome:
+        return newton(
+            *_scaled(replace(gap, speed=math.copysign(value, gap.speed)), film, pressure), state
+        )
+
+    for faster in _FASTER:
+        start = _dry(gap, *_scaled(gap, film, pressure), math.sqrt(faster))
+        outcome = follow(at, start, faster * speed, speed)
+        taken += outcome.iterations
+        if not outcome.reason:
+            break
+    reason = outcome.reason and f"{outcome.reason}; a film near {film:.1e} m may want more nodes"
+    return _found(gap, film, pressure, replace(outcome, reason=reason, iterations=taken))
+
+
+def _dry(gap: Gap, flow: Flow, bed: Bed, least: float) -> State:
+    """Half an ellipse of pressure as wide as the contact of a cylinder, and the film over it."""
+    place = np.linspace(0, 1, flow.nodes)
+    ends = bed.sealed + (bed.outer - bed.sealed) * place
+    relief = float(np.mean(gap.profile[[0, -1]]) - np.min(gap.profile))
+    reach = 0.25
+    if relief > 0 and gap.elastic is not None:
+        hertz = (gap.line_load or 0.0) * gap.elastic.compliance / (2 * relief)
+        reach = min(reach, max(hertz, _NARROWEST))
+    ellipse = np.sqrt(np.maximum(reach - (place - 0.5) ** 2, 0.0))
+    carried = bed.static_pressure[0] - (bed.sealed + bed.outer) / 2
+    pressure = ends + carried * ellipse / (weights(flow.nodes) @ ellipse)
+    bent = bed.rest_film + bed.compliance * (kernel(flow.nodes) @ (pressure - bed.static_pressure))
+    shift = least - float(np.min(bent))
+    return State(pressure, np.zeros(flow.nodes), bent + shift, shift)
+
+
+def _found(gap: Gap, film: float, pressure: float, outcome: Outcome, taken: int = 0) -> SmoothFilm:
+    state = outcome.state
+    drag = load = passing = np.nan
+    absolute = gap.cavitation_pressure + pressure * state.pressure
+    if not outcome.reason:
+        flow, bed = _scaled(gap, film, pressure)
+        drag, _, passing, _ = outputs(flow, bed, state)
+        load = gap.width * float(weights(flow.nodes) @ absolute)
+    return SmoothFilm(
+        converged=not outcome.reason,
+        reason=outcome.reason,
+        x=np.linspace(0.0, gap.width, len(gap.profile)),
+        pressure=absolute,
+        cavitated_fraction=state.cavitation,
+        film=film * state.film,
+        viscous_drag=float(drag),
+        line_load=float(load),
+        flow=float(passing),
+        load_residual=float(outcome.load_residual),
+        mass_residual=float(outcome.mass_residual),
+        iterations=outcome.iterations + taken,
+    )

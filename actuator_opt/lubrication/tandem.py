@@ -1,0 +1,277 @@
+"""Two seals in a row: the pressure between them at which both pass the same flow."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+from .film import Film, solve_film
+from .inputs import Contact, Elastic, Lubricant, Surface
+from .reynolds import Vector
+
+HIGHEST = 1.5
+"""Largest pressure between the seals that is looked for, over the higher of the end pressures,
+unless told otherwise."""
+MATCH = 1e-8
+"""Difference at which two flows are equal, over the larger of them and what the rod carries."""
+_MOST_TRIALS = 60
+_EMPTY = 0.9
+"""Part without oil of the room between the seals at which a starved film is looked for first."""
+_NO_LIMIT = (
+    "the inner seal still passes more than the outer one at {:.4g} Pa: "
+    "the pressure between them has no limit below that"
+)
+_JUMP = (
+    "room between the seals {:.3f} empty: the film jumps from starved to flooded there, "
+    "with flows that differ by {:.1e} of the larger"
+)
+_NO_SUPPLY = "at {:.4g} Pa oil leaves the room between the seals on both sides: it runs dry"
+
+
+@dataclass(frozen=True, slots=True)
+class SealElement:
+    """One seal of a row.
+
+    Parameters
+    ----------
+    static : width [m] and static pressure at uniform nodes [Pa], of the sealed and outer pressure
+        (all pressures absolute)
+    elastic, surface : of the seal
+    """
+
+    static: Callable[[float, float], tuple[float, Vector]]
+    elastic: Elastic
+    surface: Surface
+
+
+@dataclass(frozen=True, slots=True)
+class Tandem:
+    """Two films with the same flow, or the reason why there are none."""
+
+    converged: bool
+    reason: str
+    pressure: float  # between the seals, absolute [Pa]
+    cavitation: float  # part of the room between the seals without oil, where it is starved [-]
+    exceeds_sealed: bool  # whether that pressure is above the sealed one
+    falling: bool  # whether the surplus of the inner seal fell with the pressure at every trial
+    inner: Film | None
+    outer: Film | None
+    match_residual: float  # difference of the flows over the larger of them and the carried flow
+    trials: int
+
+
+@dataclass(slots=True)
+class _Row:
+    """Both films at a pressure between the seals, each begun from the last one."""
+
+    inner: SealElement
+    outer: SealElement
+    lubricant: Lubricant
+    speed: float
+    sealed_pressure: float
+    outer_pressure: float
+    cavitation_pressure: float
+    films: tuple[Film | None, Film | None] = (None, None)
+
+    def solve(self, pressure: float, cavitation: float = 0.0) -> tuple[Film, Film]:
+        """Films of both seals; the one that draws from the room between them may be starved."""
+        draws_out = self.speed > 0
+        first = self._film(
+            self.inner, self.sealed_pressure, pressure, self.films[0],
+            outer_cavitation=0.0 if draws_out else cavitation,
+        )  # fmt: skip
+        second = self._film(
+            self.outer, pressure, self.outer_pressure, self.films[1],
+            sealed_cavitation=cavitation if draws_out else 0.0,
+        )  # fmt: skip
+        if first.converged and second.converged:
+            self.films = (first, second)
+        return first, second
+
+    def _film(
+        self, seal: SealElement, sealed: float, outer: float, start: Film | None, **ends: float
+    ) -> Film:
+        width, static = seal.static(sealed, outer)
+        contact = Contact(
+            width=width,
+            static_pressure=static,
+            elastic=seal.elastic,
+            surface=seal.surface,
+            lubricant=self.lubricant,
+            speed=self.speed,
+            sealed_pressure=sealed,
+            outer_pressure=outer,
+            cavitation_pressure=self.cavitation_pressure,
+            **ends,
+        )
+        return solve_film(contact, start)
+
+
+def solve_tandem(
+    *,
+    inner: SealElement,
+    outer: SealElement,
+    lubricant: Lubricant,
+    speed: float,
+    sealed_pressure: float,
+    outer_pressure: float,
+    cavitation_pressure: float = 0.0,
+    highest: float = HIGHEST,
+    start: Tandem | None = None,
+) -> Tandem:
+    """Pressure between two seals at which the outer passes what the inner does.
+
+    Secant steps kept inside a bracket from the cavitation pressure to `highest` times the sealed
+    pressure; what the inner seal passes more than the outer falls with that pressure. Where one
+    seal would draw more than the other gives even at the cavitation pressure, the room between
+    them is starved: it stays at that pressure, filled in part.
+
+    Parameters
+    ----------
+    inner, outer : seal on the pressurised side, seal behind it
+    lubricant : of both
+    speed : of the rod [m/s], positive outstroke
+    sealed_pressure, outer_pressure, cavitation_pressure : absolute [Pa]
+    highest : largest pressure between the seals looked for, over the higher end pressure [-]
+    start : a tandem of a near point, to begin from
+
+    Returns
+    -------
+    tandem; with `converged` False and a reason in words where the flows cannot be matched
+    """
+    row = _Row(inner, outer, lubricant, speed, sealed_pressure, outer_pressure, cavitation_pressure)
+    guess = (sealed_pressure + outer_pressure) / 2
+    if start is not None and start.converged:
+        row.films, guess = (start.inner, start.outer), start.pressure
+    top = highest * max(sealed_pressure, outer_pressure)
+    return _search(row, min(max(guess, cavitation_pressure), top), cavitation_pressure, top)
+
+
+def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
+    tried: list[tuple[float, float]] = []
+    bottom, top, pressure = low, high, guess
+    while True:
+        first, second = row.solve(pressure)
+        if not (first.converged and second.converged):
+            side, film = ("outer", second) if first.converged else ("inner", first)
+            return _lost(f"{side} seal at {pressure:.4g} Pa between them: {film.reason}", tried)
+        surplus = first.flow - second.flow
+        carried = abs(row.speed) / 2 * min(first.mean_film, second.mean_film)
+        off = abs(surplus) / max(abs(first.flow), abs(second.flow), carried)
+        tried.append((pressure, surplus))
+        if off <= MATCH:
+            return _matched(row, first, second, pressure, off, tried)
+        if pressure == low and surplus < 0:
+            return _starved(row, first, second, pressure, tried)
+        if pressure == high and surplus > 0:
+            return _lost(_NO_LIMIT.format(pressure), tried)
+        if len(tried) >= _MOST_TRIALS:
+            return _lost(f"flows differ by {off:.1e} of the larger after many trials", tried)
+        bottom, top = (pressure, top) if surplus > 0 else (bottom, pressure)
+        pressure = _next(tried, bottom, top)
+
+
+def _next(tried: list[tuple[float, float]], bottom: float, top: float) -> float:
+    """The next pressure: a secant through the last two trials, or the middle of the bracket.
+
+    The end of the bracket is tried early where all trials lie to one side, and every fifth
+    step halves the bracket.
+    """
+    middle = (bottom + top) / 2
+    if len(tried) < 2:
+        return middle
+    (before, surplus_before), (last, surplus) = tried[-2:]
+    end = top if surplus > 0 else bottom
+    unseen = end not in {pressure for pressure, _ in tried}
+    if unseen and len(tried) >= 4:
+        return end
+    if surplus == surplus_before or len(tried) % 5 == 0:
+        return middle
+    secant = last - surplus * (last - before) / (surplus - surplus_before)
+    if bottom < secant < top:
+        return secant
+    return end if unseen and (secant >= end) == (surplus > 0) else middle
+
+
+def _starved(
+    row: _Row, first: Film, second: Film, pressure: float, tried: list[tuple[float, float]]
+) -> Tandem:
+    """The part of the room between the seals that stays without oil, by regula falsi.
+
+    A flooded and a starved film may both exist at one supply: the starved one is followed, from
+    a room almost empty.
+    """
+    outward = row.speed > 0
+    given, drawn = (first, second) if outward else (second, first)
+    if given.flow * row.speed <= 0:
+        return _lost(_NO_SUPPLY.format(pressure), tried)
+    sign = 1.0 if outward else -1.0
+    bottom, top = (0.0, sign * (drawn.flow - given.flow)), (1.0, -sign * given.flow)
+    off, side, cavitation, kept = 1.0, 0, _EMPTY, row.films
+    for _ in range(_MOST_TRIALS):
+        first, second = row.solve(pressure, cavitation)
+        if not (first.converged and second.converged):
+            reason = first.reason or second.reason
+            return _lost(f"room between the seals {cavitation:.3f} empty: {reason}", tried)
+        given, drawn = (first, second) if outward else (second, first)
+        excess = sign * (drawn.flow - given.flow)
+        off = abs(excess / given.flow)
+        if off <= 10 * MATCH:
+            return _matched(row, first, second, pressure, off, tried, cavitation)
+        if excess > 0:
+            row.films = kept if side else row.films
+            top = (top[0], top[1] / 2) if side > 0 else top
+            bottom, side = (cavitation, excess), 1
+        else:
+            kept = row.films
+            bottom = (bottom[0], bottom[1] / 2) if side < 0 else bottom
+            top, side = (cavitation, excess), -1
+        if top[0] - bottom[0] < 1e-8:
+            break
+        cavitation = bottom[0] - bottom[1] * (top[0] - bottom[0]) / (top[1] - bottom[1])
+    return _lost(_JUMP.format(cavitation, off), tried)
+
+
+def _falling(tried: list[tuple[float, float]]) -> bool:
+    ordered = [surplus for _, surplus in sorted(tried)]
+    return all(later <= earlier for earlier, later in pairwise(ordered))
+
+
+def _matched(
+    row: _Row,
+    first: Film,
+    second: Film,
+    pressure: float,
+    residual: float,
+    tried: list[tuple[float, float]],
+    cavitation: float = 0.0,
+) -> Tandem:
+    return Tandem(
+        converged=True,
+        reason="",
+        pressure=pressure,
+        cavitation=cavitation,
+        exceeds_sealed=pressure > row.sealed_pressure,
+        falling=_falling(tried),
+        inner=first,
+        outer=second,
+        match_residual=residual,
+        trials=len(tried),
+    )
+
+
+def _lost(reason: str, tried: list[tuple[float, float]]) -> Tandem:
+    return Tandem(
+        converged=False,
+        reason=reason,
+        pressure=math.nan,
+        cavitation=math.nan,
+        exceeds_sealed=False,
+        falling=_falling(tried),
+        inner=None,
+        outer=None,
+        match_residual=math.nan,
+        trials=len(tried),
+    )

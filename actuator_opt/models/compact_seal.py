@@ -1,0 +1,126 @@
+"""Compact double-acting seals (DAS type): an elastomer block between guide parts, face outwards.
+
+The block of free radial height h and face width w is squeezed by C between groove floor and
+sliding surface, in plane strain along the circumference. Either side's pressure energises it: one
+face, either direction. Per length of circumference; pressure is the difference, >= 0. Without
+squeeze (C <= 0) there is no contact. The peak pressure is that of the face's profile,
+`contact_land.land_peak`.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ..numeric import Array, minimum, real, where
+
+
+def energised_share(*, poissons_ratio: Array) -> Array:
+    """Share of the pressure the block passes on to its face, k = nu/(1 - nu); 1 incompressible.
+
+    Parameters
+    ----------
+    poissons_ratio : of the elastomer [-]
+
+    Returns
+    -------
+    share [-]
+
+    Notes
+    -----
+    Valid: block kept by floor and face, wall friction neglected (it lowers k away from the side).
+
+    References
+    ----------
+    [derived] Hooke's law with axial stress -p and no strain along radius and circumference
+
+    Examples
+    --------
+    >>> print(f"{energised_share(poissons_ratio=0.49):.4f}")
+    0.9608
+    """
+    return poissons_ratio / (1 - poissons_ratio)
+
+
+def contact_width(*, squeeze: Array, face_width: Array, groove_width: Array) -> Array:
+    """Width of the squeezed face, b = w/(1 - C), at most the groove.
+
+    Parameters
+    ----------
+    squeeze : C of the free radial height [-]
+    face_width : free width w of the sliding face [m]
+    groove_width : room between the guide parts [m]
+
+    Returns
+    -------
+    contact width [m]; 0 without squeeze, NaN at C >= 1
+
+    Notes
+    -----
+    Valid: oiled block of constant section area, not barrelled.
+
+    References
+    ----------
+    [derived] constant area in plane strain
+
+    Examples
+    --------
+    >>> b = contact_width(squeeze=0.12, face_width=8e-3, groove_width=10e-3)
+    >>> print(f"{b * 1e3:.4f} mm")
+    9.0909 mm
+    """
+    valid = real(squeeze) < 1
+    width = minimum(face_width / where(valid, 1 - squeeze, 1.0), groove_width)
+    return where(real(squeeze) > 0, where(valid, width, math.nan), 0.0 * width)
+
+
+def line_load(
+    *,
+    squeeze: Array,
+    face_width: Array,
+    section: Array,
+    youngs_modulus: Array,
+    poissons_ratio: Array,
+    stuck_share: Array,
+    pressure: Array,
+) -> Array:
+    """Line load of a squeezed block, f = (E w/3)[(1 - C)^-3 - (1 - C)](1 + s S^2) + k p w/(1 - C).
+
+    S = w/(2 h) is the shape factor of a long strip, k = nu/(1 - nu). Small squeeze, slipping:
+    f = (4/3) E C w.
+
+    Parameters
+    ----------
+    squeeze : C of the free radial height [-]
+    face_width : free width w of the sliding face [m]
+    section : free radial height h of the block [m]
+    youngs_modulus, poissons_ratio : of the elastomer [Pa], [-]
+    stuck_share : s, 0 faces slip (oiled), 1 both faces stick (dry, at rest) [-]
+    pressure : difference across the seal [Pa]
+
+    Returns
+    -------
+    line load [N/m]; 0 without squeeze, NaN at C >= 1
+
+    Notes
+    -----
+    Valid: C up to about 0.3, S up to 3, groove not filled by the squeeze alone.
+
+    References
+    ----------
+    [Treloar1975] pure shear of rubber; [GentLindley1959] strip stuck at both faces; [derived]
+    `energised_share`
+
+    Examples
+    --------
+    >>> f = line_load(squeeze=0.12, face_width=8e-3, section=7.5e-3, youngs_modulus=9e6,
+    ...               poissons_ratio=0.49, stuck_share=0.0, pressure=5e6)
+    >>> print(f"{f / 1e3:.3f} N/mm")
+    57.770 N/mm
+    """
+    valid = real(squeeze) < 1
+    height = where(valid, 1 - squeeze, 1.0)
+    shape = face_width / (2 * section)
+    block = youngs_modulus / 3 * (1 / (height * height * height) - height)
+    share = energised_share(poissons_ratio=poissons_ratio)
+    load = face_width * (block * (1 + stuck_share * shape * shape) + share * pressure / height)
+    return where(real(squeeze) > 0, where(valid, load, math.nan), 0.0 * load)

@@ -1,0 +1,350 @@
+"""Static contact pressure over a seal's contact: closed forms over t = x/b, and their loads.
+
+t = 0 is the sealed side, t = 1 the outer one; every profile (of types with an oil side) meets the
+sealed pressure at t = 0 and the outer one at t = 1. All pressures on one scale (gauge or
+absolute). Each shape has one free pressure, its excess; `*_mean` is the integral over t, and
+`*_excess` the excess with which the contact of width b carries a line load over the outer
+pressure, f = b (mean - p_a). A negative excess says that the load is too small for this width:
+the sealed pressure would open the contact, and the profile must not be used; without width it is
+NaN. Worn-in lands (step ring, compact seal) have theirs in `contact_land`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+from ..numeric import Array, clip, maximum, namespace, positive, real, sqrt, where
+
+LIP_PLACES, LIP_SHARE = (0.0, 0.2, 0.6, 1.0), 0.42
+"""Knots of the lip profile, and its third pressure over its second (*choice*, surrogate)."""
+
+
+def o_ring_profile(
+    *, position: Array, sealed_pressure: Array, outer_pressure: Array, excess: Array
+) -> Array:
+    """Contact pressure of an O-ring, a falling sine plus the Hertz ellipse.
+
+    p = p_a + (p_s - p_a)[1 - sin(pi u/2)]/2 + p_0 sqrt(1 - u^2), u = 2 t - 1.
+
+    Parameters
+    ----------
+    position : t = x/b, 0 to 1 [-]
+    sealed_pressure, outer_pressure : p_s, p_a [Pa]
+    excess : p_0, peak without pressure [Pa]
+
+    Returns
+    -------
+    contact pressure [Pa]
+
+    Notes
+    -----
+    Valid: 0 <= t <= 1.
+
+    References
+    ----------
+    [Johnson1985] line contact; [derived] surrogate of the energised part, half of (p_s - p_a) b
+
+    Examples
+    --------
+    >>> p = o_ring_profile(position=0.25, sealed_pressure=3e6, outer_pressure=0.0, excess=2e6)
+    >>> print(f"{p / 1e6:.4f} MPa")
+    4.2927 MPa
+    """
+    u = 2 * position - 1
+    xp = namespace(u)
+    square = 4 * position * (1 - position)
+    inside = real(square) > 0
+    ellipse = where(inside, sqrt(where(inside, square, 1.0)), 0.0)
+    fall = (1 - xp.sin((math.pi / 2) * u)) / 2
+    return outer_pressure + (sealed_pressure - outer_pressure) * fall + excess * ellipse
+
+
+def o_ring_mean(*, sealed_pressure: Array, outer_pressure: Array, excess: Array) -> Array:
+    """Mean of the O-ring profile, (p_s + p_a)/2 + pi p_0/4.
+
+    Parameters
+    ----------
+    sealed_pressure, outer_pressure : p_s, p_a [Pa]
+    excess : p_0 [Pa]
+
+    Returns
+    -------
+    mean contact pressure [Pa]
+
+    Notes
+    -----
+    Valid: as `o_ring_profile`.
+
+    References
+    ----------
+    [derived] integral of `o_ring_profile` over t
+
+    Examples
+    --------
+    >>> p = o_ring_mean(sealed_pressure=3e6, outer_pressure=0.0, excess=2e6)
+    >>> print(f"{p / 1e6:.4f} MPa")
+    3.0708 MPa
+    """
+    return (sealed_pressure + outer_pressure) / 2 + (math.pi / 4) * excess
+
+
+def o_ring_excess(
+    *, line_load: Array, width: Array, sealed_pressure: Array, outer_pressure: Array
+) -> Array:
+    """Excess p_0 with which the O-ring profile carries a line load.
+
+    p_0 = (4/pi)[f/b - (p_s - p_a)/2].
+
+    Parameters
+    ----------
+    line_load : f over the outer pressure [N/m]
+    width : b [m]
+    sealed_pressure, outer_pressure : p_s, p_a [Pa]
+
+    Returns
+    -------
+    excess [Pa]
+
+    Notes
+    -----
+    Valid: result >= 0.
+
+    References
+    ----------
+    [derived] inverse of `o_ring_mean`
+
+    Examples
+    --------
+    >>> p = o_ring_excess(line_load=6e3, width=2e-3, sealed_pressure=3e6, outer_pressure=0.0)
+    >>> print(f"{p / 1e6:.4f} MPa")
+    1.9099 MPa
+    """
+    return (4 / math.pi) * (line_load / positive(width) - (sealed_pressure - outer_pressure) / 2)
+
+
+def _inner_slope(before: Array, after: Array, left: float, right: float) -> Array:
+    """Harmonic mean of two slopes weighted by their intervals, 0 where they differ in sign."""
+    same = real(before) * real(after) > 0
+    one, two = 2 * right + left, right + 2 * left
+    below = where(same, one * after + two * before, 1.0)
+    return where(same, (one + two) * before * after / below, 0.0)
+
+
+def _end_slope(near: Array, far: Array, length: float, following: float) -> Array:
+    """Slope at an end: parabola through three points, kept from overshooting."""
+    slope = ((2 * length + following) * near - length * far) / (length + following)
+    steep = real(slope) * real(near) > 3 * real(near) * real(near)
+    bounded = where((real(near) * real(far) <= 0) & steep, 3 * near, slope)
+    return where(real(slope) * real(near) > 0, bounded, 0.0)
+
+
+def _lip_cubics(
+    sealed_pressure: Array, outer_pressure: Array, excess: Array
+) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+    """Values and slopes of the lip profile at its knots."""
+    top = sealed_pressure + excess
+    values = (sealed_pressure, top, outer_pressure + LIP_SHARE * top, outer_pressure)
+    h = [right - left for left, right in pairwise(LIP_PLACES)]
+    m = [(values[i + 1] - values[i]) / h[i] for i in range(3)]
+    slopes = (
+        _end_slope(m[0], m[1], h[0], h[1]),
+        _inner_slope(m[0], m[1], h[0], h[1]),
+        _inner_slope(m[1], m[2], h[1], h[2]),
+        _end_slope(m[2], m[1], h[2], h[1]),
+    )
+    return values, slopes
+
+
+def lip_profile(
+    *, position: Array, sealed_pressure: Array, outer_pressure: Array, excess: Array
+) -> Array:
+    """Contact pressure of a lip: monotone cubics through four points, steep at the sealed side.
+
+    (0, p_s), (0.2, p_s + p_k), (0.6, p_a + 0.42 (p_s + p_k)), (1, p_a), slopes of Fritsch and
+    Carlson.
+
+    Parameters
+    ----------
+    position : t = x/b, 0 to 1 [-]
+    sealed_pressure, outer_pressure : p_s, p_a [Pa]
+    excess : p_k of the peak over the sealed pressure [Pa]
+
+    Returns
+    -------
+    contact pressure [Pa]
+
+    Notes
+    -----
+    Valid: 0 <= t <= 1, p_k >= 0, 0.58 (p_s + p_k) > p_a.
+
+    References
+    ----------
+    [FritschCarlson1980] monotone cubic interpolation; [derived] surrogate of published lip
+    pressures
+
+    Examples
+    --------
+    >>> p = lip_profile(position=0.4, sealed_pressure=5e6, outer_pressure=0.101e6, excess=1.5e6)
+    >>> print(f"{p / 1e6:.4f} MPa")
+    5.0568 MPa
+    """
+    values, slopes = _lip_cubics(sealed_pressure, outer_pressure, excess)
+    pieces = []
+    for i in range(3):
+        h = LIP_PLACES[i + 1] - LIP_PLACES[i]
+        s = (position - LIP_PLACES[i]) / h
+        r = 1 - s
+        pieces.append(
+            r * r * ((1 + 2 * s) * values[i] + h * s * slopes[i])
+            + s * s * ((3 - 2 * s) * values[i + 1] - h * r * slopes[i + 1])
+        )
+    late = where(real(position) < LIP_PLACES[2], pieces[1], pieces[2])
+    return where(real(position) < LIP_PLACES[1], pieces[0], late)
+
+
+def lip_mean(*, sealed_pressure: Array, outer_pressure: Array, excess: Array) -> Array:
+    """Mean of the lip profile, sum over its cubics of h (y_0 + y_1)/2 + h^2 (y_0' - y_1')/12.
+
+    Parameters
+    ----------
+    sealed_pressure, outer_pressure : p_s, p_a [Pa]
+    excess : p_k [Pa]
+
+    Returns
+    -------
+    mean contact pressure [Pa]
+
+    Notes
+    -----
+    Valid: as `lip_profile`.
+
+    References
+    ----------
+    [derived] integral of a cubic from its end values and slopes
+
+    Examples
+    --------
+    >>> p = lip_mean(sealed_pressure=5e6, outer_pressure=0.101e6, excess=1.5e6)
+    >>> print(f"{p / 1e6:.4f} MPa")
+    3.7215 MPa
+    """
+    values, slopes = _lip_cubics(sealed_pressure, outer_pressure, excess)
+    total = 0.0
+    for i in range(3):
+        h = LIP_PLACES[i + 1] - LIP_PLACES[i]
+        total = total + h * (values[i] + values[i + 1]) / 2
+        total = total + h * h * (slopes[i] - slopes[i + 1]) / 12
+    return total
+
+
+def lip_excess(
+    *, line_load: Array, width: Array, sealed_pressure: Array, outer_pressure: Array
+) -> Array:
+    """Excess p_k with which the lip profile carries a line load.
+
+    With y = p_a + f/b the greater of [y - 0.57933 p_s - 0.61667 p_a]/0.52933 and
+    [y - 0.58094 p_s - 0.61389 p_a]/0.50317: the two forms of the slope at the sealed end.
+
+    Parameters
+    ----------
+    line_load : f over the outer pressure [N/m]
+    width : b [m]
+    sealed_pressure, outer_pressure : p_s, p_a [Pa]
+
+    Returns
+    -------
+    excess [Pa]
+
+    Notes
+    -----
+    Valid: result >= 0, 0.58 (p_s + p_k) > p_a.
+
+    References
+    ----------
+    [derived] inverse of `lip_mean`, which is the lesser of two linear functions of p_k
+
+    Examples
+    --------
+    >>> p = lip_excess(line_load=14.482e3, width=4e-3, sealed_pressure=5e6, outer_pressure=0.101e6)
+    >>> print(f"{p / 1e6:.4f} MPa")
+    1.5000 MPa
+    """
+    mean = outer_pressure + line_load / positive(width)
+    top = 0.468 + 0.85 / 75  # of p_s + p_k in the mean, without the slope at the sealed end
+    outer = 0.6 + 1.25 / 75
+    rest = mean - (0.1 + top) * sealed_pressure - outer * outer_pressure
+    bounded = rest / (top + 1 / 20)
+    free = (rest - (0.58 * sealed_pressure - outer_pressure) / 360) / (top + 1 / 45 + 0.58 / 360)
+    return maximum(bounded, free)
+
+
+def table_profile(
+    *, position: Array, positions: Sequence[Array], pressures: Sequence[Array]
+) -> Array:
+    """Contact pressure of a table, straight lines between its points, held outside them.
+
+    Parameters
+    ----------
+    position : t = x/b, 0 to 1 [-]
+    positions : of the points, increasing from 0 to 1 [-]
+    pressures : at the points [Pa]
+
+    Returns
+    -------
+    contact pressure [Pa]
+
+    Notes
+    -----
+    Valid: positions increase strictly; the sealed pressure the table was made for.
+
+    References
+    ----------
+    [derived] linear interpolation
+
+    Examples
+    --------
+    >>> p = table_profile(position=0.35, positions=(0.0, 0.2, 0.5, 1.0),
+    ...                   pressures=(5e6, 8e6, 6e6, 0.0))
+    >>> print(f"{p / 1e6:.2f} MPa")
+    7.00 MPa
+    """
+    value = pressures[0]
+    for i in range(len(positions) - 1):
+        share = clip((position - positions[i]) / (positions[i + 1] - positions[i]), 0.0, 1.0)
+        value = value + (pressures[i + 1] - pressures[i]) * share
+    return value
+
+
+def table_mean(*, positions: Sequence[Array], pressures: Sequence[Array]) -> Array:
+    """Mean of a table's profile, sum of (t_1 - t_0)(p_0 + p_1)/2: exact for straight lines.
+
+    Parameters
+    ----------
+    positions : of the points, increasing from 0 to 1 [-]
+    pressures : at the points [Pa]
+
+    Returns
+    -------
+    mean contact pressure [Pa]
+
+    Notes
+    -----
+    Valid: first point at 0, last at 1.
+
+    References
+    ----------
+    [derived] integral of `table_profile` over t
+
+    Examples
+    --------
+    >>> p = table_mean(positions=(0.0, 0.2, 0.5, 1.0), pressures=(5e6, 8e6, 6e6, 0.0))
+    >>> print(f"{p / 1e6:.2f} MPa")
+    4.90 MPa
+    """
+    total = 0.0
+    for i in range(len(positions) - 1):
+        step = positions[i + 1] - positions[i]
+        total = total + step * (pressures[i] + pressures[i + 1]) / 2
+    return total

@@ -1,0 +1,214 @@
+"""Step seals: a sliding ring of filled PTFE pressed on rod or bore by an O-ring behind it.
+
+The ring balances radially. Behind it: the line load of the energiser (a law of `seals.LAWS`) and
+the pressure on the back beside the energiser's foot, on the pressure side. In front: the pressure
+on the relief of the running face, on the pressure side of the land. What is left rests on the
+land. Per length of circumference; pressure is the one-sided difference, >= 0. An energiser
+without squeeze has lost contact: zero load and width. The peak pressure is that of the worn-in
+land, `contact_land.land_peak`.
+"""
+
+from __future__ import annotations
+
+from ..numeric import Array, maximum, real, sqrt, where
+
+
+def wetted_back(*, ring_width: Array, foot_width: Array, section: Array, squeeze: Array) -> Array:
+    """Length of the ring's back that the pressure wets, a_b = w - b - W (1 - C)/2, at least 0.
+
+    The pressure has pushed the O-ring to the outer side; between its foot b and the groove's outer
+    wall lies the quarter round of the squeezed section, dry. Later widening of the foot under
+    pressure goes into that dry corner and leaves a_b as it is.
+
+    Parameters
+    ----------
+    ring_width : axial width w of the sliding ring [m]
+    foot_width : contact width b of the energiser without pressure [m]
+    section, squeeze : free section W and squeeze C of the energiser [m], [-]
+
+    Returns
+    -------
+    wetted length [m]
+
+    Notes
+    -----
+    Valid: one-sided pressure, groove as wide as the ring, squeeze 0.1 to 0.3.
+
+    References
+    ----------
+    [derived] squeezed ring as a stadium against the outer wall
+
+    Examples
+    --------
+    >>> a = wetted_back(ring_width=3.9e-3, foot_width=1.13e-3, section=2.62e-3, squeeze=0.15)
+    >>> print(f"{a * 1e3:.4f} mm")
+    1.6565 mm
+    """
+    return maximum(ring_width - foot_width - section * (1 - squeeze) / 2, 0.0)
+
+
+def hoop_load(
+    *,
+    youngs_modulus: Array,
+    thickness: Array,
+    ring_width: Array,
+    radius: Array,
+    interference: Array,
+) -> Array:
+    """Line load of the sliding ring's own tightness on the surface, f_h = E t w delta/r^2.
+
+    Parameters
+    ----------
+    youngs_modulus : of the ring, relaxed [Pa]
+    thickness, ring_width : radial t, axial w [m]
+    radius : mean radius r of the ring [m]
+    interference : radial, of the free ring with its surface; < 0: the ring must first close the
+        gap and takes load from the land [m]
+
+    Returns
+    -------
+    line load [N/m]
+
+    Notes
+    -----
+    Valid: t < r/5; creep takes most of it within days: count it for a new ring only.
+
+    References
+    ----------
+    [derived] thin ring, pressure E t delta/r^2 over its width
+
+    Examples
+    --------
+    >>> f = hoop_load(youngs_modulus=600e6, thickness=1.4e-3, ring_width=3.9e-3, radius=40e-3,
+    ...               interference=0.05e-3)
+    >>> print(f"{f:.2f} N/m")
+    102.38 N/m
+    """
+    return youngs_modulus * thickness * ring_width * interference / (radius * radius)
+
+
+def line_load(
+    *,
+    energiser_load: Array,
+    pressure: Array,
+    wetted_back: Array,
+    wetted_front: Array,
+    hoop_load: Array,
+) -> Array:
+    """Line load of the land, f = f_e + p (a_b - a_f) + f_h, at least 0 (the ring has lifted).
+
+    Parameters
+    ----------
+    energiser_load : f_e(C, p) of the energiser's contact law [N/m]
+    pressure : one-sided difference [Pa]
+    wetted_back : a_b, see `wetted_back` [m]
+    wetted_front : a_f, relief of the running face on the pressure side of the land [m]
+    hoop_load : f_h, see `hoop_load` [N/m]
+
+    Returns
+    -------
+    line load [N/m]; 0 without energiser load
+
+    Notes
+    -----
+    Valid: ring not tilted; oil pressure inside the land is not taken off.
+
+    References
+    ----------
+    [derived] radial balance of the sliding ring
+
+    Examples
+    --------
+    >>> f = line_load(energiser_load=1.5e4, pressure=5e6, wetted_back=1.66e-3,
+    ...               wetted_front=2.4e-3, hoop_load=100.0)
+    >>> print(f"{f / 1e3:.2f} N/mm")
+    11.40 N/mm
+    """
+    load = maximum(energiser_load + pressure * (wetted_back - wetted_front) + hoop_load, 0.0)
+    return where(real(energiser_load) > 0, load, 0.0)
+
+
+def pressure_balance(
+    *, energiser_slope: Array, wetted_back: Array, wetted_front: Array, land: Array
+) -> Array:
+    """Rise of the land's load with pressure, over the land, (df_e/dp + a_b - a_f)/a.
+
+    An oil film that falls evenly from the sealed to the outer pressure carries 1/2 of p a: above
+    1/2 the dry part of the load, and with it friction, rises with pressure; below it falls.
+
+    Parameters
+    ----------
+    energiser_slope : df_e/dp of the energiser; k_p W with k_p 0.72 to 0.80 in `plane_strain` [m]
+    wetted_back, wetted_front : a_b, a_f as in `line_load` [m]
+    land : width a of the running face [m]
+
+    Returns
+    -------
+    pressure balance [-]; negative: even the whole load falls with pressure
+
+    Notes
+    -----
+    Valid: ring not tilted; land at rest.
+
+    References
+    ----------
+    [derived] slope of `line_load`; [Huang2017] section 4, peak stress of a step ring over pressure
+
+    Examples
+    --------
+    >>> arguments = {"energiser_slope": 0.72 * 2.62e-3, "wetted_back": 1.66e-3, "land": 1e-3}
+    >>> print(", ".join(f"{pressure_balance(wetted_front=a, **arguments):.3f}"
+    ...                 for a in (0.4e-3, 2.9e-3)))
+    3.146, 0.646
+    """
+    return (energiser_slope + wetted_back - wetted_front) / land
+
+
+def contact_width(
+    *,
+    line_load: Array,
+    land: Array,
+    taper: Array,
+    ring_width: Array,
+    youngs_modulus: Array,
+    poissons_ratio: Array,
+) -> Array:
+    """Contact width of a land between shallow tapers, b = sqrt(a^2 + (2 f/(E* alpha))^2).
+
+    E* = E/(1 - nu^2); at most the ring's width.
+
+    Parameters
+    ----------
+    line_load : f [N/m]
+    land : flat width a [m]
+    taper : angle alpha between the flanks and the surface, both sides [rad]
+    ring_width : axial width of the ring [m]
+    youngs_modulus, poissons_ratio : of the ring [Pa], [-]
+
+    Returns
+    -------
+    contact width [m]; 0 without load
+
+    Notes
+    -----
+    Valid: alpha < 0.2, b < 2 ring thicknesses (half-space), elastic.
+
+    Unlike flanks: the harmonic mean of the angles is near; steep flanks leave b = a.
+
+    References
+    ----------
+    [Johnson1985] smooth end of a frictionless plane contact; [derived] its load integral
+    f = (E*/2) int h'(x) x/sqrt(b^2/4 - x^2) dx over a truncated wedge
+
+    Examples
+    --------
+    >>> b = contact_width(line_load=2e4, land=0.8e-3, taper=0.09, ring_width=3.9e-3,
+    ...                   youngs_modulus=600e6, poissons_ratio=0.46)
+    >>> print(f"{b * 1e3:.4f} mm")
+    0.9905 mm
+    """
+    wedge = 2 * line_load * (1 - poissons_ratio * poissons_ratio) / (youngs_modulus * taper)
+    loaded = real(line_load) > 0
+    width = sqrt(land * land + wedge * wedge)
+    shorter = where(real(width) < real(ring_width), width, ring_width)
+    return where(loaded, shorter, 0.0)

@@ -1,0 +1,393 @@
+"""The best combination of the design's choices: every one is looked at, the best solved in full.
+
+A quick look descends from the nearest design already known, which mostly finds the optimum of a
+combination but proves nothing. The combinations that come near the best one are then solved from
+many starts, the winner always. What each combination got is told in its record.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..design import with_values
+from ..design.choice_list import Value, combinations
+from ..design.material import Material
+from ..design.materials import load_library
+from ..errors import Diagnostic, InputError
+from ..evaluation import Subject, compute, prepare
+from ..evaluation.build import names_of_materials
+from ..evaluation.limits import all_limits
+from ..evaluation.rows import Row, rows_of
+from . import elastic, nlopt_wrapper
+from .actuator import ActuatorProblem, Goal, build, goal_of
+from .evaluator import Evaluator, LimitReached, Point
+from .outcome import Solution
+from .problem import Vector
+from .result import How
+from .sampling import sweep
+from .solver import FEASIBLE, solve
+
+QUICK_EVALUATIONS = 60
+"""Most evaluations of one descent of a quick look; from a near design 15 to 30 do."""
+
+QUICK_SAMPLES = 256
+"""Points of the sweep that suggests another start where the nearest design leads nowhere."""
+
+NEAR = 0.05
+"""Distance from the best, relative, within which a combination is solved from many starts."""
+
+DOUBTFUL = 0.02
+"""Margin missed up to which many starts are tried where the quick look found nothing that fits."""
+
+MOST_DOUBTFUL = 2
+"""Most combinations solved from many starts in vain: a search that finds nothing takes long."""
+
+MOST_SOLVED = 6
+"""Most combinations solved from many starts."""
+
+BETTER = 1e-3
+"""Improvement by many starts, relative, after which every combination gets a second quick look."""
+
+LEAST_SECONDS = 0.1
+"""Time that the first look and the winner get, whatever the limit."""
+
+EQUAL = 1e-6
+"""Relative difference of objectives that counts as none: the first of the file's order wins."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How the combinations that matter are solved; `until` is a time of `time.perf_counter`."""
+
+    algorithm: str
+    starts: int
+    samples: int
+    seed: int
+    until: float | None
+
+    def left(self, share: float = 1.0, began: float = 0.0) -> float | None:
+        """Seconds left of this share of the time since `began`."""
+        if self.until is None:
+            return None
+        return began + share * (self.until - began) - time.perf_counter()
+
+
+@dataclass
+class Look:
+    """One combination: its design and what is known of it so far."""
+
+    order: int
+    values: Mapping[str, Value]
+    subject: Subject | None = None
+    actuator: ActuatorProblem | None = None
+    fault: str = ""
+    """Why there is no such design."""
+    how: How = "not tried"
+    x: Vector | None = None
+    objective: float = math.inf
+    violation: float = math.inf
+    missed: str = ""
+    """The limit missed most."""
+    checks: frozenset[str] = frozenset()
+    """Missed checks that no variable can mend."""
+    solution: Solution | None = None
+
+    @property
+    def feasible(self) -> bool:
+        """Whether every requirement is met."""
+        return self.violation <= FEASIBLE
+
+
+@dataclass
+class Search:
+    """All combinations of a design's choices."""
+
+    goal: Goal
+    looks: list[Look] = field(default_factory=list)
+
+    def mendable(self) -> frozenset[str]:
+        """Missed checks that some combination meets, so that choosing can mend them."""
+        lists = [
+            look.checks for look in self.looks if look.how not in ("not tried", "not possible")
+        ]
+        return frozenset().union(*lists) - frozenset.intersection(*lists) if lists else frozenset()
+
+    def ranked(self) -> list[Look]:
+        """The best first: requirements met, then checks, then the objective; equals as listed."""
+        mendable = self.mendable()
+
+        def rank(look: Look) -> tuple[bool, float, int, float, int]:
+            missed = 0.0 if look.feasible else look.violation
+            checks = len(look.checks & mendable)
+            return (bool(look.fault), missed, checks, look.objective, look.order)
+
+        looks = sorted(self.looks, key=rank)
+        best = looks[0]
+        equal = [
+            look
+            for look in looks
+            if best.feasible
+            and rank(look)[:3] == rank(best)[:3]
+            and look.how in (best.how, "multistart")
+            and look.objective - best.objective <= EQUAL * abs(best.objective)
+        ]
+        first = min(equal, key=lambda look: look.order, default=best)
+        return [first, *(look for look in looks if look is not first)]
+
+
+def possible(subject: Subject) -> list[Look]:
+    """Every combination of the choices, with its design or why there is none.
+
+    Raises
+    ------
+    InputError
+        there is none at all
+    """
+    library = load_library()
+    looks = []
+    for order, values in enumerate(combinations(subject.design)):
+        look = Look(order, values)
+        try:
+            design = with_values(
+                subject.design, values, materials=library, metrics=subject.quantities
+            )
+            names = names_of_materials(design)
+            known: dict[str, Material] = {
+                name: subject.materials.get(name) or library.get(name) for name in names
+            }
+            look.subject = prepare(design, known, subject.plugins)
+        except InputError as error:
+            _give_up(look, error)
+        looks.append(look)
+    _require_one(looks)
+    return looks
+
+
+def _give_up(look: Look, error: InputError) -> None:
+    first = error.diagnostics[0]
+    look.fault = f"{first.path}: {first.message}" if first.path else first.message
+    look.how = "not possible"
+
+
+def _require_one(looks: Sequence[Look]) -> None:
+    if all(look.fault for look in looks):
+        faults = dict.fromkeys(look.fault for look in looks)
+        some = "; ".join(list(faults)[:3])
+        count = (
+            "the only combination is" if len(looks) == 1 else f"all {len(looks)} combinations are"
+        )
+        message = f"{count} impossible: {some}"
+        raise InputError(Diagnostic(message, "change the values listed there", path="choices"))
+
+
+@np.errstate(all="ignore")  # what has no finite answer is never the best
+def search(subject: Subject, settings: Settings) -> Search:
+    """Look at every combination of the choices, solve the best ones from many starts.
+
+    Raises
+    ------
+    InputError
+        no combination is a possible design
+    """
+    found = Search(goal_of(subject), possible(subject))
+    moving = bool(subject.design.variables)
+    for look in found.looks:
+        if look.subject is None:
+            continue
+        try:
+            if moving:
+                look.actuator = _with_goal(build(look.subject), found.goal)
+                look.checks = _missed_checks(look.actuator.fixed)
+            else:
+                _evaluate(look, found.goal)
+        except InputError as error:
+            _give_up(look, error)
+    _require_one(found.looks)
+    if moving:
+        _look_at_all(found, settings)
+        _solve_best(found, settings)
+    return found
+
+
+def _with_goal(actuator: ActuatorProblem, goal: Goal) -> ActuatorProblem:
+    """The problem with the objective that all combinations share, whose weights have one scale."""
+    shared = replace(actuator, goal=goal)
+    return replace(shared, problem=replace(actuator.problem, evaluate=shared.evaluate))
+
+
+def _missed_checks(rows: Sequence[Row]) -> frozenset[str]:
+    return frozenset(
+        row.limit_of.name
+        for row in rows
+        if row.limit_of.origin == "check" and not float(row.margin[0]) >= -FEASIBLE
+    )
+
+
+def _evaluate(look: Look, goal: Goal) -> None:
+    """The one design of a combination that leaves nothing to move."""
+    subject = look.subject
+    assert subject is not None
+    values = subject.values()
+    computed = compute(subject, values).computed
+    limits = all_limits(subject.design, subject.plugins)
+    rows = [row for limit in limits for row in rows_of(limit, computed, values)]
+    look.how = "evaluated"
+    look.objective = float(np.squeeze(goal.value(computed, subject.cases)))
+    look.checks = _missed_checks(rows)
+    margins = {
+        row.label: np.nan_to_num(float(row.margin[0]), nan=-math.inf)
+        for row in rows
+        if row.limit_of.origin not in ("check", "advice")
+    }
+    look.missed = min(margins, key=lambda label: margins[label])
+    look.violation = max(-float(margins[look.missed]), 0.0)
+    if not math.isfinite(look.objective):
+        message = "the objective has no finite value"
+        raise InputError(Diagnostic(message, path="objective"))
+
+
+def _look_at_all(found: Search, settings: Settings) -> None:
+    """A quick look at every combination, in half of the time there is."""
+    began = time.perf_counter()
+    for look in found.looks:
+        left = settings.left(0.5, began)
+        if look.actuator is None or (left is not None and left <= 0 and _any(found)):
+            continue
+        starts = _nearest(found, look)
+        own = look.actuator.problem.start
+        left = None if left is None else max(left, LEAST_SECONDS)
+        _quick(look, starts or ([] if own is None else [own]), settings.seed, left)
+
+
+def _any(found: Search) -> bool:
+    return any(look.x is not None for look in found.looks)
+
+
+def _nearest(found: Search, look: Look) -> list[Vector]:
+    """Where the combination that differs in the fewest values ended; good ones first."""
+    known = [other for other in found.looks if other.x is not None and other is not look]
+
+    def distance(other: Look) -> tuple[bool, int, float]:
+        differing = sum(other.values[path] != value for path, value in look.values.items())
+        return (not other.feasible, differing, other.objective)
+
+    nearest = min(known, key=distance, default=None)
+    return [] if nearest is None or nearest.x is None else [nearest.x]
+
+
+def _quick(look: Look, starts: Sequence[Vector], seed: int, seconds: float | None) -> None:
+    """Descend from the starts until one leads to a point that meets every requirement.
+
+    Where a descent misses a limit, another starts from the nearest point that misses none.
+    """
+    assert look.actuator is not None
+    evaluator = Evaluator(look.actuator.problem, max_seconds=seconds)
+
+    def down(start: Point) -> Point:
+        run = nlopt_wrapper.run(evaluator, start, "LD_SLSQP", most=QUICK_EVALUATIONS, seed=seed)
+        _keep(look, evaluator, run.point)
+        return run.point
+
+    look.how = "quick"
+    try:
+        for z in _coordinates(evaluator, starts, seed):
+            start = evaluator.point(z)
+            _keep(look, evaluator, start)
+            point = down(start) if start.valid else start
+            if point.valid and point.violation > FEASIBLE and evaluator.space.size:
+                restored = elastic.feasible_point(evaluator, point)
+                if restored is not None:
+                    down(restored)
+            if look.feasible:
+                return
+    except LimitReached:
+        look.how = "not tried" if look.x is None else "quick"
+
+
+def _coordinates(evaluator: Evaluator, starts: Sequence[Vector], seed: int) -> Iterator[Vector]:
+    """The starts given, then the best of a small sweep."""
+    for x in starts:
+        yield evaluator.space.to_z(x)
+    if evaluator.space.size:
+        swept = sweep(evaluator, QUICK_SAMPLES, seed)
+        if swept.z.shape[1]:
+            yield swept.z[:, 0].copy()
+
+
+def _keep(look: Look, evaluator: Evaluator, point: Point) -> None:
+    """Remember a point where it is better than what was known."""
+    better = (max(point.violation, FEASIBLE), point.objective)
+    if not point.valid or better >= (max(look.violation, FEASIBLE), look.objective):
+        return
+    look.x, look.objective, look.violation = point.x, point.objective, point.violation
+    margins = point.rows[1 : 1 + evaluator.constraint_count]
+    if len(margins):
+        look.missed = evaluator.problem.constraint_names[int(np.argmin(margins))]
+
+
+def _solve_best(found: Search, settings: Settings) -> None:
+    """Many starts for the winner and for what comes near it, best first."""
+    second = True
+    for _ in range(MOST_SOLVED):
+        look = _promising(found)
+        left = settings.left()
+        if look is None or (left is not None and left <= 0):
+            break
+        before = look.objective if look.feasible else math.inf
+        _solve(look, settings)
+        gained = look.feasible and look.objective < before - BETTER * abs(look.objective)
+        if second and gained and look.x is not None:
+            second = False
+            for other in found.looks:
+                if other.solution is None and other.actuator is not None:
+                    _quick(other, [look.x], settings.seed, settings.left())
+    best = found.ranked()[0]
+    if best.solution is None:
+        _solve(best, settings)
+
+
+def _promising(found: Search) -> Look | None:
+    """The next combination worth many starts; None where the rest is clearly worse."""
+    ranked, mendable = found.ranked(), found.mendable()
+    best = ranked[0]
+    if best.solution is None:
+        return best
+    solved = sum(look.solution is not None and not look.feasible for look in ranked)
+    for look in ranked[1:]:
+        if look.solution is not None or look.how != "quick":
+            continue
+        gap = look.objective - best.objective
+        near = gap <= NEAR * abs(best.objective)
+        as_good = len(look.checks & mendable) <= len(best.checks & mendable)
+        if best.feasible and look.feasible and near and as_good:
+            return look
+        doubtful = not look.feasible and look.violation <= best.violation + DOUBTFUL
+        if doubtful and solved < MOST_DOUBTFUL:
+            return look
+    return None
+
+
+def _solve(look: Look, settings: Settings) -> None:
+    """Solve a combination from many starts, the best point known among them."""
+    assert look.actuator is not None
+    left = settings.left()
+    known = [] if look.x is None else [look.x]
+    solution = solve(
+        look.actuator.problem,
+        algorithm=settings.algorithm,
+        starts=settings.starts,
+        samples=settings.samples,
+        seed=settings.seed,
+        max_seconds=None if left is None else max(left, LEAST_SECONDS),
+        more_starts=known,
+    )
+    look.how, look.solution = "multistart", solution
+    look.x, look.objective, look.violation = solution.x, solution.objective, solution.violation
+    if len(solution.constraints):
+        worst = int(np.argmin(solution.constraints))
+        look.missed = look.actuator.problem.constraint_names[worst]
