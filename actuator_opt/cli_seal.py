@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -32,6 +33,19 @@ def seal(
     mapped: Annotated[
         bool, typer.Option("--map", help="Also fill a map over speed and pressure (and its CSV).")
     ] = False,
+    finite_elements: Annotated[
+        bool,
+        typer.Option(
+            "--finite-elements",
+            help="Compute the contact of an O-ring or step ring (extra fem; some seconds).",
+        ),
+    ] = False,
+    write: Annotated[
+        Path | None,
+        typer.Option(
+            "--write", metavar="FILE", help="Save the design with the contact profiles used."
+        ),
+    ] = None,
     sets: Set = None,
     plugin: PluginFile = None,
     report: Report = False,
@@ -41,13 +55,12 @@ def seal(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Contact, oil film, friction, leakage and damping of a seal at one speed and pressure."""
+    """Contact, oil film, friction and leakage of one seal."""
     from . import verbs
 
     if place not in ("piston", "rod"):
         raise UsageError(Diagnostic(f'--seal "{place}"', "write piston or rod"))
-    if report or mapped:
-        check_targets(out, date)
+    check_targets(out if report or mapped else None, date, write)
     actuator = read_actuator(design, sets, plugin)
     study = verbs.seal(
         actuator,
@@ -56,7 +69,10 @@ def seal(
         pressure=_given("--pressure", pressure, "pressure"),
         mapped=mapped,
         curves=report,
+        finite_elements=finite_elements,
     )
+    if write is not None:
+        verbs.save(study.design, write)
     files = []
     if report or mapped:
         files = verbs.write_seal(
@@ -69,7 +85,7 @@ def seal(
         from .reporting.seal_text import seal_text
 
         streams.out(seal_text(study, **streams.style()), end="")
-        say_files(shown)
+        say_files(([{"path": write}] if write is not None else []) + shown)
     if not (study.out.converged and study.back.converged):
         raise typer.Exit(ExitCode.SOLVER_FAILED)
 

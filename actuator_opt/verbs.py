@@ -202,6 +202,7 @@ def seal(
     pressure: float | None = None,
     curves: bool = False,
     mapped: bool = False,
+    finite_elements: bool = False,
 ) -> SealStudy:
     """Contact, oil film, friction, leakage and damping of the seals of piston or rod.
 
@@ -215,25 +216,83 @@ def seal(
     pressure : sealed, gauge [Pa]; default: the highest of a load case
     curves : whether to follow friction over speed at three pressures
     mapped : whether to fill a map over speed and pressure
+    finite_elements : whether to compute the contact profiles of O-rings and step rings (extra
+        ``fem``); the study's design states them
 
     Raises
     ------
     InputError
         no speed above zero, or a pressure beyond the stated contact profiles
+    ActuatorError
+        no finite elements of this seal, or no balance
     """
-    from .evaluation.study.seal import study
+    from .evaluation.study.seal import study, with_elements
 
     actuator = _actuator(design)
     elements = getattr(actuator.design.seals, place).elements()
     asked = {f"seals.{place}.{tail}friction": "film" for tail in elements}
+    subject = actuator.changed(asked).subject()
     return study(
-        actuator.changed(asked).subject(),
+        with_elements(subject, place) if finite_elements else subject,
         place,
         speed=speed,
         pressure=pressure,
         curves=curves,
         mapped=mapped,
     )
+
+
+def write_seal(
+    study: SealStudy,
+    *,
+    folder: str | Path = "reports",
+    actuator: Actuator | None = None,
+    command: str = "",
+    date: str | None = None,
+    sheet: bool = True,
+) -> list[ReportFile]:
+    """Write the sheet of a seal (PDF and PNG), and its map as CSV where it has one.
+
+    Parameters
+    ----------
+    study : what `seal` told
+    folder : where to
+    actuator : the design as read, for the attachment
+    command, date : as `report`
+    sheet : whether to write the sheet, or the map alone
+    """
+    from .design.writer import to_yaml
+    from .evaluation.build import spec_hash
+    from .reporting.seal_document import write_map, write_sheet
+
+    source = None if actuator is None else actuator.source
+    name = _file_name(study.design, source)
+    stem = f"{Path(name).stem}_{study.place}_seal"
+    files = []
+    if sheet:
+        files += write_sheet(
+            study,
+            folder=Path(folder),
+            stem=stem,
+            source_text=source.text if source is not None else to_yaml(study.design),
+            source_name=name,
+            command=command,
+            spec_hash=spec_hash(prepare(study.design)),
+            date=date or date_from_environment(),
+        )
+    if study.map is not None:
+        files.append(write_map(study.map, Path(folder) / f"{stem}_map.csv"))
+    return files
+
+
+def _seal_studies(subject: Subject) -> list[SealStudy]:
+    """The seal sheets of a report: every place of the design that asks for an oil film."""
+    from .evaluation.study.seal import study
+
+    places: tuple[Place, ...] = ("piston", "rod")
+    asked = [x for x in places if getattr(subject.design.seals, x).friction == "film"]
+    moving = any(case.speed > 0 for case in subject.design.load_cases)
+    return [study(subject, x, curves=True, mapped=True) for x in asked if moving]
 
 
 def report(
@@ -273,6 +332,7 @@ def report(
         command=command,
         date=date or date_from_environment(),
         extra_tables=[*published_tables(subject), *extra_tables],
+        seals=_seal_studies(prepare(subject.design)),
     )
 
 

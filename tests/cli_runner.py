@@ -94,14 +94,14 @@ seals:
     type: o_ring
     compound: nbr_90
     section: 1.78 mm
-    squeeze: 12.2 %
+    squeeze: 16 %
     tolerance: 0.05 mm
     friction_coefficient: 0.10
   rod:
     type: o_ring
     compound: nbr_90
     section: 1.78 mm
-    squeeze: 12.2 %
+    squeeze: 16 %
     tolerance: 0.05 mm
     friction_coefficient: 0.10
 

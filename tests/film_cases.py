@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from actuator_opt.lubrication import Contact, Elastic, Lubricant, Surface
-from actuator_opt.models.contact_profile import lip_profile, o_ring_profile
+from actuator_opt.models.contact_profile import lip_profile
 from actuator_opt.models.fluid import viscosity_astm_d341
 from actuator_opt.models.seals import LAWS
 
@@ -14,6 +14,14 @@ ROUGH = Surface(roughness=0.8e-6, asperity_density=1e14, asperity_radius=1e-6)
 KINDS = ("o_ring", "lip", "step_ring")
 VISCOSITIES = ((32e-6, 5.36e-6), (46e-6, 6.8e-6))
 """ISO VG 32 and 46 at 40 and 100 degC [m^2/s]."""
+
+
+def o_ring_profile(*, position, sealed_pressure, outer_pressure, excess):
+    """Profile behind the published check table: a falling sine plus the Hertz ellipse."""
+    u = 2 * position - 1
+    fall = (1 - np.sin(np.pi * u / 2)) / 2
+    ellipse = np.sqrt(np.clip(1 - u * u, 0, None))
+    return outer_pressure + (sealed_pressure - outer_pressure) * fall + excess * ellipse
 
 
 def lip(speed, *, nodes=161, width=4e-3, sealed=5e6, outer=AIR, excess=1.5e6, **changes):

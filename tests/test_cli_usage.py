@@ -28,6 +28,7 @@ COMMANDS = [
     ("materials", "list"),
     ("materials", "show"),
     ("materials", "compare"),
+    ("seal",),
 ]
 VERBS = ["check", "evaluate", "optimise", "optimize", "sensitivity", "report"]
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from film_cases import AIR, ROUGH, lip
+from film_cases import AIR, ROUGH, lip, o_ring_profile
 
 from actuator_opt.lubrication import (
     Elastic,
@@ -18,7 +18,7 @@ from actuator_opt.lubrication import (
     solve_film,
     solve_tandem,
 )
-from actuator_opt.models.contact_profile import lip_profile, o_ring_profile
+from actuator_opt.models.contact_profile import lip_profile
 from actuator_opt.numeric import STEP
 
 PLACES = np.linspace(0, 1, 121)

@@ -307,16 +307,16 @@ def test_wound_fibre_tension_carries_the_process_knock_down(library):
 
 
 def test_tables_interpolate_and_scale(library):
-    """Extrusion gap of 70 Shore A: table value at 1000 psi, mean half-way, held at the ends."""
-    gap = library.get("nbr_70").properties["extrusion_gap_max"]
-    assert gap.at(68.9e5) == pytest.approx(0.127e-3)
-    assert gap.at((68.9e5 + 103.4e5) / 2) == pytest.approx((0.127e-3 + 0.0762e-3) / 2)
-    assert gap.at(1e5) == pytest.approx(0.203e-3)
-    assert gap.at(5e7) == pytest.approx(0.0254e-3)
-    assert gap.value == pytest.approx(0.0254e-3)
-    assert gap.at(68.9e5, value=2 * gap.value) == pytest.approx(0.254e-3)
-    slope = gap.at(np.array([80e5 + 1e-25j])).imag / 1e-25
-    assert slope == pytest.approx((0.0762e-3 - 0.127e-3) / (103.4e5 - 68.9e5))
+    """Extrusion gap of a step ring: table value at 200 bar, mean half-way, held at the ends."""
+    gap = library.get("ptfe_bronze_nbr_70").properties["extrusion_gap_max"]
+    assert gap.at(200e5) == pytest.approx(0.20e-3)
+    assert gap.at(150e5) == pytest.approx(0.25e-3)
+    assert gap.at(1e5) == pytest.approx(0.30e-3)
+    assert gap.at(5e7) == pytest.approx(0.15e-3)
+    assert gap.value == pytest.approx(0.15e-3)
+    assert gap.at(200e5, value=2 * gap.value) == pytest.approx(0.40e-3)
+    slope = gap.at(np.array([120e5 + 1e-25j])).imag / 1e-25
+    assert slope == pytest.approx((0.20e-3 - 0.30e-3) / 100e5)
 
 
 def test_scatter_is_a_number_too(library):

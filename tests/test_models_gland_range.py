@@ -41,14 +41,6 @@ def test_extrusion_limits_are_the_published_ones(hardness):
         assert found == pytest.approx(inch * INCH / 2, rel=3e-3)
 
 
-def test_the_verified_limits_stand_in_both_files_alike(library):
-    """The rows 70 and 90 of the hardness table are the compounds' own tables."""
-    rows = dict(VERIFIED)
-    for name, hardness in (("nbr_70", 70.0), ("nbr_90", 90.0)):
-        own = library.get(name).properties["extrusion_gap_max"].points
-        np.testing.assert_allclose(own, rows[hardness], rtol=1e-12)
-
-
 @pytest.mark.parametrize("name", ["sealanddesign", "design_program"])
 def test_interpolation_is_exact_at_every_tabulated_point(name):
     """At the pressure and hardness of a point the limit is the point's."""
@@ -146,9 +138,9 @@ def test_film_inputs_are_those_of_the_studies(library):
 
 
 def test_every_seal_has_what_film_and_extrusion_need(library):
-    """Film inputs and a gap limit for every compound, each with a source."""
+    """Film inputs and the law over temperature for every compound, each with a source."""
     needed = ("asperity_friction", "seal_roughness", "asperity_radius", "asperity_density",
-              "extrusion_gap_max", "softening", "stiffening_temperature")  # fmt: skip
+              "softening", "stiffening_temperature")  # fmt: skip
     for name in library.names(kind="seal"):
         properties = library.get(name).properties
         assert set(needed) <= set(properties), name

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actuator_opt.models import damping, friction, lugre, seals
+from actuator_opt.models import damping, friction, lugre, seals, wear
 
 SLIDES = {  # [MECE5005]
     "coulomb": 500.0,
@@ -257,3 +257,10 @@ def test_published_coulomb_is_zero_without_pressure():
     assert friction.coulomb_as_published(pressure=2e6, **arguments) == pytest.approx(
         0.61 * 2e6 * math.pi * 1e-3 * 37e-3
     )
+
+
+def test_sliding_severity_is_pressure_times_distance():
+    """8 N/mm on 1 mm are 8 MPa; over 0.22 m: 1.76 MPa m. No contact, no wear."""
+    severity = {"line_load": 8e3, "distance": 0.22}
+    assert wear.sliding_severity(contact_width=1e-3, **severity) == pytest.approx(1.76e6)
+    assert wear.sliding_severity(contact_width=0.0, **severity) == 0.0

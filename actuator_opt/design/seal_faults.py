@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
+from typing import Any
 
+from ..errors import InputError
+from ..models.elastomer import modulus_gent
 from ..quantities import INPUTS
 from .structure import Loc
-from .view import Fault, View, length_text
+from .view import Fault, Materials, Properties, View, length_text
 
 SQUEEZE_RANGE = {"plane_strain": (0.02, 0.40), "hertz_lindley": (0.02, 0.40), "chord": (0.0, 0.45)}
 """Squeeze a contact law can be used at: outside, its width leaves the free section or the load
@@ -281,3 +284,28 @@ def films(view: View) -> Iterator[Fault]:
 
 
 CHECKS = (fields, widths, grooves, squeeze, profiles, reach, films)
+
+SLIDING_RING = 3.0
+"""Stated modulus over that of the hardness from which a compound has a sliding ring of plastic on
+rubber; a hard polyurethane lies near 1."""
+
+
+def of_materials(tree: Any, materials: Materials) -> Iterator[Fault]:
+    """A step ring's compound has a sliding ring, those of the other types have none."""
+    view = View(tree)
+    if not isinstance(materials, Properties):
+        return
+    for loc in elements(view):
+        name, kind = view.text(*loc, "compound"), view.text(*loc, "type")
+        if name is None or kind is None or materials.kind(name) != "seal":
+            continue
+        try:
+            known = materials.numbers(name)
+        except InputError:  # a faulty entry is told elsewhere
+            continue
+        modulus, hardness = known.get("youngs_modulus", 0.0), known.get("hardness", 0.0)
+        sliding = modulus > SLIDING_RING * float(modulus_gent(hardness=hardness))
+        if sliding != (kind == "step_ring"):
+            has = "is a plastic ring on rubber" if sliding else "has no sliding ring"
+            other = "write type: step_ring" if sliding else "use e.g. ptfe_bronze_nbr_70"
+            yield Fault((*loc, "compound"), f"{name} {has}, not for {_article(kind)}", other)

@@ -51,14 +51,15 @@ def exact_text(value: float, quantity: Quantity | None, unit: str | None = None)
     """
     if quantity is None or quantity.dimension == "count":
         return repr(int(value)) if value == int(value) else repr(value)
+    share = quantity.name == "fraction"  # a position, read as a length where it has no %
     for name in dict.fromkeys((unit, quantity.unit, quantity.si_unit)):
-        if name is None:
+        if name is None or (share and not name):
             continue
         of = units.unit(name, quantity.dimension) if name else units.Unit("", "", 1.0)
         for number in _candidates(of.from_si(value)):
             if of.to_si(float(number)) == value:
                 return f"{number} {name}".rstrip()
-    return f"{value!r} {quantity.si_unit}".rstrip()
+    return f"{100 * value!r} %" if share else f"{value!r} {quantity.si_unit}".rstrip()
 
 
 def _candidates(value: float) -> Iterator[str]:

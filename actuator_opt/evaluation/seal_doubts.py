@@ -26,7 +26,7 @@ from .values import Values
 FILM_ERROR = 0.01
 """Relative error of a film's surrogate that is worth a word."""
 
-_MODELS = {
+_MODELS: dict[str, Callable[..., object]] = {
     "step_ring": step_seal.line_load,
     "u_cup": lip_seal.line_load,
     "compact": compact_seal.line_load,

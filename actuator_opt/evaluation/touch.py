@@ -75,16 +75,15 @@ def _o_ring(ring: Ring) -> Touch:
         contact_width=law.contact_width(**inputs), groove_width=ring["groove_width"]
     )
     load, peak = law.line_load(**inputs), law.peak_pressure(**inputs)
+    ends = {"sealed_pressure": pressure, "outer_pressure": 0.0}
+    excess = contact_profile.o_ring_excess(line_load=load, width=width, **ends)
 
     def profile(position: Array) -> Array:
         return contact_profile.o_ring_profile(
-            position=position,
-            sealed_pressure=pressure,
-            outer_pressure=0.0,
-            excess=peak - pressure,
+            position=position, excess=maximum(excess, WITHIN * pressure + 1.0), **ends
         )
 
-    return Touch(load, width, peak, profile, peak - pressure)
+    return Touch(load, width, peak, profile, excess)
 
 
 def _step_ring(ring: Ring) -> Touch:

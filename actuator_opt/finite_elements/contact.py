@@ -116,8 +116,8 @@ def profile_on_face(
     count = (int(inside[np.argmax(along)]) - turn) % len(boundary) + 1
     nodes, open_nodes, after = chain[:count], chain[[-1, -2]], chain[[count, count + 1]]
     x = places[nodes, 0]
-    start = contact_end(x[0], places[open_nodes, 1], places[open_nodes, 0])
-    end = contact_end(x[-1], places[after, 1], places[after, 0])
+    start = contact_end(float(x[0]), places[open_nodes, 1], places[open_nodes, 0])
+    end = contact_end(float(x[-1]), places[after, 1], places[after, 0])
     # Simpson's rule gives a corner 1/6 of each edge beside it, a middle node 2/3 of its own
     before = places[chain[-1], 0]
     lent = (1 / 3 if turn % 2 else 2 / 3) * (x[0] - before)
@@ -129,5 +129,5 @@ def profile_on_face(
         start,
         positions,
         np.concatenate(([pressure], inner[apart], [0.0])),
-        float(np.sum(force[nodes])) + pressure * (before + lent - start),
+        float(np.sum(force[nodes]) + pressure * (before + lent - start)),
     )

@@ -193,22 +193,21 @@ def _graded(start: float, end: float, fine: float, coarse: float, growth: float)
 
 
 def slide_ring(shape: SlideRing, *, fine: float, coarse: float) -> Mesh:
-    """The section of a slide ring, its outer end at x = 0, fine along the land.
+    """The section of a slide ring, its outer end at x = 0, fine at both ends of the land.
 
     Parameters
     ----------
     shape : of the section
-    fine, coarse : spacing of the elements on the land, and elsewhere [m]
+    fine, coarse : spacing of the elements at the ends of the land, and elsewhere [m]
     """
     first, last = shape.land
-    margin = shape.edge_radius + 2 * fine
-    low, high = max(first - margin, -shape.width + fine), min(last + margin, -fine)
-    inner = np.linspace(low, high, max(2, math.ceil((high - low) / fine)) + 1)
+    middle, land = (first + last) / 2, min(coarse, shape.land_width / 8)
     columns = np.concatenate(
         (
-            _graded(low, -shape.width, fine, coarse, 1.3)[::-1],
-            inner[1:-1],
-            _graded(high, 0.0, fine, coarse, 1.3),
+            _graded(first, -shape.width, fine, coarse, 1.3)[::-1],
+            _graded(first, middle, fine, land, 1.3)[1:],
+            _graded(last, middle, fine, land, 1.3)[-2::-1],
+            _graded(last, 0.0, fine, coarse, 1.3)[1:],
         )
     )
     rows = _graded(0.0, 1.0, fine / shape.thickness, coarse / shape.thickness, 1.4)

@@ -25,6 +25,9 @@ from .path import SQUEEZE_STEP, check_inputs, follow
 from .result import Contact, SealSolution, stress_field
 from .section import Body, Section
 
+MOST_FILL = 0.98
+"""Share of the groove that an incompressible section may take: corners stay open."""
+
 
 class RoundRing:
     """The problem of one ring in units of its section and its modulus.
@@ -172,16 +175,18 @@ def squeezed_ring(
     >>> print(f"{ring.contacts[0].line_load / (2e-3 * 6e6):.3f} of section times modulus")
     0.096 of section times modulus
     """
-    depth = section * (1 - squeeze)
-    area = math.pi / 4 * section**2
-    fill = area / (depth * groove_width)
+    area, room = math.pi / 4 * section**2, section * (1 - squeeze) * groove_width
     check_inputs(
         section,
         squeeze,
         rubber,
         pressures,
         elements_around,
-        (fill > 0.98, f"the section fills {fill:.0%} of its groove", "widen the groove"),
+        (
+            not area <= MOST_FILL * room,
+            f"the section, {area:.3g} m^2, fills its groove, {room:.3g} m^2",
+            "widen the groove",
+        ),
     )
     modulus = rubber.youngs_modulus
     ring = RoundRing(

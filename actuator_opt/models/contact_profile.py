@@ -21,12 +21,17 @@ LIP_PLACES, LIP_SHARE = (0.0, 0.2, 0.6, 1.0), 0.42
 """Knots of the lip profile, and its third pressure over its second (*choice*, surrogate)."""
 
 
+O_RING_POWER = 10
+"""Power of the energised part, 1 - t^10: within 0.15 p of the profiles of own finite elements at a
+squeeze of 0.10 to 0.20 and p up to 2 E, whose mean is 0.89 to 0.94 p."""
+
+
 def o_ring_profile(
     *, position: Array, sealed_pressure: Array, outer_pressure: Array, excess: Array
 ) -> Array:
-    """Contact pressure of an O-ring, a falling sine plus the Hertz ellipse.
+    """Contact pressure of an O-ring: the sealed pressure up to the outer edge, and the ellipse.
 
-    p = p_a + (p_s - p_a)[1 - sin(pi u/2)]/2 + p_0 sqrt(1 - u^2), u = 2 t - 1.
+    p = p_a + (p_s - p_a)(1 - t^10) + p_0 sqrt(1 - u^2), u = 2 t - 1.
 
     Parameters
     ----------
@@ -40,29 +45,29 @@ def o_ring_profile(
 
     Notes
     -----
-    Valid: 0 <= t <= 1.
+    Valid: 0 <= t <= 1, squeeze 0.10 to 0.20, p_s - p_a up to 2 E.
+
+    The rubber passes the pressure on like a liquid; only near the outer edge does it fall.
 
     References
     ----------
-    [Johnson1985] line contact; [derived] surrogate of the energised part, half of (p_s - p_a) b
+    [Johnson1985] line contact; [derived] energised part after own finite elements
 
     Examples
     --------
     >>> p = o_ring_profile(position=0.25, sealed_pressure=3e6, outer_pressure=0.0, excess=2e6)
     >>> print(f"{p / 1e6:.4f} MPa")
-    4.2927 MPa
+    4.7320 MPa
     """
-    u = 2 * position - 1
-    xp = namespace(u)
     square = 4 * position * (1 - position)
     inside = real(square) > 0
     ellipse = where(inside, sqrt(where(inside, square, 1.0)), 0.0)
-    fall = (1 - xp.sin((math.pi / 2) * u)) / 2
-    return outer_pressure + (sealed_pressure - outer_pressure) * fall + excess * ellipse
+    energised = 1 - position**O_RING_POWER
+    return outer_pressure + (sealed_pressure - outer_pressure) * energised + excess * ellipse
 
 
 def o_ring_mean(*, sealed_pressure: Array, outer_pressure: Array, excess: Array) -> Array:
-    """Mean of the O-ring profile, (p_s + p_a)/2 + pi p_0/4.
+    """Mean of the O-ring profile, p_a + (10/11)(p_s - p_a) + pi p_0/4.
 
     Parameters
     ----------
@@ -83,11 +88,12 @@ def o_ring_mean(*, sealed_pressure: Array, outer_pressure: Array, excess: Array)
 
     Examples
     --------
-    >>> p = o_ring_mean(sealed_pressure=3e6, outer_pressure=0.0, excess=2e6)
+    >>> p = o_ring_mean(sealed_pressure=3.3e6, outer_pressure=0.0, excess=2e6)
     >>> print(f"{p / 1e6:.4f} MPa")
-    3.0708 MPa
+    4.5708 MPa
     """
-    return (sealed_pressure + outer_pressure) / 2 + (math.pi / 4) * excess
+    share = O_RING_POWER / (O_RING_POWER + 1)
+    return outer_pressure + share * (sealed_pressure - outer_pressure) + (math.pi / 4) * excess
 
 
 def o_ring_excess(
@@ -95,7 +101,7 @@ def o_ring_excess(
 ) -> Array:
     """Excess p_0 with which the O-ring profile carries a line load.
 
-    p_0 = (4/pi)[f/b - (p_s - p_a)/2].
+    p_0 = (4/pi)[f/b - (10/11)(p_s - p_a)].
 
     Parameters
     ----------
@@ -117,11 +123,13 @@ def o_ring_excess(
 
     Examples
     --------
-    >>> p = o_ring_excess(line_load=6e3, width=2e-3, sealed_pressure=3e6, outer_pressure=0.0)
+    >>> p = o_ring_excess(line_load=9e3, width=2e-3, sealed_pressure=3.3e6, outer_pressure=0.0)
     >>> print(f"{p / 1e6:.4f} MPa")
     1.9099 MPa
     """
-    return (4 / math.pi) * (line_load / positive(width) - (sealed_pressure - outer_pressure) / 2)
+    share = O_RING_POWER / (O_RING_POWER + 1)
+    mean = line_load / positive(width) - share * (sealed_pressure - outer_pressure)
+    return (4 / math.pi) * mean
 
 
 def _inner_slope(before: Array, after: Array, left: float, right: float) -> Array:

@@ -1,6 +1,6 @@
 """LuGre bristle friction: exact step, steady state, passivity and rules of thumb.
 
-`friction` re-exports these functions; the level g(v) is `friction.stribeck_level`.
+The level g(v) is `friction.stribeck_level`.
 """
 
 from __future__ import annotations

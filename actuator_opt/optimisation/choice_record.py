@@ -8,7 +8,8 @@ from dataclasses import replace
 
 from ..design import Design
 from ..design.choice_list import left_out
-from .choices import EQUAL, Look, Search
+from .choices import EQUAL, Search
+from .quick_look import Look
 from .result import Choices, Combination, How
 
 

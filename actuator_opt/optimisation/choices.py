@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..design import with_values
-from ..design.choice_list import Value, combinations
+from ..design.choice_list import combinations
 from ..design.material import Material
 from ..design.materials import load_library
 from ..errors import Diagnostic, InputError
@@ -23,26 +23,12 @@ from ..evaluation import Subject, compute, prepare
 from ..evaluation.build import names_of_materials
 from ..evaluation.limits import all_limits
 from ..evaluation.rows import Row, rows_of
-from . import elastic, nlopt_wrapper
 from .actuator import ActuatorProblem, Goal, build, goal_of
-from .evaluator import Evaluator, LimitReached, Point
-from .outcome import Solution
-from .problem import Vector
-from .result import How
-from .sampling import sweep
+from .quick_look import DOUBTFUL, Look, Start, look_quickly
 from .solver import FEASIBLE, solve
-
-QUICK_EVALUATIONS = 60
-"""Most evaluations of one descent of a quick look; from a near design 15 to 30 do."""
-
-QUICK_SAMPLES = 256
-"""Points of the sweep that suggests another start where the nearest design leads nowhere."""
 
 NEAR = 0.05
 """Distance from the best, relative, within which a combination is solved from many starts."""
-
-DOUBTFUL = 0.02
-"""Margin missed up to which many starts are tried where the quick look found nothing that fits."""
 
 MOST_DOUBTFUL = 2
 """Most combinations solved from many starts in vain: a search that finds nothing takes long."""
@@ -51,7 +37,7 @@ MOST_SOLVED = 6
 """Most combinations solved from many starts."""
 
 BETTER = 1e-3
-"""Improvement by many starts, relative, after which every combination gets a second quick look."""
+"""Improvement by many starts, relative, after which all that fit get a second quick look."""
 
 LEAST_SECONDS = 0.1
 """Time that the first look and the winner get, whatever the limit."""
@@ -75,32 +61,6 @@ class Settings:
         if self.until is None:
             return None
         return began + share * (self.until - began) - time.perf_counter()
-
-
-@dataclass
-class Look:
-    """One combination: its design and what is known of it so far."""
-
-    order: int
-    values: Mapping[str, Value]
-    subject: Subject | None = None
-    actuator: ActuatorProblem | None = None
-    fault: str = ""
-    """Why there is no such design."""
-    how: How = "not tried"
-    x: Vector | None = None
-    objective: float = math.inf
-    violation: float = math.inf
-    missed: str = ""
-    """The limit missed most."""
-    checks: frozenset[str] = frozenset()
-    """Missed checks that no variable can mend."""
-    solution: Solution | None = None
-
-    @property
-    def feasible(self) -> bool:
-        """Whether every requirement is met."""
-        return self.violation <= FEASIBLE
 
 
 @dataclass
@@ -258,76 +218,39 @@ def _look_at_all(found: Search, settings: Settings) -> None:
         left = settings.left(0.5, began)
         if look.actuator is None or (left is not None and left <= 0 and _any(found)):
             continue
-        starts = _nearest(found, look)
-        own = look.actuator.problem.start
         left = None if left is None else max(left, LEAST_SECONDS)
-        _quick(look, starts or ([] if own is None else [own]), settings.seed, left)
+        try:
+            look_quickly(look, _starts(found, look), settings.seed, left)
+        except InputError as error:
+            _give_up(look, error)
 
 
 def _any(found: Search) -> bool:
     return any(look.x is not None for look in found.looks)
 
 
-def _nearest(found: Search, look: Look) -> list[Vector]:
-    """Where the combination that differs in the fewest values ended; good ones first."""
+def _starts(found: Search, look: Look) -> list[Start]:
+    """Where the combinations that differ in the fewest values ended.
+
+    A neighbour that meets everything is gone down from; one as near that does not tells best how
+    near this one comes to it.
+    """
     known = [other for other in found.looks if other.x is not None and other is not look]
 
-    def distance(other: Look) -> tuple[bool, int, float]:
+    def distance(other: Look) -> tuple[int, float]:
         differing = sum(other.values[path] != value for path, value in look.values.items())
-        return (not other.feasible, differing, other.objective)
+        return differing, other.objective
 
-    nearest = min(known, key=distance, default=None)
-    return [] if nearest is None or nearest.x is None else [nearest.x]
-
-
-def _quick(look: Look, starts: Sequence[Vector], seed: int, seconds: float | None) -> None:
-    """Descend from the starts until one leads to a point that meets every requirement.
-
-    Where a descent misses a limit, another starts from the nearest point that misses none.
-    """
-    assert look.actuator is not None
-    evaluator = Evaluator(look.actuator.problem, max_seconds=seconds)
-
-    def down(start: Point) -> Point:
-        run = nlopt_wrapper.run(evaluator, start, "LD_SLSQP", most=QUICK_EVALUATIONS, seed=seed)
-        _keep(look, evaluator, run.point)
-        return run.point
-
-    look.how = "quick"
-    try:
-        for z in _coordinates(evaluator, starts, seed):
-            start = evaluator.point(z)
-            _keep(look, evaluator, start)
-            point = down(start) if start.valid else start
-            if point.valid and point.violation > FEASIBLE and evaluator.space.size:
-                restored = elastic.feasible_point(evaluator, point)
-                if restored is not None:
-                    down(restored)
-            if look.feasible:
-                return
-    except LimitReached:
-        look.how = "not tried" if look.x is None else "quick"
-
-
-def _coordinates(evaluator: Evaluator, starts: Sequence[Vector], seed: int) -> Iterator[Vector]:
-    """The starts given, then the best of a small sweep."""
-    for x in starts:
-        yield evaluator.space.to_z(x)
-    if evaluator.space.size:
-        swept = sweep(evaluator, QUICK_SAMPLES, seed)
-        if swept.z.shape[1]:
-            yield swept.z[:, 0].copy()
-
-
-def _keep(look: Look, evaluator: Evaluator, point: Point) -> None:
-    """Remember a point where it is better than what was known."""
-    better = (max(point.violation, FEASIBLE), point.objective)
-    if not point.valid or better >= (max(look.violation, FEASIBLE), look.objective):
-        return
-    look.x, look.objective, look.violation = point.x, point.objective, point.violation
-    margins = point.rows[1 : 1 + evaluator.constraint_count]
-    if len(margins):
-        look.missed = evaluator.problem.constraint_names[int(np.argmin(margins))]
+    good = min((other for other in known if other.feasible), key=distance, default=None)
+    bad = min((other for other in known if not other.feasible), key=distance, default=None)
+    starts = []
+    closer = bad is not None and (good is None or distance(bad)[0] <= distance(good)[0])
+    if closer and bad is not None and bad.x is not None:
+        starts.append(Start(bad.x, descend=False))
+    if good is not None and good.x is not None:
+        starts.append(Start(good.x, descend=True))
+    own = None if look.actuator is None else look.actuator.problem.start
+    return starts or ([] if own is None else [Start(own, descend=True)])
 
 
 def _solve_best(found: Search, settings: Settings) -> None:
@@ -344,8 +267,10 @@ def _solve_best(found: Search, settings: Settings) -> None:
         if second and gained and look.x is not None:
             second = False
             for other in found.looks:
-                if other.solution is None and other.actuator is not None:
-                    _quick(other, [look.x], settings.seed, settings.left())
+                near = other.violation <= DOUBTFUL
+                if other.solution is None and other.actuator is not None and near:
+                    start = Start(look.x, descend=True)
+                    look_quickly(other, [start], settings.seed, settings.left())
     best = found.ranked()[0]
     if best.solution is None:
         _solve(best, settings)

@@ -118,7 +118,7 @@ def section(evaluation: Evaluation, *, width: float = 180.0, height: float = 78.
     for place, text in labels:
         ink.text(place, base + 6.0, text, size=7.0, anchor="center", halo=True)
     scale = f"{paper}:{real}"
-    _scale_bar(ink, factor, ink.height - 2.4)
+    scale_bar(ink, factor, ink.height - 2.4)
     words = "ISO 5455, section, retracted, dimensions in mm"
     ink.text(width, ink.height - 2.4, words, size=6.5, anchor="right", color=GREY)
     left = width - text_width(words, 6.5) - 3.0
@@ -378,7 +378,7 @@ def _dimension(ink: Ink, start: float, end: float, y: float, origin: float, text
     ink.text(place, y, text, size=7.0, anchor="left" if right else "right")
 
 
-def _scale_bar(ink: Ink, factor: float, y: float) -> None:
+def scale_bar(ink: Ink, factor: float, y: float) -> None:
     """A ruler of a round length, to see whether a print kept its size."""
     for millimetres in (5000, 2000, 1000, 500, 200, 100, 50, 20, 10, 5, 2, 1):
         if millimetres * factor / 1000 <= 50.0:

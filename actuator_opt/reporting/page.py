@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..evaluation.result import Evaluation
+from ..evaluation.study.seal import SealStudy
 from ..optimisation.result import Optimisation
 from . import (
     choices_table,
     dynamics_page,
     optimum,
+    seal_sheet,
     stiffness_page,
     tables,
     text,
@@ -128,6 +130,7 @@ def page(
     command: str,
     date: str | None,
     extra_tables: Sequence[ExtraTable] = (),
+    seals: Sequence[SealStudy] = (),
 ) -> dict[str, Any]:
     """The whole report as plain data; equal input gives equal data."""
     evaluation, optimisation = parts_of(subject)
@@ -151,7 +154,7 @@ def page(
         blocks.append(optimum.sensitivities(optimisation))
     if optimisation is not None and optimisation.variables:
         blocks.append(tables.masses(evaluation))
-    blocks += wall.blocks(evaluation)
+    blocks += seal_sheet.sheets(seals) + wall.blocks(evaluation)
     blocks += [tables.checks(evaluation), tables.models(evaluation)]
     blocks += _remarks(evaluation, optimisation)
     for given in extra_tables:

@@ -21,6 +21,7 @@ from typing import Any
 
 from ..errors import Diagnostic, InputError
 from ..evaluation.result import Evaluation
+from ..evaluation.study.seal import SealStudy
 from ..optimisation.result import Optimisation
 from .blocks import ExtraTable, printable
 from .embed import extract
@@ -61,6 +62,7 @@ def write_report(
     command: str,
     date: str | None = None,
     extra_tables: Sequence[ExtraTable] = (),
+    seals: Sequence[SealStudy] = (),
 ) -> list[ReportFile]:
     """Write ``STEM.pdf``, ``STEM.png`` (first sheet) and ``STEM-page-N.png`` into `folder`.
 
@@ -72,6 +74,7 @@ def write_report(
     command : the command line that made this report, printed and attached
     date : ISO date to print, or None for none
     extra_tables : further tables, before the input listing
+    seals : the seals of piston or rod to show on a sheet
 
     Returns
     -------
@@ -89,6 +92,7 @@ def write_report(
         command=command,
         date=date,
         extra_tables=extra_tables,
+        seals=seals,
     )
     run = {
         "actuator_opt": evaluation.version,
@@ -96,10 +100,26 @@ def write_report(
         "source_name": source_name,
         "spec_hash": evaluation.spec_hash,
     }
-    data = printable(data) | {
-        "title": evaluation.name,
-        "source": source_text,
-        "source_file": _attachment_name(source_name),
+    data |= {"title": evaluation.name, "source": source_text}
+    return write_page(data, run, folder=folder, stem=stem, date=date)
+
+
+def write_page(
+    data: Mapping[str, Any],
+    run: Mapping[str, str],
+    *,
+    folder: Path,
+    stem: str,
+    date: str | None = None,
+) -> list[ReportFile]:
+    """Write a page of data, its ``title`` and ``source`` as they are, to PDF and PNG.
+
+    `run` tells how it was made and the name of its source; it is attached to the PDF.
+    """
+    data = printable(dict(data)) | {
+        "title": data["title"],
+        "source": data["source"],
+        "source_file": _attachment_name(run["source_name"]),
         "run": json.dumps(run, ensure_ascii=False, sort_keys=True),
     }
     pdf, images = _render(data, _timestamp(date))

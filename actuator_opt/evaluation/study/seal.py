@@ -6,6 +6,7 @@ Works for every sealing element, whether the design asks for its film or for a c
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import nan, pi
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from ...errors import Diagnostic, InputError
 from ...models import elastomer, friction
 from ...models.fluid import ATMOSPHERIC_PRESSURE
-from .. import gland_check
+from .. import contact_elements, gland_check
 from ..barrel import SEAL_STEP
 from ..film import Row, Solved, solve
 from ..film_tables import floats, of_place
@@ -23,7 +24,16 @@ from ..touch import touch
 from ..values import of_case
 from .seal_record import RingPoint, SealMap, SealPoint, SealStudy, SqueezeRow, Stroke
 
-__all__ = ["RingPoint", "SealMap", "SealPoint", "SealStudy", "SqueezeRow", "seal_map", "study"]
+__all__ = [
+    "RingPoint",
+    "SealMap",
+    "SealPoint",
+    "SealStudy",
+    "SqueezeRow",
+    "seal_map",
+    "study",
+    "with_elements",
+]
 
 HARDNESS_SCATTER = 5.0
 """Scatter of a compound's hardness between batches, Shore A (usual delivery tolerance)."""
@@ -96,6 +106,17 @@ def study(
     )
 
 
+def with_elements(subject: Subject, place: Place) -> Subject:
+    """The same design with contact profiles by finite elements for the seal of a place."""
+    v = subject.values()
+    ring = floats(of_place(base(subject, v).rings, place)[0], 0)
+    found = contact_elements.profiles(ring, float(v["supply.pressure"]))
+    design = subject.design
+    seal = getattr(design.seals, place).model_copy(update={"contact": found})
+    seals = design.seals.model_copy(update={place: seal})
+    return replace(subject, design=design.model_copy(update={"seals": seals}), films={})
+
+
 def _within(own: Sequence[Ring], place: Place, pressure: float) -> None:
     """Stated profiles reach the pressure."""
     for ring in own:
@@ -135,7 +156,7 @@ def _point(rings: tuple[Ring, ...], temperature: float, stroke: Stroke) -> SealP
     between = solved.between
     shared = solved.row.between(between) if solved.films else rings
     points = tuple(_ring_point(ring, solved, i, outward=outward) for i, ring in enumerate(shared))
-    lowest, highest = _bounds(rings, outward, solved)
+    lowest, highest = sorted(_bounds(rings, outward, solved))
     return SealPoint(
         stroke=stroke,
         speed=rings[0]["speed"],
@@ -223,7 +244,7 @@ def seal_map(
     last: Solved | None = None
     for i, pressure in enumerate(pressures):
         held = tuple(ring.at(pressure=pressure) for ring in rings)
-        dry.append(sum(_dry(ring) for ring in held[:1]))
+        dry.append(_dry(held[0]))
         for j in range(len(speeds)):
             k = j if i % 2 == 0 else len(speeds) - 1 - j
             found = solve(Row(tuple(r.at(speed=speeds[k]) for r in held), True), last)
@@ -232,6 +253,8 @@ def seal_map(
                 continue
             last = found
             table[i, k] = sum(found.friction())
+            if k == 0 and found.pair is not None:
+                dry[-1] = sum(_dry(ring) for ring in found.row.between(found.between))
     return SealMap(np.array(speeds), np.array(pressures), table, np.array(dry), tuple(why))
 
 
@@ -239,7 +262,7 @@ def _dry(ring: Ring) -> float:
     """Friction of a ring with all oil squeezed out."""
     return float(
         friction.seal_friction(
-            line_load=touch(ring).line_load,
+            line_load=touch(ring.at(pressure=abs(ring["pressure"]))).line_load,
             diameter=ring["diameter"],
             friction_coefficient=ring["asperity_friction"],
         )
@@ -257,13 +280,11 @@ def _squeezes(
     rows = []
     for ring in own:
         one = floats(ring, 0)
-        _, aside = gland_check.clearances(found.geometry, found.state, ring)
         for temperature in sorted(set(temperatures)):
             ratio = gland_check.volume_ratio(v, design, found.stock, ring, temperature)
             for pressure, grown in ((0.0, 0.0), (float(v["supply.pressure"]), growth)):
                 spread = {"growth": grown, "ratio": ratio}
-                wide = float(np.max(aside))
-                loosest, tightest = gland_check.squeezes(one, aside=wide, **spread)
+                loosest, tightest = gland_check.squeezes(one, aside=0.0, **spread)
                 exact = one.at(tolerance=0.0, section_tolerance=0.0)
                 nominal, _ = gland_check.squeezes(exact, aside=0.0, **spread)
                 rows.append(

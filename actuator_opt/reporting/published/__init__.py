@@ -13,11 +13,12 @@ from ...evaluation import Evaluation
 from ...optimisation.result import Optimisation
 from ..blocks import ExtraTable
 from ..page import parts_of
-from . import aalto_tables, elasswad_tables
+from . import aalto_tables, elasswad_tables, huang_tables
 
 TABLES: dict[str, tuple[Callable[[Evaluation], ExtraTable], ...]] = {
     "ElAsswad2018": elasswad_tables.TABLES,
     "AaltoThesis": aalto_tables.TABLES,
+    "Huang2017": huang_tables.TABLES,
 }
 """What each paper's tables are made by; the keys are those of `Design.reproduces`."""
 

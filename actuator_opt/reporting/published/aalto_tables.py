@@ -17,7 +17,13 @@ from ...evaluation.study.aalto_static import Answer, Bypass
 from ...numeric import Array
 from .. import text
 from ..blocks import ExtraTable, figure
-from . import aalto_dynamic_notes, aalto_equations, aalto_figures, aalto_static_notes
+from . import (
+    aalto_dynamic_notes,
+    aalto_equations,
+    aalto_figures,
+    aalto_static_notes,
+    aalto_trends,
+)
 from .aalto_text import SLASH, air_text, area_text, percent, scaled
 
 
@@ -245,6 +251,7 @@ TABLES: tuple[Callable[[Evaluation], ExtraTable], ...] = (
     static_table,
     dynamic_table,
     peak_table,
+    aalto_trends.trends_table,
     equations_table,
 )
 """Every table, in the order of the thesis; the equations last."""

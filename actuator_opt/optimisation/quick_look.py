@@ -1,0 +1,168 @@
+"""A quick look at one combination of the choices: a descent from what is known of its neighbours.
+
+It mostly finds the optimum of the combination, or that it has no design that meets everything,
+but proves neither.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..design.choice_list import Value
+from ..evaluation import Subject
+from . import elastic, kkt, nlopt_wrapper
+from .actuator import ActuatorProblem
+from .evaluator import Evaluator, LimitReached, Point
+from .outcome import Solution
+from .problem import Vector
+from .result import How
+from .sampling import sweep
+from .solver import FEASIBLE, solve
+
+EVALUATIONS = 40
+"""Most evaluations of one descent; from a near design 10 to 30 do."""
+
+SAMPLES = 256
+"""Points of the sweep that suggests another start where the neighbours lead nowhere."""
+
+DOUBTFUL = 0.02
+"""Least missed margin up to which a look may have overlooked a design that meets everything."""
+
+STUCK = 0.3
+"""Least missed margin above which the search for it may have stuck. Between the two every start
+led to one value on the shipped designs, so that one start is enough."""
+
+
+SETTLED = 1e-2
+"""Residual of the optimality conditions up to which a descent counts as arrived."""
+
+STARTS = 3
+"""Starts where one did not arrive: the point reached, the design's own, the best of a sweep."""
+
+
+@dataclass
+class Look:
+    """One combination: its design and what is known of it so far."""
+
+    order: int
+    values: Mapping[str, Value]
+    subject: Subject | None = None
+    actuator: ActuatorProblem | None = None
+    fault: str = ""
+    """Why there is no such design."""
+    how: How = "not tried"
+    x: Vector | None = None
+    objective: float = math.inf
+    violation: float = math.inf
+    missed: str = ""
+    """The limit missed most."""
+    checks: frozenset[str] = frozenset()
+    """Missed checks that no variable can mend."""
+    solution: Solution | None = None
+
+    @property
+    def feasible(self) -> bool:
+        """Whether every requirement is met."""
+        return self.violation <= FEASIBLE
+
+
+class Start(NamedTuple):
+    """A point to start from: `descend` at once, or first to where the most missed limit is near."""
+
+    x: Vector
+    descend: bool
+
+
+def look_quickly(look: Look, starts: Sequence[Start], seed: int, seconds: float | None) -> None:
+    """Go down from the starts, then from that of a sweep, until the matter is clear.
+
+    Parameters
+    ----------
+    look : the combination; gets the best point found
+    starts : in order of trust
+    seed : of the sweep
+    seconds : time limit
+    """
+    assert look.actuator is not None
+    evaluator = Evaluator(look.actuator.problem, max_seconds=seconds)
+
+    def down(start: Point) -> Point:
+        run = nlopt_wrapper.run(evaluator, start, "LD_SLSQP", most=EVALUATIONS, seed=seed)
+        return _keep(look, evaluator, run.point)
+
+    look.how = "quick"
+    try:
+        for z, descend in _coordinates(evaluator, starts, seed):
+            point = _keep(look, evaluator, evaluator.point(z))
+            if point.valid and (descend or point.violation <= FEASIBLE):
+                point = down(point)
+            if point.valid and point.violation > FEASIBLE and evaluator.space.size:
+                point = _keep(look, evaluator, _least_missed(evaluator, point))
+                if point.violation <= FEASIBLE:
+                    down(point)
+            if look.feasible or DOUBTFUL < look.violation <= STUCK:
+                break
+        if look.feasible and look.x is not None:
+            _settle(look, evaluator, look.x, seed)
+    except LimitReached:
+        look.how = "not tried" if look.x is None else "quick"
+
+
+def _settle(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
+    """Where a descent broke off before an optimum, solve from a few starts."""
+    found = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
+    if found.residual <= SETTLED or not evaluator.space.size:
+        return
+    left = None
+    if evaluator.max_seconds is not None:
+        left = evaluator.began + evaluator.max_seconds - time.perf_counter()
+        if left <= 0:
+            return
+    solution = solve(
+        evaluator.problem,
+        starts=STARTS,
+        samples=SAMPLES,
+        seed=seed,
+        max_seconds=left,
+        more_starts=[x],
+    )
+    _keep(look, evaluator, evaluator.point(evaluator.space.to_z(solution.x)))
+
+
+def _coordinates(
+    evaluator: Evaluator, starts: Sequence[Start], seed: int
+) -> Iterator[tuple[Vector, bool]]:
+    """The starts given, then the best of a small sweep."""
+    for x, descend in starts:
+        yield evaluator.space.to_z(x), descend
+    if evaluator.space.size:
+        swept = sweep(evaluator, SAMPLES, seed)
+        if swept.z.shape[1]:
+            yield swept.z[:, 0].copy(), not starts
+
+
+def _least_missed(evaluator: Evaluator, point: Point) -> Point:
+    """The point nearby whose most missed limit is missed least."""
+    common = elastic.common(evaluator.problem, 2.0 * point.violation + 1.0)
+    found, used = elastic.descend(common, point.x, [point.violation])
+    evaluator.evaluations += used
+    evaluator.check_limits()
+    return evaluator.point(evaluator.space.to_z(found.x[: len(point.x)]))
+
+
+def _keep(look: Look, evaluator: Evaluator, point: Point) -> Point:
+    """Remember a point where it is better than what was known; the point itself."""
+    better = (max(point.violation, FEASIBLE), point.objective)
+    if not point.valid or better >= (max(look.violation, FEASIBLE), look.objective):
+        return point
+    look.x, look.objective, look.violation = point.x, point.objective, point.violation
+    margins = point.rows[1 : 1 + evaluator.constraint_count]
+    if len(margins):
+        look.missed = evaluator.problem.constraint_names[int(np.argmin(margins))]
+    return point

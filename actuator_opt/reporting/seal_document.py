@@ -1,0 +1,139 @@
+"""The seal sheet as a document of its own: PDF and PNG of one place."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+from ..evaluation.study.seal import SealMap, SealStudy
+from ..store import write_text
+from ..version import VERSION
+from . import seal_rows as rows
+from . import text, writer
+from .blocks import clean, short, soft
+from .seal_figures import bars
+from .seal_gland_figure import gland_drawing
+from .seal_sheet import at, blocks, filmed
+
+
+def write_sheet(
+    study: SealStudy,
+    *,
+    folder: Path,
+    stem: str,
+    source_text: str,
+    source_name: str,
+    command: str,
+    spec_hash: str,
+    date: str | None = None,
+) -> list[writer.ReportFile]:
+    """Write the sheet of one place as ``STEM.pdf`` and ``STEM.png`` (first sheet, then more).
+
+    Parameters
+    ----------
+    study : of piston or rod
+    folder, stem : where to
+    source_text, source_name : the design file as read: attached to the PDF
+    command : the command line that made the sheet, printed and attached
+    spec_hash : of the design
+    date : ISO date to print, or None for none
+    """
+    data = sheet_page(
+        study, source_name=source_name, command=command, spec_hash=spec_hash, date=date
+    )
+    data |= {"title": study.design.name, "source": source_text}
+    run = {
+        "actuator_opt": VERSION,
+        "command": command,
+        "source_name": source_name,
+        "spec_hash": spec_hash,
+    }
+    return writer.write_page(data, run, folder=folder, stem=stem, date=date)
+
+
+def sheet_page(
+    study: SealStudy, *, source_name: str, command: str, spec_hash: str, date: str | None
+) -> dict[str, Any]:
+    """The sheet of one place as plain data for the renderers."""
+    gland = gland_drawing(study)
+    name = study.design.name
+    return {
+        "name": soft(name),
+        "title": clean(name),
+        "short": short(name, 32),
+        "kind": f"Seal sheet: {study.place}",
+        "version": VERSION,
+        "hash": clean(spec_hash[:16]),
+        "date": "" if date is None else clean(date),
+        "source_name": soft(source_name),
+        "command": soft(short(command, 260), 30),
+        "verdict": _verdict(study),
+        "sentence": soft(_sentence(study)),
+        "tiles": _tiles(study),
+        "section": gland.ink.data(),
+        "scale": gland.scale,
+        "items": [],
+        "blocks": blocks(study, drawing=False),
+    }
+
+
+def _verdict(study: SealStudy) -> dict[str, Any]:
+    found = filmed(study)
+    count = len(study.out.rings)
+    rings = "one ring" if count == 1 else f"{count} rings"
+    return {
+        "state": "met" if found else "missed",
+        "text": "FILM FOUND" if found else "NO FILM",
+        "lines": [f"{rings}, outstroke and instroke", f"at {at(study)}"],
+    }
+
+
+def _sentence(study: SealStudy) -> str:
+    return rows.why(study) or rows.leakage(study)
+
+
+def _tiles(study: SealStudy) -> list[dict[str, Any]]:
+    """Friction, damping, breakaway and leakage at the operating point."""
+    point = study.out
+    found = [
+        ("friction, outstroke", rows.force(point.friction), f"at {at(study)}"),
+        ("secant damping, outstroke", rows.damping(point.damping), f"at {at(study)}"),
+        ("breakaway, dry", rows.force(point.breakaway), f"at {bars(point.pressure)}"),
+    ]
+    if filmed(study):
+        found.append(("left by a double stroke", rows.volume(study.net_leakage), f"at {at(study)}"))
+        thinnest = min(float(ring.film.min()) for ring in point.rings)
+        found.append(("thinnest film, outstroke", _microns(thinnest), "between the mean planes"))
+    tiles = []
+    for label, words, note in found:
+        value, _, unit = words.partition(" ")
+        tiles.append(
+            {
+                "label": label,
+                "symbol": "",
+                "value": value,
+                "unit": unit,
+                "note": note,
+                "state": "none",
+            }
+        )
+    return tiles
+
+
+def _microns(value: float) -> str:
+    return f"{text.number(1e6 * value, 3)} µm"
+
+
+def write_map(found: SealMap, path: Path) -> writer.ReportFile:
+    """Write a map as CSV: one line per point, empty where there is no film."""
+    lines = ["sealed pressure [bar],speed [m/s],friction [N],secant damping [N s/m]"]
+    for pressure, friction, damping in zip(
+        found.pressures, found.friction, found.damping, strict=True
+    ):
+        for speed, force, secant in zip(found.speeds, friction, damping, strict=True):
+            numbers = (pressure / 1e5, speed, force, secant)
+            lines.append(",".join("" if x != x else f"{x:.6g}" for x in numbers))
+    text = "\n".join(lines) + "\n"
+    write_text(path, text)
+    return writer.ReportFile(path, hashlib.sha256(text.encode()).hexdigest(), 1)
