@@ -184,11 +184,12 @@ def block(squeeze, section, width, modulus, poisson, pressure, groove):
 
 
 def o_ring_pressure(load, width, pressure, nodes):
-    """Half a falling sine of the sealed pressure and an ellipse that carries the rest, at nodes."""
-    u = np.linspace(-1, 1, nodes)
-    ellipse = np.sqrt(np.clip(1 - u**2, 0, None))
-    excess = (load / width - pressure / 2) / (pi / 4)  # mean of the sine 1/2, of the ellipse pi/4
-    return pressure * (1 - np.sin(pi * u / 2)) / 2 + excess * ellipse
+    """The sealed pressure up to the outer edge and an ellipse that carries the rest, at nodes."""
+    t = np.linspace(0, 1, nodes)
+    fine = np.linspace(0, 1, 20001)
+    passed = np.trapezoid(1 - fine**10, fine)  # the stated shape of the energised part
+    excess = (load / width - pressure * passed) / (pi / 4)
+    return pressure * (1 - t**10) + excess * np.sqrt(np.clip(1 - (2 * t - 1) ** 2, 0, None))
 
 
 def stack(squeeze, section, stretch, growth, spread, depth_spread):

@@ -1,8 +1,8 @@
 """The mass model against a calculation by hand, part by part, and against the drawing.
 
 The robot knee with the dimensions of `DIMENSIONS`, in mm, g and g/cm3 (aluminium 2.81, carbon ply
-1.57, steel 7.85, NBR 1.25, PTFE 2.165, oil 0.87). Radii of the wall 11.5 | 12.1 | 13.3 | 14.1, barrel 138 long
-(piston 14 + stroke 110 + head 14), rod 141 (138 - 14 + plate 5 + extension 12):
+1.57, steel 7.85, NBR 1.25, PTFE 2.165, oil 0.87). Radii of the wall 11.5 | 12.1 | 13.3 | 14.1,
+barrel 138 long (piston 14 + stroke 110 + head 14), rod 141 (138 - 14 + plate 5 + extension 12):
 
     part        what                                                    mm3        g
     barrel      liner, hoop and axial plies over 138       6139 13214  9503    52.92

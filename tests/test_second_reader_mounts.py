@@ -27,9 +27,9 @@ from test_second_reader import (
     S,
     W,
     friction_of_seals,
-    ring_modulus,
     least,
     near,
+    ring_modulus,
 )
 from test_second_reader_ladder import after_yield, burst
 from test_second_reader_wall import PATHS, STRENGTHS, evaluated, factors

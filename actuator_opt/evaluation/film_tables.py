@@ -76,6 +76,9 @@ class Table:
     error: float
     """Largest relative difference of the friction to films solved at the design and in the box."""
 
+    flow: float = 0.0
+    """Flow of the film at the design itself, per circumference [m^2/s]."""
+
     def running(self, rings: Sequence[Ring]) -> tuple[Running, ...]:
         """The films at the numbers of the rings, as arrays (designs,) or floats."""
         values = self.surrogate(Row(tuple(rings), self.row.outward).inputs())
@@ -144,7 +147,8 @@ def table(row: Row, samples: Sequence[Row]) -> Table:
     if found is None:
         raise _unsolved(row, "too many points within the bounds of the variables have none")
     checks = [base, *others[:CHECKS]] if axes else []
-    return Table(found, row, max((_error(walker, found, p) for p in checks), default=0.0))
+    error = max((_error(walker, found, p) for p in checks), default=0.0)
+    return Table(found, row, error, float(here.values[3 * len(row.rings)]))
 
 
 def _unsolved(row: Row, why: str) -> InputError:

@@ -49,6 +49,17 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
                 f"{ring.label}: the sealed pressure would open the contact; its load is too small",
             )
         yield from _limits(subject, v, ring, supply)
+    leaking = done.computed.metrics.get("rod_leakage")
+    back = subject.films.items()
+    at_rest = [
+        t for (place, _, _), t in back if place == "rod" and not t.row.outward and t.flow > 0
+    ]
+    if leaking is not None and at_rest:
+        yield (
+            "rod_leakage",
+            "film of the rod seals leaks on the stroke in too: an averaged film passes oil at any "
+            "gap, at rest as well, where a real elastomer seal holds; rod_leakage is told too high",
+        )
     for (place, case, stroke), table in subject.films.items():
         name = f"film of the {place} seals ({v.cases[case]}, {stroke})"
         if table.error > FILM_ERROR:

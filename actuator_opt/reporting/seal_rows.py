@@ -272,6 +272,17 @@ def notes(study: SealStudy) -> list[str]:
         spread += f", a stated modulus × or ÷ {trimmed(STATED_FACTOR)}"
     face = sorted({one.ring["asperity_friction"] for one in study.out.rings})
     told = " and ".join(trimmed(x) for x in face)
+    said = study.lugre
+    bristles = (
+        []
+        if said is None
+        else [
+            f"LuGre for a simulation of this seal: bristle stiffness {said.stiffness / 1e6:.3g} N/um"
+            f" (breakaway over {trimmed(1e3 * study.design.stiffness.seal_deflection)} mm), damping"
+            f" {said.damping:.3g} N s/m (square root of stiffness times load mass). It cannot create"
+            f" energy up to {1e3 * said.passive_speed:.3g} mm/s; beyond, taper the damping."
+        ]
+    )
     return [
         "Model: static contact, oil film with cavitation between two rough planes, asperity"
         " contact, leakage. Input: sizes, modulus or hardness, oil, and the surfaces' numbers.",
@@ -286,4 +297,5 @@ def notes(study: SealStudy) -> list[str]:
         "Secant damping is friction over speed: it holds at the stated speed and amplitude"
         " alone, falls as 1/v where friction hardly depends on speed, and is not the damping"
         " of the oil.",
+        *bristles,
     ]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import isfinite
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from ...design.model import Design
-from ...models import damping
+from ...models import damping, lugre
 from ...version import VERSION
 from ..rings import Place, Ring
 from ..touch import Touch
@@ -146,6 +146,17 @@ class SqueezeRow:
     tightest: float
 
 
+class LuGre(NamedTuple):
+    """Bristle stiffness [N/m] and damping [N s/m], and the speed up to which the model is passive.
+
+    Beyond that speed [m/s] the bristle damping has to be tapered.
+    """
+
+    stiffness: float
+    damping: float
+    passive_speed: float
+
+
 @dataclass(frozen=True, slots=True)
 class SealStudy:
     """Everything a seal sheet shows of the seals of piston or rod.
@@ -188,6 +199,21 @@ class SealStudy:
         """Oil left outside by a double stroke, both at this pressure [m^3]."""
         return max(self.carried_out - self.drawn_back, 0.0)
 
+    @property
+    def lugre(self) -> LuGre | None:
+        """Numbers of the LuGre model for a simulation; None without film or load mass."""
+        static, mass = self.out.breakaway, self.design.load.mass
+        if not self.out.converged or not (static > 0 and mass > 0):
+            return None
+        stiffness = lugre.lugre_bristle_stiffness(
+            static=static, largest_deflection=self.design.stiffness.seal_deflection
+        )
+        bristle = lugre.lugre_bristle_damping(bristle_stiffness=stiffness, mass=mass)
+        passive = lugre.lugre_passive_speed(
+            level=self.out.friction, bristle_damping=bristle, viscous=0.0
+        )
+        return LuGre(float(stiffness), float(bristle), float(passive))
+
     def to_dict(self) -> dict[str, Any]:
         """JSON form, SI; null where there is no film."""
         point = self.out
@@ -209,6 +235,7 @@ class SealStudy:
                 "drawn_back": _known(self.drawn_back),
                 "net": _known(self.net_leakage),
             },
+            "lugre": None if self.lugre is None else self.lugre._asdict(),
             "inter_seal_pressure": {k: _known(one.between) for k, one in both.items()},
             "converged": self.out.converged and self.back.converged,
             "reason": self.out.why or self.back.why,
