@@ -2,7 +2,7 @@
 
 >>> import actuator_opt as ao
 >>> ao.__version__
-'0.3.0'
+'0.4.0'
 
 The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `report`, `save`) are the same
 as in the terminal. Heavy modules load when a verb needs them.

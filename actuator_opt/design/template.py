@@ -91,7 +91,7 @@ clevis:
 
 seals:
   piston:
-    type: o_ring
+    type: o_ring               # or step_ring, u_cup, compact
     compound: nbr_70
     section: 3.53 mm
     squeeze: 12 %
@@ -102,6 +102,8 @@ seals:
     section: 3.53 mm
     squeeze: 12 %
     tolerance: 0.05 mm
+    # friction: film           # its oil film instead of a coefficient of friction
+    # back_up: one             # a back-up ring; with back_up_material and back_up_thickness
 
 lines:                         # between valve and chambers; leave out if there are none
   - chamber: a                 # a: cap side, b: rod side

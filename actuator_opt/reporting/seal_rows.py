@@ -277,10 +277,11 @@ def notes(study: SealStudy) -> list[str]:
         []
         if said is None
         else [
-            f"LuGre for a simulation of this seal: bristle stiffness {said.stiffness / 1e6:.3g} N/um"
-            f" (breakaway over {trimmed(1e3 * study.design.stiffness.seal_deflection)} mm), damping"
-            f" {said.damping:.3g} N s/m (square root of stiffness times load mass). It cannot create"
-            f" energy up to {1e3 * said.passive_speed:.3g} mm/s; beyond, taper the damping."
+            "LuGre for a simulation of this seal: bristle stiffness"
+            f" {said.stiffness / 1e6:.3g} N/um (breakaway over"
+            f" {trimmed(1e3 * study.design.stiffness.seal_deflection)} mm), damping"
+            f" {said.damping:.3g} N s/m (square root of stiffness times load mass). It cannot"
+            f" create energy up to {1e3 * said.passive_speed:.3g} mm/s; beyond, taper the damping."
         ]
     )
     return [
