@@ -7,14 +7,14 @@ barrel 138 long (piston 14 + stroke 110 + head 14), rod 141 (138 - 14 + plate 5 
     part        what                                                    mm3        g
     barrel      liner, hoop and axial plies over 138       6139 13214  9503    52.92
     rod         tube 13/6 over 141                                    14729   115.62
-    piston      disc 22.94 x 14 less a groove of 4.6            5786 - 465    14.95
+    piston      disc 22.94 x 14 less a groove of 5.2            5786 - 526    14.78
     caps        two plates 31.2 x 5, one bored 13.06       3823       3153
                 two skirts 31.2/28.2 x 20                        2 x 2799    35.33
     glands      plug 23/13.06 x 14 less a groove of 3.5         3941 - 240    10.40
-    seals       two rings of section 1.78, three back-up rings    281 + 304     1.01
+    seals       two rings of section 1.78, three back-up rings    281 + 366     1.14
     fastening   stud M10 x 1.25 x 10, two plugs 6 x 10           663 + 565     9.64
     clevises    two eyes pi d^3 on a pin of 8                        2 x 1608   25.25
-    dry                                                                       265.13
+    dry                                                                       265.09
     oil         annulus 23/13 over 110, and 6 ml of ports     31102 + 6000    32.28
 
 Nothing of the mass model is called to get these figures; `BY_HAND` writes them out.
@@ -54,7 +54,7 @@ DIMENSIONS = {
     "clevis.pin_diameter": "8 mm",
     "seals.piston.section": "1.78 mm",
     "seals.piston.squeeze": "14 %",
-    "seals.piston.groove_width": "4.6 mm",
+    "seals.piston.groove_width": "5.2 mm",
     "seals.rod.section": "1.78 mm",
     "seals.rod.squeeze": "14 %",
     "seals.rod.groove_width": "3.5 mm",
@@ -79,13 +79,13 @@ BY_HAND = {
         + CARBON * (14.1**2 - 13.3**2)
     ),
     "rod": STEEL * 141 * pi * (6.5**2 - 3.0**2),
-    "piston": ALUMINIUM * pi * (14 * 11.47**2 - 4.6 * (11.47**2 - (11.5 - DEPTH) ** 2)),
+    "piston": ALUMINIUM * pi * (14 * 11.47**2 - 5.2 * (11.47**2 - (11.5 - DEPTH) ** 2)),
     "caps": ALUMINIUM * pi * (5 * 15.6**2 + 5 * (15.6**2 - 6.53**2) + 2 * 20 * (15.6**2 - 14.1**2)),
     "glands": ALUMINIUM * pi * (14 * (11.5**2 - 6.53**2) - 3.5 * ((6.5 + DEPTH) ** 2 - 6.53**2)),
     # torus of section 1.78: pi (1.78/2)^2 times pi times the diameter of its centre line
-    # and back-up rings 1.1 wide as deep as the gland, two on the piston, one on the rod
+    # and back-up rings as deep as the gland, two 1.4 wide on the piston, one 1.1 wide on the rod
     "seals": RUBBER * pi * 0.89**2 * pi * ((23 - DEPTH) + (13 + DEPTH))
-    + PTFE * 1.1 * DEPTH * pi * (2 * (23 - DEPTH) + (13 + DEPTH)),
+    + PTFE * DEPTH * pi * (2 * 1.4 * (23 - DEPTH) + 1.1 * (13 + DEPTH)),
     # pitch diameter of M10 x 1.25 by ISO 724: 9.188 mm
     "fastening": STEEL * pi * (10 * 4.594**2 + 2 * 10 * 3.0**2),
     "clevises": STEEL * 2 * pi * 8**3,
@@ -93,10 +93,10 @@ BY_HAND = {
 TABLE = {
     "barrel": 52.92,
     "rod": 115.62,
-    "piston": 14.95,
+    "piston": 14.78,
     "caps": 35.33,
     "glands": 10.40,
-    "seals": 1.01,
+    "seals": 1.14,
     "fastening": 9.64,
     "clevises": 25.25,
 }
@@ -120,7 +120,7 @@ def test_the_parts_add_up_to_the_mass_and_no_part_is_missing(knee) -> None:
     """Dry mass is the sum of the eight parts, 265.3 g by hand."""
     assert set(knee.mass_parts) == set(BY_HAND)
     assert 1e3 * knee.metrics["mass"].value == pytest.approx(sum(BY_HAND.values()), rel=1e-4)
-    assert sum(BY_HAND.values()) == pytest.approx(265.13, abs=0.01)
+    assert sum(BY_HAND.values()) == pytest.approx(265.09, abs=0.01)
 
 
 def test_the_oil_weighs_what_the_hand_calculation_says(knee) -> None:

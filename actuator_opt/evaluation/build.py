@@ -11,12 +11,12 @@ from typing import Literal
 import numpy as np
 
 from .. import quantities
-from ..design import paths, standards
+from ..design import paths
 from ..design.material import Material
 from ..design.materials import Library, load_library
 from ..design.model import Design
 from ..version import VERSION
-from . import doubts, outline, study
+from . import doubts, outline, standard_parts, study
 from .allow import allowances, extremes
 from .check_list import CHECK_LIST, CheckLine, Sense
 from .kernel import Pass, Subject, compute
@@ -30,6 +30,7 @@ from .result import (
     Requirement,
     StrokeCurve,
 )
+from .rings import Ring
 from .rows import ALL_CASES, Computed, Row, by_case, rows_of
 from .study import dynamics
 from .values import Values, of_case
@@ -129,7 +130,7 @@ def evaluate(subject: Subject) -> Evaluation:
     warnings = list(doubts.warnings(subject, v, done))
     outside = {metric for metric, _ in warnings}
     metrics = {name: _metric(name, computed, v, subject, outside) for name in subject.quantities}
-    checks = tuple(_checks(design, computed, v, requirements))
+    checks = tuple(_checks(design, computed, v, requirements, done.rings))
     warnings += [
         ("", f"check missed: {c.name}: {_against(c)}") for c in checks if c.status == "missed"
     ]
@@ -240,12 +241,18 @@ def _requirement(limit: Limit, computed: Computed, v: Values) -> Requirement:
 
 
 def _checks(
-    design: Design, computed: Computed, v: Values, requirements: tuple[Requirement, ...]
+    design: Design,
+    computed: Computed,
+    v: Values,
+    requirements: tuple[Requirement, ...],
+    rings: tuple[Ring, ...],
 ) -> Iterable[Check]:
     limits = {limit.metric: limit for limit in check_limits(design)}
     for line in CHECK_LIST:
         if line.metric == "standard_sizes":
-            yield _standard_sizes(line, design)
+            yield standard_parts.sizes(line, design)
+        elif line.metric == "standard_glands":
+            yield standard_parts.glands(line, rings)
         elif line.metric is None:
             yield Check(line.name, "not_checked", line.why_not)
         elif line.metric in design.waivers:
@@ -293,23 +300,6 @@ def _check(
         place=result.place,
         source=source,
     )
-
-
-def _standard_sizes(line: CheckLine, design: Design) -> Check:
-    """Whether bore and rod are ISO 3320 sizes; says the nearest larger ones where not."""
-    odd = []
-    sizes: tuple[tuple[Literal["bore", "rod"], float], ...] = (
-        ("bore", design.cylinder.bore),
-        ("rod", design.rod.outer_diameter),
-    )
-    for what, value in sizes:
-        near = standards.nearest_standard(what, value, "nearest")
-        if abs(near - value) > 1e-9:
-            odd.append(f"{what} {1e3 * value:.4g} mm (nearest {1e3 * near:g} mm)")
-    if odd:
-        reason = "free sizes: " + ", ".join(odd)
-        return Check(line.name, "not_checked", reason, source=line.source)
-    return Check(line.name, "met", "bore and rod are standard sizes", source=line.source)
 
 
 def _against(check: Check) -> str:

@@ -266,4 +266,5 @@ CHECK_LIST: tuple[CheckLine, ...] = (
     CheckLine("mass", "mass", "max"),
     CheckLine("leakage across the piston", "leakage", "max"),
     CheckLine("standard sizes", "standard_sizes", "max", None, "ISO 3320"),
+    CheckLine("standard glands", "standard_glands", "max", None, "ISO 3601-2 sections (AS568)"),
 )

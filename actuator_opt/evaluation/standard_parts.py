@@ -1,0 +1,105 @@
+"""What of a design is a standard size: bore and rod, glands and housings. A remark, no limit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Literal
+
+from ..design import standards
+from ..design.housings import gland_deviations, housings_for
+from ..design.model import Design
+from ..errors import InputError
+from .check_list import CheckLine
+from .film_tables import floats
+from .gland_check import squeezes
+from .result import Check
+from .rings import Ring
+
+NEAR = 0.02
+"""Relative difference of a housing's depth or length that counts as none."""
+
+
+def sizes(line: CheckLine, design: Design) -> Check:
+    """Whether bore and rod are ISO 3320 sizes; says the nearest ones where not."""
+    odd = []
+    asked: tuple[tuple[Literal["bore", "rod"], float], ...] = (
+        ("bore", design.cylinder.bore),
+        ("rod", design.rod.outer_diameter),
+    )
+    for what, value in asked:
+        near = standards.nearest_standard(what, value, "nearest")
+        if abs(near - value) > 1e-9:
+            odd.append(f"{what} {1e3 * value:.4g} mm (nearest {1e3 * near:g} mm)")
+    if odd:
+        reason = "free sizes: " + ", ".join(odd)
+        return Check(line.name, "not_checked", reason, source=line.source)
+    return Check(line.name, "met", "bore and rod are standard sizes", source=line.source)
+
+
+def glands(line: CheckLine, rings: Iterable[Ring]) -> Check:
+    """Whether every groove is that of a standard; says what differs where not."""
+    odd = [text for ring in rings for text in _remarks(floats(ring, 0))]
+    if odd:
+        return Check(line.name, "not_checked", "free glands: " + "; ".join(odd), source=line.source)
+    return Check(line.name, "met", "every gland is a standard one", source=line.source)
+
+
+def _remarks(ring: Ring) -> Iterator[str]:
+    """What of one groove lies outside its standard."""
+    if ring.element.type == "o_ring":
+        yield from _o_ring(ring)
+    elif ring.element.type in ("step_ring", "u_cup"):
+        yield from _housing(ring)
+    else:
+        yield f"{ring.label}: no standard housing of a {ring.element.type} is known"
+
+
+def _o_ring(ring: Ring) -> Iterator[str]:
+    try:
+        gland = standards.gland(ring["section"])
+    except InputError as error:
+        yield f"{ring.label}: {error.diagnostics[0].message}"
+        return
+    loosest, tightest = squeezes(ring.at(stretch=0.0), growth=0.0, aside=0.0, ratio=1.0)
+    area = sum(float(one) for _, one in ring.groove.areas[:1])
+    found = gland_deviations(
+        gland,
+        squeeze_min=float(loosest),
+        squeeze_max=float(tightest),
+        width=ring["groove_width"],
+        fill=area / (ring["groove_width"] * ring["gland_depth"]),
+        stretch=ring["stretch"],
+        back_up_rings=ring.element.back_ups,
+    )
+    for one in found:
+        scale, unit = (1e3, "mm") if one.what == "groove width" else (100, "%")
+        yield (
+            f"{ring.label}: {one.what} {scale * one.value:.3g} {unit}, "
+            f"{scale * one.lower:.3g} to {scale * one.upper:.3g} {unit}"
+        )
+
+
+def _housing(ring: Ring) -> Iterator[str]:
+    kind: Literal["step_ring", "u_cup"] = (
+        "step_ring" if ring.element.type == "step_ring" else "u_cup"
+    )
+    try:
+        known = housings_for(kind, ring.name, ring["diameter"])
+    except InputError as error:
+        yield f"{ring.label}: {error.diagnostics[0].message}"
+        return
+    depth, length = ring["gland_depth"], ring["groove_width"]
+    if any(
+        abs(one.radial_depth - depth) <= NEAR * depth
+        and any(abs(x - length) <= NEAR * length for x in one.lengths)
+        for one in known
+    ):
+        return
+    listed = ", ".join(
+        f"{1e3 * one.radial_depth:g} x {' or '.join(f'{1e3 * x:g}' for x in one.lengths)}"
+        for one in known[:2]
+    )
+    yield (
+        f"{ring.label}: groove {1e3 * depth:.3g} x {1e3 * length:.3g} mm, "
+        f"{known[0].standard} has {listed} mm"
+    )
