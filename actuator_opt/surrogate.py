@@ -58,6 +58,17 @@ class Axis:
             rows.append(2 * x * rows[-1] - rows[-2])
         return np.stack(rows[: self.nodes], axis=-1)
 
+    def basis_slope(self, value: Array) -> Array:
+        """Derivatives of the polynomials (..., nodes) by the logarithm of the input."""
+        low, high = log(self.lower), log(self.upper)
+        held = clip(value, self.lower, self.upper)
+        x = (2 * np.log(held) - low - high) / (high - low)
+        second = [np.ones_like(x), 2 * x]  # U_k; T_k' = k U_(k-1)
+        while len(second) < self.nodes:
+            second.append(2 * x * second[-1] - second[-2])
+        rows = [0 * x, *(k * second[k - 1] for k in range(1, self.nodes))]
+        return np.stack(rows, axis=-1) * (2 / (high - low))
+
     def holds(self, value: float) -> bool:
         """Whether an input lies on the axis."""
         return self.lower * (1 - 1e-9) <= value <= self.upper * (1 + 1e-9)
@@ -82,14 +93,18 @@ class Surrogate:
     linear: tuple[str, ...]
     failed: tuple[str, ...] = ()
 
-    def __call__(self, inputs: Mapping[str, Array]) -> Array:
-        """Outputs (m, ...) at inputs that broadcast with each other; missing ones at the base."""
+    def __call__(self, inputs: Mapping[str, Array], slope: str | None = None) -> Array:
+        """Outputs (m, ...) at inputs that broadcast with each other; missing ones at the base.
+
+        With `slope`, their derivatives by the logarithm of that axis instead.
+        """
         point = {name: np.asarray(inputs.get(name, value)) for name, value in self.base.items()}
         names = [axis.name for axis in self.axes] + list(self.linear)
         shape = np.broadcast_shapes(*(point[name].shape for name in names))
         table = np.broadcast_to(self.coefficients, shape + self.coefficients.shape)
         for axis in self.axes:
-            rows = np.broadcast_to(axis.basis(point[axis.name]), (*shape, axis.nodes))
+            basis = axis.basis_slope if axis.name == slope else axis.basis
+            rows = np.broadcast_to(basis(point[axis.name]), (*shape, axis.nodes))
             rest = table.ndim - len(shape) - 1
             table = np.sum(rows.reshape(rows.shape + (1,) * rest) * table, axis=len(shape))
         result = table[..., 0]

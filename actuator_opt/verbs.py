@@ -232,13 +232,15 @@ def seal(
     elements = getattr(actuator.design.seals, place).elements()
     asked = {f"seals.{place}.{tail}friction": "film" for tail in elements}
     subject = actuator.changed(asked).subject()
+    subject, found = with_elements(subject, place) if finite_elements else (subject, ())
     return study(
-        with_elements(subject, place) if finite_elements else subject,
+        subject,
         place,
         speed=speed,
         pressure=pressure,
         curves=curves,
         mapped=mapped,
+        elements=found,
     )
 
 

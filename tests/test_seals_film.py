@@ -220,10 +220,15 @@ def test_tandem_is_the_solved_pair():
         assert own == near(both, 1e-4)
         lost = (there.inner.flow + home.inner.flow) * pi * ROD * STROKE / v
         assert lubed["rod_leakage"][""][i, 0] == pytest.approx(max(lost, 0), rel=1e-3, abs=1e-13)
-        rough = 0.1 * dry_load("step_ring", "rod", 0.0, drive)
-        rough += 0.22 * dry_load("u_cup", "rod", 0.0, 0.0)  # all pressure on the first
-        breakaway = lubed["friction_breakaway"][""][i, 0]
-        assert breakaway == near(pi * ROD * rough + 3 * piston, 1e-5)
+
+
+@pytest.mark.xfail(strict=True, reason="at rest the outer ring of a pair is taken without pressure")
+def test_a_pair_does_not_break_away_below_its_running_friction():
+    """What stands between the rings while they run (78 bar) still presses the outer one at rest."""
+    lubed = metrics(O_RING, PAIR, SLOW)
+    piston = 0.1 * pi * BORE * dry_load("o_ring", "piston", growth(PULL), PULL - 2e6)
+    running = lubed["friction_running"][""][1, 0] - piston
+    assert lubed["friction_breakaway"][""][1, 0] - 3 * piston >= running
 
 
 @pytest.mark.xfail(strict=True, reason="pressure between the seals sought to 1.5 of the sealed one")

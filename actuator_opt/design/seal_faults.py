@@ -19,12 +19,12 @@ law (compared with finite elements at 0.10 to 0.30) means nothing."""
 NEEDED = {
     "o_ring": (),
     "step_ring": ("thickness", "width"),
-    "u_cup": ("thickness", "width"),
+    "u_cup": ("thickness", "width", "groove_width"),
     "compact": ("width",),
 }
 """Fields an element of a type cannot do without."""
 
-EXAMPLES = {"thickness": "1.5 mm", "width": "4 mm"}
+EXAMPLES = {"thickness": "1.5 mm", "width": "4 mm", "groove_width": "6.3 mm"}
 
 STRANGE = {
     "o_ring": ("thickness", "width", "land", "relief", "taper", "root_clearance"),
@@ -193,18 +193,58 @@ def grooves(view: View) -> Iterator[Fault]:
 
 
 def squeeze(view: View) -> Iterator[Fault]:
-    """The nominal squeeze of an O-ring lies where its law holds."""
+    """The nominal squeeze of an O-ring lies where its law holds; that of the others is not none."""
     for loc in elements(view):
-        if view.text(*loc, "type") not in ("o_ring", "step_ring"):
-            continue
         value, law = view.number(*loc, "squeeze"), view.text(*loc, "law")
+        if value is None:
+            continue
+        if view.text(*loc, "type") not in ("o_ring", "step_ring"):
+            if value == 0:
+                yield Fault((*loc, "squeeze"), "0: the seal does not touch", "write e.g. 8 %")
+            continue
         low, high = SQUEEZE_RANGE.get(law or "", (0.0, 1.0))
-        if value is not None and not low <= value <= high:
+        if not low <= value <= high:
             yield Fault(
                 (*loc, "squeeze"),
                 f"{value * 100:.4g} %: outside the range of the law {law}",
                 f"write {low * 100:g} % to {high * 100:g} %",
             )
+
+
+def shapes(view: View) -> Iterator[Fault]:
+    """What a ring is made of fits inside it."""
+    for loc in elements(view):
+        kind = view.text(*loc, "type")
+        width, section = view.number(*loc, "width"), view.number(*loc, "section")
+        if width is None or section is None:
+            continue
+        if kind == "step_ring":
+            if section > width * (1 + ROOM):
+                yield Fault(
+                    (*loc, "section"),
+                    f"{length_text(section)}: the O-ring behind is wider than the ring "
+                    f"({length_text(width)})",
+                    "widen the ring, or use a smaller O-ring",
+                )
+            land, relief = view.number(*loc, "land"), view.number(*loc, "relief")
+            if land is not None and relief is not None and land + relief > width * (1 + 1e-9):
+                yield Fault(
+                    (*loc, "relief"),
+                    f"{length_text(relief)}: with the land it is wider than the ring "
+                    f"({length_text(width)})",
+                    f"write at most {length_text(width - land)}",
+                )
+        thickness = view.number(*loc, "thickness")
+        if kind == "u_cup" and thickness is not None and 2 * thickness >= section:
+            yield Fault(
+                (*loc, "thickness"),
+                f"{length_text(thickness)}: two lips fill the section ({length_text(section)})",
+                f"write less than {length_text(section / 2)}",
+            )
+
+
+ROOM = 0.1
+"""Share by which a step ring's O-ring may be wider than the ring: its groove is that much wider."""
 
 
 def profiles(view: View) -> Iterator[Fault]:
@@ -283,7 +323,7 @@ def films(view: View) -> Iterator[Fault]:
                 )
 
 
-CHECKS = (fields, widths, grooves, squeeze, profiles, reach, films)
+CHECKS = (fields, widths, grooves, squeeze, shapes, profiles, reach, films)
 
 SLIDING_RING = 3.0
 """Stated modulus over that of the hardness from which a compound has a sliding ring of plastic on

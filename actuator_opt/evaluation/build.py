@@ -49,6 +49,7 @@ SENSES: dict[str, Sense] = {line.metric: line.sense for line in CHECK_LIST if li
     "damping_ratio": "min",
     "liner_yield_factor": "min",
     "local_buckling_factor": "min",
+    "film_thickness": "min",
 }
 TOLERANCE = 1e-6
 """A margin of at least −TOLERANCE counts as met (CONTRACT)."""

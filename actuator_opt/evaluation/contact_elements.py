@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from math import tan
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..design.seals import ContactProfile
 from ..errors import ActuatorError, Diagnostic
 from .rings import Ring
+from .touch import Touch, touch
+
+if TYPE_CHECKING:
+    from ..finite_elements.result import Contact
 
 SHARES = (0.25, 0.5, 0.75, 1.0)
 """Sealed pressures over that of the supply at which the profiles are computed, beside zero."""
@@ -20,8 +27,25 @@ EDGE = 0.15e-3
 """Radius of the edges of a step ring's land, m (choice: broken edges of a turned PTFE ring)."""
 
 
-def profiles(ring: Ring, supply: float) -> tuple[ContactProfile, ...]:
-    """Contact profiles of a ring of floats, mounted and at shares of the supply pressure.
+def room(ring: Ring) -> float:
+    """Length of the groove that its back-up rings leave, along the cylinder [m]."""
+    backs = ring.element.back_ups * (ring.element.back_up_thickness or 0.0)
+    return float(ring["groove_width"]) - backs
+
+
+def closed_form(ring: Ring) -> Touch:
+    """How the ring touches by the closed form, at its pressure and the squeeze it is mounted with.
+
+    The elements know neither the bore's growth nor stated profiles.
+    """
+    bare = replace(ring, element=ring.element.model_copy(update={"contact": ()}))
+    return touch(bare.at(squeeze_left=ring["squeeze"], pressure=abs(ring["pressure"])))
+
+
+def contacts(ring: Ring, supply: float) -> tuple[Contact, ...]:
+    """Finite elements of a ring of floats, mounted and at shares of the supply pressure.
+
+    Back-up rings are as rigid as the groove.
 
     Parameters
     ----------
@@ -39,7 +63,7 @@ def profiles(ring: Ring, supply: float) -> tuple[ContactProfile, ...]:
     shared = {
         "section": ring["section"],
         "squeeze": ring["squeeze"],
-        "groove_width": ring["groove_width"],
+        "groove_width": room(ring),
         "rubber": rubber,
         "pressures": [share * supply for share in SHARES],
         "sliding_radius": ring["diameter"] / 2,
@@ -80,9 +104,12 @@ def profiles(ring: Ring, supply: float) -> tuple[ContactProfile, ...]:
                 "lower the squeeze or the pressure, or widen the groove",
             )
         )
-    return tuple(
-        _profile(one.pressure, one.positions, one.contact_pressure) for one in found.contacts
-    )
+    return found.contacts
+
+
+def profiles(found: Iterable[Contact]) -> tuple[ContactProfile, ...]:
+    """The contacts as a design file states them."""
+    return tuple(_profile(one.pressure, one.positions, one.contact_pressure) for one in found)
 
 
 def _profile(pressure: float, positions: np.ndarray, stresses: np.ndarray) -> ContactProfile:

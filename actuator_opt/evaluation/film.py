@@ -33,6 +33,10 @@ from .touch import static_profile, touch
 NODES = 121
 """Nodes along the contact: within 0.3 % of finer ones."""
 
+HIGHEST = 40.0
+"""Largest pressure between two seals that is looked for, over the sealed one: at little pressure
+the outer seal can hold back many times it."""
+
 LEAST_SQUEEZE = 0.02
 """Squeeze at which the film is held: below it the contact is lost, as the squeeze tells."""
 
@@ -42,8 +46,11 @@ _OF_RING = (
     "diameter",
     "youngs_modulus",
     "face_modulus",
+    "face_poissons_ratio",
     "seal_roughness",
     "counterface_roughness",
+    "asperity_density",
+    "asperity_radius",
     "groove_width",
     "gland_depth",
     "thickness",
@@ -54,8 +61,8 @@ _OF_RING = (
 )
 """Numbers of a ring that its film can depend on."""
 
-OUTPUTS = ("viscous", "load", "thickness")
-"""What a film tells of every ring; then follow `flow` and `between`."""
+SHARED = ("speed", "viscosity", "viscosity_coefficient")
+"""Inputs that both rings of a pair have in common, beside the pressures."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +82,7 @@ class Row:
         found = {
             "speed": first["speed"],
             "viscosity": first["viscosity"],
+            "viscosity_coefficient": first["viscosity_coefficient"],
             "sealed": outer + first["pressure"],
             "outer": outer,
         }
@@ -85,7 +93,7 @@ class Row:
 
     def at(self, point: Mapping[str, Array]) -> Row:
         """The row at a point of `inputs`; both rings then see the full pressure difference."""
-        shared = {name: point[name] for name in ("speed", "viscosity")}
+        shared = {name: point[name] for name in SHARED if name in point}
         shared["outer_pressure"] = point["outer"] - ATMOSPHERIC_PRESSURE
         shared["pressure"] = point["sealed"] - point["outer"]
         own = [
@@ -236,6 +244,7 @@ def _tandem(row: Row, start: Tandem | None) -> Tandem:
         speed=first["speed"] if row.outward else -first["speed"],
         sealed_pressure=outer_pressure + first["pressure"],
         outer_pressure=outer_pressure,
+        highest=HIGHEST,
         start=start,
     )
 

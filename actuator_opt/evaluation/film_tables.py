@@ -32,12 +32,15 @@ POINTS = 6
 MOST_AXES = 2
 """Axes of a surrogate: one more would cost `POINTS` times as many films."""
 
+SPEEDS, SPEED_ROOM = 3, 1.25
+"""Nodes and room of the axis of speed, which every surrogate has, so that the slope by the speed
+follows all other inputs."""
+
 CHECKS = 4
 """Points of the box at which a surrogate is compared with the film itself."""
 
-EXTENT = 0.02
-"""Relative change of an output over the extent of an input below which the first order is
-enough."""
+MISSED = 0.005
+"""Part of the load by which the first order may miss at the ends of an input that is no axis."""
 
 Stroke = Literal["drive", "return"]
 Key = tuple[Place, int, Stroke]
@@ -73,17 +76,19 @@ class Table:
 
     surrogate: Surrogate
     row: Row
-    error: float
-    """Largest relative difference of the friction to films solved at the design and in the box."""
+    errors: Mapping[str, float]
+    """Largest relative difference of friction, flow and film thickness to films solved at the
+    design and in the box (of the flow: over the largest there)."""
 
     flow: float = 0.0
     """Flow of the film at the design itself, per circumference [m^2/s]."""
 
     def running(self, rings: Sequence[Ring]) -> tuple[Running, ...]:
         """The films at the numbers of the rings, as arrays (designs,) or floats."""
-        values = self.surrogate(Row(tuple(rings), self.row.outward).inputs())
-        count = len(rings)
-        flow, between, slopes = values[3 * count], values[3 * count + 1], values[3 * count + 2 :]
+        inputs = Row(tuple(rings), self.row.outward).inputs()
+        values = self.surrogate(inputs)
+        slopes = self.surrogate(inputs, slope="speed") / inputs["speed"]
+        flow, between = values[-2], values[-1]
         found = []
         for i, ring in enumerate(rings):
             around = pi * ring["diameter"]
@@ -93,8 +98,8 @@ class Table:
                     viscous=around * drag,
                     load=around * load,
                     thickness=thickness,
-                    viscous_slope=around * slopes[2 * i],
-                    load_slope=around * slopes[2 * i + 1],
+                    viscous_slope=around * slopes[3 * i],
+                    load_slope=around * slopes[3 * i + 1],
                     flow=around * flow,
                     between=between,
                 )
@@ -108,6 +113,8 @@ class _Walker:
     def __init__(self, row: Row) -> None:
         self.row = row
         self.last: Solved | None = None
+        self.names: list[str] = []
+        """Inputs that move the films at all, known after the first point."""
 
     def solve(self, point: Mapping[str, Array]) -> Solved:
         found = solve(self.row.at(point), self.last)
@@ -115,17 +122,13 @@ class _Walker:
         return found
 
     def __call__(self, point: dict[str, float]) -> Answer:
-        """Values of the films, then the slopes of drag and load by the speed."""
+        """Values of the films with their slopes."""
         found = self.solve(point)
         if found.why:
             return Answer(np.zeros(1), {}, why=found.why)
-        by_input = slopes(found, list(point))
-        loads = by_input["speed"][:-2].reshape(-1, 3)[:, :2].ravel() / point["speed"]
-        none = np.zeros(loads.size)
-        return Answer(
-            np.concatenate([found.values, loads]),
-            {name: np.concatenate([row, none]) for name, row in by_input.items()},
-        )
+        by_input = slopes(found, self.names or list(point))
+        self.names = [name for name, row in by_input.items() if np.nan_to_num(row).any()]
+        return Answer(found.values, by_input)
 
 
 def table(row: Row, samples: Sequence[Row]) -> Table:
@@ -142,13 +145,12 @@ def table(row: Row, samples: Sequence[Row]) -> Table:
     if here.why:
         raise _unsolved(row, here.why)
     others = [sample.inputs() for sample in samples]
-    axes = _axes(base, others, here)
+    axes = _axes(walker, base, others, here)
     found = surrogate(walker, base=base, axes=axes)
     if found is None:
         raise _unsolved(row, "too many points within the bounds of the variables have none")
-    checks = [base, *others[:CHECKS]] if axes else []
-    error = max((_error(walker, found, p) for p in checks), default=0.0)
-    return Table(found, row, error, float(here.values[3 * len(row.rings)]))
+    points = [base, *(point for point in others[:CHECKS] if base.keys() <= point.keys())]
+    return Table(found, row, _errors(walker, found, points), float(here.values[-2]))
 
 
 def _unsolved(row: Row, why: str) -> InputError:
@@ -160,40 +162,77 @@ def _unsolved(row: Row, why: str) -> InputError:
 
 
 def _axes(
-    base: Mapping[str, float], others: Sequence[Mapping[str, Array]], here: Answer
+    walker: _Walker,
+    base: Mapping[str, float],
+    others: Sequence[Mapping[str, Array]],
+    here: Answer,
 ) -> tuple[Axis, ...]:
-    """The inputs whose extent moves the drag or the load of a ring the most."""
+    """The speed, and the inputs whose extent the first order follows worst."""
+    spans = {
+        name: (min(values), max(values))
+        for name, value in base.items()
+        if (values := [value, *(float(other[name]) for other in others if name in other)])
+    }
     found = []
-    count = (len(here.values) - 2) // 5
-    parts = here.values[: 3 * count].reshape(-1, 3)[:, :2]
-    scale = np.abs(parts) + 0.05 * np.abs(parts[:, 1:])
-    for name, value in base.items():
-        values = [value, *(float(other[name]) for other in others)]
-        lower, upper = min(values), max(values)
-        if lower <= 0 or upper <= lower * (1 + 1e-9):
+    for name, (lower, upper) in spans.items():
+        if name == "speed" or lower <= 0 or upper <= lower * (1 + 1e-9):
             continue
-        moved = here.slopes[name][: 3 * count].reshape(-1, 3)[:, :2]
-        effect = float(np.max(np.abs(moved) / scale)) * log(upper / lower)
-        if effect > EXTENT:
-            found.append((effect, Axis(name, lower, upper, POINTS)))
+        missed = max(_missed(walker, base, here, name, end) for end in (lower, upper))
+        if missed > MISSED:
+            found.append((missed, Axis(name, lower, upper, POINTS)))
     found.sort(key=lambda pair: -pair[0])
-    return tuple(axis for _, axis in found[:MOST_AXES])
+    lower, upper = spans["speed"]
+    nodes = SPEEDS if upper <= lower * (1 + 1e-9) else POINTS
+    speed = Axis("speed", lower / SPEED_ROOM, upper * SPEED_ROOM, nodes)
+    return (speed, *(axis for _, axis in found[:MOST_AXES]))
 
 
-def _error(walker: _Walker, found: Surrogate, point: Mapping[str, Array]) -> float:
-    """Relative difference of the friction between surrogate and film; 0 without a film."""
-    inputs = {name: float(point[name]) for name in found.base}
-    solved = walker.solve(inputs)
+def _missed(
+    walker: _Walker, base: Mapping[str, float], here: Answer, name: str, end: float
+) -> float:
+    """How far the first order in an input misses drag and load at its end, over the load."""
+    solved = walker.solve({**base, name: end})
     if solved.why:
-        return 0.0
-    exact = sum(solved.friction())
-    rings = solved.row.rings
-    estimate = Table(found, walker.row, 0.0).running(rings)
-    total = sum(
-        film.viscous + ring["asperity_friction"] * film.load
-        for ring, film in zip(rings, estimate, strict=True)
+        return 1.0
+    told = here.values + here.slopes[name] * log(end / base[name])
+    wrong = np.abs(solved.values - told)[:-2].reshape(-1, 3)[:, :2]
+    loads = np.abs(solved.values[:-2].reshape(-1, 3)[:, 1:2])
+    return float(np.max(wrong / loads))
+
+
+def _errors(
+    walker: _Walker, found: Surrogate, points: Sequence[Mapping[str, Array]]
+) -> dict[str, float]:
+    """Largest relative differences between surrogate and films at points that have films."""
+    rows = []
+    for point in points:
+        solved = walker.solve({name: float(point[name]) for name in found.base})
+        if not solved.why:
+            rows.append((solved, np.array(found({name: point[name] for name in found.base}))))
+    flows = max((abs(solved.values[-2]) for solved, _ in rows), default=0.0) or 1.0
+    errors = {"friction": 0.0, "flow": 0.0, "thickness": 0.0}
+    for solved, estimate in rows:
+        exact = solved.values
+        ours, theirs = (_friction(solved.row, values) for values in (estimate, exact))
+        films = np.abs(estimate[2:-2:3] / exact[2:-2:3] - 1)
+        for name, error in (
+            ("friction", abs(ours / theirs - 1)),
+            ("flow", abs(estimate[-2] - exact[-2]) / flows),
+            ("thickness", films.max()),
+        ):
+            errors[name] = max(errors[name], float(error))
+    return errors
+
+
+def _friction(row: Row, values: np.ndarray) -> float:
+    """Friction of all rings, of the values of their films [N]."""
+    parts = values[:-2].reshape(-1, 3)
+    return float(
+        sum(
+            pi * ring["diameter"] * (drag + ring["asperity_friction"] * load)
+            for ring, (drag, load, _) in zip(row.rings, parts, strict=True)
+        )
     )
-    return float(abs(total - exact) / abs(exact))
 
 
 def films_asked(design: Design) -> bool:
@@ -245,8 +284,13 @@ def tables(
     rings_of : its sealing rings at such numbers
     """
     here = rings_of(values())
-    spread = _spread(design)
-    others = rings_of(values(spread)) if spread else ()
+    others: tuple[Ring, ...] = ()
+    count = 0
+    if design.variables:
+        spread = _spread(design)
+        spread = _with_corners(design, spread, rings_of(values(spread)))
+        others = rings_of(values(spread))
+        count = next(iter(spread.values())).size
     found: dict[Key, Table] = {}
     places: tuple[Place, ...] = ("piston", "rod")
     for place in places:
@@ -257,7 +301,7 @@ def tables(
             for stroke, outward in _outward(place, one.direction == "push").items():
                 rows = [
                     Row(on_stroke([floats(r, case, k) for r in sampled], stroke), outward)
-                    for k in range(SAMPLES if sampled else 0)
+                    for k in range(count)
                 ]
                 row = Row(on_stroke([floats(r, case) for r in own], stroke), outward)
                 found[place, case, stroke] = table(row, [r for r in rows if _finite(r)])
@@ -274,6 +318,33 @@ def _spread(design: Design) -> dict[str, np.ndarray]:
     return {
         path: np.linspace(bounds.lower, bounds.upper, SAMPLES)[mixed.permutation(SAMPLES)]
         for path, bounds in design.variables.items()
+    }
+
+
+def _with_corners(
+    design: Design, spread: dict[str, np.ndarray], rings: Sequence[Ring]
+) -> dict[str, np.ndarray]:
+    """The points, and the corners at which a number of a ring should be largest and smallest.
+
+    Which corner follows from the signs of its correlation with every variable.
+    """
+    paths = list(spread)
+    varied = np.array([spread[path] - np.mean(spread[path]) for path in paths])
+    signs = set()
+    for ring in rings:
+        for value in ring.numbers.values():
+            rows = np.atleast_2d(np.asarray(value, dtype=float))
+            for row in rows[:, : SAMPLES if rows.shape[1] == SAMPLES else 0]:
+                if row.size and np.isfinite(row).all() and np.ptp(row) > 0:
+                    signs.add(tuple(np.where(varied @ (row - row.mean()) >= 0, 1, -1)))
+    corners = sorted(signs | {tuple(-x for x in sign) for sign in signs})
+    bounds = design.variables
+    return {
+        path: np.append(
+            spread[path],
+            [bounds[path].upper if sign[i] > 0 else bounds[path].lower for sign in corners],
+        )
+        for i, path in enumerate(paths)
     }
 
 

@@ -60,7 +60,9 @@ def _fill(ring: Ring) -> Array:
     """Share of an O-ring's groove, at its shallowest, that the ring fills at assembly."""
     backs = sum(area for _, area in ring.groove.areas[1:]) / ring["gland_depth"]
     return gland.gland_fill(
-        section=gland.stretched_section(section=ring["section"], stretch=ring["stretch"]),
+        section=gland.stretched_section(
+            section=ring["section"] + ring["section_tolerance"], stretch=ring["stretch"]
+        ),
         groove_width=ring["groove_width"] - backs,
         gland_depth=ring["gland_depth"] - ring["tolerance"],
     )

@@ -45,6 +45,9 @@ def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
     else:
         width = v[f"{path}width"]
         default, areas = AXIAL_PLAY * width, ((element.compound, section * width),)
+    if element.type == "u_cup":  # body, and two lips as long as `width`
+        lips = (2 * v[f"{path}thickness"] - section) * width
+        areas = ((element.compound, section * v[f"{path}groove_width"] + lips),)
     if element.type == "step_ring":
         thickness = v[f"{path}thickness"]
         depth = depth + thickness

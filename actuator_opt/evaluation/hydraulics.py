@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..design.model import Design
 from ..models import damping, elements, forces, lines, water_hammer
-from ..numeric import Array, absolute, maximum
+from ..numeric import Array, absolute, maximum, real, where
 from .circuit import wall_compliance
 from .film_tables import Running
 from .geometry import Geometry
@@ -62,9 +62,13 @@ def compute_leakage(
             length=g.piston_length,
         )
     elif film is not None:
-        conductance = conductance + maximum(film.flow, 0.0) / across
+        moving = real(state.speed) > 0
+        divisor = where(real(across) > 0, across, 1.0)
+        passed = where(moving & (real(across) > 0), maximum(film.flow, 0.0), 0.0)
+        conductance = conductance + passed / divisor
     if bare or film is not None or path in v.varied or design.piston.leakage_conductance > 0:
-        out.put("leakage", conductance * across)
+        running = None if film is None else real(state.speed)[:, 0] > 0
+        out.put("leakage", conductance * across, cases=running)
     else:
         out.skip(
             "leakage",

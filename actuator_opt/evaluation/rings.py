@@ -108,9 +108,9 @@ def rings(
         elements = getattr(design.seals, name).elements()
         pressure, total = across[name]
         for groove in grooves:
-            if groove.role != "element":
-                continue
             tail = groove.path.removeprefix(f"seals.{name}.")
+            if groove.role != "element" or elements[tail].count == 0:
+                continue
             own = _numbers(v, elements[tail], groove, diameter, state.temperature)
             grown = SEAL_STEP * growth if name == "piston" else 0.0
             held = pressure if tail == "" else 0.0 * pressure

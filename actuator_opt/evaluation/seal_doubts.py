@@ -23,8 +23,14 @@ from .rings import Ring
 from .touch import touch
 from .values import Values
 
-FILM_ERROR = 0.01
+FILM_ERROR = 0.02
 """Relative error of a film's surrogate that is worth a word."""
+
+_SURROGATES = {
+    "friction": "friction_running",
+    "flow": "rod_leakage",
+    "thickness": "film_thickness",
+}
 
 _MODELS: dict[str, Callable[..., object]] = {
     "step_ring": step_seal.line_load,
@@ -43,7 +49,12 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
             yield from _law(ring)
         if compatible(subject.materials[liquid], subject.materials[compound]) is False:
             yield "", f"{ring.label}: {compound} does not withstand {liquid}"
-        if np.any(np.real(touch(ring).excess) <= 0):
+        if np.any(np.real(ring["squeeze_left"]) <= 0):
+            yield (
+                "friction_running",
+                f"{ring.label}: the bore's growth takes the whole squeeze, there is no contact",
+            )
+        elif not np.all(np.real(touch(ring).excess) > 0):
             yield (
                 "friction_running",
                 f"{ring.label}: the sealed pressure would open the contact; its load is too small",
@@ -62,11 +73,16 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
         )
     for (place, case, stroke), table in subject.films.items():
         name = f"film of the {place} seals ({v.cases[case]}, {stroke})"
-        if table.error > FILM_ERROR:
-            yield (
-                "friction_running",
-                f"{name}: the surrogate is up to {100 * table.error:.1f} % off the solved film",
-            )
+        for what, metric in _SURROGATES.items():
+            if table.errors[what] > FILM_ERROR:
+                yield (
+                    metric,
+                    f"{name}: the surrogate's {what} is up to {100 * table.errors[what]:.1f} % off "
+                    "the solved films within the bounds",
+                )
+        inputs = table.row.inputs()
+        if not table.surrogate.covers(inputs):
+            yield "friction_running", f"{name}: the design lies beyond the surrogate's box"
         if table.surrogate.failed:
             count = len(table.surrogate.failed)
             yield (
@@ -126,7 +142,7 @@ def models(rings: Iterable[Ring], subject: Subject, said: Iterable[str]) -> Iter
         doubted = any(text.startswith(ring.label) for text in said)
         yield _contact_model(ring, doubted=doubted)
     if subject.films:
-        worst = max(table.error for table in subject.films.values())
+        worst = max(table.errors["friction"] for table in subject.films.values())
         yield _use(
             rough_surface.asperity_pressure,
             "mean-film Reynolds equation with cavitation, rough and elastic contact; "

@@ -9,7 +9,7 @@ from ..design.model import Design
 from ..design.seals import Wiper
 from ..models import damping, friction, gland, guide_ring, lip_seal, wear
 from ..models.fluid import ATMOSPHERIC_PRESSURE
-from ..numeric import Array, maximum, real, where
+from ..numeric import Array, absolute, maximum, real, where
 from . import gland_check
 from .allow import Stock
 from .barrel import SEAL_STEP, Wall
@@ -58,9 +58,10 @@ def compute(
     full_growth = SEAL_STEP * wall.growth
     by_metric: dict[str, dict[str, Array]] = {}
     total = Friction()
+    moving = real(state.speed)[:, 0] > 0
     for ring in rings:
         grown = full_growth if ring.name == "piston" else 0.0
-        contact = touch(ring)
+        contact = touch(_share(ring, films))
         rows = gland_check.metrics(v, design, stock, geometry, state, ring, grown) | {
             "contact_width": contact.width,
             "contact_pressure": contact.peak,
@@ -81,7 +82,7 @@ def compute(
             by_metric.setdefault(metric, {})[ring.label] = value
     total = total + _beside(v, design, geometry, state)
     for metric, by_place in by_metric.items():
-        out.put(metric, by_place)
+        out.put(metric, by_place, cases=moving if metric == "film_thickness" else None)
     for name in ("seal_squeeze", "seal_squeeze_max", "seal_fill", "seal_stretch", "seal_section"):
         out.skip(name, "no O-ring runs here")
     gap = gland.extrusion_gap(clearance=geometry.piston_clearance, growth=full_growth)
@@ -89,7 +90,6 @@ def compute(
     out.put("growth_at_seal", full_growth)
     out.put("friction_running", total.running)
     out.put("friction_breakaway", total.breakaway)
-    moving = real(state.speed)[:, 0] > 0
     secant = damping.secant(friction=total.running, speed=state.speed)
     out.put("damping_seal", secant, cases=moving)
     if not moving.any():
@@ -182,7 +182,25 @@ def _lubricated(contact: Touch, ring: Ring, film: Running | None) -> Friction:
         return Friction(dry, dry, 0.0)
     sliding = film.viscous + coefficient * film.load
     slope = film.viscous_slope + coefficient * film.load_slope
-    return Friction(where(real(ring["speed"]) > 0, sliding, dry), dry, slope)
+    moving = real(ring["speed"]) > 0
+    touching = real(ring["squeeze_left"]) > 0
+    return Friction(
+        where(touching, where(moving, sliding, dry), 0.0), dry, where(touching, slope, 0.0)
+    )
+
+
+def _share(ring: Ring, films: Films) -> Ring:
+    """The ring under its share of the pressure, where a pair has settled on one between them."""
+    film = films.get(ring.label)
+    if film is None:
+        return ring
+    settled = real(film.between) > 0
+    between = where(settled, film.between, ATMOSPHERIC_PRESSURE) - ATMOSPHERIC_PRESSURE
+    if ring.label.endswith("secondary seal"):
+        held = where(settled, between - ring["outer_pressure"], 0.0)
+    else:
+        held = where(settled, ring["pressure"] + ring["outer_pressure"] - between, ring["pressure"])
+    return ring.at(pressure=absolute(held))
 
 
 def _beside(v: Values, design: Design, geometry: Geometry, state: State) -> Friction:

@@ -39,6 +39,8 @@ class Touch:
     excess: Array
     """Of the profile over the oil pressure [Pa]; where it is not above zero the sealed pressure
     opens the contact, and the profile shows a bare touch."""
+    profile_width: Array
+    """Width the profile stands on [m]: the contact's, or less where the load is too small."""
 
 
 def touch(ring: Ring) -> Touch:
@@ -54,9 +56,9 @@ def static_profile(ring: Ring, nodes: int) -> tuple[Array, Array]:
     pressure, outer = ring["pressure"], ring["outer_pressure"]
     if real(pressure) >= 0:
         found = touch(ring)
-        return found.width, outer + found.profile(position)
+        return found.profile_width, outer + found.profile(position)
     found = touch(ring.at(pressure=-pressure))  # sealed from the other side
-    return found.width, outer + pressure + found.profile(1 - position)
+    return found.profile_width, outer + pressure + found.profile(1 - position)
 
 
 def _squeezed(ring: Ring) -> dict[str, Array]:
@@ -76,14 +78,17 @@ def _o_ring(ring: Ring) -> Touch:
     )
     load, peak = law.line_load(**inputs), law.peak_pressure(**inputs)
     ends = {"sealed_pressure": pressure, "outer_pressure": 0.0}
-    excess = contact_profile.o_ring_excess(line_load=load, width=width, **ends)
+    at_rest = contact_profile.o_ring_mean(excess=peak - pressure, **ends)
+    touching = real(at_rest) > 0
+    narrow = minimum(width, load / where(touching, at_rest, 1.0))  # a soft ring's law is too wide
+    excess = contact_profile.o_ring_excess(line_load=load, width=narrow, **ends)
 
     def profile(position: Array) -> Array:
         return contact_profile.o_ring_profile(
             position=position, excess=maximum(excess, WITHIN * pressure + 1.0), **ends
         )
 
-    return Touch(load, width, peak, profile, excess)
+    return Touch(load, width, peak, profile, excess, narrow)
 
 
 def _step_ring(ring: Ring) -> Touch:
@@ -126,7 +131,7 @@ def _landed(load: Array, width: Array, pressure: Array) -> Touch:
             excess=maximum(excess, WITHIN * pressure + 1.0),
         )
 
-    return Touch(load, width, contact_land.land_peak(**ends), profile, excess)
+    return Touch(load, width, contact_land.land_peak(**ends), profile, excess, width)
 
 
 def _u_cup(ring: Ring) -> Touch:
@@ -156,7 +161,7 @@ def _u_cup(ring: Ring) -> Touch:
             position=position, excess=maximum(excess, WITHIN * pressure + 1.0), **ends
         )
 
-    return Touch(load, width, peak, profile, excess)
+    return Touch(load, width, peak, profile, excess, width)
 
 
 def _compact(ring: Ring) -> Touch:
@@ -200,8 +205,11 @@ def _table(ring: Ring) -> Touch:
         for place, one in zip(places, tables, strict=True)
     ]
     load = width * sum(share * mean for share, mean in zip(shares, means, strict=True))
-    peak = sum(share * max(one.stresses) for share, one in zip(shares, tables, strict=True))
-    return Touch(load, width, peak, profile, peak - pressure)
+    knots = sorted({place for row in places for place in row})
+    peak = profile(knots[0])
+    for knot in knots[1:]:
+        peak = maximum(peak, profile(knot))
+    return Touch(load, width, peak, profile, peak - pressure, width)
 
 
 def _share(pressure: Array, known: list[float], index: int) -> Array:

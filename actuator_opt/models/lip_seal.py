@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from ..numeric import Array, minimum, namespace, real, sqrt, where
+from ..numeric import Array, maximum, minimum, namespace, real, sqrt, where
 from .contact_profile import lip_mean
 
 LYING_STEPS = 7
@@ -132,11 +132,13 @@ def lip_free_span(
 
     Returns
     -------
-    span s, 0 to l [m]; l without interference
+    span s, t to l [m]; l without interference
 
     Notes
     -----
     Valid: straight thin lip on a flat surface, hoop stiffness and shear neglected.
+
+    A span shorter than the lip is thick is no beam: it ends there.
 
     References
     ----------
@@ -162,8 +164,8 @@ def lip_free_span(
     for _ in range(LYING_STEPS):
         cube = span * span * span
         span = span - (load * cube * span + slope * span - gap) / (4 * load * cube + slope)
-    span = minimum(span, lip_length)
-    return where(real(interference) > 0, where(real(root_clearance) > 0, span, 0.0), lip_length)
+    span = minimum(maximum(span, lip_thickness), lip_length)
+    return where(real(interference) > 0, span, lip_length)
 
 
 def line_load(

@@ -8,6 +8,8 @@ from ..evaluation.study.seal import SealStudy
 from . import seal_rows as rows
 from . import text
 from .blocks import Block, Cell, column, figure, notes, soft, table
+from .seal_elements_figure import contact_figure as elements_contact_figure
+from .seal_elements_figure import contact_note, sentence, stress_figure, stress_note
 from .seal_figures import bars, contact_figure, drawable, speed_figure, speed_words, squeeze_figure
 from .seal_gland_figure import gland_drawing
 from .seal_map_figure import map_figure
@@ -25,6 +27,8 @@ def blocks(study: SealStudy, *, drawing: bool = True) -> list[Block]:
         ink = gland_drawing(study).ink
         found.append(figure(f"{_named(study)}: gland", ink, _gland_note(study)))
     found += [_gland_table(study), _squeeze(study), _operating(study), _contact_table(study)]
+    if study.elements:
+        found += _elements(study)
     if filmed(study):
         found += [_contact(study, index) for index in range(len(study.out.rings))]
     if drawable(study.curves):
@@ -111,6 +115,18 @@ def _contact_table(study: SealStudy) -> Block:
         " modulus of what is squeezed: lowest, assumed and highest over its scatter."
     )
     return table(f"{_named(study)}: contact", columns, body, note=note)
+
+
+def _elements(study: SealStudy) -> list[Block]:
+    label = study.out.rings[0].ring.label.capitalize()
+    return [
+        figure(f"{label}: stress by finite elements", stress_figure(study), stress_note(study)),
+        figure(
+            f"{label}: contact by finite elements",
+            elements_contact_figure(study),
+            f"{sentence(study)} {contact_note(study)}",
+        ),
+    ]
 
 
 def _contact(study: SealStudy, index: int) -> Block:

@@ -6,6 +6,7 @@ from ..evaluation.study.seal import SealStudy
 from . import seal_rows as rows
 from . import text
 from .console import Column, Console
+from .seal_elements_figure import sentence
 from .seal_figures import bars, degrees, speed_words, squeeze_limits
 
 
@@ -57,6 +58,8 @@ def _contact(study: SealStudy, console: Console) -> str:
         for k, head in enumerate(rows.CONTACT_HEADS)
     ]
     lines = console.table(columns, rows.contacts(study))
+    if said := sentence(study):
+        lines.append(console.wrap(said, "dim"))
     return "\n".join([console.heading("contact"), *lines])
 
 

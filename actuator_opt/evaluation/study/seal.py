@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import nan, pi
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +25,9 @@ from ..touch import touch
 from ..values import of_case
 from .seal_record import RingPoint, SealMap, SealPoint, SealStudy, SqueezeRow, Stroke
 
+if TYPE_CHECKING:
+    from ...finite_elements.result import Contact
+
 __all__ = [
     "RingPoint",
     "SealMap",
@@ -37,6 +41,9 @@ __all__ = [
 
 HARDNESS_SCATTER = 5.0
 """Scatter of a compound's hardness between batches, Shore A (usual delivery tolerance)."""
+
+HARDEST = 98.0
+"""Hardness up to which the scatter is followed, Shore A."""
 
 CURVE_SPEEDS = tuple(float(v) for v in np.geomspace(1e-4, 1.0, 17))
 """Speeds of the friction curves, m/s."""
@@ -54,6 +61,7 @@ def study(
     pressure: float | None = None,
     curves: bool = False,
     mapped: bool = False,
+    elements: tuple[Contact, ...] = (),
 ) -> SealStudy:
     """The seals of piston or rod at one point, and around it.
 
@@ -64,6 +72,7 @@ def study(
     pressure : sealed, gauge [Pa]; default: the highest of a load case
     curves : whether to follow friction over speed at three pressures
     mapped : whether to fill a map over speed and pressure
+    elements : what `with_elements` found, to be kept
 
     Raises
     ------
@@ -76,6 +85,14 @@ def study(
     case = _case(own[0], speed, pressure)
     held = float(of_case(own[0]["pressure"], case)) if pressure is None else pressure
     run = float(of_case(own[0]["speed"], case)) if speed is None else speed
+    if not held >= 0:
+        raise InputError(
+            Diagnostic(
+                f"pressure {held / 1e5:g} bar: below that of the outer side",
+                "state the sealed pressure over the outer one, 0 bar or more",
+                path=f"seals.{place}",
+            )
+        )
     if not run > 0:
         raise InputError(
             Diagnostic(
@@ -87,8 +104,8 @@ def study(
     _within(own, place, held)
     supply = float(v["supply.pressure"])
     growth = float(np.max(np.real(SEAL_STEP * found.wall.growth)))
-    grown = growth * held / supply if place == "piston" else 0.0
-    rings = _rings(own, case, pressure=held, speed=run, growth=grown)
+    rate = growth / supply if place == "piston" else 0.0
+    rings = _rings(own, case, pressure=held, speed=run, growth_per_pressure=rate)
     temperature = float(of_case(found.state.temperature, case))
     out, back = (_point(rings, temperature, stroke) for stroke in ("out", "in"))
     shares = (MAP_SHARES[0], 0.5, 1.0)
@@ -99,22 +116,26 @@ def study(
         back=back,
         stroke=float(np.squeeze(found.geometry.stroke)),
         clearance=float(np.squeeze(gland_check.clearances(found.geometry, found.state, own[0])[0])),
-        growth=grown,
+        growth=rate * held,
         squeezes=tuple(_squeezes(subject, found, own, growth if place == "piston" else 0.0)),
         curves=seal_map(rings, CURVE_SPEEDS, [x * supply for x in shares]) if curves else None,
         map=seal_map(rings, MAP_SPEEDS, [x * supply for x in MAP_SHARES]) if mapped else None,
+        elements=elements,
     )
 
 
-def with_elements(subject: Subject, place: Place) -> Subject:
-    """The same design with contact profiles by finite elements for the seal of a place."""
+def with_elements(subject: Subject, place: Place) -> tuple[Subject, tuple[Contact, ...]]:
+    """The same design with contact profiles by finite elements for the seal of a place, and these.
+
+    Of two rings the first; a second keeps its closed form.
+    """
     v = subject.values()
     ring = floats(of_place(base(subject, v).rings, place)[0], 0)
-    found = contact_elements.profiles(ring, float(v["supply.pressure"]))
-    design = subject.design
-    seal = getattr(design.seals, place).model_copy(update={"contact": found})
+    found = contact_elements.contacts(ring, float(v["supply.pressure"]))
+    design, stated = subject.design, contact_elements.profiles(found)
+    seal = getattr(design.seals, place).model_copy(update={"contact": stated})
     seals = design.seals.model_copy(update={place: seal})
-    return replace(subject, design=design.model_copy(update={"seals": seals}), films={})
+    return replace(subject, design=design.model_copy(update={"seals": seals}), films={}), found
 
 
 def _within(own: Sequence[Ring], place: Place, pressure: float) -> None:
@@ -139,15 +160,17 @@ def _case(ring: Ring, speed: float | None, pressure: float | None) -> int:
 
 
 def _rings(
-    own: Sequence[Ring], case: int, *, pressure: float, speed: float, growth: float
+    own: Sequence[Ring], case: int, *, pressure: float, speed: float, growth_per_pressure: float
 ) -> tuple[Ring, ...]:
     """Rings of floats at a pressure and speed; the outer side is that of the atmosphere."""
-    rings = []
-    for ring in own:
-        one = floats(ring, case)
-        left = one["squeeze"] - growth / one["section"]
-        rings.append(one.at(pressure=pressure, outer_pressure=0.0, speed=speed, squeeze_left=left))
-    return tuple(rings)
+    more = {"outer_pressure": 0.0, "speed": speed, "growth_per_pressure": growth_per_pressure}
+    return tuple(_under(floats(ring, case).at(**more), pressure) for ring in own)
+
+
+def _under(ring: Ring, pressure: float) -> Ring:
+    """A ring at a pressure, with the squeeze that the bore's growth then leaves."""
+    growth = ring["growth_per_pressure"] * pressure
+    return ring.at(pressure=pressure, squeeze_left=ring["squeeze"] - growth / ring["section"])
 
 
 def _point(rings: tuple[Ring, ...], temperature: float, stroke: Stroke) -> SealPoint:
@@ -177,7 +200,8 @@ def modulus_range(ring: Ring) -> tuple[float, float, float]:
     hardness = ring.numbers.get("hardness")
     if hardness is None:
         return value / STATED_FACTOR, value, value * STATED_FACTOR
-    low, high = elastomer.modulus_bounds(hardness=hardness, hardness_scatter=HARDNESS_SCATTER)
+    scatter = min(HARDNESS_SCATTER, HARDEST - hardness)  # no law tells a modulus at 100 Shore A
+    low, high = elastomer.modulus_bounds(hardness=hardness, hardness_scatter=max(scatter, 0.0))
     law = elastomer.MODULUS_LAWS[ring.element.hardness_model].modulus(hardness=hardness)
     return value * float(low / law), value, value * float(high / law)
 
@@ -194,16 +218,22 @@ def _bounds(rings: tuple[Ring, ...], outward: bool, solved: Solved) -> tuple[flo
     for end in (0, 2):
         scaled = tuple(
             ring.at(
-                **{
-                    name: ring[name] * modulus_range(ring)[end] / ring["youngs_modulus"]
-                    for name in ("youngs_modulus", "face_modulus")
-                }
+                youngs_modulus=modulus_range(ring)[end],
+                face_modulus=ring["face_modulus"] * _face_factor(ring)[end],
             )
             for ring in rings
         )
         other = solve(Row(scaled, outward), solved)
         found.append(nan if other.why else sum(other.friction()))
     return found[0], found[1]
+
+
+def _face_factor(ring: Ring) -> tuple[float, float, float]:
+    """Lowest, assumed and highest modulus of the sliding face, over the assumed one."""
+    if ring.element.type == "step_ring":
+        return 1 / STATED_FACTOR, 1.0, STATED_FACTOR
+    low, value, high = modulus_range(ring)
+    return low / value, 1.0, high / value
 
 
 def _ring_point(ring: Ring, solved: Solved, index: int, *, outward: bool) -> RingPoint:
@@ -243,7 +273,7 @@ def seal_map(
     dry, why = [], []
     last: Solved | None = None
     for i, pressure in enumerate(pressures):
-        held = tuple(ring.at(pressure=pressure) for ring in rings)
+        held = tuple(_under(ring, pressure) for ring in rings)
         dry.append(_dry(held[0]))
         for j in range(len(speeds)):
             k = j if i % 2 == 0 else len(speeds) - 1 - j

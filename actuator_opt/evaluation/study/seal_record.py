@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import isfinite
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from ...models import damping, lugre
 from ...version import VERSION
 from ..rings import Place, Ring
 from ..touch import Touch
+
+if TYPE_CHECKING:
+    from ...finite_elements.result import Contact
 
 Stroke = Literal["out", "in"]
 
@@ -171,6 +174,7 @@ class SealStudy:
     squeezes : over tolerance, temperature and pressure
     curves : friction over speed at three pressures
     map : over speed and pressure, where asked
+    elements : finite elements of the first ring, the mounted one first; empty where not asked
     """
 
     design: Design
@@ -183,6 +187,7 @@ class SealStudy:
     squeezes: tuple[SqueezeRow, ...]
     curves: SealMap | None
     map: SealMap | None
+    elements: tuple[Contact, ...] = ()
 
     @property
     def carried_out(self) -> float:
@@ -242,6 +247,8 @@ class SealStudy:
             "load_residual": _worst(both.values(), "load_residual"),
             "mass_residual": _worst(both.values(), "mass_residual"),
         }
+        if self.elements:
+            found["finite_elements"] = [_element_dict(one) for one in self.elements]
         return found if self.map is None else found | {"map": _map_dict(self.map)}
 
 
@@ -265,6 +272,13 @@ def _contact_dict(point: RingPoint) -> dict[str, Any]:
         "width": float(point.touch.width),
         "peak_pressure": float(point.touch.peak),
         "youngs_modulus": {"value": modulus, "lower": low, "upper": high},
+    }
+
+
+def _element_dict(one: Contact) -> dict[str, float]:
+    names = ("pressure", "line_load", "width", "peak_pressure")
+    return {name: float(getattr(one, name)) for name in names} | {
+        "von_mises": float(np.max(one.field.von_mises))
     }
 
 
