@@ -21,7 +21,7 @@ def seal(
     speed: Annotated[
         str | None,
         typer.Option(
-            "--speed", metavar="V", help='Sliding speed, e.g. "0.1 m/s"; default: fastest case.'
+            "--speed", metavar="V", help='Sliding speed, e.g. "0.1 m/s"; default: of a case.'
         ),
     ] = None,
     pressure: Annotated[

@@ -218,8 +218,8 @@ METRICS = _table("""
  seal_wear            | pL     | line_load   | N/mm | | | contact pressure times sliding distance, a double stroke
  rod_leakage          | V_l    | volume      | mm^3 | | | oil the rod leaves outside, a double stroke
  inter_seal_pressure  | p_i    | pressure    | bar  | | | pressure between the seals of a pair
- friction_running     | F_C    | force       | N    | | | running friction of all seals
- friction_breakaway   | F_S    | force       | N    | | | breakaway friction of all seals
+ friction_running     | F_C    | force       | N    | | | running friction of seals, wipers and guides
+ friction_breakaway   | F_S    | force       | N    | | | breakaway friction of seals, wipers and guides
  damping_pipe         | c      | damping     | N*s/m| | | viscous damping of the oil by pipe flow
  damping_annular      | c_a    | damping     | N*s/m| | | viscous damping of the annular gaps
  damping_seal         | B      | damping     | kN*s/m| | | secant damping of the seals at the stated speed

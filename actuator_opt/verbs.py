@@ -212,8 +212,8 @@ def seal(
     ----------
     design : as `evaluate`
     place : "piston" or "rod"
-    speed : of the counterface [m/s]; default: the fastest load case
-    pressure : sealed, gauge [Pa]; default: the highest of a load case
+    speed, pressure : of the counterface [m/s], sealed gauge [Pa]; default: those of the moving
+        load case of the highest pressure
     curves : whether to follow friction over speed at three pressures
     mapped : whether to fill a map over speed and pressure
     finite_elements : whether to compute the contact profiles of O-rings and step rings (extra

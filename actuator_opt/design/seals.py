@@ -14,7 +14,7 @@ from .section import Section
 class ContactProfile(Section):
     """Static contact pressure of an element at one sealed pressure, as found elsewhere.
 
-    Between two sealed pressures the profile is interpolated, beyond the last it is an error.
+    Between two sealed pressures the profile is interpolated; the last reaches the supply's.
     """
 
     pressure: Annotated[float, Of("pressure", "sealed pressure of this profile, gauge")]
@@ -60,7 +60,8 @@ class SealElement(Section):
         Of(
             "part_length",
             "axial width of the face that touches without pressure; default: half of a step "
-            "ring's width, all of a compact seal's, a tenth of a lip's length",
+            "ring's width, all of a compact seal's; of a U-cup twice the radius of its rim, "
+            "default a tenth of the lip's length",
         ),
     ] = None
     relief: Annotated[

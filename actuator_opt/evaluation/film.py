@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import nan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,33 +34,36 @@ from .touch import static_profile, touch
 NODES = 121
 """Nodes along the contact: within 0.3 % of finer ones."""
 
-HIGHEST = 40.0
-"""Largest pressure between two seals that is looked for, over the sealed one: at little pressure
-the outer seal can hold back many times it."""
+HIGHEST, AT_LEAST = 1.5, 10e6
+"""Largest pressure between two seals that is looked for, over the sealed one, or this one [Pa]: at
+little pressure the outer seal can hold back many times the sealed one."""
 
 LEAST_SQUEEZE = 0.02
 """Squeeze at which the film is held: below it the contact is lost, as the squeeze tells."""
 
-_OF_RING = (
-    "squeeze_left",
-    "section",
-    "diameter",
-    "youngs_modulus",
-    "face_modulus",
-    "face_poissons_ratio",
-    "seal_roughness",
-    "counterface_roughness",
-    "asperity_density",
-    "asperity_radius",
-    "groove_width",
-    "gland_depth",
-    "thickness",
-    "width",
-    "land",
-    "relief",
-    "root_clearance",
+_NOT_OF_FILM = frozenset(
+    {
+        "asperity_friction",
+        "breakaway_ratio",
+        "count",
+        "friction_coefficient",
+        "growth_per_pressure",
+        "hardness",
+        "outer_pressure",
+        "pressure",
+        "return_pressure",
+        "section_tolerance",
+        "speed",
+        "squeeze",
+        "stretch",
+        "stribeck_speed",
+        "tolerance",
+        "viscosity",
+        "viscosity_coefficient",
+        "viscous_friction",
+    }
 )
-"""Numbers of a ring that its film can depend on."""
+"""Numbers of a ring that its film does not depend on, or that a row states once for both rings."""
 
 SHARED = ("speed", "viscosity", "viscosity_coefficient")
 """Inputs that both rings of a pair have in common, beside the pressures."""
@@ -87,7 +91,7 @@ class Row:
             "outer": outer,
         }
         for i, ring in enumerate(self.rings):
-            found |= {f"{i}.{name}": ring[name] for name in _OF_RING if name in ring.numbers}
+            found |= {f"{i}.{n}": x for n, x in ring.numbers.items() if n not in _NOT_OF_FILM}
             found[f"{i}.squeeze_left"] = maximum(ring["squeeze_left"], LEAST_SQUEEZE)
         return found
 
@@ -115,6 +119,13 @@ class Row:
         return (
             first.at(pressure=sealed - inner, outer_pressure=inner),
             second.at(pressure=inner - second["outer_pressure"]),
+        )
+
+    def frictions(self, values: Array) -> tuple[Array, ...]:
+        """Friction of every ring, N, of the values of their films."""
+        return tuple(
+            np.pi * ring["diameter"] * (film.drag + ring["asperity_friction"] * film.load)
+            for ring, film in zip(self.rings, ring_films(values), strict=True)
         )
 
     def contacts(self, between: Array) -> tuple[Contact, ...]:
@@ -161,6 +172,22 @@ def _lubricant(ring: Ring) -> Lubricant:
     )
 
 
+class RingFilm(NamedTuple):
+    """What the film of one ring comes to, per circumference; arrays where its inputs are."""
+
+    drag: Array
+    """Of the oil, positive against the motion [N/m]."""
+    load: Array
+    """Normal force between the asperities [N/m]."""
+    thickness: Array
+    """Mean film [m]."""
+
+
+def ring_films(values: Array) -> tuple[RingFilm, ...]:
+    """The rings' parts of `Solved.values`; the flow and the pressure between follow them."""
+    return tuple(RingFilm(*values[i : i + 3]) for i in range(0, len(values) - 2, 3))
+
+
 @dataclass(frozen=True, slots=True)
 class Solved:
     """The films of a row, or why there are none.
@@ -190,15 +217,9 @@ class Solved:
         parts = [[sign * f.viscous_drag, f.contact_load, f.mean_film] for f in self.films]
         return np.array([*np.ravel(parts), self.films[0].flow, self.between])
 
-    def friction(self) -> tuple[float, float]:
-        """Viscous and asperity friction of all rings, N."""
-        viscous = asperity = 0.0
-        rows = self.values[:-2].reshape(-1, 3)
-        for ring, (drag, load, _) in zip(self.row.rings, rows, strict=True):
-            around = np.pi * ring["diameter"]
-            viscous += around * drag
-            asperity += around * ring["asperity_friction"] * load
-        return float(viscous), float(asperity)
+    def friction(self) -> float:
+        """Friction of all rings, N."""
+        return float(sum(self.row.frictions(self.values)))
 
 
 def solve(row: Row, last: Solved | None = None) -> Solved:
@@ -244,7 +265,7 @@ def _tandem(row: Row, start: Tandem | None) -> Tandem:
         speed=first["speed"] if row.outward else -first["speed"],
         sealed_pressure=outer_pressure + first["pressure"],
         outer_pressure=outer_pressure,
-        highest=HIGHEST,
+        highest=max(HIGHEST, AT_LEAST / (outer_pressure + first["pressure"])),
         start=start,
     )
 

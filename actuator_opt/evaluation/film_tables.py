@@ -19,7 +19,8 @@ from ..design.model import Design
 from ..errors import Diagnostic, InputError
 from ..numeric import Array
 from ..surrogate import Answer, Axis, Surrogate, surrogate
-from .film import Row, Solved, slopes, solve
+from .film import Row, Solved, ring_films, solve
+from .film import slopes as film_slopes
 from .rings import Place, Ring
 from .values import Values, of_case
 
@@ -88,18 +89,18 @@ class Table:
         inputs = Row(tuple(rings), self.row.outward).inputs()
         values = self.surrogate(inputs)
         slopes = self.surrogate(inputs, slope="speed") / inputs["speed"]
+        films, by_speed = ring_films(values), ring_films(slopes)
         flow, between = values[-2], values[-1]
         found = []
         for i, ring in enumerate(rings):
             around = pi * ring["diameter"]
-            drag, load, thickness = values[3 * i : 3 * i + 3]
             found.append(
                 Running(
-                    viscous=around * drag,
-                    load=around * load,
-                    thickness=thickness,
-                    viscous_slope=around * slopes[3 * i],
-                    load_slope=around * slopes[3 * i + 1],
+                    viscous=around * films[i].drag,
+                    load=around * films[i].load,
+                    thickness=films[i].thickness,
+                    viscous_slope=around * by_speed[i].drag,
+                    load_slope=around * by_speed[i].load,
                     flow=around * flow,
                     between=between,
                 )
@@ -126,7 +127,7 @@ class _Walker:
         found = self.solve(point)
         if found.why:
             return Answer(np.zeros(1), {}, why=found.why)
-        by_input = slopes(found, self.names or list(point))
+        by_input = film_slopes(found, self.names or list(point))
         self.names = [name for name, row in by_input.items() if np.nan_to_num(row).any()]
         return Answer(found.values, by_input)
 
@@ -195,9 +196,11 @@ def _missed(
     if solved.why:
         return 1.0
     told = here.values + here.slopes[name] * log(end / base[name])
-    wrong = np.abs(solved.values - told)[:-2].reshape(-1, 3)[:, :2]
-    loads = np.abs(solved.values[:-2].reshape(-1, 3)[:, 1:2])
-    return float(np.max(wrong / loads))
+    wrong, films = ring_films(np.abs(solved.values - told)), ring_films(solved.values)
+    return max(
+        float(max(miss.drag, miss.load) / film.load)
+        for miss, film in zip(wrong, films, strict=True)
+    )
 
 
 def _errors(
@@ -213,7 +216,7 @@ def _errors(
     errors = {"friction": 0.0, "flow": 0.0, "thickness": 0.0}
     for solved, estimate in rows:
         exact = solved.values
-        ours, theirs = (_friction(solved.row, values) for values in (estimate, exact))
+        ours, theirs = (sum(solved.row.frictions(values)) for values in (estimate, exact))
         films = np.abs(estimate[2:-2:3] / exact[2:-2:3] - 1)
         for name, error in (
             ("friction", abs(ours / theirs - 1)),
@@ -222,17 +225,6 @@ def _errors(
         ):
             errors[name] = max(errors[name], float(error))
     return errors
-
-
-def _friction(row: Row, values: np.ndarray) -> float:
-    """Friction of all rings, of the values of their films [N]."""
-    parts = values[:-2].reshape(-1, 3)
-    return float(
-        sum(
-            pi * ring["diameter"] * (drag + ring["asperity_friction"] * load)
-            for ring, (drag, load, _) in zip(row.rings, parts, strict=True)
-        )
-    )
 
 
 def films_asked(design: Design) -> bool:

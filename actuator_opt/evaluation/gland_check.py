@@ -75,7 +75,7 @@ def clearances(geometry: Geometry, state: State, ring: Ring) -> tuple[Array, Arr
 
 
 def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[Array, Array]:
-    """Loosest and tightest squeeze of a ring: stretched and beside growth, the bare section.
+    """Loosest squeeze of a ring, with growth and stretch, and the tightest, without.
 
     `ratio` is that of ring over groove volume; `aside` the eccentricity of rod or piston.
     """
@@ -98,13 +98,14 @@ def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[
 def volume_ratio(v: Values, design: Design, stock: Stock, ring: Ring, temperature: Array) -> Array:
     """Ring over groove volume at a temperature, relative to assembly; 1 where not known."""
     expansion = stock.get(ring.element.compound, "volume_expansion")
-    if expansion is None:
-        return 1.0
     part = design.piston if ring.name == "piston" else design.head
+    housing = stock.get(part.material, "thermal_expansion")
+    if expansion is None or housing is None:
+        return 1.0
     assembly = v["environment.assembly_temperature"] if design.environment is not None else ROOM
     return gland_range.volume_ratio(
         volume_expansion=expansion,
-        housing_expansion=stock.get(part.material, "thermal_expansion", default=0.0),
+        housing_expansion=housing,
         temperature_change=temperature - assembly,
         swell=0.0,
     )

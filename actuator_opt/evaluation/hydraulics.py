@@ -47,7 +47,8 @@ def compute_leakage(
     """Leakage across the piston in motion; returns its conductance.
 
     The stated conductance, the oil film of the seal, and through the gap of a piston without
-    seals, opened by the bore's growth under it.
+    seals, opened by the bore's growth under it. A film's flow over the pressure difference is that
+    at the case's speed; a film that draws oil back to the driven side counts as tight.
     """
     path = "piston.leakage_conductance"
     conductance = v[path]

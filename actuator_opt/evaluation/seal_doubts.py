@@ -9,6 +9,8 @@ import numpy as np
 from ..design.material import compatible
 from ..models import (
     compact_seal,
+    contact_profile,
+    elastomer,
     extrusion,
     lip_seal,
     rough_surface,
@@ -47,6 +49,12 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
         compound = ring.element.compound
         if ring.element.type in ("o_ring", "step_ring") and not ring.element.contact:
             yield from _law(ring)
+        if ring.element.contact:
+            yield (
+                "friction_running",
+                f"{ring.label}: stated contact profiles are taken as they are, whatever the bore's "
+                "growth leaves of the squeeze",
+            )
         if compatible(subject.materials[liquid], subject.materials[compound]) is False:
             yield "", f"{ring.label}: {compound} does not withstand {liquid}"
         if np.any(np.real(ring["squeeze_left"]) <= 0):
@@ -94,6 +102,14 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
 def _law(ring: Ring) -> Iterable[tuple[str, str]]:
     """An O-ring law outside the squeeze and pressure it was compared with data on."""
     law = seals.LAWS[ring.element.law]
+    by = elastomer.MODULUS_LAWS[ring.element.hardness_model]
+    hardness = float(np.max(ring["hardness"]))
+    if not by.hardness_range[0] <= hardness <= by.hardness_range[1]:
+        yield (
+            "friction_running",
+            f"{ring.label}: {hardness:g} Shore A, the {by.name} law holds from "
+            f"{by.hardness_range[0]:g} to {by.hardness_range[1]:g}",
+        )
     ratio = float(np.max(np.abs(ring["pressure"] / ring["youngs_modulus"])))
     low, high = law.squeeze_range
     if not low <= ring.element.squeeze <= high:
@@ -157,6 +173,13 @@ def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
     """The contact model of one ring, with its O-ring law where it has one."""
     element = ring.element
     at = f"squeeze {100 * element.squeeze:.4g} %"
+    if element.contact:
+        reach = element.contact[-1].pressure / 1e5
+        return _use(
+            contact_profile.table_profile,
+            f"{ring.label}, stated profiles up to {reach:.0f} bar",
+            doubted=doubted,
+        )
     if element.type == "o_ring":
         law = seals.LAWS[element.law]
         low, high = law.squeeze_range

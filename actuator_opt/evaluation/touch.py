@@ -19,9 +19,9 @@ from ..models import (
 from ..numeric import Array, maximum, minimum, real, where
 from .rings import Ring
 
-WITHIN = 1e-6
-"""Least excess of a static profile over the oil pressure, of the line load over its width: below
-it the sealed pressure would open the contact."""
+WITHIN, TOUCHING = 1e-6, 1.0
+"""Least excess of a static profile, as a part of the sealed pressure and in Pa: with less the
+sealed pressure would open the contact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ def _o_ring(ring: Ring) -> Touch:
 
     def profile(position: Array) -> Array:
         return contact_profile.o_ring_profile(
-            position=position, excess=maximum(excess, WITHIN * pressure + 1.0), **ends
+            position=position, excess=maximum(excess, WITHIN * pressure + TOUCHING), **ends
         )
 
     return Touch(load, width, peak, profile, excess, narrow)
@@ -128,7 +128,7 @@ def _landed(load: Array, width: Array, pressure: Array) -> Touch:
             position=position,
             sealed_pressure=pressure,
             outer_pressure=0.0,
-            excess=maximum(excess, WITHIN * pressure + 1.0),
+            excess=maximum(excess, WITHIN * pressure + TOUCHING),
         )
 
     return Touch(load, width, contact_land.land_peak(**ends), profile, excess, width)
@@ -158,7 +158,7 @@ def _u_cup(ring: Ring) -> Touch:
 
     def profile(position: Array) -> Array:
         return contact_profile.lip_profile(
-            position=position, excess=maximum(excess, WITHIN * pressure + 1.0), **ends
+            position=position, excess=maximum(excess, WITHIN * pressure + TOUCHING), **ends
         )
 
     return Touch(load, width, peak, profile, excess, width)

@@ -32,7 +32,8 @@ _WALL, _BAND, _APART, _TALL = 2.2, 3.0, 3.0, 46.0
 """Paper of the groove's walls, of the counterface, between two sections, of the groove (mm)."""
 _HEAD, _WORDS, _SCALE = 6.0, 8.0, 9.0
 """Paper of the pressures above, of the words below, of the colour scale (mm)."""
-MOST_BANDS = 9
+MOST_BANDS = 12
+"""Bands of stress at most."""
 CURVES: tuple[dict[str, Any], ...] = (
     {"stroke": GREY, "pen": 0.4, "dash": (0.5, 0.6)},
     *STYLES,
@@ -104,9 +105,9 @@ def stress_figure(study: SealStudy) -> Ink:
         said = f"{bars(one.pressure)}, mounted" if k == 0 else bars(one.pressure)
         ink.text(middle, 2.6, said, anchor="center", bold=True)
         y = _HEAD + tall + 2.8
-        highest = number(1e-6 * float(np.max(one.field.von_mises)))
+        highest = number(1e-6 * float(np.max(one.field.von_mises)), 3)
         ink.text(middle, y, f"up to {highest} MPa", anchor="center")
-        words = f"contact {number(1e3 * one.width)} mm"
+        words = f"contact {number(1e3 * one.width, 3)} mm"
         ink.text(middle, y + 3.2, words, anchor="center", color=RED)
     _colours(ink, levels, ink.height - 6.0)
     words = f"SCALE {paper}:{real}"
@@ -141,16 +142,18 @@ def _walls(ink: Ink, gland: Gland) -> None:
 def _section(ink: Ink, gland: Gland, field: Any, levels: Sequence[float]) -> None:
     """The bands of stress, then the outline of every body."""
     fills = shades(len(levels) - 1)
+    wall = float(np.max(field.nodes[:, 0]))  # it leans on the outer wall
     for paint, rings in zip(fills, stress_bands.bands(field, levels), strict=True):
-        lines = [[gland.at(x, r) for x, r in ring] for ring in rings]
+        lines = [[gland.at(x - wall, r) for x, r in ring] for ring in rings]
         ink.path(lines, stroke=paint, pen=0.05, fill=paint, closed=True)
     for rings in stress_bands.outlines(field):
-        ink.path([[gland.at(x, r) for x, r in ring] for ring in rings], pen=0.15, closed=True)
+        lines = [[gland.at(x - wall, r) for x, r in ring] for ring in rings]
+        ink.path(lines, pen=0.15, closed=True)
 
 
 def _colours(ink: Ink, levels: Sequence[float], y: float) -> None:
     """The bands with the levels between them."""
-    count, wide = len(levels) - 1, 10.0
+    count, wide = len(levels) - 1, 9.0
     words = "von Mises stress, MPa"
     ink.text(0.0, y + 1.4, words)
     left = 34.0
@@ -197,7 +200,7 @@ def _closed_profile(ring: Ring, pressure: float) -> tuple[np.ndarray, np.ndarray
     """Places and contact pressures of the closed form."""
     found = closed_form(ring.at(pressure=pressure))
     share = np.linspace(0.0, 1.0, 121)
-    return share * float(found.width), np.asarray(found.profile(share), dtype=float)
+    return share * float(found.profile_width), np.asarray(found.profile(share), dtype=float)
 
 
 def _over_pressure(
@@ -233,7 +236,7 @@ def sentence(study: SealStudy) -> str:
     pressure = float(f"{abs(one.ring['pressure']):.4g}")
 
     def beside(value: Any, other: Any, unit: str, scale: float) -> str:
-        return f"{number(scale * float(value))} {unit} (closed form {number(scale * float(other))})"
+        return f"{number(scale * float(value), 3)} {unit} (closed form {number(scale * float(other), 3)})"
 
     return (
         f"Contact of the {one.ring.label} by finite elements: at {bars(pressure)} width"

@@ -205,7 +205,7 @@ def contacts(study: SealStudy) -> list[list[str]]:
                     f"{number(1e3 * float(point.touch.width))} mm",
                     f"{number(1e-6 * float(point.touch.peak))} MPa",
                     modulus_text(point),
-                    law_of(point),
+                    law_of(point) if index or not study.elements else "finite elements",
                 ]
             )
     return rows

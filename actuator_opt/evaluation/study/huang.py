@@ -18,7 +18,7 @@ from ...lubrication import Lubricant
 from ...numeric import Array
 from ..barrel import SEAL_STEP
 from ..build import prepare
-from ..film import Row, Solved, solve
+from ..film import Row, Solved, ring_films, solve
 from ..film_tables import floats, of_place
 from ..kernel import base
 from ..rings import Place, Ring
@@ -133,11 +133,7 @@ def ring_friction(solved: Solved) -> tuple[float, ...]:
     """Friction of every ring of a row [N]; NaN without a film."""
     if solved.why:
         return (nan,) * len(solved.row.rings)
-    rows = solved.values[:-2].reshape(-1, 3)
-    return tuple(
-        float(pi * ring["diameter"] * (drag + ring["asperity_friction"] * load))
-        for ring, (drag, load, _) in zip(solved.row.rings, rows, strict=True)
-    )
+    return tuple(float(one) for one in solved.row.frictions(solved.values))
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,9 +198,13 @@ def film_map(
                 continue
             last = found
             parts[i, j] = ring_friction(found)
-            thickness[i, j] = found.values[:-2].reshape(-1, 3)[:, 2]
-            drag, dry = found.friction()
-            viscous[i, j] = drag / (drag + dry)
+            films = ring_films(found.values)
+            thickness[i, j] = [film.thickness for film in films]
+            sheared = [
+                pi * ring["diameter"] * film.drag
+                for ring, film in zip(found.row.rings, films, strict=True)
+            ]
+            viscous[i, j] = sum(sheared) / found.friction()
             if count == 2:
                 between[i, j] = found.between - found.row.inputs()["outer"]
     return FilmMap(

@@ -68,8 +68,8 @@ def study(
     Parameters
     ----------
     subject : a design whose elements of the place all ask for a film
-    speed : of the counterface [m/s]; default: the fastest load case
-    pressure : sealed, gauge [Pa]; default: the highest of a load case
+    speed, pressure : of the counterface [m/s], sealed gauge [Pa]; default: those of the moving
+        load case of the highest pressure
     curves : whether to follow friction over speed at three pressures
     mapped : whether to fill a map over speed and pressure
     elements : what `with_elements` found, to be kept
@@ -82,7 +82,7 @@ def study(
     v = subject.values()
     found = base(subject, v)
     own = of_place(found.rings, place)
-    case = _case(own[0], speed, pressure)
+    case = _case(own[0], speed)
     held = float(of_case(own[0]["pressure"], case)) if pressure is None else pressure
     run = float(of_case(own[0]["speed"], case)) if speed is None else speed
     if not held >= 0:
@@ -97,7 +97,7 @@ def study(
         raise InputError(
             Diagnostic(
                 f"speed {run:g} m/s: a film and a secant damping need a moving seal",
-                'state a speed above zero, e.g. "--speed 0.1"',
+                'state a speed above zero, e.g. --speed "0.1 m/s"',
                 path=f"seals.{place}",
             )
         )
@@ -108,7 +108,8 @@ def study(
     rings = _rings(own, case, pressure=held, speed=run, growth_per_pressure=rate)
     temperature = float(of_case(found.state.temperature, case))
     out, back = (_point(rings, temperature, stroke) for stroke in ("out", "in"))
-    shares = (MAP_SHARES[0], 0.5, 1.0)
+    pressures = [x * supply for x in (MAP_SHARES[0], 0.5, 1.0)]
+    outward = place == "rod"  # a driven piston runs away from the pressure it seals
     return SealStudy(
         design=subject.design,
         place=place,
@@ -118,8 +119,10 @@ def study(
         clearance=float(np.squeeze(gland_check.clearances(found.geometry, found.state, own[0])[0])),
         growth=rate * held,
         squeezes=tuple(_squeezes(subject, found, own, growth if place == "piston" else 0.0)),
-        curves=seal_map(rings, CURVE_SPEEDS, [x * supply for x in shares]) if curves else None,
-        map=seal_map(rings, MAP_SPEEDS, [x * supply for x in MAP_SHARES]) if mapped else None,
+        curves=seal_map(rings, CURVE_SPEEDS, pressures, outward=outward) if curves else None,
+        map=seal_map(rings, MAP_SPEEDS, [x * supply for x in MAP_SHARES], outward=outward)
+        if mapped
+        else None,
         elements=elements,
     )
 
@@ -152,11 +155,16 @@ def _within(own: Sequence[Ring], place: Place, pressure: float) -> None:
             )
 
 
-def _case(ring: Ring, speed: float | None, pressure: float | None) -> int:
-    """The load case that stands for the point: the fastest, or the one of the highest pressure."""
-    what = "pressure" if pressure is None or speed is not None else "speed"
-    column = np.atleast_2d(np.asarray(ring[what], dtype=float))[:, 0]
-    return int(np.argmax(column)) if column.size > 1 else 0
+def _case(ring: Ring, speed: float | None) -> int:
+    """The load case that stands for the point: of the highest pressure among those that move."""
+    pressures, speeds = (
+        np.atleast_2d(np.asarray(ring[name], dtype=float))[:, 0] for name in ("pressure", "speed")
+    )
+    count = max(pressures.size, speeds.size)
+    held, run = np.broadcast_to(pressures, count), np.broadcast_to(speeds, count)
+    if speed is None and np.any(run > 0):
+        held = np.where(run > 0, held, -1.0)
+    return int(np.argmax(held))
 
 
 def _rings(
@@ -224,7 +232,7 @@ def _bounds(rings: tuple[Ring, ...], outward: bool, solved: Solved) -> tuple[flo
             for ring in rings
         )
         other = solve(Row(scaled, outward), solved)
-        found.append(nan if other.why else sum(other.friction()))
+        found.append(nan if other.why else other.friction())
     return found[0], found[1]
 
 
@@ -266,9 +274,9 @@ def _ring_point(ring: Ring, solved: Solved, index: int, *, outward: bool) -> Rin
 
 
 def seal_map(
-    rings: tuple[Ring, ...], speeds: Sequence[float], pressures: Sequence[float]
+    rings: tuple[Ring, ...], speeds: Sequence[float], pressures: Sequence[float], *, outward: bool
 ) -> SealMap:
-    """Friction outstroke over speed and pressure, each point begun from the one before."""
+    """Friction over speed and pressure on one stroke, each point begun from the one before."""
     table = np.full((len(pressures), len(speeds)), nan)
     dry, why = [], []
     last: Solved | None = None
@@ -277,12 +285,12 @@ def seal_map(
         dry.append(_dry(held[0]))
         for j in range(len(speeds)):
             k = j if i % 2 == 0 else len(speeds) - 1 - j
-            found = solve(Row(tuple(r.at(speed=speeds[k]) for r in held), True), last)
+            found = solve(Row(tuple(r.at(speed=speeds[k]) for r in held), outward), last)
             if found.why:
                 why.append((pressure, speeds[k], found.why))
                 continue
             last = found
-            table[i, k] = sum(found.friction())
+            table[i, k] = found.friction()
             if k == 0 and found.pair is not None:
                 dry[-1] = sum(_dry(ring) for ring in found.row.between(found.between))
     return SealMap(np.array(speeds), np.array(pressures), table, np.array(dry), tuple(why))

@@ -114,7 +114,7 @@ class SealPoint:
 
 @dataclass(frozen=True, slots=True)
 class SealMap:
-    """Friction over speed and pressure, outstroke; NaN where there is no film.
+    """Friction over speed and pressure on the driven stroke; NaN where there is no film.
 
     Parameters
     ----------
@@ -190,6 +190,14 @@ class SealStudy:
     elements: tuple[Contact, ...] = ()
 
     @property
+    def drive(self) -> SealPoint:
+        """The point of a driven actuator: of the rod the stroke out, of a piston the one in.
+
+        A driven piston runs away from the pressure it seals: the bore moves in past its seal.
+        """
+        return self.out if self.place == "rod" else self.back
+
+    @property
     def carried_out(self) -> float:
         """Oil that leaves the sealed room on a stroke out [m^3]."""
         return self.out.flow * self.stroke / self.out.speed
@@ -207,15 +215,15 @@ class SealStudy:
     @property
     def lugre(self) -> LuGre | None:
         """Numbers of the LuGre model for a simulation; None without film or load mass."""
-        static, mass = self.out.breakaway, self.design.load.mass
-        if not self.out.converged or not (static > 0 and mass > 0):
+        static, mass = self.drive.breakaway, self.design.load.mass
+        if not self.drive.converged or not (static > 0 and mass > 0):
             return None
         stiffness = lugre.lugre_bristle_stiffness(
             static=static, largest_deflection=self.design.stiffness.seal_deflection
         )
         bristle = lugre.lugre_bristle_damping(bristle_stiffness=stiffness, mass=mass)
         passive = lugre.lugre_passive_speed(
-            level=self.out.friction, bristle_damping=bristle, viscous=0.0
+            level=self.drive.friction, bristle_damping=bristle, viscous=0.0
         )
         return LuGre(float(stiffness), float(bristle), float(passive))
 
