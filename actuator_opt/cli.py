@@ -15,7 +15,14 @@ from typer.exceptions import TyperException
 
 from . import cli_materials, streams
 from .cli_seal import seal
-from .cli_shared import check_targets, leave_by, read_actuator, say_files, write_report
+from .cli_shared import (
+    assignments,
+    check_targets,
+    leave_by,
+    read_actuator,
+    say_files,
+    write_report,
+)
 from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from .options import (
     REPORTS,
@@ -109,9 +116,8 @@ def check(
 ) -> None:
     """Name every fault of design files, each at its place."""
     from . import verbs
-    from .design import split_assignment
 
-    pairs = [split_assignment(text) for text in sets or []]
+    pairs = assignments(sets)
     faults: list[Diagnostic] = []
     for design in designs:
         found = verbs.check(design, set=pairs, plugins=plugin or [])

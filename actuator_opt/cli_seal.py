@@ -72,7 +72,7 @@ def seal(
         finite_elements=finite_elements,
     )
     if write is not None:
-        verbs.save(study.design, write)
+        verbs.save(verbs.with_contact(actuator, study), write)
     files = []
     if report or mapped:
         files = verbs.write_seal(

@@ -17,13 +17,18 @@ if TYPE_CHECKING:
     from .verbs import Actuator
 
 
+def assignments(sets: list[str] | None) -> list[tuple[str, str]]:
+    """The ``--set`` of a command, each as PATH and value."""
+    from .design import split_assignment
+
+    return [split_assignment(text) for text in sets or []]
+
+
 def read_actuator(design: str, sets: list[str] | None, plugins: list[Path] | None) -> Actuator:
     """The design of a command, with its ``--set`` and ``--plugin``."""
-    from .design import split_assignment
     from .verbs import read
 
-    pairs = [split_assignment(text) for text in sets or []]
-    return read(design, set=pairs, plugins=plugins or [])
+    return read(design, set=assignments(sets), plugins=plugins or [])
 
 
 def leave_by(evaluation: Evaluation) -> None:

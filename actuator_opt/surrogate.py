@@ -8,7 +8,7 @@ arithmetic, so that complex steps pass through it.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from math import cos, exp, log, pi
 
@@ -24,7 +24,8 @@ class Answer:
     Parameters
     ----------
     values : outputs (m,)
-    slopes : their derivatives (m,) by the logarithm of every input that is no axis
+    slopes : their derivatives (m,) by the logarithm of inputs; those of axes are not used, and
+        an input that is neither here nor an axis moves nothing
     why : why there is none; values and slopes are then not used
     """
 
@@ -35,12 +36,21 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """An input the polynomial runs along, in its logarithm: 0 < lower < upper, and the nodes."""
+    """An input the polynomial runs along, in its logarithm: 0 < lower < upper, and the nodes.
+
+    With `hermite` the function's own slopes along the axis are met too, by twice as many terms.
+    """
 
     name: str
     lower: float
     upper: float
     nodes: int
+    hermite: bool = False
+
+    @property
+    def terms(self) -> int:
+        """Polynomials along the axis."""
+        return 2 * self.nodes if self.hermite else self.nodes
 
     @property
     def points(self) -> list[float]:
@@ -49,24 +59,24 @@ class Axis:
         return [exp(middle + half * cos(pi * (k + 0.5) / self.nodes)) for k in range(self.nodes)]
 
     def basis(self, value: Array) -> Array:
-        """Chebyshev polynomials (..., nodes) at an input, which is held at the ends of the axis."""
+        """Chebyshev polynomials (..., terms) at an input, which is held at the ends of the axis."""
         low, high = log(self.lower), log(self.upper)
         held = clip(value, self.lower, self.upper)
         x = (2 * np.log(held) - low - high) / (high - low)
         rows = [np.ones_like(x), x]
-        while len(rows) < self.nodes:
+        while len(rows) < self.terms:
             rows.append(2 * x * rows[-1] - rows[-2])
-        return np.stack(rows[: self.nodes], axis=-1)
+        return np.stack(rows[: self.terms], axis=-1)
 
     def basis_slope(self, value: Array) -> Array:
-        """Derivatives of the polynomials (..., nodes) by the logarithm of the input."""
+        """Derivatives of the polynomials (..., terms) by the logarithm of the input."""
         low, high = log(self.lower), log(self.upper)
         held = clip(value, self.lower, self.upper)
         x = (2 * np.log(held) - low - high) / (high - low)
         second = [np.ones_like(x), 2 * x]  # U_k; T_k' = k U_(k-1)
-        while len(second) < self.nodes:
+        while len(second) < self.terms:
             second.append(2 * x * second[-1] - second[-2])
-        rows = [0 * x, *(k * second[k - 1] for k in range(1, self.nodes))]
+        rows = [0 * x, *(k * second[k - 1] for k in range(1, self.terms))]
         return np.stack(rows, axis=-1) * (2 / (high - low))
 
     def holds(self, value: float) -> bool:
@@ -82,7 +92,7 @@ class Surrogate:
     ----------
     axes : inputs it runs along
     base : every input as it was where the box has no extent
-    coefficients : (nodes of axis 1, nodes of axis 2, ..., outputs, 1 + first-order inputs)
+    coefficients : (terms of axis 1, terms of axis 2, ..., outputs, 1 + first-order inputs)
     linear : inputs that enter to the first order
     failed : why points of the box had no answer; they are left out of the fit
     """
@@ -104,7 +114,7 @@ class Surrogate:
         table = np.broadcast_to(self.coefficients, shape + self.coefficients.shape)
         for axis in self.axes:
             basis = axis.basis_slope if axis.name == slope else axis.basis
-            rows = np.broadcast_to(basis(point[axis.name]), (*shape, axis.nodes))
+            rows = np.broadcast_to(basis(point[axis.name]), (*shape, axis.terms))
             rest = table.ndim - len(shape) - 1
             table = np.sum(rows.reshape(rows.shape + (1,) * rest) * table, axis=len(shape))
         result = table[..., 0]
@@ -136,8 +146,7 @@ def surrogate(
     Points without an answer are left out; the rest is fitted by least squares, and refused where
     more than one in ten is missing.
     """
-    points, rows, failed = [], [], []
-    linear: tuple[str, ...] = ()
+    points, answers, failed = [], [], []
     grids = [axis.points for axis in axes]
     for index in product(*(range(len(grid)) for grid in grids)):
         turned = _back_and_forth(index, [len(grid) for grid in grids])
@@ -148,22 +157,49 @@ def surrogate(
         if answer.why:
             failed.append(answer.why)
             continue
-        names = {axis.name for axis in axes}
-        linear = tuple(name for name in base if name in answer.slopes and name not in names)
-        points.append([point[axis.name] for axis in axes])
-        rows.append(np.stack([answer.values, *(answer.slopes[name] for name in linear)], axis=-1))
-    if not rows or len(failed) > 0.1 * (len(rows) + len(failed)):
+        points.append(point)
+        answers.append(answer)
+    if not answers or len(failed) > 0.1 * (len(answers) + len(failed)):
         return None
-    nodes = tuple(axis.nodes for axis in axes)
-    matrix = np.ones((len(rows), 1))
-    for i, axis in enumerate(axes):
-        basis = axis.basis(np.array([point[i] for point in points]))
-        matrix = (matrix[:, :, None] * basis[:, None, :]).reshape(len(rows), -1)
-    values = np.array(rows)
-    table = np.linalg.lstsq(matrix, values.reshape(len(rows), -1), rcond=None)[0]
-    return Surrogate(
-        tuple(axes), dict(base), table.reshape(*nodes, *values.shape[1:]), linear, tuple(failed)
-    )
+    names = {axis.name for axis in axes}
+    linear = tuple(name for name in base if name in answers[0].slopes and name not in names)
+    table = np.zeros((*(axis.terms for axis in axes), answers[0].values.size, 1 + len(linear)))
+    table[..., 0] = _fitted(axes, points, [a.values for a in answers], answers)
+    plain = tuple(replace(axis, hermite=False) for axis in axes)
+    corner = tuple(slice(axis.nodes) for axis in axes)
+    for k, name in enumerate(linear):
+        values = [a.slopes.get(name, np.zeros_like(a.values)) for a in answers]
+        place: tuple[slice | int, ...] = (*corner, slice(None), k + 1)
+        table[place] = _fitted(plain, points, values, answers)
+    return Surrogate(tuple(axes), dict(base), table, linear, tuple(failed))
+
+
+def _fitted(
+    axes: Sequence[Axis],
+    points: Sequence[Mapping[str, float]],
+    values: Sequence[np.ndarray],
+    answers: Sequence[Answer],
+) -> np.ndarray:
+    """Coefficients (terms of every axis, outputs) that meet values, and slopes where asked."""
+    rows, told = [_basis(axes, points)], [np.array(values)]
+    for axis in axes:
+        if axis.hermite:
+            rows.append(_basis(axes, points, axis.name))
+            told.append(np.array([answer.slopes[axis.name] for answer in answers]))
+    found = np.linalg.lstsq(np.concatenate(rows), np.concatenate(told), rcond=None)[0]
+    return np.asarray(found.reshape(*(axis.terms for axis in axes), -1))
+
+
+def _basis(
+    axes: Sequence[Axis], points: Sequence[Mapping[str, float]], slope: str = ""
+) -> np.ndarray:
+    """Products of the polynomials at points (points, all terms); their slopes along an axis."""
+    matrix = np.ones((len(points), 1))
+    for axis in axes:
+        along = axis.basis_slope if axis.name == slope else axis.basis
+        basis = along(np.array([point[axis.name] for point in points]))
+        matrix = (matrix[:, :, None] * basis[:, None, :]).reshape(len(points), -1)
+    return matrix
 
 
 def _back_and_forth(index: tuple[int, ...], sizes: Sequence[int]) -> tuple[int, ...]:

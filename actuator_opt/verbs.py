@@ -244,6 +244,16 @@ def seal(
     )
 
 
+def with_contact(actuator: Actuator, study: SealStudy) -> Actuator:
+    """The actuator as read, with the contact profiles its seal was studied with."""
+    seals = actuator.design.seals
+    found = getattr(study.design.seals, study.place).contact
+    seal = getattr(seals, study.place).model_copy(update={"contact": found})
+    own = seals.model_copy(update={study.place: seal})
+    design = actuator.design.model_copy(update={"seals": own})
+    return Actuator(design, actuator.source, actuator.plugins)
+
+
 def write_seal(
     study: SealStudy,
     *,

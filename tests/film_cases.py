@@ -62,6 +62,12 @@ def o_ring(speed, *, nodes=161, width, excess, sealed=3.1e6, outer=AIR, **change
     )  # fmt: skip
 
 
+def drag(film, friction_coefficient):
+    """Drag on the rod per circumference, against a positive speed; at rest the most it holds."""
+    sign = -1.0 if film.contact.speed < 0 else 1.0
+    return film.viscous_drag + sign * friction_coefficient * film.contact_load
+
+
 def hertz(squeeze, section, youngs_modulus):
     """Width and unpressurised peak of an O-ring by Hertz and Lindley."""
     law, ring = LAWS["hertz_lindley"], {"squeeze": squeeze, "section": section}

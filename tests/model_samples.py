@@ -209,7 +209,6 @@ SAMPLES = {
     "gland.squeeze_after": RING,
     "gland.stretched_section": {"section": 2e-3, "stretch": 0.03},
     "gland.gland_depth": {"squeeze": 0.16, "section": 2e-3},
-    "gland.squeeze_in_place": {**RING, "stretch": 0.03},
     "gland.gland_fill": {"section": 2e-3, "groove_width": 2.4e-3, "gland_depth": 1.7e-3},
     "gland.extrusion_gap": {"clearance": 3e-5, "growth": 2e-5},
     "gland.limited_width": {"contact_width": 3e-3, "groove_width": 2.6e-3},
@@ -398,6 +397,7 @@ SAMPLES = {
     "endurance.bolt_endurance_amplitude": {"diameter": 8e-3},
     "endurance.bolt_cycles": {"amplitude": 9e7, "diameter": 8e-3},
     "retention.pin_shear_stress": {"force": 1e4, "diameter": 1e-2},
+    "retention.guide_friction": {"force": -2e3, "friction_coefficient": 0.1},
     "retention.guide_forces": {"side_force": 100.0, "overhang": 0.2, "span": 0.1},
     "retention.bearing_pressure": {"force": 300.0, "diameter": 12e-3, "length": 1e-2},
     "end_plate.end_plate_stress": {

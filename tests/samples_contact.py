@@ -47,13 +47,8 @@ SAMPLES: dict = {
     "step_seal.wetted_back": {
         "ring_width": 3.9e-3, "foot_width": 1.1e-3, "section": 2.6e-3, "squeeze": 0.15,
     },
-    "step_seal.hoop_load": {
-        "youngs_modulus": 600e6, "thickness": 1.4e-3, "ring_width": 3.9e-3, "radius": 40e-3,
-        "interference": 0.05e-3,
-    },
     "step_seal.line_load": {
         "energiser_load": 15e3, "pressure": 5e6, "wetted_back": 1.6e-3, "wetted_front": 2.4e-3,
-        "hoop_load": 100.0,
     },
     "step_seal.pressure_balance": {
         "energiser_slope": 1.9e-3, "wetted_back": 1.6e-3, "wetted_front": 2.4e-3, "land": 0.9e-3,
@@ -67,16 +62,8 @@ SAMPLES: dict = {
         "squeeze": 0.12, "face_width": 8e-3, "groove_width": 10e-3,
     },
     "compact_seal.line_load": {
-        "squeeze": 0.12, "face_width": 8e-3, "section": 7.5e-3, "youngs_modulus": 9e6,
-        "poissons_ratio": 0.48, "stuck_share": 0.3, "pressure": 5e6,
-    },
-    "guide_ring.projected_pressure": {"side_load": -2e3, "diameter": 40e-3, "width": 10e-3},
-    "guide_ring.peak_pressure": {"side_load": 2e3, "diameter": 40e-3, "width": 10e-3},
-    "guide_ring.radial_stiffness": {
-        "youngs_modulus": 2.5e9, "diameter": 40e-3, "width": 10e-3, "thickness": 2.5e-3,
-    },
-    "guide_ring.friction": {
-        "side_load": -2e3, "friction_coefficient": 0.1, "wrap_factor": 1.2,
+        "squeeze": 0.12, "face_width": 8e-3, "youngs_modulus": 9e6, "poissons_ratio": 0.48,
+        "pressure": 5e6,
     },
     "contact_profile.o_ring_profile": {"position": 0.3, "excess": 2e6, **ENDS},
     "contact_profile.o_ring_mean": {"excess": 2e6, **ENDS},

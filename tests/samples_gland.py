@@ -6,17 +6,14 @@ POINTS = ((35e5, 0.2e-3), (70e5, 0.13e-3), (140e5, 0.05e-3))
 TABLE = ((70.0, POINTS), (90.0, ((35e5, 0.36e-3), (210e5, 0.13e-3))))
 SAMPLES: dict = {
     "gland.back_up_groove_width": {"groove_width": 4.8e-3, "thickness": 1.4e-3, "count": 2.0},
-    "gland.ring_stretch": {"housing_diameter": 25.5e-3, "inside_diameter": 25e-3},
     "gland_range.volume_ratio": {
         "volume_expansion": 6.6e-4, "housing_expansion": 11.5e-6, "temperature_change": 60.0,
-        "swell": 0.05,
     },
     "gland_range.squeeze_at_volume": {"squeeze": 0.13, "volume_ratio": 1.05},
     "gland_range.squeeze_extremes": {
         "squeeze": 0.13, "section": 3.53e-3, "section_tolerance": 1e-4, "depth_tolerance": 3e-5,
         "eccentricity": 4e-5,
     },
-    "gland_range.inside_diameter_tolerance": {"inside_diameter": 40e-3},
     # between two points, below the first, beyond the last
     "extrusion.gap_limit": [
         {"pressure": pressure, "points": POINTS} for pressure in (90e5, 20e5, 300e5)

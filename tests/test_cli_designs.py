@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 from cli_runner import BENCH, bench, block, evaluated, refused, run
 
+from actuator_opt.models.seals import LAWS
+
 ONE_CASE = "load_cases:\n  - name: a\n    direction: push\n    force: 1 kN\n"
 LINES = (
     "lines:\n  - chamber: a\n    length: 0.5 m\n    inner_diameter: 6 mm\n"
@@ -37,7 +39,7 @@ def test_mounts_and_end_stops(mount, end_stop):
     assert (energy is None) == (end_stop == "external")
 
 
-@pytest.mark.parametrize("law", ["plane_strain", "hertz_lindley", "chord"])
+@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("hardness", ["gent", "ruess"])
 def test_seal_laws(law, hardness):
     """Every contact law with every hardness model gives a friction above zero."""

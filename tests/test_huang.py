@@ -15,6 +15,7 @@ from actuator_opt import verbs
 from actuator_opt.design.housings import housings_for
 from actuator_opt.evaluation.study import huang, huang_parts, huang_readings, huang_study
 from actuator_opt.evaluation.study import huang_trend as trend
+from actuator_opt.evaluation.study.film_walk import film_map
 from actuator_opt.evaluation.study.seal import study as seal_study
 from actuator_opt.models.damping import flat_gap
 
@@ -114,7 +115,7 @@ def test_figure_3_is_the_evaluation_without_its_wiper(evaluation, found):
     """At 9.17 mm/s and 7.15 MPa the map has the evaluated friction, less under 1 % of wiper."""
     difference = 7.15e6 - found.return_pressure
     films = [
-        huang.film_map(one, (pressure,), (9.17e-3,)).friction[0, 0]
+        film_map(one, (pressure,), (9.17e-3,)).friction[0, 0]
         for one, pressure in ((found.piston, difference), (found.rod, found.return_pressure))
     ]
     whole = evaluation.metrics["friction_running"].by_case["shown"]
@@ -126,7 +127,7 @@ def test_figure_3_is_the_evaluation_without_its_wiper(evaluation, found):
 def test_friction_is_that_of_the_seal_study(actuator, found):
     """The rod at 5 mm/s and 6 MPa: the sum over both rings is that of the general seal study."""
     point = seal_study(actuator.subject(), "rod", speed=5e-3, pressure=6e6).out
-    ours = huang.film_map(found.rod, (6e6,), (5e-3,))
+    ours = film_map(found.rod, (6e6,), (5e-3,))
     assert ours.friction[0, 0] == pytest.approx(point.friction, rel=1e-6)
     assert ours.between[0, 0] == pytest.approx(point.between, rel=1e-6)
 
@@ -152,7 +153,7 @@ def test_asperities_carry_what_oil_that_falls_evenly_leaves(found, pressure):
     ring = found.plunger.rings[0]
     load, width, _ = by_hand(ring, pressure)
     expected = 0.1 * pi * 0.125 * (load - pressure * width / 2)
-    solved = huang.film_map(found.plunger.alone(0), (pressure,), (2.1e-3,))
+    solved = film_map(found.plunger.alone(0), (pressure,), (2.1e-3,))
     assert solved.friction[0, 0] == pytest.approx(expected, rel=0.03)
 
 
@@ -243,13 +244,22 @@ def test_nothing_here_falls_as_table_2_does(studied):
 def test_total_is_the_sum_of_its_parts(studied):
     """Eq. 26 at four points: seals, back-up ring, chamber; the chamber's 41.72 N s/m."""
     for one in studied.totals:
-        parts = one.damping.parts
+        parts = one.parts
         assert set(parts) == {"seal", "secondary seal", "back-up ring", "chamber"}
-        assert one.damping.total == pytest.approx(sum(parts.values()))
+        assert one.damping == pytest.approx(sum(parts.values()))
         assert parts["chamber"] == pytest.approx(41.72)
         i, j = studied.plunger.at(one.pressure, one.speed)
         seals = studied.plunger.friction[i, j] / one.speed
         assert parts["seal"] + parts["secondary seal"] == pytest.approx(seals)
+
+
+def test_shares_of_the_total_by_hand():
+    """Eq. 26: 90 N of seals, 8 of ring, 2 of chamber at 20 mm/s: 5000 N s/m, a tenth beside."""
+    parts = {"seal": 4500.0, huang_parts.BACK_UP: 400.0, huang_parts.CHAMBER: 100.0}
+    one = huang_parts.Total(6e6, 0.02, parts, (300.0, 350.0))
+    assert (one.damping, one.seals) == pytest.approx((100 / 0.02, 90 / 0.02))
+    assert one.share(huang_parts.CHAMBER) == pytest.approx(0.02)
+    assert one.beside_share == pytest.approx(450 / 4500)
 
 
 def test_back_up_ring_and_chamber_can_be_neglected(studied):
@@ -321,6 +331,6 @@ def test_a_ring_that_lifts_off_has_no_number(found):
     assert np.isfinite(with_long.damping[0])
     assert np.isnan(with_long.damping[-1])
     changes = trend.reshaped(found.plunger.rings[0], 5.2e-3)
-    mapped = huang.film_map(found.plunger.alone(0), (10e6,), SPEEDS, **changes)
+    mapped = film_map(found.plunger.alone(0), (10e6,), SPEEDS, **changes)
     assert len(mapped.why) == len(SPEEDS)
-    assert "opens the contact" in mapped.why[0]
+    assert "opens the contact" in mapped.why[0].reason

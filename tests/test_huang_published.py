@@ -187,5 +187,3 @@ def test_what_the_paper_prints():
     assert dict(zip(paper.pressures, paper.claimed, strict=True)) == {0.6e6: 0.65e6, 6e6: 0.2e6}
     assert paper.pressures == (FIRST.pressure, LAST.pressure)
     assert paper.plunger_area == pytest.approx(pi / 4 * 0.125**2)
-    reached = paper.valve_flow / (pi / 4 * paper.bore**2)
-    assert reached > paper.speeds[1]  # 16 l/min drives the 110 mm piston past 10 mm/s

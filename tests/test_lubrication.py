@@ -7,9 +7,9 @@ from dataclasses import replace
 import film_cases
 import numpy as np
 import pytest
-from film_cases import AIR, ROUGH, lip, o_ring
+from film_cases import AIR, ROUGH, drag, lip, o_ring
 
-from actuator_opt.lubrication import Contact, Elastic, Lubricant, Surface, drag, solve_film
+from actuator_opt.lubrication import Contact, Elastic, Lubricant, Surface, solve_film
 from actuator_opt.models.flow_factors import pressure_flow_factor
 from actuator_opt.models.rough_surface import asperity_pressure
 

@@ -14,7 +14,6 @@ from actuator_opt.lubrication import (
     SealElement,
     Surface,
     sensitivities,
-    sensitivity,
     solve_film,
     solve_tandem,
 )
@@ -48,7 +47,7 @@ def test_slopes_are_central_differences(name, speed):
     step = STEPS[name]
     contact = step(lip(speed, nodes=121), 0.0)
     film = solve_film(contact)
-    exact = np.array(sensitivity(film, step(contact, 1j * STEP)))
+    (exact,) = sensitivities(film, [step(contact, 1j * STEP)])
     h = 1e-4
     high, low = (outputs(solve_film(step(contact, d), film)) for d in (h, -h))
     scale = np.abs(outputs(film))
@@ -61,7 +60,7 @@ def test_slopes_of_a_cavitated_film():
     film = solve_film(contact)
     assert film.converged
     assert np.max(film.cavitated_fraction) > 0.05
-    exact = np.array(sensitivity(film, STEPS["speed"](contact, 1j * STEP)))
+    (exact,) = sensitivities(film, [STEPS["speed"](contact, 1j * STEP)])
     high, low = (outputs(solve_film(STEPS["speed"](contact, d), film)) for d in (1e-6, -1e-6))
     np.testing.assert_allclose(exact, (high - low) / 2e-6, rtol=2e-3)
 
@@ -73,10 +72,10 @@ def test_several_slopes_at_once():
     stepped = [STEPS[name](contact, 1j * STEP) for name in ("speed", "width")]
     together = sensitivities(film, stepped)
     for row, one in zip(together, stepped, strict=True):
-        np.testing.assert_allclose(row, sensitivity(film, one), rtol=1e-10)
+        np.testing.assert_allclose(row, sensitivities(film, [one])[0], rtol=1e-10)
     lost = solve_film(replace(contact, width=-1.0))
     with pytest.raises(ValueError, match="width -1: must be above zero"):
-        sensitivity(lost, stepped[0])
+        sensitivities(lost, stepped)
 
 
 def step_ring(width=2e-3, excess=5e6):
@@ -115,8 +114,6 @@ def test_tandem_passes_one_flow(speed):
     found = tandem(step_ring(), lip_seal(), speed)
     assert found.converged, found.reason
     assert AIR < found.pressure < 10e6
-    assert not found.exceeds_sealed
-    assert found.falling
     assert found.match_residual < 1e-6
     fresh = [solve_film(film.contact) for film in (found.inner, found.outer)]
     scale = max(abs(fresh[0].flow), abs(speed) / 2 * fresh[0].mean_film)
@@ -128,7 +125,6 @@ def test_pressure_between_seals_may_exceed_the_sealed_one():
     """A ring that lets much oil out before a lip that lets less out: oil is caught between them."""
     found = tandem(step_ring(), lip_seal(), 0.3, sealed=3e6)
     assert found.converged, found.reason
-    assert found.exceeds_sealed
     assert 3e6 < found.pressure < 4.5e6
 
 

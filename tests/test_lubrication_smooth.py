@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from actuator_opt.lubrication import Elastic, Gap, Lubricant, damping, solve_gap
+from actuator_opt.lubrication import Elastic, Gap, Lubricant, solve_gap
 from actuator_opt.models.damping import flat_gap
 
 NODES, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(80))
@@ -147,12 +147,3 @@ def test_faults_of_a_gap_are_one_line(changes, message):
     assert not film.converged
     assert message in film.reason
     assert np.isnan(film.viscous_drag)
-
-
-def test_damping_keeps_its_parts():
-    """Huang eq. 26: the sum of drags over the speed, each part shown; no value at rest."""
-    total = damping(forces={"seals": 90.0, "ring": 8.0, "chamber": 2.0}, speed=0.02)
-    assert total.parts == pytest.approx({"seals": 4500.0, "ring": 400.0, "chamber": 100.0})
-    assert total.total == pytest.approx(5000.0)
-    with pytest.raises(ValueError, match="speed 0"):
-        damping(forces={"seals": 90.0}, speed=0.0)

@@ -144,21 +144,16 @@ def test_groove_width_of_an_eighth_inch_ring():
 
 
 def test_squeeze_loses_growth_and_tolerance():
-    """C = C0 - (u + tol)/W; without stretch the gland form is the same."""
+    """C = C0 - (u + tol)/W."""
     arguments = {"squeeze": 0.15, "section": 2e-3, "growth": 40e-6, "tolerance": 50e-6}
     assert gland.squeeze_after(**arguments) == pytest.approx(0.105)
-    assert gland.squeeze_in_place(**arguments, stretch=0.0) == pytest.approx(0.105)
 
 
-@given(st.floats(0, 0.25), st.floats(0.05, 0.3), st.floats(0, 1e-4))
-def test_stretch_thins_the_ring(stretch, squeeze, growth):
-    """Stretch keeps the ring's volume and takes squeeze away."""
+@given(st.floats(0, 0.25))
+def test_stretch_thins_the_ring(stretch):
+    """Stretch keeps the ring's volume."""
     thin = gland.stretched_section(section=2e-3, stretch=stretch)
     assert thin**2 * (1 + stretch) == pytest.approx(4e-6)
-    arguments = {"squeeze": squeeze, "section": 2e-3, "growth": growth, "tolerance": 0.0}
-    assert gland.squeeze_in_place(**arguments, stretch=stretch) <= (
-        gland.squeeze_in_place(**arguments, stretch=0.0) + 1e-15
-    )
 
 
 @pytest.mark.parametrize(

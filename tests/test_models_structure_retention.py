@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import cosh, inf, log, pi, sinh, sqrt, tanh
+from math import cos, cosh, inf, log, pi, sinh, sqrt, tanh
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.integrate import solve_bvp
+from scipy.integrate import quad, solve_bvp
 
 from actuator_opt.models import end_plate, endurance, retention
 
@@ -192,6 +192,15 @@ def test_guide_forces_balance(force, overhang, span):
     assert piston * span == pytest.approx(force * overhang, rel=1e-9)
     pressure = retention.bearing_pressure(force=head, diameter=12e-3, length=10e-3)
     assert pressure * 120e-6 == pytest.approx(head, rel=1e-12)  # projected area 120 mm^2
+
+
+def test_guide_friction_is_that_of_a_cosine_pressure():
+    """Quadrature: mu times the sum of the pressures whose resultant is the force, either way."""
+    resultant, _ = quad(lambda a: cos(a) ** 2, -pi / 2, pi / 2)
+    normal, _ = quad(cos, -pi / 2, pi / 2)
+    for force in (2e3, -2e3):
+        found = retention.guide_friction(force=force, friction_coefficient=0.1)
+        assert found == pytest.approx(0.1 * 2e3 * normal / resultant)
 
 
 def test_end_stop_check_value():

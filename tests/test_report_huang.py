@@ -15,10 +15,10 @@ from report_fixture import overlaps
 
 from actuator_opt import verbs
 from actuator_opt.evaluation import film
+from actuator_opt.evaluation.study import huang_study
 from actuator_opt.reporting.page import page
 from actuator_opt.reporting.published import (
     TABLES,
-    huang_claims,
     huang_equations,
     huang_figures,
     huang_panels,
@@ -50,8 +50,9 @@ def pages(subject):
     """All tables, then all drawings, of one study with films of 61 nodes instead of 121."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(film, "NODES", 61)
-        made = [table(subject) for table in huang_tables.TABLES]
-        found = huang_claims.studied(subject)
+        found = huang_study.study(subject.design)
+        patch.setattr(huang_tables, "study", lambda design: found)
+        made = huang_tables.tables(subject)
     drawn = (
         huang_figures.cylinder_figure(found),
         huang_figures.plunger_figure(found),
@@ -197,19 +198,9 @@ def test_tables_and_figures_bear_other_designs(other):
     check(other)
 
 
-def test_study_is_made_once_for_all_tables(monkeypatch):
-    """Every table of a report reads one study; another design gets its own."""
-    monkeypatch.setattr(huang_claims, "study", lambda design: object())
-    monkeypatch.setattr(huang_claims, "_latest", [])
-    one, two = (SimpleNamespace(design=object()) for _ in range(2))
-    first = huang_claims.studied(one)
-    assert huang_claims.studied(one) is first
-    assert huang_claims.studied(two) is not first
-
-
 def test_the_design_gets_these_pages():
     """Tables are looked up by what the design reproduces."""
-    assert TABLES["Huang2017"] is huang_tables.TABLES
+    assert TABLES["Huang2017"] is huang_tables.tables
     assert verbs.read(DESIGN).design.reproduces == "Huang2017"
 
 

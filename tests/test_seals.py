@@ -85,7 +85,7 @@ def test_squeeze_fill_and_stretch_of_the_worst_tolerance_in_heat_and_cold(full):
 def test_fill_counts_back_ups_tolerance_and_heat(full):
     """Ring area over what the back-up rings leave of the groove, at its shallowest and hottest."""
     hot = ratio(6e-4, 80)
-    thin = W / sqrt(1.03)
+    thin = (W + 0.08e-3) / sqrt(1.03)
     shallow = W * 0.85 - 0.04e-3
     groove = 1.3655 * W  # the tabulated width; back-up rings lengthen the groove by their own
     assert full["seal_fill"]["piston seal"] == near(pi / 4 * thin**2 / (groove * shallow) * hot)

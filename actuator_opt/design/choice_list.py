@@ -171,7 +171,7 @@ def _is_list(values: object) -> bool:
 
 
 def combinations(design: Design) -> Iterator[dict[str, Value]]:
-    """Every combination of the choices by PATH, in the order of the file: the last PATH first."""
+    """Every combination of the choices by PATH; the last PATH of the file changes fastest."""
     block: Mapping[str, Sequence[Value]] = design.choices
     for chosen in itertools.product(*block.values()):
         yield dict(zip(block, chosen, strict=True))

@@ -97,12 +97,13 @@ FrictionModel: TypeAlias = Annotated[
     ),
 ]
 SealLaw: TypeAlias = Annotated[
-    Literal["plane_strain", "hertz_lindley", "chord"],
+    Literal["plane_strain", "hertz_lindley", "chord", "stadium"],
     Choice(
         "contact width and force of the squeezed ring; "
         "plane_strain: fitted to plane-strain finite elements, wider under pressure; "
         "hertz_lindley: Hertz line contact under Lindley's force, as wide at any pressure; "
-        "chord: as [ElAsswad2018] prints it, no force without pressure"
+        "chord: as [ElAsswad2018] prints it, no force without pressure; "
+        "stadium: a flattened ring of the same section, likewise"
     ),
 ]
 HardnessModel: TypeAlias = Annotated[

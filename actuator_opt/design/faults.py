@@ -227,7 +227,7 @@ def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
     """Every fault that shows when the library is asked."""
     yield from _material_names(tree, materials)
     yield from wall_faults.of_materials(tree, materials)
-    yield from seal_faults.of_materials(tree, materials)
+    yield from seal_faults.sliding_rings(tree, materials)
     yield from material_laws.of_fluid(tree, materials)
 
 

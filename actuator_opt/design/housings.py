@@ -56,11 +56,6 @@ class Housing:
             return self.fits(diameter)
         return any(abs(size - diameter) <= _NEAR * size for size in self.sizes)
 
-    def groove_diameter(self, diameter: float) -> float:
-        """Diameter of the groove bottom: outside a rod, inside a bore."""
-        side = 1 if self.place == "rod" else -1
-        return diameter + side * 2 * self.radial_depth
-
 
 @dataclass(frozen=True, slots=True)
 class ExtrusionTable:

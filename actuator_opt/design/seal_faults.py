@@ -9,10 +9,16 @@ from typing import Any
 from ..errors import InputError
 from ..models.elastomer import modulus_gent
 from ..quantities import INPUTS
+from .seals import BACK_UPS
 from .structure import Loc
 from .view import Fault, Materials, Properties, View, length_text
 
-SQUEEZE_RANGE = {"plane_strain": (0.02, 0.40), "hertz_lindley": (0.02, 0.40), "chord": (0.0, 0.45)}
+SQUEEZE_RANGE = {
+    "plane_strain": (0.02, 0.40),
+    "hertz_lindley": (0.02, 0.40),
+    "chord": (0.0, 0.45),
+    "stadium": (0.0, 0.45),
+}
 """Squeeze a contact law can be used at: outside, its width leaves the free section or the load
 law (compared with finite elements at 0.10 to 0.30) means nothing."""
 
@@ -138,7 +144,7 @@ def _grooves(view: View, seal: str) -> Iterator[tuple[Loc, float, float]]:
             depth += view.number(*loc, "thickness") or 0.0
         stated = view.number(*loc, "groove_width")
         field = "section" if stated is None else "groove_width"
-        backs = {"one": 1, "both": 2}.get(view.text(*loc, "back_up") or "", 0)
+        backs = BACK_UPS.get(view.text(*loc, "back_up") or "", 0)
         ring += backs * (view.number(*loc, "back_up_thickness") or 0.0)
         yield (*loc, field), depth, count * (ring if stated is None else stated)
     at = ("seals", seal, "wiper")
@@ -227,7 +233,7 @@ def shapes(view: View) -> Iterator[Fault]:
                     "widen the ring, or use a smaller O-ring",
                 )
             land, relief = view.number(*loc, "land"), view.number(*loc, "relief")
-            if land is not None and relief is not None and land + relief > width * (1 + 1e-9):
+            if land is not None and relief is not None and land <= width < (land + relief) * (1 - 1e-9):
                 yield Fault(
                     (*loc, "relief"),
                     f"{length_text(relief)}: with the land it is wider than the ring "
@@ -330,7 +336,7 @@ SLIDING_RING = 3.0
 rubber; a hard polyurethane lies near 1."""
 
 
-def of_materials(tree: Any, materials: Materials) -> Iterator[Fault]:
+def sliding_rings(tree: Any, materials: Materials) -> Iterator[Fault]:
     """A step ring's compound has a sliding ring, those of the other types have none."""
     view = View(tree)
     if not isinstance(materials, Properties):

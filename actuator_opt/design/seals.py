@@ -10,6 +10,9 @@ from . import choices
 from .kinds import MaterialName, Of
 from .section import Section
 
+BACK_UPS = {"none": 0, "one": 1, "both": 2}
+"""Back-up rings in a groove by the word of `back_up`."""
+
 
 class ContactProfile(Section):
     """Static contact pressure of an element at one sealed pressure, as found elsewhere.
@@ -111,7 +114,7 @@ class SealElement(Section):
     @property
     def back_ups(self) -> int:
         """Back-up rings in the groove."""
-        return {"none": 0, "one": 1, "both": 2}[self.back_up]
+        return BACK_UPS[self.back_up]
 
 
 class Wiper(Section):

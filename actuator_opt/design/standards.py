@@ -41,11 +41,6 @@ class CylinderPair:
     confidence: str
     source: str
 
-    @property
-    def area_ratio(self) -> float:
-        """Cap side over rod side area."""
-        return self.bore**2 / (self.bore**2 - self.rod_diameter**2)
-
 
 @dataclass(frozen=True, slots=True)
 class ORing:

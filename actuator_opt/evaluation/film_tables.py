@@ -33,7 +33,7 @@ POINTS = 6
 MOST_AXES = 2
 """Axes of a surrogate: one more would cost `POINTS` times as many films."""
 
-SPEEDS, SPEED_ROOM = 3, 1.25
+SPEEDS, SPEED_ROOM = 2, 1.12
 """Nodes and room of the axis of speed, which every surrogate has, so that the slope by the speed
 follows all other inputs."""
 
@@ -184,7 +184,7 @@ def _axes(
     found.sort(key=lambda pair: -pair[0])
     lower, upper = spans["speed"]
     nodes = SPEEDS if upper <= lower * (1 + 1e-9) else POINTS
-    speed = Axis("speed", lower / SPEED_ROOM, upper * SPEED_ROOM, nodes)
+    speed = Axis("speed", lower / SPEED_ROOM, upper * SPEED_ROOM, nodes, hermite=True)
     return (speed, *(axis for _, axis in found[:MOST_AXES]))
 
 

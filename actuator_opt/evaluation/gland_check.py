@@ -58,7 +58,7 @@ def metrics(
 
 def _fill(ring: Ring) -> Array:
     """Share of an O-ring's groove, at its shallowest, that the ring fills at assembly."""
-    backs = sum(area for _, area in ring.groove.areas[1:]) / ring["gland_depth"]
+    backs = sum(piece.area for piece in ring.groove.pieces[1:]) / ring["gland_depth"]
     return gland.gland_fill(
         section=gland.stretched_section(
             section=ring["section"] + ring["section_tolerance"], stretch=ring["stretch"]
@@ -107,7 +107,6 @@ def volume_ratio(v: Values, design: Design, stock: Stock, ring: Ring, temperatur
         volume_expansion=expansion,
         housing_expansion=housing,
         temperature_change=temperature - assembly,
-        swell=0.0,
     )
 
 

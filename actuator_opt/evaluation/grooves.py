@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from ..design.model import Design
 from ..design.seals import Seal, SealElement
@@ -15,6 +15,14 @@ from .values import Values
 
 AXIAL_PLAY = 1.1
 """Groove over ring width where no groove is stated (choice: 10 % room to move and swell)."""
+
+
+class Piece(NamedTuple):
+    """A ring in a groove: material, free section [m^2], its centre's depth under the face [m]."""
+
+    material: str
+    area: Array
+    depth: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,35 +38,39 @@ class Groove:
     width: Array
     ring_width: Array
     count: Array
-    areas: tuple[tuple[str, Array], ...]
-    """Free section of every ring in the groove, by material."""
+    pieces: tuple[Piece, ...]
 
 
 def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
     section = v[f"{path}section"]
     depth = gland.gland_depth(squeeze=v[f"{path}squeeze"], section=section)
-    round_area = (0.25 * math.pi) * section * section
-    areas: tuple[tuple[str, Array], ...]
+    compound = element.compound
+    ring = Piece(compound, (0.25 * math.pi) * section * section, depth / 2)
     if element.type == "o_ring":
-        width = section
-        default, areas = gland.groove_width(section=section), ((element.compound, round_area),)
+        width, default = section, gland.groove_width(section=section)
+        pieces = [ring]
     else:
         width = v[f"{path}width"]
-        default, areas = AXIAL_PLAY * width, ((element.compound, section * width),)
+        default = AXIAL_PLAY * width
+        pieces = [Piece(compound, section * width, depth / 2)]
     if element.type == "u_cup":  # body, and two lips as long as `width`
         lips = (2 * v[f"{path}thickness"] - section) * width
-        areas = ((element.compound, section * v[f"{path}groove_width"] + lips),)
+        pieces = [Piece(compound, section * v[f"{path}groove_width"] + lips, depth / 2)]
     if element.type == "step_ring":
         thickness = v[f"{path}thickness"]
+        pieces = [
+            Piece(compound, thickness * width, thickness / 2),
+            ring._replace(depth=thickness + depth / 2),
+        ]
         depth = depth + thickness
-        areas = ((element.compound, thickness * width), (element.compound, round_area))
     if element.back_ups:
         assert element.back_up_material is not None
         thickness = v[f"{path}back_up_thickness"]
         default = gland.back_up_groove_width(
             groove_width=default, thickness=thickness, count=element.back_ups
         )
-        areas += ((element.back_up_material, element.back_ups * thickness * depth),)
+        area = element.back_ups * thickness * depth
+        pieces.append(Piece(element.back_up_material, area, depth / 2))
     return Groove(
         place=place,
         path=path,
@@ -69,7 +81,7 @@ def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
         width=v.get(f"{path}groove_width", default),
         ring_width=width,
         count=v[f"{path}count"],
-        areas=areas,
+        pieces=tuple(pieces),
     )
 
 
@@ -92,7 +104,7 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
                 width=v[f"{path}width"],
                 ring_width=v[f"{path}width"],
                 count=v[f"{path}count"],
-                areas=((seal.guide.material, depth * v[f"{path}width"]),),
+                pieces=(Piece(seal.guide.material, depth * v[f"{path}width"], depth / 2),),
             )
         )
     found.append(_element(v, f"{name} seal", at, seal))
@@ -100,7 +112,8 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
         found.append(_element(v, f"{name} secondary seal", f"{at}secondary.", seal.secondary))
     if seal.wiper is not None:
         path = f"{at}wiper."
-        section = v[f"{path}section"]
+        section, width = v[f"{path}section"], v[f"{path}groove_width"]
+        depth = gland.gland_depth(squeeze=v[f"{path}squeeze"], section=section)
         found.append(
             Groove(
                 place=f"{name} wiper",
@@ -108,11 +121,11 @@ def grooves(v: Values, design: Design, name: Literal["piston", "rod"]) -> tuple[
                 role="wiper",
                 material=seal.wiper.compound,
                 section=section,
-                gland_depth=gland.gland_depth(squeeze=v[f"{path}squeeze"], section=section),
-                width=v[f"{path}groove_width"],
-                ring_width=v[f"{path}groove_width"],
+                gland_depth=depth,
+                width=width,
+                ring_width=width,
                 count=1.0,
-                areas=((seal.wiper.compound, section * v[f"{path}groove_width"]),),
+                pieces=(Piece(seal.wiper.compound, section * width, depth / 2),),
             )
         )
     return tuple(found)

@@ -173,26 +173,40 @@ def _numbers(
 TAPER = math.radians(6.0)
 """Taper beside a step ring's land where none is stated: a choice."""
 
+LANDS = {"step_ring": 0.5, "compact": 1.0, "u_cup": 0.1}
+"""Land over width where none is stated: choices."""
+
+FACE = ("land", "relief", "taper", "root_clearance")
+"""Numbers of a sliding face that a design may leave to their defaults."""
+
 INCOMPRESSIBLE = 0.495
 """Poisson's ratio of rubber whose compound states none (0.49 to 0.499 in use)."""
 
 
 def _shape(v: Values, element: SealElement, groove: Groove) -> dict[str, Array]:
-    """Widths and clearances of an element that is no O-ring; defaults where none are stated."""
+    """Widths and clearances of an element that is no O-ring."""
     at = groove.path
     if element.type == "o_ring":
         return {}
+    stated = {name: v[at + name] for name in FACE if at + name in v}
     width = v[f"{at}width"]
-    land = {"step_ring": 0.5, "compact": 1.0, "u_cup": 0.1}[element.type] * width
-    shape = {"width": width, "land": v.get(f"{at}land", land)}
+    shape = {"width": width} | face(
+        element.type, stated, width=width, section=groove.section, gland_depth=groove.gland_depth
+    )
     if element.type != "compact":
         shape["thickness"] = v[f"{at}thickness"]
-    if element.type == "step_ring":
-        shape["relief"] = v.get(f"{at}relief", (width - shape["land"]) / 2)
-        shape["taper"] = v.get(f"{at}taper", TAPER)
-    if element.type == "u_cup":
-        interference = lip_seal.lip_interference(
-            section=groove.section, gland_depth=groove.gland_depth
-        )
-        shape["root_clearance"] = v.get(f"{at}root_clearance", interference)
     return shape
+
+
+def face(
+    kind: str, stated: Mapping[str, Array], *, width: Array, section: Array, gland_depth: Array
+) -> dict[str, Array]:
+    """What of `FACE` a type of ring has: stated, else its default."""
+    land = stated.get("land", LANDS[kind] * width)
+    if kind == "step_ring":
+        relief = stated.get("relief", (width - land) / 2)
+        return {"land": land, "relief": relief, "taper": stated.get("taper", TAPER)}
+    if kind == "u_cup":
+        interference = lip_seal.lip_interference(section=section, gland_depth=gland_depth)
+        return {"land": land, "root_clearance": stated.get("root_clearance", interference)}
+    return {"land": land}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..design.model import Design
 from ..design.seals import Wiper
-from ..models import damping, friction, gland, guide_ring, lip_seal, wear
+from ..models import damping, friction, gland, lip_seal, retention, wear
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array, absolute, maximum, real, where
 from . import gland_check
@@ -213,8 +213,8 @@ def _beside(v: Values, design: Design, geometry: Geometry, state: State) -> Fric
             if groove.role == "wiper" and wiper is not None:
                 total = total + _wiper(v, wiper, groove, diameter, state.temperature)
             if groove.role == "guide":
-                total = total + guide_ring.friction(
-                    side_load=carried[name],
+                total = total + retention.guide_friction(
+                    force=carried[name],
                     friction_coefficient=v[f"{groove.path}friction_coefficient"],
                 )
     return Friction(total, total, 0.0)

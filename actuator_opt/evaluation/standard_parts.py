@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Literal
 
+import numpy as np
+
 from ..design import standards
 from ..design.housings import gland_deviations, housings_for
 from ..design.model import Design
@@ -61,7 +63,7 @@ def _o_ring(ring: Ring) -> Iterator[str]:
         yield f"{ring.label}: {error.diagnostics[0].message}"
         return
     loosest, tightest = squeezes(ring.at(stretch=0.0), growth=0.0, aside=0.0, ratio=1.0)
-    area = sum(float(one) for _, one in ring.groove.areas[:1])
+    area = float(np.squeeze(ring.groove.pieces[0].area))
     found = gland_deviations(
         gland,
         squeeze_min=float(loosest),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -71,24 +71,46 @@ def _squeezed(ring: Ring) -> dict[str, Array]:
     }
 
 
+def _shaped(
+    load: Array,
+    width: Array,
+    peak: Array,
+    pressure: Array,
+    *,
+    excess_law: Callable[..., Array],
+    profile_law: Callable[..., Array],
+) -> Touch:
+    """A touch whose profile is a shape with the excess that carries the load."""
+    ends = {"sealed_pressure": pressure, "outer_pressure": 0.0}
+    excess = excess_law(line_load=load, width=width, **ends)
+
+    def profile(position: Array) -> Array:
+        held = maximum(excess, WITHIN * pressure + TOUCHING)
+        return profile_law(position=position, excess=held, **ends)
+
+    return Touch(load, width, peak, profile, excess, width)
+
+
 def _o_ring(ring: Ring) -> Touch:
     law, inputs, pressure = seals.LAWS[ring.element.law], _squeezed(ring), ring["pressure"]
     width = gland.limited_width(
         contact_width=law.contact_width(**inputs), groove_width=ring["groove_width"]
     )
     load, peak = law.line_load(**inputs), law.peak_pressure(**inputs)
-    ends = {"sealed_pressure": pressure, "outer_pressure": 0.0}
-    at_rest = contact_profile.o_ring_mean(excess=peak - pressure, **ends)
+    at_rest = contact_profile.o_ring_mean(
+        excess=peak - pressure, sealed_pressure=pressure, outer_pressure=0.0
+    )
     touching = real(at_rest) > 0
     narrow = minimum(width, load / where(touching, at_rest, 1.0))  # a soft ring's law is too wide
-    excess = contact_profile.o_ring_excess(line_load=load, width=narrow, **ends)
-
-    def profile(position: Array) -> Array:
-        return contact_profile.o_ring_profile(
-            position=position, excess=maximum(excess, WITHIN * pressure + TOUCHING), **ends
-        )
-
-    return Touch(load, width, peak, profile, excess, narrow)
+    shaped = _shaped(
+        load,
+        narrow,
+        peak,
+        pressure,
+        excess_law=contact_profile.o_ring_excess,
+        profile_law=contact_profile.o_ring_profile,
+    )
+    return replace(shaped, width=width)
 
 
 def _step_ring(ring: Ring) -> Touch:
@@ -105,7 +127,6 @@ def _step_ring(ring: Ring) -> Touch:
             squeeze=ring["squeeze_left"],
         ),
         wetted_front=ring["relief"],
-        hoop_load=0.0,  # creep takes it within days
     )
     face = step_seal.contact_width(
         line_load=load,
@@ -120,18 +141,17 @@ def _step_ring(ring: Ring) -> Touch:
 
 def _landed(load: Array, width: Array, pressure: Array) -> Touch:
     """A worn-in land under a line load."""
-    ends = {"line_load": load, "width": width, "sealed_pressure": pressure, "outer_pressure": 0.0}
-    excess = contact_land.land_excess(**ends)
-
-    def profile(position: Array) -> Array:
-        return contact_land.land_profile(
-            position=position,
-            sealed_pressure=pressure,
-            outer_pressure=0.0,
-            excess=maximum(excess, WITHIN * pressure + TOUCHING),
-        )
-
-    return Touch(load, width, contact_land.land_peak(**ends), profile, excess, width)
+    peak = contact_land.land_peak(
+        line_load=load, width=width, sealed_pressure=pressure, outer_pressure=0.0
+    )
+    return _shaped(
+        load,
+        width,
+        peak,
+        pressure,
+        excess_law=contact_land.land_excess,
+        profile_law=contact_land.land_profile,
+    )
 
 
 def _u_cup(ring: Ring) -> Touch:
@@ -153,25 +173,22 @@ def _u_cup(ring: Ring) -> Touch:
     width = lip_seal.contact_width(
         line_load=load, peak_pressure=peak, pressure=pressure, lip_length=ring["width"]
     )
-    ends = {"sealed_pressure": pressure, "outer_pressure": 0.0}
-    excess = contact_profile.lip_excess(line_load=load, width=width, **ends)
-
-    def profile(position: Array) -> Array:
-        return contact_profile.lip_profile(
-            position=position, excess=maximum(excess, WITHIN * pressure + TOUCHING), **ends
-        )
-
-    return Touch(load, width, peak, profile, excess, width)
+    return _shaped(
+        load,
+        width,
+        peak,
+        pressure,
+        excess_law=contact_profile.lip_excess,
+        profile_law=contact_profile.lip_profile,
+    )
 
 
 def _compact(ring: Ring) -> Touch:
     load = compact_seal.line_load(
         squeeze=ring["squeeze_left"],
         face_width=ring["land"],
-        section=ring["section"],
         youngs_modulus=ring["youngs_modulus"],
         poissons_ratio=ring["face_poissons_ratio"],
-        stuck_share=0.0,  # an oiled face slips
         pressure=ring["pressure"],
     )
     width = compact_seal.contact_width(

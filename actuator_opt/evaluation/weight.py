@@ -74,12 +74,14 @@ def _gland(v: Values, design: Design, g: Geometry) -> Array:
 
 def _seals(v: Values, g: Geometry) -> Array:
     rings: Array = 0.0
-    placed = [(groove, g.bore - groove.gland_depth) for groove in g.piston_grooves]
-    placed += [(groove, g.rod_diameter + groove.gland_depth) for groove in g.rod_grooves]
-    for groove, centre in placed:
-        for material, area in groove.areas:
+    placed = [(groove, g.bore, -1) for groove in g.piston_grooves]
+    placed += [(groove, g.rod_diameter, 1) for groove in g.rod_grooves]
+    for groove, counterface, side in placed:
+        for piece in groove.pieces:
             ring = mass.ring_mass(
-                density=v[f"materials.{material}.density"], area=area, centre_diameter=centre
+                density=v[f"materials.{piece.material}.density"],
+                area=piece.area,
+                centre_diameter=counterface + side * 2 * piece.depth,
             )
             rings = rings + groove.count * ring
     return rings

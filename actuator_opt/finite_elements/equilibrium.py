@@ -286,12 +286,14 @@ def raise_pressure(problem: Problem, state: State, reached: float, wanted: float
         if wanted - trial < 0.1 * step:
             trial = wanted
         try:
-            state = solve(problem, state, trial)
+            found = solve(problem, state, trial)
+            if np.sum(found.touching & ~np.roll(found.touching, 1)) > 1:
+                raise NotConverged("the contact between the rings opens inside")
         except NotConverged as reason:
             step /= 2
             if step < SHORTEST_STEP:
                 raise NotConverged(f"{reason} beyond {reached:.3g} of the modulus") from reason
             continue
-        reached, step = trial, step * GROWTH
+        state, reached, step = found, trial, step * GROWTH
         problem.steps += 1
     return state

@@ -60,15 +60,6 @@ class Contact:
     start: float
     field: StressField
 
-    def absolute(self, *, outer_pressure: float) -> tuple[Floats, Floats]:
-        """Positions and absolute contact pressure, a static-pressure table.
-
-        Parameters
-        ----------
-        outer_pressure : absolute pressure on the outer side [Pa]
-        """
-        return self.positions, self.contact_pressure + outer_pressure
-
 
 @dataclass(frozen=True, slots=True)
 class SealSolution:

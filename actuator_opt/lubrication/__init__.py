@@ -3,16 +3,14 @@
 NumPy only. Pressures are absolute; forces are per circumference unless a name says otherwise.
 """
 
-from .film import Film, drag, solve_film
+from .film import Film, solve_film
 from .inputs import Contact, Elastic, Lubricant, Surface
-from .slopes import sensitivities, sensitivity
+from .slopes import sensitivities
 from .smooth import Gap, SmoothFilm, solve_gap
 from .tandem import SealElement, Tandem, solve_tandem
-from .total import Damping, damping
 
 __all__ = [
     "Contact",
-    "Damping",
     "Elastic",
     "Film",
     "Gap",
@@ -21,10 +19,7 @@ __all__ = [
     "SmoothFilm",
     "Surface",
     "Tandem",
-    "damping",
-    "drag",
     "sensitivities",
-    "sensitivity",
     "solve_film",
     "solve_gap",
     "solve_tandem",

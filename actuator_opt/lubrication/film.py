@@ -245,12 +245,3 @@ def _film(contact: Contact, outcome: Outcome) -> Film:
         mass_residual=float(outcome.mass_residual),
         iterations=outcome.iterations,
     )
-
-
-def drag(film: Film, friction_coefficient: Array) -> Array:
-    """Drag on the rod per circumference, opposing a positive speed [N/m].
-
-    At speed 0 the largest friction the contact can hold outstroke.
-    """
-    sign = -1.0 if film.contact.speed < 0 else 1.0
-    return film.viscous_drag + sign * friction_coefficient * film.contact_load

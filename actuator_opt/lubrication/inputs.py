@@ -1,6 +1,6 @@
 """What a lubricated contact is made of: oil, two rough surfaces, an elastic seal, its conditions.
 
-Every number may be a Python float or, inside `sensitivity`, carry a complex step.
+Every number may be a Python float or, inside `sensitivities`, carry a complex step.
 """
 
 from __future__ import annotations

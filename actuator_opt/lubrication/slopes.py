@@ -46,22 +46,6 @@ def sensitivities(film: Film, stepped: Sequence[Contact]) -> Vector:
     return np.array(slopes).reshape(len(slopes), 4)
 
 
-def sensitivity(film: Film, stepped: Contact) -> tuple[float, float, float, float]:
-    """Slopes of viscous drag, contact load, flow and mean film along one step.
-
-    Parameters
-    ----------
-    film : a converged film
-    stepped : its contact under a complex step of size `numeric.STEP`
-
-    Returns
-    -------
-    four derivatives [SI], as `sensitivities`
-    """
-    drag, load, flow, mean = sensitivities(film, [stepped])[0].tolist()
-    return drag, load, flow, mean
-
-
 def _imaginary(found: Residual) -> Residual:
     """Slopes of residuals along a step."""
     flow, complementarity, bent = (

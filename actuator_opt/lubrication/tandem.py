@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 
 from .film import Film, solve_film
 from .inputs import Contact, Elastic, Lubricant, Surface
@@ -54,12 +53,9 @@ class Tandem:
     reason: str
     pressure: float  # between the seals, absolute [Pa]
     cavitation: float  # part of the room between the seals without oil, where it is starved [-]
-    exceeds_sealed: bool  # whether that pressure is above the sealed one
-    falling: bool  # whether the surplus of the inner seal fell with the pressure at every trial
     inner: Film | None
     outer: Film | None
     match_residual: float  # difference of the flows over the larger of them and the carried flow
-    trials: int
 
 
 @dataclass(slots=True)
@@ -156,19 +152,19 @@ def _search(row: _Row, guess: float, low: float, high: float) -> Tandem:
         first, second = row.solve(pressure)
         if not (first.converged and second.converged):
             side, film = ("outer", second) if first.converged else ("inner", first)
-            return _lost(f"{side} seal at {pressure:.4g} Pa between them: {film.reason}", tried)
+            return _lost(f"{side} seal at {pressure:.4g} Pa between them: {film.reason}")
         surplus = first.flow - second.flow
         carried = abs(row.speed) / 2 * min(first.mean_film, second.mean_film)
         off = abs(surplus) / max(abs(first.flow), abs(second.flow), carried)
         tried.append((pressure, surplus))
         if off <= MATCH:
-            return _matched(row, first, second, pressure, off, tried)
+            return _matched(first, second, pressure, off)
         if pressure == low and surplus < 0:
-            return _starved(row, first, second, pressure, tried)
+            return _starved(row, first, second, pressure)
         if pressure == high and surplus > 0:
-            return _lost(_NO_LIMIT.format(pressure), tried)
+            return _lost(_NO_LIMIT.format(pressure))
         if len(tried) >= _MOST_TRIALS:
-            return _lost(f"flows differ by {off:.1e} of the larger after many trials", tried)
+            return _lost(f"flows differ by {off:.1e} of the larger after many trials")
         bottom, top = (pressure, top) if surplus > 0 else (bottom, pressure)
         pressure = _next(tried, bottom, top)
 
@@ -195,9 +191,7 @@ def _next(tried: list[tuple[float, float]], bottom: float, top: float) -> float:
     return end if unseen and (secant >= end) == (surplus > 0) else middle
 
 
-def _starved(
-    row: _Row, first: Film, second: Film, pressure: float, tried: list[tuple[float, float]]
-) -> Tandem:
+def _starved(row: _Row, first: Film, second: Film, pressure: float) -> Tandem:
     """The part of the room between the seals that stays without oil, by regula falsi.
 
     A flooded and a starved film may both exist at one supply: the starved one is followed, from
@@ -206,7 +200,7 @@ def _starved(
     outward = row.speed > 0
     given, drawn = (first, second) if outward else (second, first)
     if given.flow * row.speed <= 0:
-        return _lost(_NO_SUPPLY.format(pressure), tried)
+        return _lost(_NO_SUPPLY.format(pressure))
     sign = 1.0 if outward else -1.0
     bottom, top = (0.0, sign * (drawn.flow - given.flow)), (1.0, -sign * given.flow)
     off, side, cavitation, kept = 1.0, 0, _EMPTY, row.films
@@ -214,12 +208,12 @@ def _starved(
         first, second = row.solve(pressure, cavitation)
         if not (first.converged and second.converged):
             reason = first.reason or second.reason
-            return _lost(f"room between the seals {cavitation:.3f} empty: {reason}", tried)
+            return _lost(f"room between the seals {cavitation:.3f} empty: {reason}")
         given, drawn = (first, second) if outward else (second, first)
         excess = sign * (drawn.flow - given.flow)
         off = abs(excess / given.flow)
         if off <= 10 * MATCH:
-            return _matched(row, first, second, pressure, off, tried, cavitation)
+            return _matched(first, second, pressure, off, cavitation)
         if excess > 0:
             row.films = kept if side else row.films
             top = (top[0], top[1] / 2) if side > 0 else top
@@ -231,47 +225,30 @@ def _starved(
         if top[0] - bottom[0] < 1e-8:
             break
         cavitation = bottom[0] - bottom[1] * (top[0] - bottom[0]) / (top[1] - bottom[1])
-    return _lost(_JUMP.format(cavitation, off), tried)
-
-
-def _falling(tried: list[tuple[float, float]]) -> bool:
-    ordered = [surplus for _, surplus in sorted(tried)]
-    return all(later <= earlier for earlier, later in pairwise(ordered))
+    return _lost(_JUMP.format(cavitation, off))
 
 
 def _matched(
-    row: _Row,
-    first: Film,
-    second: Film,
-    pressure: float,
-    residual: float,
-    tried: list[tuple[float, float]],
-    cavitation: float = 0.0,
+    first: Film, second: Film, pressure: float, residual: float, cavitation: float = 0.0
 ) -> Tandem:
     return Tandem(
         converged=True,
         reason="",
         pressure=pressure,
         cavitation=cavitation,
-        exceeds_sealed=pressure > row.sealed_pressure,
-        falling=_falling(tried),
         inner=first,
         outer=second,
         match_residual=residual,
-        trials=len(tried),
     )
 
 
-def _lost(reason: str, tried: list[tuple[float, float]]) -> Tandem:
+def _lost(reason: str) -> Tandem:
     return Tandem(
         converged=False,
         reason=reason,
         pressure=math.nan,
         cavitation=math.nan,
-        exceeds_sealed=False,
-        falling=_falling(tried),
         inner=None,
         outer=None,
         match_residual=math.nan,
-        trials=len(tried),
     )

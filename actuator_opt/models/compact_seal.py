@@ -77,24 +77,19 @@ def line_load(
     *,
     squeeze: Array,
     face_width: Array,
-    section: Array,
     youngs_modulus: Array,
     poissons_ratio: Array,
-    stuck_share: Array,
     pressure: Array,
 ) -> Array:
-    """Line load of a squeezed block, f = (E w/3)[(1 - C)^-3 - (1 - C)](1 + s S^2) + k p w/(1 - C).
+    """Line load of a squeezed block, f = (E w/3)[(1 - C)^-3 - (1 - C)] + k p w/(1 - C).
 
-    S = w/(2 h) is the shape factor of a long strip, k = nu/(1 - nu). Small squeeze, slipping:
-    f = (4/3) E C w.
+    k = nu/(1 - nu). Small squeeze: f = (4/3) E C w.
 
     Parameters
     ----------
     squeeze : C of the free radial height [-]
     face_width : free width w of the sliding face [m]
-    section : free radial height h of the block [m]
     youngs_modulus, poissons_ratio : of the elastomer [Pa], [-]
-    stuck_share : s, 0 faces slip (oiled), 1 both faces stick (dry, at rest) [-]
     pressure : difference across the seal [Pa]
 
     Returns
@@ -103,24 +98,22 @@ def line_load(
 
     Notes
     -----
-    Valid: C up to about 0.3, S up to 3, groove not filled by the squeeze alone.
+    Valid: C up to about 0.3, oiled faces (they slip), groove not filled by the squeeze alone.
 
     References
     ----------
-    [Treloar1975] pure shear of rubber; [GentLindley1959] strip stuck at both faces; [derived]
-    `energised_share`
+    [Treloar1975] pure shear of rubber; [derived] `energised_share`
 
     Examples
     --------
-    >>> f = line_load(squeeze=0.12, face_width=8e-3, section=7.5e-3, youngs_modulus=9e6,
-    ...               poissons_ratio=0.49, stuck_share=0.0, pressure=5e6)
+    >>> f = line_load(squeeze=0.12, face_width=8e-3, youngs_modulus=9e6,
+    ...               poissons_ratio=0.49, pressure=5e6)
     >>> print(f"{f / 1e3:.3f} N/mm")
     57.770 N/mm
     """
     valid = real(squeeze) < 1
     height = where(valid, 1 - squeeze, 1.0)
-    shape = face_width / (2 * section)
     block = youngs_modulus / 3 * (1 / (height * height * height) - height)
     share = energised_share(poissons_ratio=poissons_ratio)
-    load = face_width * (block * (1 + stuck_share * shape * shape) + share * pressure / height)
+    load = face_width * (block + share * pressure / height)
     return where(real(squeeze) > 0, where(valid, load, math.nan), 0.0 * load)

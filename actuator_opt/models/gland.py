@@ -103,44 +103,6 @@ def gland_depth(*, squeeze: Array, section: Array) -> Array:
     return section * (1 - squeeze)
 
 
-def squeeze_in_place(
-    *, squeeze: Array, section: Array, stretch: Array, growth: Array, tolerance: Array
-) -> Array:
-    """Squeeze of the stretched section in its gland, (W' - depth)/W'.
-
-    Depth = W (1 - C0) + growth + tolerance, W' from `stretched_section`.
-
-    Parameters
-    ----------
-    squeeze : at assembly, of the free section [-]
-    section : free section W [m]
-    stretch : circumferential strain in place [-]
-    growth : radial bore growth at the seal [m]
-    tolerance : radial gland tolerance, > 0 to the loose side [m]
-
-    Returns
-    -------
-    squeeze [-]; <= 0: no contact left
-
-    Notes
-    -----
-    Valid: radial gland, stretch up to about 0.25.
-
-    References
-    ----------
-    [derived] constant ring volume, gland at its worst
-
-    Examples
-    --------
-    >>> c = squeeze_in_place(squeeze=0.15, section=2e-3, stretch=0.02, growth=3e-5, tolerance=5e-5)
-    >>> print(f"{c:.4f}")
-    0.1011
-    """
-    thin = stretched_section(section=section, stretch=stretch)
-    depth = gland_depth(squeeze=squeeze, section=section) + growth + tolerance
-    return 1 - depth / thin
-
-
 def gland_fill(*, section: Array, groove_width: Array, gland_depth: Array) -> Array:
     """Share of the groove the ring fills, (pi W^2/4)/(width depth).
 
@@ -281,33 +243,3 @@ def back_up_groove_width(*, groove_width: Array, thickness: Array, count: Array)
     7.6 mm
     """
     return groove_width + count * thickness
-
-
-def ring_stretch(*, housing_diameter: Array, inside_diameter: Array) -> Array:
-    """Stretch of a ring on its groove or rod, e = D/d - 1.
-
-    Parameters
-    ----------
-    housing_diameter : that the ring's inner side lies on: groove bottom or rod D [m]
-    inside_diameter : free, of the ring d [m], > 0
-
-    Returns
-    -------
-    stretch [-]; < 0: the ring lies loose or is compressed
-
-    Notes
-    -----
-    Valid: d > 0, else NaN.
-
-    References
-    ----------
-    [derived] circumference in place over the free one
-
-    Examples
-    --------
-    >>> print(f"{ring_stretch(housing_diameter=25.5e-3, inside_diameter=25e-3):.3f}")
-    0.020
-    """
-    valid = real(inside_diameter) > 0
-    safe = where(valid, inside_diameter, 0 * inside_diameter + 1)
-    return where(valid, housing_diameter / safe - 1, 0 * inside_diameter + math.nan)

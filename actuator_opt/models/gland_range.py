@@ -1,4 +1,4 @@
-"""The gland over its range of use: heat and cold, swell, and the tolerances of ring and groove."""
+"""The gland over its range of use: heat and cold, and the tolerances of ring and groove."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ def volume_ratio(
     volume_expansion: Array,
     housing_expansion: Array,
     temperature_change: Array,
-    swell: Array,
 ) -> Array:
-    """Ring over groove volume, relative to assembly, (1 + a_V dT)(1 + s)/(1 + a dT)^3.
+    """Ring over groove volume, relative to assembly, (1 + a_V dT)/(1 + a dT)^3.
 
     The groove fill at temperature is the fill at assembly times this ratio.
 
@@ -23,7 +22,6 @@ def volume_ratio(
     volume_expansion : of the rubber a_V [1/K]
     housing_expansion : linear, of the metal around the ring a [1/K]
     temperature_change : since assembly dT [K]
-    swell : volume the rubber gains in the fluid s, negative where it shrinks [-]
 
     Returns
     -------
@@ -33,6 +31,8 @@ def volume_ratio(
     -----
     Valid: a_V constant over dT; groove and counterface of one linear expansion.
 
+    What the rubber swells or shrinks in the fluid is left out.
+
     References
     ----------
     [derived] volumes of ring and groove, each at its own expansion
@@ -40,11 +40,11 @@ def volume_ratio(
     Examples
     --------
     >>> hot = volume_ratio(volume_expansion=6.6e-4, housing_expansion=11.5e-6,
-    ...                    temperature_change=60.0, swell=0.05)
+    ...                    temperature_change=60.0)
     >>> print(f"{hot:.4f}")
-    1.0893
+    1.0375
     """
-    ring = (1 + volume_expansion * temperature_change) * (1 + swell)
+    ring = 1 + volume_expansion * temperature_change
     side = 1 + housing_expansion * temperature_change
     return ring / (side * side * side)
 
@@ -124,33 +124,3 @@ def squeeze_extremes(
     loosest = 1 - (depth + depth_tolerance + eccentricity) / (section - section_tolerance)
     tightest = 1 - (depth - depth_tolerance - eccentricity) / (section + section_tolerance)
     return loosest, tightest
-
-
-def inside_diameter_tolerance(*, inside_diameter: Array) -> Array:
-    """Tolerance of a ring's inside diameter, t = 0.009 d^0.95 + 0.11 with t and d in mm.
-
-    Parameters
-    ----------
-    inside_diameter : free d [m]
-
-    Returns
-    -------
-    half width of the tolerance [m]; NaN at d <= 0
-
-    Notes
-    -----
-    Valid: class B rings of sizes without an entry in the size list, d 5 to 640 mm.
-
-    References
-    ----------
-    [DygertTolerances] general tolerances after ISO 3601-1, class B
-
-    Examples
-    --------
-    >>> print(f"{inside_diameter_tolerance(inside_diameter=40e-3) * 1e3:.2f} mm")
-    0.41 mm
-    """
-    valid = real(inside_diameter) > 0
-    millimetres = where(valid, inside_diameter, 0 * inside_diameter + 1) * 1e3
-    tolerance = (0.009 * millimetres**0.95 + 0.11) * 1e-3
-    return where(valid, tolerance, 0 * inside_diameter + math.nan)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..numeric import Array, maximum, minimum, namespace, positive, sqrt
+from ..numeric import Array, absolute, maximum, minimum, namespace, positive, sqrt
 from .rod import thread_stress
 
 
@@ -346,3 +346,35 @@ def bearing_pressure(*, force: Array, diameter: Array, length: Array) -> Array:
     2.50 MPa
     """
     return force / (diameter * length)
+
+
+def guide_friction(*, force: Array, friction_coefficient: Array) -> Array:
+    """Friction of a guide ring or plain bearing under a radial force, F = (4/pi) mu |N|.
+
+    Its pressure p_0 cos(theta) over the loaded half adds up to 4/pi of the force it carries.
+
+    Parameters
+    ----------
+    force : radial force N on it [N]
+    friction_coefficient : mu of ring on surface [-]
+
+    Returns
+    -------
+    friction [N]
+
+    Notes
+    -----
+    Valid: ring fits its surface (clearance small against its compression); no oil film.
+
+    A loose ring touches along a line: mu |N|.
+
+    References
+    ----------
+    [derived] Coulomb friction of the pressure p_0 cos(theta), int p dA = 4 N/pi
+
+    Examples
+    --------
+    >>> print(f"{guide_friction(force=-2e3, friction_coefficient=0.1):.2f} N")
+    254.65 N
+    """
+    return (4 / pi) * friction_coefficient * absolute(force)

@@ -47,55 +47,14 @@ def wetted_back(*, ring_width: Array, foot_width: Array, section: Array, squeeze
     return maximum(ring_width - foot_width - section * (1 - squeeze) / 2, 0.0)
 
 
-def hoop_load(
-    *,
-    youngs_modulus: Array,
-    thickness: Array,
-    ring_width: Array,
-    radius: Array,
-    interference: Array,
-) -> Array:
-    """Line load of the sliding ring's own tightness on the surface, f_h = E t w delta/r^2.
-
-    Parameters
-    ----------
-    youngs_modulus : of the ring, relaxed [Pa]
-    thickness, ring_width : radial t, axial w [m]
-    radius : mean radius r of the ring [m]
-    interference : radial, of the free ring with its surface; < 0: the ring must first close the
-        gap and takes load from the land [m]
-
-    Returns
-    -------
-    line load [N/m]
-
-    Notes
-    -----
-    Valid: t < r/5; creep takes most of it within days: count it for a new ring only.
-
-    References
-    ----------
-    [derived] thin ring, pressure E t delta/r^2 over its width
-
-    Examples
-    --------
-    >>> f = hoop_load(youngs_modulus=600e6, thickness=1.4e-3, ring_width=3.9e-3, radius=40e-3,
-    ...               interference=0.05e-3)
-    >>> print(f"{f:.2f} N/m")
-    102.38 N/m
-    """
-    return youngs_modulus * thickness * ring_width * interference / (radius * radius)
-
-
 def line_load(
     *,
     energiser_load: Array,
     pressure: Array,
     wetted_back: Array,
     wetted_front: Array,
-    hoop_load: Array,
 ) -> Array:
-    """Line load of the land, f = f_e + p (a_b - a_f) + f_h, at least 0 (the ring has lifted).
+    """Line load of the land, f = f_e + p (a_b - a_f), at least 0 (the ring has lifted).
 
     Parameters
     ----------
@@ -103,7 +62,6 @@ def line_load(
     pressure : one-sided difference [Pa]
     wetted_back : a_b, see `wetted_back` [m]
     wetted_front : a_f, relief of the running face on the pressure side of the land [m]
-    hoop_load : f_h, see `hoop_load` [N/m]
 
     Returns
     -------
@@ -113,6 +71,8 @@ def line_load(
     -----
     Valid: ring not tilted; oil pressure inside the land is not taken off.
 
+    The ring's own hoop tightness is neglected: creep takes it.
+
     References
     ----------
     [derived] radial balance of the sliding ring
@@ -120,11 +80,11 @@ def line_load(
     Examples
     --------
     >>> f = line_load(energiser_load=1.5e4, pressure=5e6, wetted_back=1.66e-3,
-    ...               wetted_front=2.4e-3, hoop_load=100.0)
+    ...               wetted_front=2.4e-3)
     >>> print(f"{f / 1e3:.2f} N/mm")
-    11.40 N/mm
+    11.30 N/mm
     """
-    load = maximum(energiser_load + pressure * (wetted_back - wetted_front) + hoop_load, 0.0)
+    load = maximum(energiser_load + pressure * (wetted_back - wetted_front), 0.0)
     return where(real(energiser_load) > 0, load, 0.0)
 
 

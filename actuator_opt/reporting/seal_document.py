@@ -6,15 +6,15 @@ import hashlib
 from pathlib import Path
 from typing import Any
 
-from ..evaluation.study.seal import SealMap, SealStudy
+from ..evaluation.study.seal import FilmMap, SealStudy
 from ..store import write_text
 from ..version import VERSION
 from . import seal_rows as rows
 from . import text, writer
 from .blocks import clean, short, soft
-from .seal_figures import bars
+from .seal_figures import bars, stroke_names
 from .seal_gland_figure import gland_drawing
-from .seal_sheet import at, blocks, filmed
+from .seal_sheet import blocks
 
 
 def write_sheet(
@@ -79,13 +79,13 @@ def sheet_page(
 
 
 def _verdict(study: SealStudy) -> dict[str, Any]:
-    found = filmed(study)
-    count = len(study.out.rings)
+    found = study.converged
+    count = len(study.drive.rings)
     rings = "one ring" if count == 1 else f"{count} rings"
     return {
         "state": "met" if found else "missed",
         "text": "FILM FOUND" if found else "NO FILM",
-        "lines": [f"{rings}, outstroke and instroke", f"at {at(study)}"],
+        "lines": [f"{rings}, {' and '.join(stroke_names(study))}", f"at {rows.at(study)}"],
     }
 
 
@@ -95,16 +95,21 @@ def _sentence(study: SealStudy) -> str:
 
 def _tiles(study: SealStudy) -> list[dict[str, Any]]:
     """Friction, damping, breakaway and leakage at the operating point."""
-    point = study.out
+    point, (driven, _), at = study.drive, stroke_names(study), f"at {rows.at(study)}"
     found = [
-        ("friction, outstroke", rows.force(point.friction), f"at {at(study)}"),
-        ("secant damping, outstroke", rows.damping(point.damping), f"at {at(study)}"),
+        (f"friction, {driven}", rows.force(point.friction), at),
+        (f"secant damping, {driven}", rows.damping(point.damping), at),
         ("breakaway, dry", rows.force(point.breakaway), f"at {bars(point.pressure)}"),
     ]
-    if filmed(study):
-        found.append(("left by a double stroke", rows.volume(study.net_leakage), f"at {at(study)}"))
+    if study.converged:
+        oil = study.double_stroke
+        found.append(
+            (f"flow across, {driven}", rows.flow(point.flow), "towards the outer side")
+            if oil is None
+            else ("left by a double stroke", rows.volume(oil.net), at)
+        )
         thinnest = min(float(ring.film.min()) for ring in point.rings)
-        found.append(("thinnest film, outstroke", _microns(thinnest), "between the mean planes"))
+        found.append((f"thinnest film, {driven}", _microns(thinnest), "between the mean planes"))
     tiles = []
     for label, words, note in found:
         value, _, unit = words.partition(" ")
@@ -125,7 +130,7 @@ def _microns(value: float) -> str:
     return f"{text.number(1e6 * value, 3)} µm"
 
 
-def write_map(found: SealMap, path: Path) -> writer.ReportFile:
+def write_map(found: FilmMap, path: Path) -> writer.ReportFile:
     """Write a map as CSV: one line per point, empty where there is no film."""
     lines = ["sealed pressure [bar],speed [m/s],friction [N],secant damping [N s/m]"]
     for pressure, friction, damping in zip(

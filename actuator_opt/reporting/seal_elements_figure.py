@@ -232,16 +232,17 @@ def sentence(study: SealStudy) -> str:
     if not study.elements:
         return ""
     one = study.out.rings[0]
-    law = closed_form(one.ring)
+    closed = closed_form(one.ring)
     pressure = float(f"{abs(one.ring['pressure']):.4g}")
 
     def beside(value: Any, other: Any, unit: str, scale: float) -> str:
-        return f"{number(scale * float(value), 3)} {unit} (closed form {number(scale * float(other), 3)})"
+        own, law = (number(scale * float(one), 3) for one in (value, other))
+        return f"{own} {unit} (closed form {law})"
 
     return (
         f"Contact of the {one.ring.label} by finite elements: at {bars(pressure)} width"
-        f" {beside(one.touch.width, law.width, 'mm', 1e3)}, peak"
-        f" {beside(one.touch.peak, law.peak, 'MPa', 1e-6)}."
+        f" {beside(one.touch.width, closed.width, 'mm', 1e3)}, peak"
+        f" {beside(one.touch.peak, closed.peak, 'MPa', 1e-6)}."
     )
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..evaluation.study.seal import RingPoint, SealMap, SealStudy, SqueezeRow
+from ..evaluation.study.seal import FilmMap, RingPoint, SealStudy, SqueezeRow
 from .bode import STYLES, dot, inside, level_ticks, logs
 from .figures import Axes, fitted, legend, ticks
 from .ink import BLACK, BLUE, GREY, PALE, RED, WHITE, Ink, Point, spread_within, text_width
@@ -22,7 +22,7 @@ from .wall_figures import GREEN, OCHRE
 STATIC: dict[str, Any] = {"stroke": GREY, "pen": 0.4, "dash": (0.5, 0.6)}
 OIL: dict[str, Any] = {"stroke": BLUE, "pen": 0.4}
 ASPERITY: dict[str, Any] = {"stroke": OCHRE, "pen": 0.4, "dash": (1.6, 0.8)}
-INSTROKE: dict[str, Any] = {"stroke": GREEN, "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)}
+OTHER: dict[str, Any] = {"stroke": GREEN, "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)}
 LIMIT: dict[str, Any] = {"stroke": RED, "pen": 0.25, "dash": (1.8, 1.0)}
 _BAR = "#4f86a8"
 _ROW = 5.0
@@ -54,6 +54,14 @@ def speed_words(speed: float) -> str:
     ('9.17 mm/s', '400 mm/s')
     """
     return f"{trimmed(1e3 * speed)} mm/s"
+
+
+def stroke_names(study: SealStudy) -> tuple[str, str]:
+    """What the stroke of a driven actuator is called at a place, and what the other one.
+
+    A load that overruns the piston drives it against the pressure it seals.
+    """
+    return ("outstroke", "instroke") if study.place == "rod" else ("driven", "overrun")
 
 
 # ---- squeeze ----
@@ -134,8 +142,8 @@ def _limit_words(axes: Axes, limits: Sequence[tuple[str, float]]) -> None:
 
 def contact_figure(study: SealStudy, index: int) -> Ink:
     """Pressures of one ring on both strokes, and its film, from the sealed side outwards."""
-    points = (study.out.rings[index], study.back.rings[index])
-    strokes = ("outstroke", "instroke")
+    points = (study.drive.rings[index], study.other.rings[index])
+    strokes = stroke_names(study)
     ink = Ink(WIDTH, 54.5)
     highest = max(
         float(np.max(curve)) / 1e6 for one in points for curve in _pressures(one) if len(curve)
@@ -153,11 +161,11 @@ def contact_figure(study: SealStudy, index: int) -> Ink:
     box = (left + 2 * (panel + 15.0), 13.0, panel, 32.0)
     axes = Axes(ink, box, (0.0, long), (0.0, 1.06 * max(map(max, films))))
     axes.frame("Film, mean planes, µm", "from the sealed side, mm")
-    for one, film, style in zip(points, films, (OIL, INSTROKE), strict=True):
+    for one, film, style in zip(points, films, (OIL, OTHER), strict=True):
         ink.path(axes.clipped(_millimetres(one), film), **style)
     words = [("static", STATIC), ("oil", OIL), ("asperities", ASPERITY)]
     legend(ink, left, 3.0, words, ends=False)
-    legend(ink, box[0], 3.0, [("outstroke", OIL), ("in", INSTROKE)], ends=False)
+    legend(ink, box[0], 3.0, list(zip(strokes, (OIL, OTHER), strict=True)), ends=False)
     return ink
 
 
@@ -190,21 +198,22 @@ def pieces(xs: Sequence[float], ys: Sequence[float]) -> Iterable[list[tuple[floa
         yield found
 
 
-def drawable(found: SealMap | None) -> bool:
+def drawable(found: FilmMap | None) -> bool:
     """Whether there is anything to draw: two points with a friction above zero."""
     return found is not None and int(np.sum(np.nan_to_num(found.friction) > 0)) >= 2
 
 
 def speed_figure(study: SealStudy) -> Ink:
-    """Friction (left) and secant damping (right) over speed at three pressures, outstroke."""
+    """Friction (left) and secant damping (right) over speed at three pressures, driven."""
     curves = study.curves
     assert curves is not None
     ink = Ink(WIDTH, 64.0)
     panel, tall, top = 61.0, 41.0, 13.0
     frictions = _above([*curves.friction.ravel(), *_friction_marks(study)])
     frictions += [dry for dry, _ in _breakaways(study)]
-    friction = _framed(ink, (11.0, top, panel, tall), curves, frictions, "Friction, outstroke, N")
-    damped = _above([*curves.damping.ravel(), study.out.damping])
+    title = f"Friction, {stroke_names(study)[0]}, N"
+    friction = _framed(ink, (11.0, top, panel, tall), curves, frictions, title)
+    damped = _above([*curves.damping.ravel(), study.drive.damping])
     box = (103.0, top, panel, tall)
     damping = _framed(ink, box, curves, [v / 1e3 for v in damped], "Secant damping F/v, kN·s/m")
     for axes, rows in ((friction, curves.friction), (damping, curves.damping / 1e3)):
@@ -212,10 +221,10 @@ def speed_figure(study: SealStudy) -> Ink:
     for dry, color in _breakaways(study):
         _square(ink, 11.0, friction.y(math.log10(dry)), color)
     _point(friction, study)
-    place = math.log10(1e3 * study.out.speed)
-    if study.out.damping > 0 and inside(damping, place):
-        dot(damping, place, math.log10(study.out.damping / 1e3), BLACK)
-    _key(ink, study, shown=inside(friction, math.log10(1e3 * study.out.speed)))
+    place = math.log10(1e3 * study.drive.speed)
+    if study.drive.damping > 0 and inside(damping, place):
+        dot(damping, place, math.log10(study.drive.damping / 1e3), BLACK)
+    _key(ink, study, shown=inside(friction, math.log10(1e3 * study.drive.speed)))
     return ink
 
 
@@ -225,8 +234,8 @@ def _breakaways(study: SealStudy) -> list[tuple[float, str]]:
     How two rings share a pressure is told by their films, which a standstill has not.
     """
     curves = study.curves
-    if len(study.out.rings) > 1 or curves is None:
-        return [(study.out.breakaway, BLACK)]
+    if len(study.drive.rings) > 1 or curves is None:
+        return [(study.drive.breakaway, BLACK)]
     pairs = zip(curves.breakaway, STYLES, strict=False)
     return [(float(dry), style["stroke"]) for dry, style in pairs if dry > 0]
 
@@ -234,7 +243,7 @@ def _breakaways(study: SealStudy) -> list[tuple[float, str]]:
 def _key(ink: Ink, study: SealStudy, *, shown: bool) -> None:
     """What the marks mean, above the frames."""
     y, x = 3.0, 11.0
-    point = study.out
+    point = study.drive
     at = f"{bars(point.pressure)}, {speed_words(point.speed)}"
     if shown:
         words = f"by the coefficient of friction, {at}"
@@ -261,9 +270,8 @@ def _cross(ink: Ink, x: float, y: float) -> None:
 
 
 def _friction_marks(study: SealStudy) -> list[float]:
-    point = study.out
-    by_coefficient = sum(ring.coefficient_friction for ring in point.rings)
-    return [by_coefficient, point.friction, point.lower, point.upper]
+    point = study.drive
+    return [point.coefficient_friction, point.friction, point.lower, point.upper]
 
 
 def _above(values: Any) -> list[float]:
@@ -280,7 +288,7 @@ def _logarithmic(values: Sequence[float]) -> tuple[float, float]:
 def _framed(
     ink: Ink,
     box: tuple[float, float, float, float],
-    curves: SealMap,
+    curves: FilmMap,
     values: Sequence[float],
     title: str,
 ) -> Axes:
@@ -293,7 +301,7 @@ def _framed(
     return axes
 
 
-def _curves(axes: Axes, curves: SealMap, rows: np.ndarray) -> None:
+def _curves(axes: Axes, curves: FilmMap, rows: np.ndarray) -> None:
     """A curve per pressure, in pieces where a film is missing, with its label."""
     ends = []
     xs = logs(1e3 * curves.speeds)
@@ -321,7 +329,7 @@ def _labels(axes: Axes, ends: Sequence[tuple[Point, str, str]]) -> None:
 
 def _point(axes: Axes, study: SealStudy) -> None:
     """The operating point with its band, and what the coefficient of friction gives there."""
-    point, ink = study.out, axes.ink
+    point, ink = study.drive, axes.ink
     place = math.log10(1e3 * point.speed)
     if not inside(axes, place):
         return

@@ -12,10 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from ..evaluation.study.seal import SealMap, SealStudy
+from ..evaluation.study.seal import FilmMap, SealStudy
 from .bode import dot, inside, level_ticks, logs
 from .figures import Axes, ticks
 from .ink import BLACK, GREY, PALE, WHITE, Ink, hatch
+from .seal_figures import stroke_names
 from .text import number, trimmed
 
 _LIGHT, _DARK = (0xF1, 0xF6, 0xF9), (0x0B, 0x3C, 0x5D)
@@ -25,11 +26,12 @@ _BOX = (62.0, 44.0)
 
 
 def map_figure(study: SealStudy) -> Ink:
-    """Friction (left) and secant damping (right), outstroke."""
+    """Friction (left) and secant damping (right), driven."""
     found = study.map
     assert found is not None
     ink = Ink(180.0, 62.0)
-    _panel(ink, 11.0, study, found, "Friction, outstroke, N", found.friction)
+    title = f"Friction, {stroke_names(study)[0]}, N"
+    _panel(ink, 11.0, study, found, title, found.friction)
     _panel(ink, 102.0, study, found, "Secant damping F/v, kN·s/m", found.damping / 1e3)
     return ink
 
@@ -65,7 +67,7 @@ def _panel(
     ink: Ink,
     left: float,
     study: SealStudy,
-    found: SealMap,
+    found: FilmMap,
     title: str,
     values: np.ndarray,
 ) -> None:
@@ -81,7 +83,7 @@ def _panel(
     _bands(axes, xs, ys, table, bounds)
     for i, j in zip(*np.nonzero(table.mask if table.mask is not np.False_ else []), strict=True):
         _missing(axes, xs[int(j)], ys[int(i)])
-    place, level = math.log10(1e3 * study.out.speed), study.out.pressure / 1e5
+    place, level = math.log10(1e3 * study.drive.speed), study.drive.pressure / 1e5
     if inside(axes, place) and ys[0] <= level <= ys[-1]:
         dot(axes, place, level, BLACK)
     marks = [(v, trimmed(v)) for v in ticks(ys[0], ys[-1], 5)]

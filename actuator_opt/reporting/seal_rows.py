@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from .. import quantities
@@ -11,12 +11,12 @@ from ..design.seals import SealElement
 from ..evaluation.study.seal import (
     HARDNESS_SCATTER,
     STATED_FACTOR,
+    FilmMap,
     RingPoint,
-    SealMap,
     SealPoint,
     SealStudy,
 )
-from .seal_figures import bars, degrees, speed_words
+from .seal_figures import bars, degrees, speed_words, stroke_names
 from .seal_gland_figure import slots, tolerance_text
 from .text import DASH, number, trimmed, value_text
 
@@ -25,11 +25,11 @@ _METRICS = quantities.METRICS
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A quantity with its value on the outstroke and on the instroke."""
+    """A quantity with its value on the driven stroke and on the other."""
 
     name: str
-    out: str
-    back: str
+    drive: str
+    other: str
     strong: bool = False
 
 
@@ -52,7 +52,8 @@ def volume(value: float) -> str:
     return DASH if math.isnan(value) else f"{number(1e9 * value)} mm³"
 
 
-def _flow(value: float) -> str:
+def flow(value: float) -> str:
+    """A flow in mm³/s; none without a film."""
     return DASH if math.isnan(value) else f"{number(1e9 * value)} mm³/s"
 
 
@@ -63,7 +64,7 @@ def _residual(values: Sequence[float]) -> str:
 
 def at(study: SealStudy) -> str:
     """Pressure, speed and temperature of the operating point."""
-    point = study.out
+    point = study.drive
     return f"{bars(point.pressure)}, {speed_words(point.speed)}, {degrees(point.temperature)}"
 
 
@@ -73,35 +74,29 @@ def band(point: SealPoint) -> str:
     return f"{number(known[0])} to {force(known[-1])}" if known else DASH
 
 
-def coefficient_friction(point: SealPoint) -> float:
-    """Friction of all rings by the coefficient of friction, without a film [N]."""
-    return sum(ring.coefficient_friction for ring in point.rings)
-
-
 def operating(study: SealStudy) -> list[Line]:
     """The operating point on both strokes."""
-    points = study.out, study.back
 
-    def line(name: str, words: object, *, strong: bool = False) -> Line:
-        out, back = (words(point) for point in points)  # type: ignore[operator]
-        return Line(name, out, back, strong)
+    def line(name: str, words: Callable[[SealPoint], str], *, strong: bool = False) -> Line:
+        return Line(name, words(study.drive), words(study.other), strong)
 
     found = [
         line("friction, film", lambda p: force(p.friction), strong=True),
         line("of the oil's shear", lambda p: force(p.viscous)),
         line("of the asperities", lambda p: force(p.asperity)),
         line("friction over the moduli's scatter", band),
-        line("friction by the coefficient instead", lambda p: force(coefficient_friction(p))),
+        line("friction by the coefficient instead", lambda p: force(p.coefficient_friction)),
         line("breakaway, dry", lambda p: force(p.breakaway)),
         line("secant damping at this speed", lambda p: damping(p.damping), strong=True),
-        line("flow towards the outer side", lambda p: _flow(p.flow)),
+        line("flow towards the outer side", lambda p: flow(p.flow)),
     ]
-    if len(study.out.rings) > 1:
-        found.append(line("pressure between the rings, gauge", lambda p: _between(p)))
-    moved = Line("oil a stroke carries out", volume(study.carried_out), volume(-study.drawn_back))
+    if len(study.drive.rings) > 1:
+        found.append(line("pressure between the rings, gauge", _between))
+    if oil := study.double_stroke:
+        carried = volume(oil.carried_out), volume(-oil.drawn_back)
+        found.append(Line("oil a stroke carries out", *carried))
     return [
         *found,
-        moved,
         line("load residual", lambda p: _residual([r.load_residual for r in p.rings])),
         line("mass residual", lambda p: _residual([r.mass_residual for r in p.rings])),
     ]
@@ -192,10 +187,11 @@ CONTACT_HEADS = (
 def contacts(study: SealStudy) -> list[list[str]]:
     """Contact of every ring; both strokes where its pressure differs between them."""
     rows = []
-    for index, one in enumerate(study.out.rings):
-        other = study.back.rings[index]
+    names = ("out", "in") if study.place == "rod" else stroke_names(study)
+    for index, points in enumerate(zip(study.drive.rings, study.other.rings, strict=True)):
+        one, other = points
         apart = one.ring["pressure"] != other.ring["pressure"]
-        for words, point in (("out", one), ("in", other)) if apart else (("both", one),):
+        for words, point in zip(names, points, strict=True) if apart else (("both", one),):
             rows.append(
                 [
                     point.ring.label,
@@ -217,11 +213,28 @@ def contacts(study: SealStudy) -> list[list[str]]:
 def why(study: SealStudy) -> str:
     """Why the operating point has no film; empty where it has one on both strokes."""
     parts = [
-        f"No film on the {name}: {_sentence(point.why)}"
-        for name, point in (("outstroke", study.out), ("instroke", study.back))
+        f"No film {name}: {_sentence(point.why)}"
+        for name, point in zip(_strokes(study), (study.drive, study.other), strict=True)
         if point.why
     ]
     return " ".join(parts)
+
+
+def _strokes(study: SealStudy) -> tuple[str, ...]:
+    names = stroke_names(study)
+    return tuple(f"on the {name}" for name in names) if study.place == "rod" else names
+
+
+def strokes(study: SealStudy) -> str:
+    """What the two strokes of the place are, and against what pressure its seal holds."""
+    over = f"{bars(study.drive.pressure)} over"
+    if study.place == "rod":
+        return f"The seal holds {over} the atmosphere."
+    return (
+        "Driven, the piston runs away from the pressure it seals; overrun, a load pushes it"
+        f" against that pressure. The seal holds {over} the {bars(study.outer_pressure)} of the"
+        " other chamber."
+    )
 
 
 def _sentence(words: str) -> str:
@@ -229,21 +242,31 @@ def _sentence(words: str) -> str:
 
 
 def leakage(study: SealStudy) -> str:
-    """Leakage of a double stroke in a sentence; empty without a film on both strokes."""
-    if not (study.out.converged and study.back.converged):
+    """Leakage in a sentence: of a rod's double stroke, or across a piston; empty without a film."""
+    if not study.converged:
         return ""
-    back = study.drawn_back
+    point, oil = study.drive, study.double_stroke
+    held, run = bars(point.pressure), speed_words(point.speed)
+    if oil is None:
+        return (
+            f"Flow across the piston while driven, at {held} and {run}: {_across(point.flow)};"
+            f" overrun: {_across(study.other.flow)}."
+        )
+    back = oil.drawn_back
     told = f"draws {volume(back)} back" if back >= 0 else f"leaks {volume(-back)} more"
-    side = "outside" if study.place == "rod" else "on the other side"
     return (
-        f"Over {trimmed(1e3 * study.stroke)} mm the stroke out carries {volume(study.carried_out)}"
-        f" past the seal and the stroke in {told}, both at {bars(study.out.pressure)} and"
-        f" {speed_words(study.out.speed)}: a double stroke leaves {volume(study.net_leakage)}"
-        f" {side}."
+        f"Over {trimmed(1e3 * study.stroke)} mm the stroke out carries {volume(oil.carried_out)}"
+        f" past the seal and the stroke in {told}, both at {held} and {run}: a double stroke"
+        f" leaves {volume(oil.net)} outside."
     )
 
 
-def missing(found: SealMap) -> str:
+def _across(value: float) -> str:
+    way = "out of" if value >= 0 else "back into"
+    return f"{flow(abs(value))} {way} the chamber of higher pressure"
+
+
+def missing(found: FilmMap) -> str:
     """How many points of a map have no film, and why; empty where all have one."""
     if not found.why:
         return ""
@@ -268,9 +291,9 @@ def _is_number(word: str) -> bool:
 def notes(study: SealStudy) -> list[str]:
     """What is model, what is input, and how far either is to be trusted."""
     spread = f"hardness ±{trimmed(HARDNESS_SCATTER)} Shore A"
-    if any("hardness" not in one.ring.numbers for one in study.out.rings):
+    if any("hardness" not in one.ring.numbers for one in study.drive.rings):
         spread += f", a stated modulus × or ÷ {trimmed(STATED_FACTOR)}"
-    face = sorted({one.ring["asperity_friction"] for one in study.out.rings})
+    face = sorted({one.ring["asperity_friction"] for one in study.drive.rings})
     told = " and ".join(trimmed(x) for x in face)
     said = study.lugre
     bristles = (

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ..design.seals import Guide, SealElement, Wiper
-from ..evaluation.rings import TAPER
+from ..evaluation.rings import FACE, face
 from ..models.lip_seal import lip_interference
 from .ink import Polygon
 
@@ -98,15 +98,22 @@ def _round(middle: float, low: float, high: float, section: float) -> tuple[Shap
     return Shape("elastomer", stadium(middle, low, high, section)), Shape("free", free)
 
 
+def _face(element: SealElement, depth: float) -> dict[str, float]:
+    """The face as it is computed."""
+    stated = {name: value for name in FACE if (value := getattr(element, name)) is not None}
+    width = element.width or 0.0
+    return face(element.type, stated, width=width, section=element.section, gland_depth=depth)
+
+
 def _step_ring(element: SealElement, middle: float, depth: float) -> tuple[Shape, ...]:
     """The sliding ring with its land between two tapers, and the energiser behind it."""
     width, thick = element.width or 0.0, element.thickness or 0.0
-    land = min(0.5 * width if element.land is None else element.land, width)
-    relief = min((width - land) / 2 if element.relief is None else element.relief, width - land)
+    own = _face(element, depth)
+    land = min(own["land"], width)
+    relief = min(own["relief"], width - land)
     left = middle - width / 2
-    taper = TAPER if element.taper is None else element.taper
-    slope = min(math.tan(taper), 0.5 * thick / max(width - land, 1e-9))
-    face = (
+    slope = min(math.tan(own["taper"]), 0.5 * thick / max(width - land, 1e-9))
+    body = (
         (left, relief * slope),
         (left + relief, 0.0),
         (left + relief + land, 0.0),
@@ -114,18 +121,19 @@ def _step_ring(element: SealElement, middle: float, depth: float) -> tuple[Shape
         (left + width, thick),
         (left, thick),
     )
-    return Shape("polymer", face), *_round(middle, thick, depth, element.section)
+    return Shape("polymer", body), *_round(middle, thick, depth, element.section)
 
 
 def _u_cup(element: SealElement, start: float, end: float, depth: float) -> tuple[Shape, ...]:
     """Two lips open to the sealed side; the heel behind them fills the groove up to its play."""
     length, thick = element.width or 0.0, min(element.thickness or 0.0, 0.42 * depth)
     give = max(float(lip_interference(section=element.section, gland_depth=depth)), 0.0)
-    root_gap = give if element.root_clearance is None else element.root_clearance
+    own = _face(element, depth)
+    root_gap = max(own["root_clearance"], 0.0)
     heel = max((end - start - length) * 0.8, 0.15 * length)
     right = min(start + (end - start + length + heel) / 2, end)
     root = right - heel
-    tip, land = root - length, 0.1 * length if element.land is None else element.land
+    tip, land = root - length, own["land"]
     thin = 0.7 * thick
     body = (
         (right, root_gap),
@@ -146,7 +154,7 @@ def _u_cup(element: SealElement, start: float, end: float, depth: float) -> tupl
 def _compact(element: SealElement, middle: float, depth: float) -> tuple[Shape, ...]:
     """A block whose face is the land, flanked where the body is wider."""
     width = element.width or 0.0
-    land = min(width if element.land is None else element.land, width)
+    land = min(_face(element, depth)["land"], width)
     a, b = middle - width / 2, middle + width / 2
     c, d = middle - land / 2, middle + land / 2
     flank = min((width - land) / 2, depth / 2)

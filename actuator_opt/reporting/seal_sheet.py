@@ -10,7 +10,7 @@ from . import text
 from .blocks import Block, Cell, column, figure, notes, soft, table
 from .seal_elements_figure import contact_figure as elements_contact_figure
 from .seal_elements_figure import contact_note, sentence, stress_figure, stress_note
-from .seal_figures import bars, contact_figure, drawable, speed_figure, speed_words, squeeze_figure
+from .seal_figures import contact_figure, drawable, speed_figure, squeeze_figure, stroke_names
 from .seal_gland_figure import gland_drawing
 from .seal_map_figure import map_figure
 
@@ -29,8 +29,8 @@ def blocks(study: SealStudy, *, drawing: bool = True) -> list[Block]:
     found += [_gland_table(study), _squeeze(study), _operating(study), _contact_table(study)]
     if study.elements:
         found += _elements(study)
-    if filmed(study):
-        found += [_contact(study, index) for index in range(len(study.out.rings))]
+    if study.converged:
+        found += [_contact(study, index) for index in range(len(study.drive.rings))]
     if drawable(study.curves):
         found.append(_speeds(study))
     if drawable(study.map):
@@ -39,18 +39,8 @@ def blocks(study: SealStudy, *, drawing: bool = True) -> list[Block]:
     return found
 
 
-def filmed(study: SealStudy) -> bool:
-    """Whether both strokes have a film."""
-    return study.out.converged and study.back.converged
-
-
 def _named(study: SealStudy) -> str:
     return f"{study.place.capitalize()} seals"
-
-
-def at(study: SealStudy) -> str:
-    """Pressure and speed of the operating point."""
-    return f"{bars(study.out.pressure)} and {speed_words(study.out.speed)}"
 
 
 def _gland_note(study: SealStudy) -> str:
@@ -90,13 +80,10 @@ def _squeeze(study: SealStudy) -> Block:
 
 
 def _operating(study: SealStudy) -> Block:
-    columns = [
-        column("quantity", "left", 1.6),
-        column("outstroke", "right", 1.0),
-        column("instroke", "right", 1.0),
-    ]
-    body: list[list[Cell]] = [[one.name, one.out, one.back] for one in rows.operating(study)]
-    said = (rows.why(study), rows.leakage(study))
+    columns = [column("quantity", "left", 1.6)]
+    columns += [column(name, "right", 1.0) for name in stroke_names(study)]
+    body: list[list[Cell]] = [[one.name, one.drive, one.other] for one in rows.operating(study)]
+    said = (rows.strokes(study), rows.why(study), rows.leakage(study))
     note = " ".join(words for words in said if words)
     note += (
         " Flow and oil are negative where they return to the sealed side; residuals are relative."
@@ -118,7 +105,7 @@ def _contact_table(study: SealStudy) -> Block:
 
 
 def _elements(study: SealStudy) -> list[Block]:
-    label = study.out.rings[0].ring.label.capitalize()
+    label = study.drive.rings[0].ring.label.capitalize()
     return [
         figure(f"{label}: stress by finite elements", stress_figure(study), stress_note(study)),
         figure(
@@ -130,26 +117,26 @@ def _elements(study: SealStudy) -> list[Block]:
 
 
 def _contact(study: SealStudy, index: int) -> Block:
-    label = study.out.rings[index].ring.label
+    label = study.drive.rings[index].ring.label
     note = (
-        f"At {at(study)}. Static: the contact without oil; oil and asperities share it. The film"
-        " is the distance of the mean planes of both rough surfaces."
+        f"At {rows.at(study)}. Static: the contact without oil; oil and asperities share it. The"
+        " film is the distance of the mean planes of both rough surfaces."
     )
     title = f"{label.capitalize()}: contact pressure and oil film"
     return figure(title, contact_figure(study, index), note)
 
 
 def _speeds(study: SealStudy) -> Block:
-    point = study.out
+    point = study.drive
     said = ""
     if point.converged:
         said = (
-            f"At {at(study)} friction is {rows.force(point.friction)} (moduli's scatter:"
+            f"At {rows.at(study)} friction is {rows.force(point.friction)} (moduli's scatter:"
             f" {rows.band(point)}) and secant damping"
             f" {rows.damping(point.damping)}: at this speed only. "
         )
     said += (
-        f"By the coefficient of friction it is {rows.force(rows.coefficient_friction(point))};"
+        f"By the coefficient of friction it is {rows.force(point.coefficient_friction)};"
         f" breakaway {rows.force(point.breakaway)}."
     )
     assert study.curves is not None
@@ -159,7 +146,8 @@ def _speeds(study: SealStudy) -> Block:
 
 def _map(study: SealStudy) -> Block:
     assert study.map is not None
-    note = "Outstroke; circle: the operating point, where it lies in the map."
+    driven = stroke_names(study)[0].capitalize()
+    note = f"{driven}; circle: the operating point, where it lies in the map."
     note += rows.missing(study.map)
     if study.map.why:
         note += " Crosses: points without a film; hatched: not known between them."

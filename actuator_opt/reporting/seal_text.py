@@ -7,7 +7,7 @@ from . import seal_rows as rows
 from . import text
 from .console import Column, Console
 from .seal_elements_figure import sentence
-from .seal_figures import bars, degrees, speed_words, squeeze_limits
+from .seal_figures import bars, degrees, speed_words, squeeze_limits, stroke_names
 
 
 def seal_text(
@@ -27,25 +27,27 @@ def seal_text(
 
 
 def _head(study: SealStudy, console: Console) -> str:
-    found = study.out.converged and study.back.converged
     state = (
-        console.paint("film found", "green") if found else console.paint("no film", "red", "bold")
+        console.paint("film found", "green")
+        if study.converged
+        else console.paint("no film", "red", "bold")
     )
     name = console.paint(console.say(study.design.name), "bold")
     lines = [f"{name}  {console.say(study.place)} seals  {state}"]
     gap = f"radial gap {text.trimmed(1e3 * study.clearance)} mm"
     if study.growth > 0:
         gap += f", the bore grows {text.number(1e3 * study.growth, 2)} mm more"
-    lines.append(console.wrap(f"at {rows.at(study)}; {gap}", "dim"))
+    lines.append(console.wrap(f"at {rows.at(study)}; {gap}. {rows.strokes(study)}", "dim"))
     if why := rows.why(study):
         lines.append(console.wrap(why, "red"))
     return "\n".join(lines)
 
 
 def _operating(study: SealStudy, console: Console) -> str:
-    columns = [Column("", flexible=True), Column("outstroke", "right"), Column("instroke", "right")]
+    columns = [Column("", flexible=True)]
+    columns += [Column(name, "right") for name in stroke_names(study)]
     found = rows.operating(study)
-    body = [[line.name, line.out, line.back] for line in found]
+    body = [[line.name, line.drive, line.other] for line in found]
     styles = [["", "bold", "bold"] if line.strong else ["", "", ""] for line in found]
     return "\n".join(console.table(columns, body, styles))
 
@@ -102,7 +104,8 @@ def _speeds(study: SealStudy, console: Console) -> str:
         forces = [rows.force(float(row[k])) for row in found.friction]
         dampings = [rows.damping(float(row[k])) for row in found.damping]
         body.append([speed_words(float(found.speeds[k])), *forces, *dampings])
-    lines = [console.heading("friction F and secant damping B over speed, outstroke")]
+    driven = stroke_names(study)[0]
+    lines = [console.heading(f"friction F and secant damping B over speed, {driven}")]
     lines += console.table(columns, body)
     if found.why:
         lines.append(console.wrap(rows.missing(found).strip(), "dim"))

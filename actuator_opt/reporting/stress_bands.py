@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 import numpy as np
 
-from .ink import Point, Polygon
+from .ink import Point
 
 if TYPE_CHECKING:
     from ..finite_elements.result import StressField
@@ -32,7 +32,7 @@ def corner_values(field: StressField) -> np.ndarray:
     return np.asarray(total / weight)
 
 
-def outlines(field: StressField) -> list[list[Polygon]]:
+def outlines(field: StressField) -> list[list[list[Point]]]:
     """Outline of every body, in the field's coordinates."""
     places = [(float(x), float(y)) for x, y in field.nodes]
     found = []
@@ -42,7 +42,7 @@ def outlines(field: StressField) -> list[list[Polygon]]:
     return found
 
 
-def bands(field: StressField, levels: Sequence[float]) -> list[list[Polygon]]:
+def bands(field: StressField, levels: Sequence[float]) -> list[list[list[Point]]]:
     """Outlines of every band between two neighbouring levels, as `outlines`; holes turn back.
 
     Parameters

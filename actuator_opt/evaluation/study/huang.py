@@ -7,8 +7,7 @@ diameter: the standard housings of both diameters are the same. SI; pressures ar
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import nan, pi
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,12 +15,9 @@ import numpy as np
 from ...design.model import Design
 from ...lubrication import Lubricant
 from ...numeric import Array
-from ..barrel import SEAL_STEP
 from ..build import prepare
-from ..film import Row, Solved, ring_films, solve
-from ..film_tables import floats, of_place
 from ..kernel import base
-from ..rings import Place, Ring
+from .film_walk import FilmMap, Sealing, film_map, sealing
 from .huang_published import PAPER
 
 CASE = 0
@@ -39,45 +35,12 @@ PISTON_PRESSURES = (1e6, 2e6, 4e6, 6e6, 7.15e6, 8e6, 10e6)
 
 
 @dataclass(frozen=True, slots=True)
-class Sealing:
-    """Rings of one place that share the oil, from the sealed side outwards.
-
-    Parameters
-    ----------
-    rings : at the design's case
-    outward : whether their counterface moves to the outer side
-    growth : of the counterface over the sealed pressure [m/Pa]
-    outer_pressure : [Pa]
-    """
-
-    rings: tuple[Ring, ...]
-    outward: bool
-    growth: float = 0.0
-    outer_pressure: float = 0.0
-
-    def row(self, pressure: float, speed: float, **changes: float) -> Row:
-        """The rings at a pressure difference and speed; `changes` are of the first."""
-        rings = []
-        for ring in self.rings:
-            grown = self.growth * pressure / ring["section"]
-            left = ring["squeeze"] - grown
-            numbers = {"pressure": pressure, "speed": speed, "squeeze_left": left}
-            rings.append(ring.at(outer_pressure=self.outer_pressure, **numbers))
-        rings[0] = rings[0].at(**changes)
-        return Row(tuple(rings), self.outward)
-
-    def alone(self, index: int) -> Sealing:
-        """One of the rings without the others."""
-        return Sealing((self.rings[index],), self.outward, self.growth, self.outer_pressure)
-
-
-@dataclass(frozen=True, slots=True)
 class Sealings:
     """The sealings of both tests.
 
     Parameters
     ----------
-    piston : drawn inwards, between driven chamber and return
+    piston : between driven chamber and return, its bore drawn in
     rod : of test A, at return pressure
     plunger : the rod's rings on the plunger
     return_pressure : [Pa]
@@ -97,18 +60,13 @@ def sealings(design: Design) -> Sealings:
     v = subject.values()
     found = base(subject, v)
     drain = float(v["supply.return_pressure"])
-    growth = float(np.max(np.real(SEAL_STEP * found.wall.growth))) / float(v["supply.pressure"])
-
-    def own(place: Place) -> tuple[Ring, ...]:
-        return tuple(floats(ring, CASE) for ring in of_place(found.rings, place))
-
-    rod = own("rod")
-    plunger = tuple(ring.at(diameter=PAPER.plunger) for ring in rod)
-    first = rod[0]
+    rod = sealing(found, "rod", CASE)
+    plunger = tuple(ring.at(diameter=PAPER.plunger) for ring in rod.rings)
+    first = rod.rings[0]
     return Sealings(
-        piston=Sealing(own("piston"), False, growth, drain),
-        rod=Sealing(rod, True),
-        plunger=Sealing(plunger, True),
+        piston=sealing(found, "piston", CASE),
+        rod=rod,
+        plunger=replace(rod, rings=plunger),
         return_pressure=drain,
         lubricant=Lubricant(
             dynamic_viscosity=first["viscosity"],
@@ -127,89 +85,6 @@ def _on_films(design: Design) -> Design:
         second = seal.secondary and seal.secondary.model_copy(update=film)
         seals[place] = seal.model_copy(update=film | {"secondary": second})
     return design.model_copy(update={"seals": design.seals.model_copy(update=seals)})
-
-
-def ring_friction(solved: Solved) -> tuple[float, ...]:
-    """Friction of every ring of a row [N]; NaN without a film."""
-    if solved.why:
-        return (nan,) * len(solved.row.rings)
-    return tuple(float(one) for one in solved.row.frictions(solved.values))
-
-
-@dataclass(frozen=True, slots=True)
-class FilmMap:
-    """Friction of a sealing over pressure and speed; NaN where there is no film.
-
-    Parameters
-    ----------
-    pressures, speeds : (p,) [Pa], (v,) [m/s]
-    parts : friction of every ring (p, v, rings) [N]
-    between : pressure between two rings (p, v) [Pa]; NaN for one
-    thickness : mean film of every ring (p, v, rings) [m]
-    viscous : share of the oil's shear in the friction (p, v)
-    why : reasons of the points without a film
-    """
-
-    pressures: Array
-    speeds: Array
-    parts: Array
-    between: Array
-    thickness: Array
-    viscous: Array
-    why: tuple[str, ...]
-
-    @property
-    def friction(self) -> Array:
-        """Of all rings (p, v) [N]."""
-        return np.sum(self.parts, axis=2)
-
-    @property
-    def damping(self) -> Array:
-        """Secant damping (p, v) [N s/m]."""
-        return self.friction / self.speeds
-
-    def at(self, pressure: float, speed: float) -> tuple[int, int]:
-        """Place of a pressure and a speed in the tables."""
-        return (
-            int(np.argmin(np.abs(self.pressures - pressure))),
-            int(np.argmin(np.abs(self.speeds - speed))),
-        )
-
-
-def film_map(
-    sealing: Sealing,
-    pressures: Sequence[float],
-    speeds: Sequence[float] = SPEEDS,
-    **changes: float,
-) -> FilmMap:
-    """The films at every pressure and speed, each begun from the one before."""
-    shape = len(pressures), len(speeds)
-    count = len(sealing.rings)
-    parts, thickness = np.full((2, *shape, count), nan)
-    between, viscous = np.full((2, *shape), nan)
-    why: list[str] = []
-    last: Solved | None = None
-    for i, pressure in enumerate(pressures):
-        for k in range(len(speeds)):
-            j = k if i % 2 == 0 else len(speeds) - 1 - k
-            found = solve(sealing.row(pressure, speeds[j], **changes), last)
-            if found.why:
-                why.append(f"{pressure / 1e6:g} MPa, {speeds[j] * 1e3:g} mm/s: {found.why}")
-                continue
-            last = found
-            parts[i, j] = ring_friction(found)
-            films = ring_films(found.values)
-            thickness[i, j] = [film.thickness for film in films]
-            sheared = [
-                pi * ring["diameter"] * film.drag
-                for ring, film in zip(found.row.rings, films, strict=True)
-            ]
-            viscous[i, j] = sum(sheared) / found.friction()
-            if count == 2:
-                between[i, j] = found.between - found.row.inputs()["outer"]
-    return FilmMap(
-        np.array(pressures), np.array(speeds), parts, between, thickness, viscous, tuple(why)
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,7 +109,7 @@ class CylinderMap:
 
 
 def cylinder_map(found: Sealings, speeds: Sequence[float] = SPEEDS) -> CylinderMap:
-    """Figure 3: piston and rod seals on the outstroke."""
+    """Figure 3: piston and rod seals, driven out."""
     across = [p - found.return_pressure for p in PISTON_PRESSURES]
     return CylinderMap(
         piston=film_map(found.piston, across, speeds),

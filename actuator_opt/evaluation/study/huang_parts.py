@@ -11,10 +11,11 @@ from math import pi
 
 import numpy as np
 
-from ...lubrication import Damping, Elastic, Gap, Lubricant, SmoothFilm, damping, solve_gap
-from ...models.damping import flat_gap
+from ...lubrication import Elastic, Gap, Lubricant, SmoothFilm, solve_gap
+from ...models.damping import flat_gap, secant
 from ...models.fluid import ATMOSPHERIC_PRESSURE
-from .huang import FilmMap, Sealings
+from .film_walk import FilmMap
+from .huang import Sealings
 from .huang_published import PAPER, plausible_chamber
 
 CONTACT_PRESSURE = 0.1e6
@@ -99,25 +100,33 @@ class Total:
     Parameters
     ----------
     pressure, speed : [Pa], [m/s]
-    damping : its parts by name
+    parts : secant damping of every part by its name [N s/m]
     ring_range : damping of the back-up ring at the least and largest contact pressure [N s/m]
     """
 
     pressure: float
     speed: float
-    damping: Damping
+    parts: dict[str, float]
     ring_range: tuple[float, float]
+
+    @property
+    def damping(self) -> float:
+        """B = (seals + back-up rings + chamber)/U [N s/m]."""
+        return sum(self.parts.values())
+
+    @property
+    def seals(self) -> float:
+        """Damping of the seals alone [N s/m]."""
+        return sum(value for name, value in self.parts.items() if name not in (BACK_UP, CHAMBER))
 
     def share(self, name: str) -> float:
         """Of a part in the total."""
-        return self.damping.parts[name] / self.damping.total
+        return self.parts[name] / self.damping
 
     @property
     def beside_share(self) -> float:
         """Of back-up ring, at its largest, and chamber, over the seals."""
-        parts = self.damping.parts
-        seals = sum(value for name, value in parts.items() if name not in (BACK_UP, CHAMBER))
-        return (max(self.ring_range) + parts[CHAMBER]) / seals
+        return (max(self.ring_range) + self.parts[CHAMBER]) / self.seals
 
 
 BACK_UP, CHAMBER = "back-up ring", "chamber"
@@ -132,7 +141,8 @@ def total(found: Sealings, mapped: FilmMap, pressure: float, speed: float) -> To
     ends = [back_up_ring(found.lubricant, elastic, speed, q).damping for q in CONTACT_PRESSURES]
     forces = dict(zip(labels, map(float, mapped.parts[i, j]), strict=True))
     forces |= {BACK_UP: ring.drag, CHAMBER: chamber_drag(speed)}
-    return Total(pressure, speed, damping(forces=forces, speed=speed), (ends[0], ends[1]))
+    parts = {name: float(secant(friction=force, speed=speed)) for name, force in forces.items()}
+    return Total(pressure, speed, parts, (ends[0], ends[1]))
 
 
 def dry_ring(found: Sealings) -> float:

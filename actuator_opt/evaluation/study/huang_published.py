@@ -28,7 +28,6 @@ class Paper:
     plunger: float = 0.125  # table 1, test B: one chamber, step ring and Yx seal
     speeds: tuple[float, float] = (0.5e-3, 10e-3)  # section 2
     shown_a: tuple[float, float] = (9.17e-3, 7.15e6)  # figure 3, speed and pressure
-    shown_b: tuple[float, float] = (5e-3, 6e6)  # figure 5
     pressures: tuple[float, float] = (0.6e6, 6e6)  # section 2, test B
     claimed: tuple[float, float] = (0.65e6, 0.2e6)  # B at these pressures, at no stated speed
     compared: float = 6e6  # figure 15, measured and simulated
@@ -37,14 +36,7 @@ class Paper:
     ring_speeds: tuple[float, float, float] = (0.5e-3, 1e-3, 3e-3)  # figures 19 and 20
     chamber_shear: float = 41.72  # section 4
     dry_friction: tuple[float, float] = (0.1, 0.25)  # step ring and Yx seal, section 3.1.2
-    pressure_viscosity: float = 1.96e8  # p_0 of eq. 2
-    pump_pressure: float = 25e6  # section 2
-    valve_flow: float = 16e-3 / 60  # section 2
-    cut_off: float = 30.0  # section 2, Butterworth
-    interpolation: tuple[float, float] = (
-        1.3691e-26,
-        4.4979e-26,
-    )  # figures 3 and 6: sums of squares
+    interpolation: tuple[float, float] = (1.3691e-26, 4.4979e-26)  # figures 3, 6: sums of squares
 
     @property
     def plunger_area(self) -> float:

@@ -10,7 +10,8 @@ from ...design.model import Design
 from ...fits import fit_double_exponential, fit_power_law
 from ...models.friction import HUANG_TABLE_2
 from . import huang, huang_parts, huang_published, huang_trend
-from .huang import CylinderMap, FilmMap, Sealings
+from .film_walk import FilmMap
+from .huang import CylinderMap, Sealings
 from .huang_parts import RingFilm, Total
 from .huang_published import PAPER, CurveFits
 from .huang_readings import Readings, readings

@@ -18,7 +18,8 @@ from ...numeric import STEP, Array
 from ..film import solve
 from ..rings import Ring
 from ..touch import touch
-from .huang import PRESSURES, TYPICAL, FilmMap, Sealing, Sealings, film_map, ring_friction
+from .film_walk import FilmMap, Sealing, film_map, ring_friction
+from .huang import PRESSURES, TYPICAL, Sealings
 from .huang_published import secant_of
 
 ENDS = (0.6e6, 6e6)

@@ -23,18 +23,18 @@ from ..kernel import Base, Subject, base
 from ..rings import Place, Ring
 from ..touch import touch
 from ..values import of_case
-from .seal_record import RingPoint, SealMap, SealPoint, SealStudy, SqueezeRow, Stroke
+from .film_walk import FilmMap, Stroke, breakaway, film_map, sealing
+from .seal_record import RingPoint, SealPoint, SealStudy, SqueezeRow
 
 if TYPE_CHECKING:
     from ...finite_elements.result import Contact
 
 __all__ = [
+    "FilmMap",
     "RingPoint",
-    "SealMap",
     "SealPoint",
     "SealStudy",
     "SqueezeRow",
-    "seal_map",
     "study",
     "with_elements",
 ]
@@ -46,7 +46,8 @@ HARDEST = 98.0
 """Hardness up to which the scatter is followed, Shore A."""
 
 CURVE_SPEEDS = tuple(float(v) for v in np.geomspace(1e-4, 1.0, 17))
-"""Speeds of the friction curves, m/s."""
+CURVE_SHARES = (0.02, 0.5, 1.0)
+"""Speeds [m/s] of the friction curves, and their shares of the supply pressure."""
 
 MAP_SPEEDS = tuple(float(v) for v in np.geomspace(5e-4, 0.5, 13))
 MAP_SHARES = (0.02, 0.1, 0.25, 0.5, 0.75, 1.0)
@@ -68,8 +69,8 @@ def study(
     Parameters
     ----------
     subject : a design whose elements of the place all ask for a film
-    speed, pressure : of the counterface [m/s], sealed gauge [Pa]; default: those of the moving
-        load case of the highest pressure
+    speed, pressure : of the counterface [m/s], sealed over the outer side [Pa]; default: those of
+        the moving load case of the highest pressure, which also gives the outer side and the oil
     curves : whether to follow friction over speed at three pressures
     mapped : whether to fill a map over speed and pressure
     elements : what `with_elements` found, to be kept
@@ -103,26 +104,27 @@ def study(
         )
     _within(own, place, held)
     supply = float(v["supply.pressure"])
-    growth = float(np.max(np.real(SEAL_STEP * found.wall.growth)))
-    rate = growth / supply if place == "piston" else 0.0
-    rings = _rings(own, case, pressure=held, speed=run, growth_per_pressure=rate)
+    driven = sealing(found, place, case)
     temperature = float(of_case(found.state.temperature, case))
-    out, back = (_point(rings, temperature, stroke) for stroke in ("out", "in"))
-    pressures = [x * supply for x in (MAP_SHARES[0], 0.5, 1.0)]
-    outward = place == "rod"  # a driven piston runs away from the pressure it seals
+    points: dict[Stroke, SealPoint] = {
+        stroke: _point(replace(driven, outward=stroke == "out").row(held, run), temperature)
+        for stroke in ("out", "in")
+    }
+    largest = float(np.max(np.real(SEAL_STEP * found.wall.growth)))
     return SealStudy(
         design=subject.design,
         place=place,
-        out=out,
-        back=back,
+        out=points["out"],
+        back=points["in"],
+        outer_pressure=driven.rings[-1]["outer_pressure"],
         stroke=float(np.squeeze(found.geometry.stroke)),
         clearance=float(np.squeeze(gland_check.clearances(found.geometry, found.state, own[0])[0])),
-        growth=rate * held,
-        squeezes=tuple(_squeezes(subject, found, own, growth if place == "piston" else 0.0)),
-        curves=seal_map(rings, CURVE_SPEEDS, pressures, outward=outward) if curves else None,
-        map=seal_map(rings, MAP_SPEEDS, [x * supply for x in MAP_SHARES], outward=outward)
-        if mapped
+        growth=driven.grown(held),
+        squeezes=tuple(_squeezes(subject, found, own, largest if place == "piston" else 0.0)),
+        curves=film_map(driven, [x * supply for x in CURVE_SHARES], CURVE_SPEEDS)
+        if curves
         else None,
+        map=film_map(driven, [x * supply for x in MAP_SHARES], MAP_SPEEDS) if mapped else None,
         elements=elements,
     )
 
@@ -167,36 +169,21 @@ def _case(ring: Ring, speed: float | None) -> int:
     return int(np.argmax(held))
 
 
-def _rings(
-    own: Sequence[Ring], case: int, *, pressure: float, speed: float, growth_per_pressure: float
-) -> tuple[Ring, ...]:
-    """Rings of floats at a pressure and speed; the outer side is that of the atmosphere."""
-    more = {"outer_pressure": 0.0, "speed": speed, "growth_per_pressure": growth_per_pressure}
-    return tuple(_under(floats(ring, case).at(**more), pressure) for ring in own)
-
-
-def _under(ring: Ring, pressure: float) -> Ring:
-    """A ring at a pressure, with the squeeze that the bore's growth then leaves."""
-    growth = ring["growth_per_pressure"] * pressure
-    return ring.at(pressure=pressure, squeeze_left=ring["squeeze"] - growth / ring["section"])
-
-
-def _point(rings: tuple[Ring, ...], temperature: float, stroke: Stroke) -> SealPoint:
-    outward = stroke == "out"
-    solved = solve(Row(rings, outward))
-    between = solved.between
-    shared = solved.row.between(between) if solved.films else rings
-    points = tuple(_ring_point(ring, solved, i, outward=outward) for i, ring in enumerate(shared))
-    lowest, highest = sorted(_bounds(rings, outward, solved))
+def _point(row: Row, temperature: float) -> SealPoint:
+    solved = solve(row)
+    between, first = solved.between, row.rings[0]
+    shared = solved.row.between(between) if solved.films else row.rings
+    points = tuple(_ring_point(ring, solved, i) for i, ring in enumerate(shared))
+    lowest, highest = sorted(_bounds(solved))
     return SealPoint(
-        stroke=stroke,
-        speed=rings[0]["speed"],
-        pressure=rings[0]["pressure"],
+        stroke="out" if row.outward else "in",
+        speed=first["speed"],
+        pressure=first["pressure"],
         temperature=temperature,
         rings=points,
         why=solved.why,
         between=between - ATMOSPHERIC_PRESSURE,
-        flow=pi * rings[0]["diameter"] * solved.films[0].flow if solved.films else nan,
+        flow=pi * first["diameter"] * solved.films[0].flow if solved.films else nan,
         lower=lowest,
         upper=highest,
     )
@@ -218,7 +205,7 @@ STATED_FACTOR = 1.5
 """Scatter of a stated modulus, as that of the polyurethane of the rod-seal studies."""
 
 
-def _bounds(rings: tuple[Ring, ...], outward: bool, solved: Solved) -> tuple[float, float]:
+def _bounds(solved: Solved) -> tuple[float, float]:
     """Friction with all moduli at their lowest and their highest."""
     if not solved.films:
         return nan, nan
@@ -229,9 +216,9 @@ def _bounds(rings: tuple[Ring, ...], outward: bool, solved: Solved) -> tuple[flo
                 youngs_modulus=modulus_range(ring)[end],
                 face_modulus=ring["face_modulus"] * _face_factor(ring)[end],
             )
-            for ring in rings
+            for ring in solved.row.rings
         )
-        other = solve(Row(scaled, outward), solved)
+        other = solve(Row(scaled, solved.row.outward), solved)
         found.append(nan if other.why else other.friction())
     return found[0], found[1]
 
@@ -244,15 +231,17 @@ def _face_factor(ring: Ring) -> tuple[float, float, float]:
     return low / value, 1.0, high / value
 
 
-def _ring_point(ring: Ring, solved: Solved, index: int, *, outward: bool) -> RingPoint:
+def _ring_point(ring: Ring, solved: Solved, index: int) -> RingPoint:
     contact = touch(ring.at(pressure=abs(ring["pressure"])))
     diameter = ring["diameter"]
-    around = {"line_load": float(contact.line_load), "diameter": diameter}
-    dry = friction.seal_friction(friction_coefficient=ring["asperity_friction"], **around)
-    coulomb = friction.seal_friction(friction_coefficient=ring["friction_coefficient"], **around)
+    coulomb = friction.seal_friction(
+        line_load=float(contact.line_load),
+        diameter=diameter,
+        friction_coefficient=ring["friction_coefficient"],
+    )
     none = np.zeros(0)
     film = solved.films[index] if solved.films else None
-    sign = 1.0 if outward else -1.0
+    sign = 1.0 if solved.row.outward else -1.0
     return RingPoint(
         ring=ring,
         touch=contact,
@@ -267,43 +256,9 @@ def _ring_point(ring: Ring, solved: Solved, index: int, *, outward: bool) -> Rin
         if film is None
         else pi * diameter * ring["asperity_friction"] * film.contact_load,
         coefficient_friction=float(coulomb),
-        breakaway=float(dry),
+        breakaway=breakaway(ring),
         load_residual=nan if film is None else film.load_residual,
         mass_residual=nan if film is None else film.mass_residual,
-    )
-
-
-def seal_map(
-    rings: tuple[Ring, ...], speeds: Sequence[float], pressures: Sequence[float], *, outward: bool
-) -> SealMap:
-    """Friction over speed and pressure on one stroke, each point begun from the one before."""
-    table = np.full((len(pressures), len(speeds)), nan)
-    dry, why = [], []
-    last: Solved | None = None
-    for i, pressure in enumerate(pressures):
-        held = tuple(_under(ring, pressure) for ring in rings)
-        dry.append(_dry(held[0]))
-        for j in range(len(speeds)):
-            k = j if i % 2 == 0 else len(speeds) - 1 - j
-            found = solve(Row(tuple(r.at(speed=speeds[k]) for r in held), outward), last)
-            if found.why:
-                why.append((pressure, speeds[k], found.why))
-                continue
-            last = found
-            table[i, k] = found.friction()
-            if k == 0 and found.pair is not None:
-                dry[-1] = sum(_dry(ring) for ring in found.row.between(found.between))
-    return SealMap(np.array(speeds), np.array(pressures), table, np.array(dry), tuple(why))
-
-
-def _dry(ring: Ring) -> float:
-    """Friction of a ring with all oil squeezed out."""
-    return float(
-        friction.seal_friction(
-            line_load=touch(ring.at(pressure=abs(ring["pressure"]))).line_load,
-            diameter=ring["diameter"],
-            friction_coefficient=ring["asperity_friction"],
-        )
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import isfinite
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,11 +14,10 @@ from ...models import damping, lugre
 from ...version import VERSION
 from ..rings import Place, Ring
 from ..touch import Touch
+from .film_walk import FilmMap, Stroke, drives
 
 if TYPE_CHECKING:
     from ...finite_elements.result import Contact
-
-Stroke = Literal["out", "in"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +61,7 @@ class SealPoint:
     Parameters
     ----------
     stroke : of the counterface past the seal: out of the sealed room, or in
-    speed, pressure, temperature : [m/s], sealed gauge [Pa], [K]
+    speed, pressure, temperature : [m/s], sealed over the outer side [Pa], [K]
     rings : from the sealed side outwards
     why : why there is no film; empty where there is
     between : pressure between two rings, gauge [Pa]; NaN for one
@@ -107,34 +106,14 @@ class SealPoint:
         return sum(ring.breakaway for ring in self.rings)
 
     @property
+    def coefficient_friction(self) -> float:
+        """Friction of all rings by the coefficient of friction, without a film [N]."""
+        return sum(ring.coefficient_friction for ring in self.rings)
+
+    @property
     def damping(self) -> float:
         """Secant damping at the speed [N s/m]."""
         return float(damping.secant(friction=self.friction, speed=self.speed))
-
-
-@dataclass(frozen=True, slots=True)
-class SealMap:
-    """Friction over speed and pressure on the driven stroke; NaN where there is no film.
-
-    Parameters
-    ----------
-    speeds : (v,) [m/s]
-    pressures : (p,) gauge [Pa]
-    friction : (p, v) [N]
-    breakaway : (p,) [N]
-    why : pressure, speed and reason of every point without a film
-    """
-
-    speeds: np.ndarray
-    pressures: np.ndarray
-    friction: np.ndarray
-    breakaway: np.ndarray
-    why: tuple[tuple[float, float, str], ...]
-
-    @property
-    def damping(self) -> np.ndarray:
-        """Secant damping (p, v) [N s/m]."""
-        return np.asarray(self.friction / self.speeds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +126,18 @@ class SqueezeRow:
     loosest: float
     nominal: float
     tightest: float
+
+
+class DoubleStroke(NamedTuple):
+    """Oil past a rod seal, both strokes at one pressure [m^3]; NaN without a film.
+
+    What a stroke out carries out, what one in draws back (negative: it leaks out then too), and
+    what both leave outside.
+    """
+
+    carried_out: float
+    drawn_back: float
+    net: float
 
 
 class LuGre(NamedTuple):
@@ -168,6 +159,7 @@ class SealStudy:
     ----------
     place : piston or rod
     out, back : the operating point on both strokes, at one speed and pressure
+    outer_pressure : gauge, on the outer side: for a piston that of the chamber it moves into [Pa]
     stroke : of the actuator [m]
     clearance : radial, behind the seal [m]
     growth : of the bore over the piston seal at the pressure [m]; 0 at the rod
@@ -181,36 +173,38 @@ class SealStudy:
     place: Place
     out: SealPoint
     back: SealPoint
+    outer_pressure: float
     stroke: float
     clearance: float
     growth: float
     squeezes: tuple[SqueezeRow, ...]
-    curves: SealMap | None
-    map: SealMap | None
+    curves: FilmMap | None
+    map: FilmMap | None
     elements: tuple[Contact, ...] = ()
 
     @property
     def drive(self) -> SealPoint:
-        """The point of a driven actuator: of the rod the stroke out, of a piston the one in.
-
-        A driven piston runs away from the pressure it seals: the bore moves in past its seal.
-        """
-        return self.out if self.place == "rod" else self.back
+        """The point of a driven actuator."""
+        return self.out if drives(self.place) == "out" else self.back
 
     @property
-    def carried_out(self) -> float:
-        """Oil that leaves the sealed room on a stroke out [m^3]."""
-        return self.out.flow * self.stroke / self.out.speed
+    def other(self) -> SealPoint:
+        """The point of the other stroke: of the rod on its way in, of a piston overrun."""
+        return self.back if drives(self.place) == "out" else self.out
 
     @property
-    def drawn_back(self) -> float:
-        """Oil that a stroke in draws back [m^3]; negative: it leaks out then too."""
-        return -self.back.flow * self.stroke / self.back.speed
+    def converged(self) -> bool:
+        """Whether both strokes have a film."""
+        return self.out.converged and self.back.converged
 
     @property
-    def net_leakage(self) -> float:
-        """Oil left outside by a double stroke, both at this pressure [m^3]."""
-        return max(self.carried_out - self.drawn_back, 0.0)
+    def double_stroke(self) -> DoubleStroke | None:
+        """Oil that a rod leaves outside; None for a piston, which does not run both ways so."""
+        if self.place == "piston":
+            return None
+        time = self.stroke / self.out.speed
+        carried, drawn = self.out.flow * time, -self.back.flow * time
+        return DoubleStroke(carried, drawn, max(carried - drawn, 0.0))
 
     @property
     def lugre(self) -> LuGre | None:
@@ -229,14 +223,17 @@ class SealStudy:
 
     def to_dict(self) -> dict[str, Any]:
         """JSON form, SI; null where there is no film."""
-        point = self.out
+        point = self.drive
         both = {"out": self.out, "in": self.back}
+        oil = self.double_stroke
         found = {
             "name": self.design.name,
             "version": VERSION,
             "seal": self.place,
             "speed": point.speed,
             "pressure": point.pressure,
+            "outer_pressure": self.outer_pressure,
+            "drive": point.stroke,
             "temperature": point.temperature,
             "contact": [_contact_dict(ring) for ring in point.rings],
             "friction": {stroke: _friction_dict(one) for stroke, one in both.items()},
@@ -244,14 +241,15 @@ class SealStudy:
             "leakage": {
                 "flow_out": _known(self.out.flow),
                 "flow_in": _known(self.back.flow),
-                "carried_out": _known(self.carried_out),
-                "drawn_back": _known(self.drawn_back),
-                "net": _known(self.net_leakage),
+                **{
+                    name: None if oil is None else _known(getattr(oil, name))
+                    for name in DoubleStroke._fields
+                },
             },
             "lugre": None if self.lugre is None else self.lugre._asdict(),
             "inter_seal_pressure": {k: _known(one.between) for k, one in both.items()},
-            "converged": self.out.converged and self.back.converged,
-            "reason": self.out.why or self.back.why,
+            "converged": self.converged,
+            "reason": point.why or self.other.why,
             "load_residual": _worst(both.values(), "load_residual"),
             "mass_residual": _worst(both.values(), "mass_residual"),
         }
@@ -298,11 +296,11 @@ def _friction_dict(point: SealPoint) -> dict[str, Any]:
         "lower": _known(point.lower),
         "upper": _known(point.upper),
         "breakaway": point.breakaway,
-        "by_coefficient": sum(ring.coefficient_friction for ring in point.rings),
+        "by_coefficient": point.coefficient_friction,
     }
 
 
-def _map_dict(found: SealMap) -> dict[str, Any]:
+def _map_dict(found: FilmMap) -> dict[str, Any]:
     def rows(table: np.ndarray) -> list[list[float | None]]:
         return [[_known(value) for value in row] for row in table]
 
@@ -311,9 +309,6 @@ def _map_dict(found: SealMap) -> dict[str, Any]:
         "pressures": found.pressures.tolist(),
         "friction": rows(found.friction),
         "damping": rows(found.damping),
-        "breakaway": found.breakaway.tolist(),
-        "failed": [
-            {"pressure": pressure, "speed": speed, "reason": why}
-            for pressure, speed, why in found.why
-        ],
+        "breakaway": [_known(value) for value in found.breakaway],
+        "failed": [one._asdict() for one in found.why],
     }

@@ -15,10 +15,17 @@ from ..blocks import ExtraTable
 from ..page import parts_of
 from . import aalto_tables, elasswad_tables, huang_tables
 
-TABLES: dict[str, tuple[Callable[[Evaluation], ExtraTable], ...]] = {
-    "ElAsswad2018": elasswad_tables.TABLES,
-    "AaltoThesis": aalto_tables.TABLES,
-    "Huang2017": huang_tables.TABLES,
+
+def _each(
+    tables: tuple[Callable[[Evaluation], ExtraTable], ...],
+) -> Callable[[Evaluation], list[ExtraTable]]:
+    return lambda evaluation: [table(evaluation) for table in tables]
+
+
+TABLES: dict[str, Callable[[Evaluation], list[ExtraTable]]] = {
+    "ElAsswad2018": _each(elasswad_tables.TABLES),
+    "AaltoThesis": _each(aalto_tables.TABLES),
+    "Huang2017": huang_tables.tables,
 }
 """What each paper's tables are made by; the keys are those of `Design.reproduces`."""
 
@@ -27,4 +34,4 @@ def published_tables(subject: Evaluation | Optimisation) -> list[ExtraTable]:
     """Comparison tables of a design that names a paper; empty for others."""
     evaluation, _ = parts_of(subject)
     paper = evaluation.design.reproduces
-    return [] if paper is None else [table(evaluation) for table in TABLES[paper]]
+    return [] if paper is None else TABLES[paper](evaluation)

@@ -10,11 +10,11 @@ import math
 import numpy as np
 
 from ...design.model import Design
-from ...evaluation import Evaluation
 from ...evaluation.study import huang_published, huang_trend
-from ...evaluation.study.huang import TYPICAL, FilmMap
+from ...evaluation.study.film_walk import FilmMap
+from ...evaluation.study.huang import TYPICAL
 from ...evaluation.study.huang_published import PAPER
-from ...evaluation.study.huang_study import HuangStudy, study
+from ...evaluation.study.huang_study import HuangStudy
 from ...models.friction import HUANG_TABLE_2
 from .. import text
 from ..blocks import ExtraTable, figure
@@ -27,20 +27,10 @@ NEAR = 1.3
 """Factor within which a simulated damping agrees with the measured."""
 STILL = 1.2
 """Factor within which a damping no longer falls at twice the speed."""
-_latest: list[tuple[Design, HuangStudy]] = []
 
 
-def studied(evaluation: Evaluation) -> HuangStudy:
-    """The study of a design; the last one is kept, since every table of a report asks for it."""
-    design = evaluation.design
-    if not _latest or _latest[0][0] is not design:
-        _latest[:] = [(design, study(design))]
-    return _latest[0][1]
-
-
-def cylinder_table(evaluation: Evaluation) -> ExtraTable:
+def cylinder_table(design: Design, found: HuangStudy) -> ExtraTable:
     """Figure 3: the piston cylinder of test A."""
-    found = studied(evaluation)
     mapped, damping = found.cylinder, found.cylinder.damping
     speed, pressure = PAPER.shown_a
     i = int(np.argmin(np.abs(mapped.pressures - pressure)))
@@ -82,10 +72,10 @@ def cylinder_table(evaluation: Evaluation) -> ExtraTable:
     drawn = figure(
         "Huang 2017: piston cylinder, as its figure 3",
         huang_figures.cylinder_figure(found),
-        "Piston and rod seals on their films, outstroke; the rod chamber at return pressure. "
+        "Piston and rod seals on their films, driven out; the rod chamber at return pressure. "
         "Contours over a logarithmic speed.",
     )
-    note = huang_notes.cylinder_note(evaluation, found)
+    note = huang_notes.cylinder_note(design, found)
     return ExtraTable("Huang 2017: piston cylinder, test A", CLAIMS, rows, note, drawn)
 
 
@@ -95,9 +85,8 @@ def _ends(mapped: FilmMap, low: float, high: float, speed: float) -> tuple[float
     )
 
 
-def simulated_table(evaluation: Evaluation) -> ExtraTable:
+def simulated_table(_: Design, found: HuangStudy) -> ExtraTable:
     """Figures 15 and 16: what the paper says of its simulation, by ours."""
-    found = studied(evaluation)
     rows = [*_trends(found), _asymptote(found), *_between(found)]
     drawn = figure(
         "Huang 2017: plunger at 6, 8 and 10 MPa, as its figures 15 and 16",
@@ -191,9 +180,8 @@ def _between(found: HuangStudy) -> list[tuple[str, ...]]:
     ]
 
 
-def ring_table(evaluation: Evaluation) -> ExtraTable:
+def ring_table(_: Design, found: HuangStudy) -> ExtraTable:
     """Figures 17 and 18: the step ring's contact and film over pressure."""
-    found = studied(evaluation)
     stress, mapped = found.stress, found.plunger
     low, high = (float(np.interp(p, stress.pressures, stress.peak)) for p in (2e6, PAPER.tightest))
     last = float(stress.peak[-1])

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from ...evaluation.study.huang_published import PAPER
 from ...evaluation.study.huang_readings import Readings
 from .. import text
 from ..blocks import ExtraTable
 from .aalto_equations import Trace
-from .aalto_text import percent
+from .aalto_text import listed, percent
 
 TRACES: tuple[Trace, ...] = (
     Trace(1, 1, "force balance of the rod", ("models.damping.secant",), "gives the measured B"),
@@ -39,7 +40,13 @@ TRACES: tuple[Trace, ...] = (
         ),
     ),
     Trace(8, 9, "asperity contact", ("models.rough_surface.asperity_pressure",)),
-    Trace(10, 10, "shear stress of asperities", ("lubrication.film.drag",), "0.1 and 0.25"),
+    Trace(
+        10,
+        10,
+        "shear stress of asperities",
+        ("evaluation.film.Row",),
+        f"{listed([text.trimmed(x) for x in PAPER.dry_friction])} times the contact load",
+    ),
     Trace(
         11,
         15,
@@ -49,7 +56,13 @@ TRACES: tuple[Trace, ...] = (
     ),
     Trace(16, 16, "flow", ("lubrication.reynolds.flux",), "negative pressure gradient drives it"),
     Trace(17, 17, "equal flow of both seals", ("lubrication.tandem.solve_tandem",)),
-    Trace(18, 18, "friction of the seals", ("lubrication.film.drag",), "times pi d"),
+    Trace(
+        18,
+        18,
+        "friction of the seals",
+        ("lubrication.film.outputs", "evaluation.film.Row"),
+        "pi d times drag and contact, in its frictions",
+    ),
     Trace(
         19,
         22,
@@ -57,8 +70,14 @@ TRACES: tuple[Trace, ...] = (
         ("lubrication.smooth.solve_gap",),
         "eq. 19 prints q and g: density and viscosity",
     ),
-    Trace(23, 25, "chamber", ("models.damping.flat_gap",), "its 41.72 N s/m has no inputs"),
-    Trace(26, 26, "total damping", ("lubrication.total.damping",)),
+    Trace(
+        23,
+        25,
+        "chamber",
+        ("models.damping.flat_gap",),
+        f"its {PAPER.chamber_shear} N s/m has no inputs",
+    ),
+    Trace(26, 26, "total damping", ("evaluation.study.huang_parts.total",)),
     Trace(
         27,
         28,

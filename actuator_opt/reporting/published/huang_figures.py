@@ -12,7 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...evaluation.study import huang_published
-from ...evaluation.study.huang import TYPICAL, FilmMap
+from ...evaluation.study.film_walk import FilmMap
+from ...evaluation.study.huang import TYPICAL
 from ...evaluation.study.huang_parts import WIDTH
 from ...evaluation.study.huang_published import PAPER, SPEEDS
 from ...evaluation.study.huang_study import HuangStudy

@@ -9,17 +9,18 @@ import math
 
 import numpy as np
 
-from ...evaluation import Evaluation
+from ...design.model import Design
 from ...evaluation.study import huang_published
+from ...evaluation.study.film_walk import Missing
 from ...evaluation.study.huang import TYPICAL
-from ...evaluation.study.huang_parts import BACK_UP, CHAMBER
+from ...evaluation.study.huang_parts import CHAMBER
 from ...evaluation.study.huang_published import PAPER, SEAL_VISCOSITY
 from ...evaluation.study.huang_study import HuangStudy
 from ...evaluation.study.huang_trend import BOTH
 from ...models.friction import HUANG_TABLE_2
 from .. import text
 from .aalto_text import listed, percent
-from .huang_text import mega, newtons, other_cylinder, speed_text, times
+from .huang_text import mega, newtons, other_cylinder, pressure_text, speed_text, times
 
 NEGLIGIBLE = 0.05
 """Share of the seals up to which a part can be neglected."""
@@ -40,31 +41,34 @@ def _dry(viscous: np.ndarray) -> str:
     return f"Oil shears with up to {percent(most)} of the friction."
 
 
-def _reasons(why: tuple[str, ...]) -> str:
+def _reasons(why: tuple[Missing, ...]) -> str:
     """Points without a film."""
     if not why:
         return ""
     more = f", and {len(why) - 1} more" if len(why) > 1 else ""
-    return f" No film at {why[0]}{more}."
+    first = why[0]
+    at = f"{pressure_text(first.pressure)}, {speed_text(first.speed)}"
+    return f" No film at {at}: {first.reason}{more}."
 
 
-def cylinder_note(evaluation: Evaluation, found: HuangStudy) -> str:
+def cylinder_note(design: Design, found: HuangStudy) -> str:
     """Below figure 3."""
     mapped = found.cylinder
     i, j = int(np.argmin(np.abs(mapped.pressures - PAPER.shown_a[1]))), -1
     piston, rod = float(mapped.piston.friction[i, j]), float(mapped.rod.friction[0, j])
     return (
-        f"{other_cylinder(evaluation.design)}Seals, oil and their numbers are those of this "
+        f"{other_cylinder(design)}Seals, oil and their numbers are those of this "
         "design; the paper gives kinds of seals only. Nothing is fitted to its curves. At "
         f"7.15 MPa and 10 mm/s the piston seal takes {newtons(piston)}, the rod's at return "
         f"pressure {newtons(rod)}; wiper and guides are left out. "
-        f"{_dry(mapped.piston.viscous)} The paper's R² of 1 (sum of squares 1.4×10⁻²⁶) is that "
-        "of a surface drawn through every point: it says nothing of the errors."
+        f"{_dry(mapped.piston.viscous)} The paper's R² of 1 (sums of squares "
+        f"{listed([text.number(x, 2) for x in PAPER.interpolation])}) is that of surfaces drawn through "
+        "every point: it says nothing of the errors."
         f"{_reasons(mapped.piston.why + mapped.rod.why)}"
     )
 
 
-def plunger_note(evaluation: Evaluation, found: HuangStudy) -> str:
+def plunger_note(design: Design, found: HuangStudy) -> str:
     """Below figure 6."""
     mapped = found.plunger
     j = mapped.at(0.0, TYPICAL)[1]
@@ -205,11 +209,7 @@ def parts_note(found: HuangStudy, dry: float) -> str:
     chamber = max(one.share(CHAMBER) for one in found.totals)
     member = huang_published.plausible_chamber()
     ring = min(float(np.min(one.film.film)) for one in found.rings)
-    seals = min(
-        sum(value for name, value in one.damping.parts.items() if name not in (BACK_UP, CHAMBER))
-        * one.speed
-        for one in found.totals
-    )
+    seals = min(one.seals * one.speed for one in found.totals)
     verdict = "can be neglected, as the paper says" if most < NEGLIGIBLE else "cannot be neglected"
     if math.isnan(most):
         verdict = "have no film at a point"
@@ -218,7 +218,8 @@ def parts_note(found: HuangStudy, dry: float) -> str:
         f"{percent(chamber, 1)}. This holds for a ring on a smooth film; its least film, "
         f"{text.trimmed(1e6 * ring, 2)} µm, is thinner than the seals' roughness, and dry the ring "
         f"would rub with {newtons(dry)}, {percent(dry / seals)} of the least friction of the "
-        "seals. The chamber's printed 41.72 N·s/m comes without inputs: eta pi d L/h_v gives it "
+        f"seals. The chamber's printed {PAPER.chamber_shear} N·s/m comes without inputs: "
+        "eta pi d L/h_v gives it "
         f"for L = {text.trimmed(1e3 * member.length)} mm, eta = {SEAL_VISCOSITY} Pa·s (both "
         f'assumed) and h_v = {text.trimmed(1e3 * member.gap, 2)} mm, no "fairly large gap"; '
         f"1 mm would need {text.trimmed(huang_published.chamber_length(gap=1e-3), 3)} m of plunger "
@@ -299,5 +300,5 @@ def _proven(found: HuangStudy) -> str:
         f"{text.number(measured.rise, 2)} from {mega(measured.damping[0])} MN·s/m at 0.6 MPa, "
         f"{times(measured.damping[0] / drained.damping[0])} ours without pressure between. "
         "Chosen by us: relief, land, squeeze, lip, oil and roughness; given by the paper: dry "
-        "friction 0.1 and 0.25."
+        f"friction {listed([text.trimmed(x) for x in PAPER.dry_friction])}."
     )

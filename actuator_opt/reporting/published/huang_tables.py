@@ -11,18 +11,19 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ...design.model import Design
 from ...evaluation import Evaluation
 from ...evaluation.study import huang_published, huang_trend
 from ...evaluation.study.huang import TYPICAL
 from ...evaluation.study.huang_parts import BACK_UP, CHAMBER, dry_ring
 from ...evaluation.study.huang_published import PAPER, CurveFits
+from ...evaluation.study.huang_study import HuangStudy, study
 from ...fits import Fit
 from ...models.friction import HUANG_TABLE_2
 from .. import text
 from ..blocks import ExtraTable, figure
 from . import huang_claims, huang_equations, huang_figures, huang_notes
 from .aalto_text import percent
-from .huang_claims import studied
 from .huang_figures import SHOWN
 from .huang_text import (
     mega,
@@ -33,9 +34,8 @@ from .huang_text import (
 )
 
 
-def plunger_table(evaluation: Evaluation) -> ExtraTable:
+def plunger_table(design: Design, found: HuangStudy) -> ExtraTable:
     """Figure 6: table 2 and our films over speed and pressure."""
-    found = studied(evaluation)
     mapped = found.plunger
     columns = [mapped.at(0.0, v)[1] for v in SHOWN]
     rows = []
@@ -55,7 +55,7 @@ def plunger_table(evaluation: Evaluation) -> ExtraTable:
         "flows matched, outstroke.",
     )
     names = ("pressure", f"table 2, MN·s/m at {at} mm/s", "our films", "ours over table 2")
-    note = huang_notes.plunger_note(evaluation, found)
+    note = huang_notes.plunger_note(design, found)
     return ExtraTable("Huang 2017: plunger, test B", names, rows, note, drawn)
 
 
@@ -81,9 +81,8 @@ def _quality(fit: Fit) -> str:
     return f"{square}, {percent(fit.largest_error)}"
 
 
-def fits_table(evaluation: Evaluation) -> ExtraTable:
+def fits_table(_: Design, found: HuangStudy) -> ExtraTable:
     """Figures 7 and 8: both laws through table 2 and through our films."""
-    found = studied(evaluation)
     curves: list[tuple[str, CurveFits]] = [
         (f"table 2, {pressure_text(one.row.pressure)}", one) for one in found.published
     ]
@@ -109,12 +108,11 @@ def fits_table(evaluation: Evaluation) -> ExtraTable:
     )
 
 
-def parts_table(evaluation: Evaluation) -> ExtraTable:
+def parts_table(_: Design, found: HuangStudy) -> ExtraTable:
     """Equation 26 with every part, figures 19 and 20."""
-    found = studied(evaluation)
     rows = []
     for one in found.totals:
-        parts = one.damping.parts
+        parts = one.parts
         seals = [name for name in parts if name not in (BACK_UP, CHAMBER)]
         rows.append(
             (
@@ -123,7 +121,7 @@ def parts_table(evaluation: Evaluation) -> ExtraTable:
                 f"{rounded(parts[BACK_UP])} ({rounded(one.ring_range[0])} to "
                 f"{rounded(one.ring_range[1])})",
                 f"{parts[CHAMBER]:.2f}",
-                rounded(one.damping.total),
+                rounded(one.damping),
                 percent(one.beside_share),
             )
         )
@@ -146,9 +144,8 @@ def parts_table(evaluation: Evaluation) -> ExtraTable:
     return ExtraTable("Huang 2017: plunger part by part", names, rows, note, drawn)
 
 
-def kinds_table(evaluation: Evaluation) -> ExtraTable:
+def kinds_table(_: Design, found: HuangStudy) -> ExtraTable:
     """Why the pressure trends of both cylinders can be opposite, by seal type."""
-    found = studied(evaluation)
     rows = [
         (
             one.name,
@@ -170,9 +167,8 @@ def kinds_table(evaluation: Evaluation) -> ExtraTable:
     return ExtraTable("Huang 2017: why pressure acts both ways", names, rows, note)
 
 
-def relief_table(evaluation: Evaluation) -> ExtraTable:
+def relief_table(_: Design, found: HuangStudy) -> ExtraTable:
     """What the relief of the step ring does to the trend over pressure."""
-    found = studied(evaluation)
     both = list(zip(found.whole, found.drained, strict=True)) or [(math.nan, math.nan)] * len(
         found.reliefs
     )
@@ -207,12 +203,12 @@ def relief_table(evaluation: Evaluation) -> ExtraTable:
     return ExtraTable(title, names, rows or none, note, drawn)
 
 
-def equations_table(evaluation: Evaluation) -> ExtraTable:
+def equations_table(_: Design, found: HuangStudy) -> ExtraTable:
     """Every equation of the paper with its function."""
-    return huang_equations.table(studied(evaluation).readings)
+    return huang_equations.table(found.readings)
 
 
-TABLES: tuple[Callable[[Evaluation], ExtraTable], ...] = (
+TABLES: tuple[Callable[[Design, HuangStudy], ExtraTable], ...] = (
     huang_claims.cylinder_table,
     plunger_table,
     fits_table,
@@ -224,3 +220,9 @@ TABLES: tuple[Callable[[Evaluation], ExtraTable], ...] = (
     equations_table,
 )
 """Every table: test A, test B by its figures, the trends, the equations last."""
+
+
+def tables(evaluation: Evaluation) -> list[ExtraTable]:
+    """Every table, of one study."""
+    found = study(evaluation.design)
+    return [table(evaluation.design, found) for table in TABLES]
