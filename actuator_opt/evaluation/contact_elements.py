@@ -119,12 +119,12 @@ def profiles(found: Iterable[Contact]) -> tuple[ContactProfile, ...]:
 
 
 def _profile(pressure: float, positions: np.ndarray, stresses: np.ndarray) -> ContactProfile:
-    """One profile, thinned; it ends at the outer pressure, zero."""
+    """One profile, thinned, to 10 nm and 10 Pa; it ends at the outer pressure, zero."""
     places = positions - positions[0]
     keep = np.unique(np.linspace(0, len(places) - 1, min(POINTS, len(places))).round().astype(int))
     held = np.maximum(stresses, 0.0)
     return ContactProfile(
         pressure=float(pressure),
-        positions=tuple(float(x) for x in places[keep]),
-        stresses=tuple(float(x) for x in held[keep]),
+        positions=tuple(float(x) for x in places[keep].round(8)),
+        stresses=tuple(float(x) for x in held[keep].round(-1)),
     )
