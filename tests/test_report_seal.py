@@ -109,9 +109,11 @@ def studied(name, place, **point):
 
 @cache
 def failed():
-    """The tandem at little pressure and high speed, where its films do not share the oil."""
-    subject = ao.read(TEXTS["tandem"]).subject()
-    return study(subject, "rod", curves=True, mapped=True, speed=20.0, pressure=1e5)
+    """A step ring alone, relieved so far that the supply pressure lifts it off the rod."""
+    alone = re.sub(r"^    secondary:\n(?:      .*\n)+", "", TANDEM, flags=re.M)
+    lifted = alone.replace("land: 0.6 mm", "land: 0.1 mm").replace("1.4 mm", "2.1 mm")
+    subject = ao.read(written(COMPACT + GUIDE, lifted + GUIDE)).subject()
+    return study(subject, "rod", curves=True, mapped=True)
 
 
 CASES = [("rings", "piston"), ("rings", "rod"), ("tandem", "piston"), ("tandem", "rod")]
@@ -405,7 +407,7 @@ def test_a_piston_is_driven_away_from_its_pressure():
 
 
 def test_flow_across_a_piston_is_told_with_its_way():
-    """Both flows stand in the sentence without sign: out of the higher pressure, or back into it."""
+    """Both flows stand in the sentence without sign: out of the higher pressure, or back in."""
     one = studied("tandem", "piston")
     assert one.drive.flow < 0 < one.other.flow
     driven, overrun = seal_rows.leakage(one).split("; overrun: ")

@@ -57,22 +57,21 @@ def _remarks(ring: Ring) -> Iterator[str]:
 
 
 def _o_ring(ring: Ring) -> Iterator[str]:
+    loosest, tightest = squeezes(ring.at(stretch=0.0), growth=0.0, aside=0.0, ratio=1.0)
+    area = float(np.squeeze(ring.groove.pieces[0].area))
     try:
-        gland = standards.gland(ring["section"])
+        found = gland_deviations(
+            standards.gland(ring["section"]),
+            squeeze_min=float(loosest),
+            squeeze_max=float(tightest),
+            width=ring["groove_width"],
+            fill=area / (ring["groove_width"] * ring["gland_depth"]),
+            stretch=ring["stretch"],
+            back_up_rings=ring.element.back_ups,
+        )
     except InputError as error:
         yield f"{ring.label}: {error.diagnostics[0].message}"
         return
-    loosest, tightest = squeezes(ring.at(stretch=0.0), growth=0.0, aside=0.0, ratio=1.0)
-    area = float(np.squeeze(ring.groove.pieces[0].area))
-    found = gland_deviations(
-        gland,
-        squeeze_min=float(loosest),
-        squeeze_max=float(tightest),
-        width=ring["groove_width"],
-        fill=area / (ring["groove_width"] * ring["gland_depth"]),
-        stretch=ring["stretch"],
-        back_up_rings=ring.element.back_ups,
-    )
     for one in found:
         scale, unit = (1e3, "mm") if one.what == "groove width" else (100, "%")
         yield (

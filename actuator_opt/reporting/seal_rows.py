@@ -249,8 +249,9 @@ def leakage(study: SealStudy) -> str:
     held, run = bars(point.pressure), speed_words(point.speed)
     if oil is None:
         return (
-            f"Flow across the piston while driven, at {held} and {run}: {_across(point.flow)};"
-            f" overrun: {_across(study.other.flow)}."
+            f"Flow across the piston while driven, at {held} and {run}:"
+            f" {_across(point.flow, 'the chamber of higher pressure')};"
+            f" overrun: {_across(study.other.flow, 'it')}."
         )
     back = oil.drawn_back
     told = f"draws {volume(back)} back" if back >= 0 else f"leaks {volume(-back)} more"
@@ -261,9 +262,8 @@ def leakage(study: SealStudy) -> str:
     )
 
 
-def _across(value: float) -> str:
-    way = "out of" if value >= 0 else "back into"
-    return f"{flow(abs(value))} {way} the chamber of higher pressure"
+def _across(value: float, room: str) -> str:
+    return f"{flow(abs(value))} {'out of' if value >= 0 else 'back into'} {room}"
 
 
 def missing(found: FilmMap) -> str:
@@ -301,10 +301,11 @@ def notes(study: SealStudy) -> list[str]:
         if said is None
         else [
             "LuGre for a simulation of this seal: bristle stiffness"
-            f" {said.stiffness / 1e6:.3g} N/um (breakaway over"
+            f" {number(said.stiffness / 1e6, 3)} N/µm (breakaway over"
             f" {trimmed(1e3 * study.design.stiffness.seal_deflection)} mm), damping"
-            f" {said.damping:.3g} N s/m (square root of stiffness times load mass). It cannot"
-            f" create energy up to {1e3 * said.passive_speed:.3g} mm/s; beyond, taper the damping."
+            f" {number(said.damping / 1e3, 3)} kN·s/m (square root of stiffness times load mass)."
+            f" It cannot create energy up to {number(1e3 * said.passive_speed, 3)} mm/s; beyond,"
+            " taper the damping."
         ]
     )
     return [

@@ -374,13 +374,13 @@ def choice_rows(study: Data) -> list[list[str]]:
     rows = [
         [
             "piston / rod",
-            "back-up rings",
+            "back-ups",
             "rings, mm",
             "mass, g",
             "friction, N",
             "breakaway, N",
             "wear, kN/mm",
-            "extrusion factor",
+            "extrusion",
             "meet all",
             "what misses",
         ]
@@ -466,7 +466,7 @@ def optima(rows: list[Data]) -> list[Data]:
 
 def drawing(study: Data) -> Ink:
     """Mass over the friction allowed, one curve a variant."""
-    ink = Ink(186.0, 62.0)
+    ink = Ink(186.0, 46.0)
     points = {
         name: [
             (
@@ -484,9 +484,9 @@ def drawing(study: Data) -> Ink:
     top = 10 * floor(0.1 * least) + 50
     axes = Axes(
         ink,
-        (12.0, 8.0, 160.0, 42.0),
+        (12.0, 8.0, 160.0, 27.0),
         (10 * floor(0.1 * low - 1), 10 * ceil(0.1 * high + 3)),
-        (10 * floor(0.1 * least), top),
+        (10 * floor(0.1 * least) - 10, top),
     )
     axes.frame("Mass, g", "running friction allowed, N")
     styles = {
@@ -504,8 +504,12 @@ def drawing(study: Data) -> Ink:
         ink.path(wall, stroke=color, pen=0.2, dash=(0.6, 0.6))
         ink.text(axes.x(least) + 1, axes.top + 2, "least", color=color, halo=True)
         for x, y in path:
-            ink.circle(axes.x(x), axes.y(y), 0.7, stroke=color, fill=WHITE)
-        ink.text(axes.x(right), axes.y(ys[0]) + aside, VARIANTS[name], color=color, anchor="right")
+            if y <= top:
+                ink.circle(axes.x(x), axes.y(y), 0.7, stroke=color, fill=WHITE)
+        left = name == "free"
+        x, y = (xs[-1], ys[-1]) if left else (right, ys[0])
+        anchor = "left" if left else "right"
+        ink.text(axes.x(x), axes.y(y) + aside, VARIANTS[name], color=color, anchor=anchor)
     return ink
 
 

@@ -45,7 +45,8 @@ TRACES: tuple[Trace, ...] = (
         10,
         "shear stress of asperities",
         ("evaluation.film.Row",),
-        f"{listed([text.trimmed(x) for x in PAPER.dry_friction])} times the contact load",
+        f"{listed([text.trimmed(x) for x in PAPER.dry_friction])} times the contact load, in its "
+        "frictions",
     ),
     Trace(
         11,

@@ -62,8 +62,8 @@ def cylinder_note(design: Design, found: HuangStudy) -> str:
         f"7.15 MPa and 10 mm/s the piston seal takes {newtons(piston)}, the rod's at return "
         f"pressure {newtons(rod)}; wiper and guides are left out. "
         f"{_dry(mapped.piston.viscous)} The paper's R² of 1 (sums of squares "
-        f"{listed([text.number(x, 2) for x in PAPER.interpolation])}) is that of surfaces drawn through "
-        "every point: it says nothing of the errors."
+        f"{listed([text.number(x, 2) for x in PAPER.interpolation])}) is that of surfaces drawn "
+        "through every point: it says nothing of the errors."
         f"{_reasons(mapped.piston.why + mapped.rod.why)}"
     )
 
