@@ -86,7 +86,7 @@ def seal(
 
         streams.out(seal_text(study, **streams.style()), end="")
         say_files(([{"path": write}] if write is not None else []) + shown)
-    if not (study.out.converged and study.back.converged):
+    if not study.converged:
         raise typer.Exit(ExitCode.SOLVER_FAILED)
 
 

@@ -50,6 +50,8 @@ def require_writable(path: Path) -> None:
     folder = path.parent
     if path.is_dir():
         reason = "is a folder"
+    elif path.exists() and not path.is_file():
+        reason = "is no regular file"
     elif not folder.is_dir():
         reason = "its folder does not exist"
     elif not os.access(path if path.exists() else folder, os.W_OK):
@@ -79,7 +81,14 @@ def require_folder(folder: Path) -> None:
 
 
 def write_text(path: Path, text: str) -> Path:
-    """Write a text file whole: aside first, then renamed; no partial file on failure."""
+    """Write a text file whole: aside first, then renamed; no partial file on failure.
+
+    A link stays one: what it points at is written.
+    """
+    path = path.resolve() if path.is_symlink() else path
+    if path.exists() and not path.is_file():
+        message = "is a folder" if path.is_dir() else "is no regular file"
+        raise InputError(Diagnostic(message, "choose another file or folder", str(path)))
     aside = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         aside.write_text(text, encoding="utf-8")

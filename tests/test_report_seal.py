@@ -477,6 +477,8 @@ def test_a_film_that_fails_is_a_sentence_and_no_figure():
     assert f"No film on the outstroke: {one.out.why}" in table["note"]
     friction = next(row for row in table["rows"] if row[0] == "friction, film")
     assert friction[1] == "–"
+    assert float(one.out.rings[0].touch.line_load) == 0
+    assert (one.out.breakaway, one.out.coefficient_friction) == (0.0, 0.0)  # nothing presses
     data = seal_document.sheet_page(one, **SHEET)
     assert data["verdict"]["state"] == "missed"
     assert one.out.why.split(":")[0] in plain(data["sentence"])

@@ -93,7 +93,6 @@ def test_fill_counts_back_ups_tolerance_and_heat(full):
     assert full["seal_fill"]["rod secondary seal"] == near(secondary)
 
 
-@pytest.mark.xfail(strict=True, reason="seal_fill leaves section_tolerance out of the worst ring")
 def test_the_thickest_ring_fills_the_groove_most():
     """A ring at the upper limit of its section fills more of the groove."""
     exact, spread = (metrics(f"{O_RING}, section_tolerance: {t}") for t in ("0 mm", "0.1 mm"))
@@ -203,7 +202,6 @@ def test_idle_rings_of_a_row_carry_their_squeeze_only():
     assert found - alone == near(np.full((2, 1), 2 * 0.1 * idle * pi * ROD))
 
 
-@pytest.mark.xfail(strict=True, reason="count 0 keeps the pressure part of the friction")
 def test_no_ring_has_no_friction():
     """A place without rings rubs nowhere."""
     found = metrics(sets=(("seals.piston.count", "0"), ("seals.rod.count", "0")))
@@ -262,7 +260,6 @@ def test_a_step_ring_stands_on_its_energiser():
     assert found.mass_parts["piston"] == near(disc)
 
 
-@pytest.mark.xfail(strict=True, reason="ring and energiser weighed on one common centre line")
 def test_ring_and_energiser_weigh_on_their_own_centre_lines():
     """By Pappus each of the two has its own diameter."""
     found = evaluated(STEP, O_RING)
@@ -363,8 +360,8 @@ def test_lost_contact_is_zero_and_finite(kind, sets):
     [
         "o_ring",
         "step_ring",
-        pytest.param("u_cup", marks=pytest.mark.xfail(strict=True, reason="nothing says so")),
-        pytest.param("compact", marks=pytest.mark.xfail(strict=True, reason="nothing says so")),
+        pytest.param("u_cup"),
+        pytest.param("compact"),
     ],
 )
 def test_lost_contact_is_said(kind):
@@ -375,7 +372,7 @@ def test_lost_contact_is_said(kind):
 
 @pytest.mark.parametrize(
     "kind",
-    [pytest.param(k, marks=pytest.mark.xfail(strict=True, reason="held at 2 % in silence"))
+    [pytest.param(k)
      for k in ("u_cup", "compact")],
 )  # fmt: skip
 def test_a_film_without_contact_has_no_friction(kind):
@@ -421,7 +418,6 @@ def test_stated_profiles_between_their_pressures():
         assert wear == near(load / width * 0.24, 1e-5)
 
 
-@pytest.mark.xfail(strict=True, reason="the peak adds maxima that lie at different places")
 def test_peak_of_stated_profiles_is_that_of_the_interpolated_one():
     """The peak is the highest point of the profile that is used."""
     found = metrics(TABLE, O_RING)

@@ -96,13 +96,11 @@ def test_a_fault_is_one_line_at_its_place(piston, field, words):
         pytest.param(
             STEP.replace("relief: 1.2 mm", "relief: 3.5 mm"),
             "relief",
-            marks=pytest.mark.xfail(strict=True, reason="land and relief beyond the ring's width"),
             id="relief 3.5 mm and land 1 mm on a ring of 3.9 mm",
         ),
         pytest.param(
             U_CUP.replace("thickness: 1.6 mm", "thickness: 5.9 mm"),
             "thickness",
-            marks=pytest.mark.xfail(strict=True, reason="two lips thicker than the seal"),
             id="two lips of 5.9 mm in a section of 6 mm",
         ),
     ],
@@ -138,17 +136,14 @@ def test_what_a_study_cannot_answer_is_one_line(piston, asked, words):
     assert one.remedy
 
 
-def test_a_pressure_that_opens_a_profile_is_said():
-    """Stresses below the sealed pressure: no film, and the reason."""
+def test_a_profile_below_its_pressure_is_refused():
+    """Stresses nowhere above the sealed pressure hold nothing: a fault of the file."""
     low = TABLE.replace("[120 bar, 260 bar, 0 bar]", "[20 bar, 26 bar, 0 bar]")
-    study = seal(low)
-    assert not study.out.converged
-    assert "opens the contact" in study.out.why
-    json.dumps(study.to_dict(), allow_nan=False)
-    assert any("open" in one for one in evaluated(low, O_RING).warnings)
+    (one,) = fault(low)
+    assert one.path == "seals.piston.contact[1].stresses"
+    assert "holds nothing" in one.message
 
 
-@pytest.mark.xfail(strict=True, reason="no upper modulus at 95 Shore A: NaN in the JSON form")
 def test_a_hard_compound_gives_json_without_nan():
     """Gent has no modulus at 100 Shore A: the bound of a batch of 95 is unknown, which is null."""
     study = seal(O_RING.replace("nbr_90", "pu_95"))
@@ -172,7 +167,6 @@ def test_study_and_evaluation_are_one_film():
     assert running - piston == pytest.approx(study.back.friction, rel=1e-5)
 
 
-@pytest.mark.xfail(strict=True, reason="a map keeps the growth of the point asked for")
 def test_a_map_follows_the_growth_of_its_pressures():
     """At a pressure and speed of the map its friction is that of the point itself."""
     thin = ao.read(
@@ -181,7 +175,7 @@ def test_a_map_follows_the_growth_of_its_pressures():
     )
     table = verbs.seal(thin, place="piston", speed=0.1, pressure=12e6, mapped=True).map
     speed, pressure = float(table.speeds[6]), float(table.pressures[3])
-    point = verbs.seal(thin, place="piston", speed=speed, pressure=pressure).out
+    point = verbs.seal(thin, place="piston", speed=speed, pressure=pressure).drive
     assert table.friction[3, 6] == pytest.approx(point.friction, rel=2e-3)
 
 
@@ -206,7 +200,6 @@ def test_breakaway_of_a_pair_is_one_number():
     assert study.map.breakaway[at] == pytest.approx(study.back.breakaway, rel=1e-3)
 
 
-@pytest.mark.xfail(strict=True, reason="the lip's bending load grows without limit as s -> 0")
 def test_a_lip_close_to_its_root_is_near_one_that_touches_there():
     """A micrometre of clearance at the lip's root is as good as none."""
     none, little = (

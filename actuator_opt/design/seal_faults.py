@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..models.elastomer import modulus_gent
 from ..quantities import INPUTS
 from .seals import BACK_UPS
-from .structure import Loc
+from .structure import Loc, child_at
 from .view import Fault, Materials, Properties, View, length_text
 
 SQUEEZE_RANGE = {
@@ -233,7 +233,9 @@ def shapes(view: View) -> Iterator[Fault]:
                     "widen the ring, or use a smaller O-ring",
                 )
             land, relief = view.number(*loc, "land"), view.number(*loc, "relief")
-            if land is not None and relief is not None and land <= width < (land + relief) * (1 - 1e-9):
+            if land is None or relief is None:
+                continue
+            if land <= width < (land + relief) * (1 - 1e-9):
                 yield Fault(
                     (*loc, "relief"),
                     f"{length_text(relief)}: with the land it is wider than the ring "
@@ -241,12 +243,38 @@ def shapes(view: View) -> Iterator[Fault]:
                     f"write at most {length_text(width - land)}",
                 )
         thickness = view.number(*loc, "thickness")
+        if kind == "u_cup" and thickness is not None:
+            yield from _lip(loc, thickness, width)
         if kind == "u_cup" and thickness is not None and 2 * thickness >= section:
             yield Fault(
                 (*loc, "thickness"),
                 f"{length_text(thickness)}: two lips fill the section ({length_text(section)})",
                 f"write less than {length_text(section / 2)}",
             )
+
+    for name in ("piston", "rod"):
+        loc = ("seals", name, "wiper")
+        thickness, width = view.number(*loc, "thickness"), view.number(*loc, "width")
+        section = view.number(*loc, "section")
+        if thickness is None or width is None:
+            continue
+        yield from _lip(loc, thickness, width)
+        if section is not None and thickness >= section:
+            yield Fault(
+                (*loc, "thickness"),
+                f"{length_text(thickness)}: the lip fills the section ({length_text(section)})",
+                f"write less than {length_text(section)}",
+            )
+
+
+def _lip(loc: Loc, thickness: float, width: float) -> Iterator[Fault]:
+    """A lip is longer than thick: else it is no beam, and no model of ours."""
+    if width < thickness:
+        yield Fault(
+            (*loc, "width"),
+            f"{length_text(width)}: the lip is shorter than thick ({length_text(thickness)})",
+            f"write {length_text(thickness)} or more",
+        )
 
 
 ROOM = 0.1
@@ -269,6 +297,15 @@ def profiles(view: View) -> Iterator[Fault]:
                     "sort the profiles by pressure, each once",
                 )
             last = last if pressure is None else pressure
+            known = [x for x in stresses if isinstance(x, float)]
+            complete = known and len(known) == len(stresses)
+            if complete and pressure is not None and max(known) <= pressure:
+                yield Fault(
+                    (*at, "stresses"),
+                    f"nowhere above the sealed pressure ({INPUTS['pressure'].text(pressure)}): "
+                    "this contact holds nothing",
+                    "state contact pressures, the sealed pressure included",
+                )
             if len(positions) != len(stresses):
                 yield Fault(
                     (*at, "stresses"),
@@ -331,6 +368,13 @@ def films(view: View) -> Iterator[Fault]:
 
 CHECKS = (fields, widths, grooves, squeeze, shapes, profiles, reach, films)
 
+
+def _numbers(block: object) -> dict[str, float]:
+    """Properties that the design states of a material, SI."""
+    pairs = block.items() if isinstance(block, Mapping) else ()
+    return {str(key): value for key, value in pairs if isinstance(value, float)}
+
+
 SLIDING_RING = 3.0
 """Stated modulus over that of the hardness from which a compound has a sliding ring of plastic on
 rubber; a hard polyurethane lies near 1."""
@@ -346,7 +390,8 @@ def sliding_rings(tree: Any, materials: Materials) -> Iterator[Fault]:
         if name is None or kind is None or materials.kind(name) != "seal":
             continue
         try:
-            known = materials.numbers(name)
+            own = child_at(tree, ("materials", name))
+            known = {**materials.numbers(name), **_numbers(own)}
         except InputError:  # a faulty entry is told elsewhere
             continue
         modulus, hardness = known.get("youngs_modulus", 0.0), known.get("hardness", 0.0)

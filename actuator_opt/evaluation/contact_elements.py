@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..design.seals import ContactProfile
-from ..errors import ActuatorError, Diagnostic
+from ..errors import ActuatorError, Diagnostic, Unsolvable
 from .rings import Ring
 from .touch import Touch, touch
 
@@ -104,7 +104,7 @@ def contacts(ring: Ring, supply: float) -> tuple[Contact, ...]:
             )
         )
     if found.failure:
-        raise ActuatorError(
+        raise Unsolvable(
             Diagnostic(
                 f"{ring.label}: finite elements: {found.failure}",
                 "lower the squeeze or the pressure, or widen the groove",

@@ -47,7 +47,6 @@ _NOT_OF_FILM = frozenset(
         "breakaway_ratio",
         "count",
         "friction_coefficient",
-        "growth_per_pressure",
         "hardness",
         "outer_pressure",
         "pressure",

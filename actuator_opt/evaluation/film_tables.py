@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from ..design.model import Design
-from ..errors import Diagnostic, InputError
+from ..errors import Diagnostic, Unsolvable
 from ..numeric import Array
 from ..surrogate import Answer, Axis, Surrogate, surrogate
 from .film import Row, Solved, ring_films, solve
@@ -33,9 +33,9 @@ POINTS = 6
 MOST_AXES = 2
 """Axes of a surrogate: one more would cost `POINTS` times as many films."""
 
-SPEEDS, SPEED_ROOM = 2, 1.12
+SPEEDS, SPEED_ROOM = 3, 1.25
 """Nodes and room of the axis of speed, which every surrogate has, so that the slope by the speed
-follows all other inputs."""
+follows all other inputs. The middle node is the case's own speed."""
 
 CHECKS = 4
 """Points of the box at which a surrogate is compared with the film itself."""
@@ -137,7 +137,7 @@ def table(row: Row, samples: Sequence[Row]) -> Table:
 
     Raises
     ------
-    InputError
+    Unsolvable
         the films have no solution at the row itself, or at too many points of the box
     """
     walker = _Walker(row)
@@ -154,12 +154,12 @@ def table(row: Row, samples: Sequence[Row]) -> Table:
     return Table(found, row, _errors(walker, found, points), float(here.values[-2]))
 
 
-def _unsolved(row: Row, why: str) -> InputError:
+def _unsolved(row: Row, why: str) -> Unsolvable:
     first = row.rings[0]
     message = f"the oil film of the {first.label} has no solution: {why}"
     remedy = 'write "friction: coefficient", or bring squeeze, pressure, speed nearer to practice'
     path = f"{first.groove.path}friction"
-    return InputError(Diagnostic(message, remedy, path=path))
+    return Unsolvable(Diagnostic(message, remedy, path=path))
 
 
 def _axes(

@@ -222,10 +222,13 @@ def _table(ring: Ring) -> Touch:
         for place, one in zip(places, tables, strict=True)
     ]
     load = width * sum(share * mean for share, mean in zip(shares, means, strict=True))
-    knots = sorted({place for row in places for place in row})
-    peak = profile(knots[0])
-    for knot in knots[1:]:
-        peak = maximum(peak, profile(knot))
+    knots = np.array(sorted({place for row in places for place in row}))
+    told = [
+        np.interp(knots, place, one.stresses) for place, one in zip(places, tables, strict=True)
+    ]
+    mixed = sum(np.asarray(share)[..., None] * row for share, row in zip(shares, told, strict=True))
+    highest = np.argmax(real(mixed), axis=-1)[..., None]  # straight lines peak at a knot
+    peak = np.take_along_axis(mixed, highest, axis=-1)[..., 0]
     return Touch(load, width, peak, profile, peak - pressure, width)
 
 

@@ -132,13 +132,11 @@ def lip_free_span(
 
     Returns
     -------
-    span s, t to l [m]; l without interference
+    span s, 0 to l [m]; l without interference
 
     Notes
     -----
     Valid: straight thin lip on a flat surface, hoop stiffness and shear neglected.
-
-    A span shorter than the lip is thick is no beam: it ends there.
 
     References
     ----------
@@ -164,8 +162,8 @@ def lip_free_span(
     for _ in range(LYING_STEPS):
         cube = span * span * span
         span = span - (load * cube * span + slope * span - gap) / (4 * load * cube + slope)
-    span = minimum(maximum(span, lip_thickness), lip_length)
-    return where(real(interference) > 0, span, lip_length)
+    span = minimum(span, lip_length)
+    return where(real(interference) > 0, where(real(root_clearance) > 0, span, 0.0), lip_length)
 
 
 def line_load(
@@ -182,7 +180,8 @@ def line_load(
     """Line load of a lip: preload of the tube plus the share of the pressure the surface carries.
 
     Rim alone: f = k delta + 3 p l/8 (propped cantilever). Lying down, span s:
-    f = (k - 3 D/l^3) delta + p s/3 + 2 D theta/s^2 + p (l - s); continuous, -> p l.
+    f = (k - 3 D/l^3) delta + p s/3 + 2 D theta/s^2 + p (l - s); continuous. A span shorter than
+    the lip is thick is no beam: its bending stays at s = t.
 
     Parameters
     ----------
@@ -233,8 +232,7 @@ def line_load(
     bending = _plate_stiffness(youngs_modulus, poissons_ratio, lip_thickness)
     rim = stiffness * interference + 0.375 * pressure * lip_length
     slope = (root_clearance + interference) / lip_length
-    free = real(span) > 0
-    bend = where(free, 2 * bending * slope / where(free, span, 1.0) ** 2, 0.0)
+    bend = 2 * bending * slope / maximum(span, lip_thickness) ** 2
     flat = (stiffness - 3 * bending / lip_length**3) * interference
     lying = flat + bend + pressure * (lip_length - 2 * span / 3)
     load = where(real(span) < real(lip_length), lying, rim)

@@ -140,5 +140,6 @@ def write_map(found: FilmMap, path: Path) -> writer.ReportFile:
             numbers = (pressure / 1e5, speed, force, secant)
             lines.append(",".join("" if x != x else f"{x:.6g}" for x in numbers))
     text = "\n".join(lines) + "\n"
+    path.parent.mkdir(parents=True, exist_ok=True)
     write_text(path, text)
     return writer.ReportFile(path, hashlib.sha256(text.encode()).hexdigest(), 1)

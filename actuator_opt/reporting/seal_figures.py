@@ -235,9 +235,11 @@ def _breakaways(study: SealStudy) -> list[tuple[float, str]]:
     """
     curves = study.curves
     if len(study.drive.rings) > 1 or curves is None:
-        return [(study.drive.breakaway, BLACK)]
-    pairs = zip(curves.breakaway, STYLES, strict=False)
-    return [(float(dry), style["stroke"]) for dry, style in pairs if dry > 0]
+        found = [(study.drive.breakaway, BLACK)]
+    else:
+        pairs = zip(curves.breakaway, STYLES, strict=False)
+        found = [(float(dry), style["stroke"]) for dry, style in pairs]
+    return [(dry, color) for dry, color in found if dry > 0]
 
 
 def _key(ink: Ink, study: SealStudy, *, shown: bool) -> None:
@@ -334,7 +336,8 @@ def _point(axes: Axes, study: SealStudy) -> None:
     if not inside(axes, place):
         return
     x = axes.x(place)
-    _cross(ink, x, axes.y(math.log10(_friction_marks(study)[0])))
+    if point.coefficient_friction > 0:
+        _cross(ink, x, axes.y(math.log10(point.coefficient_friction)))
     ends = _above([point.lower, point.upper])
     if len(ends) == 2:
         low, high = (axes.y(math.log10(v)) for v in ends)

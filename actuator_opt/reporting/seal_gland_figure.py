@@ -22,6 +22,7 @@ from .blocks import clean
 from .drawing import OUTLINE, THIN, choose_scale, scale_bar
 from .figures import fitted
 from .ink import BLACK, GREY, WHITE, Ink, Point, Polygon, hatch, spread_within, text_width
+from .seal_figures import stroke_names
 from .seal_shapes import Shape, element_shapes, guide_shapes, wiper_shapes
 from .text import number, trimmed
 
@@ -334,7 +335,7 @@ def _sides(frame: _Frame) -> None:
     """Both sides' pressures, the pressure between two rings, the gap and its growth."""
     study, ink = frame.study, frame.ink
     middle = frame.y(study.clearance / 2)
-    held = f"{trimmed(study.out.pressure / 1e5)} bar"
+    held = f"{trimmed(study.drive.pressure / 1e5)} bar"
     left = frame.start - 2.5
     ink.line((left - 3.0, middle), (left + 1.5, middle), pen=THIN)
     ink.arrow((left + 1.5, middle), (left - 3.0, middle), length=1.6)
@@ -347,14 +348,15 @@ def _sides(frame: _Frame) -> None:
     ink.line((frame.end - 0.5, middle), (right + 2.0, middle + 2 * _LINE), pen=THIN)
     for k, words in enumerate(lines):
         ink.text(right + 3.0, middle + k * _LINE, words)
-    if math.isfinite(study.out.between):
+    if math.isfinite(study.drive.between):
         both = [i for i, slot in enumerate(frame.found) if slot.element is not None]
         x = frame.right(both[0]) + 0.9
         y = frame.y(0.0, -_BAND - 3.0)
         ink.line((x, middle), (x, y - 1.6 * math.copysign(1.0, y - middle)), pen=0.1)
         ink.circle(x, middle, 0.4, fill=BLACK, pen=0.1)
-        words = f"between: {number(study.out.between / 1e5)} bar out"
-        words += f", {number(study.back.between / 1e5)} bar in"
+        driven, other = stroke_names(study)
+        words = f"between: {number(study.drive.between / 1e5)} bar {driven}"
+        words += f", {number(study.other.between / 1e5)} bar {other}"
         ink.text(x, y, words, anchor="center")
 
 

@@ -16,7 +16,7 @@ from ..film import Row, Solved, ring_films, solve
 from ..film_tables import floats, of_place
 from ..kernel import Base
 from ..rings import Place, Ring
-from ..touch import touch
+from ..touch import Touch, touch
 from ..values import of_case
 
 Stroke = Literal["out", "in"]
@@ -181,11 +181,16 @@ def ring_friction(solved: Solved) -> tuple[float, ...]:
 
 
 def breakaway(ring: Ring) -> float:
-    """Friction of a ring with all oil squeezed out [N]."""
+    """Friction of a ring with all oil squeezed out [N]; 0 where the pressure lifts it off."""
+    return dry_friction(ring, touch(ring.at(pressure=abs(ring["pressure"]))), "asperity_friction")
+
+
+def dry_friction(ring: Ring, contact: Touch, coefficient: str) -> float:
+    """Friction of a ring's contact by one of its coefficients [N]."""
     return float(
         friction.seal_friction(
-            line_load=touch(ring.at(pressure=abs(ring["pressure"]))).line_load,
+            line_load=contact.line_load,
             diameter=ring["diameter"],
-            friction_coefficient=ring["asperity_friction"],
+            friction_coefficient=ring[coefficient],
         )
     )

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import Diagnostic, InputError
-from ...models import elastomer, friction
+from ...models import elastomer
 from ...models.fluid import ATMOSPHERIC_PRESSURE
 from .. import contact_elements, gland_check
 from ..barrel import SEAL_STEP
@@ -23,7 +23,7 @@ from ..kernel import Base, Subject, base
 from ..rings import Place, Ring
 from ..touch import touch
 from ..values import of_case
-from .film_walk import FilmMap, Stroke, breakaway, film_map, sealing
+from .film_walk import FilmMap, Stroke, dry_friction, film_map, sealing
 from .seal_record import RingPoint, SealPoint, SealStudy, SqueezeRow
 
 if TYPE_CHECKING:
@@ -41,6 +41,9 @@ __all__ = [
 
 HARDNESS_SCATTER = 5.0
 """Scatter of a compound's hardness between batches, Shore A (usual delivery tolerance)."""
+
+SLOWEST = 1e-6
+"""Least speed a seal is looked at, m/s: a tenth of a millimetre in a minute and a half."""
 
 HARDEST = 98.0
 """Hardness up to which the scatter is followed, Shore A."""
@@ -94,11 +97,11 @@ def study(
                 path=f"seals.{place}",
             )
         )
-    if not run > 0:
+    if not run >= SLOWEST:
         raise InputError(
             Diagnostic(
                 f"speed {run:g} m/s: a film and a secant damping need a moving seal",
-                'state a speed above zero, e.g. --speed "0.1 m/s"',
+                f'state {SLOWEST:g} m/s or more, e.g. --speed "0.1 m/s"',
                 path=f"seals.{place}",
             )
         )
@@ -174,7 +177,7 @@ def _point(row: Row, temperature: float) -> SealPoint:
     between, first = solved.between, row.rings[0]
     shared = solved.row.between(between) if solved.films else row.rings
     points = tuple(_ring_point(ring, solved, i) for i, ring in enumerate(shared))
-    lowest, highest = sorted(_bounds(solved))
+    lowest, highest = _bounds(solved)
     return SealPoint(
         stroke="out" if row.outward else "in",
         speed=first["speed"],
@@ -206,10 +209,10 @@ STATED_FACTOR = 1.5
 
 
 def _bounds(solved: Solved) -> tuple[float, float]:
-    """Friction with all moduli at their lowest and their highest."""
+    """Least and largest friction over the scatter of all moduli; NaN where an end has no film."""
     if not solved.films:
         return nan, nan
-    found = []
+    found = [solved.friction()]
     for end in (0, 2):
         scaled = tuple(
             ring.at(
@@ -219,8 +222,10 @@ def _bounds(solved: Solved) -> tuple[float, float]:
             for ring in solved.row.rings
         )
         other = solve(Row(scaled, solved.row.outward), solved)
-        found.append(nan if other.why else other.friction())
-    return found[0], found[1]
+        if other.why:
+            return nan, nan
+        found.append(other.friction())
+    return min(found), max(found)
 
 
 def _face_factor(ring: Ring) -> tuple[float, float, float]:
@@ -234,11 +239,6 @@ def _face_factor(ring: Ring) -> tuple[float, float, float]:
 def _ring_point(ring: Ring, solved: Solved, index: int) -> RingPoint:
     contact = touch(ring.at(pressure=abs(ring["pressure"])))
     diameter = ring["diameter"]
-    coulomb = friction.seal_friction(
-        line_load=float(contact.line_load),
-        diameter=diameter,
-        friction_coefficient=ring["friction_coefficient"],
-    )
     none = np.zeros(0)
     film = solved.films[index] if solved.films else None
     sign = 1.0 if solved.row.outward else -1.0
@@ -255,8 +255,8 @@ def _ring_point(ring: Ring, solved: Solved, index: int) -> RingPoint:
         asperity_friction=nan
         if film is None
         else pi * diameter * ring["asperity_friction"] * film.contact_load,
-        coefficient_friction=float(coulomb),
-        breakaway=breakaway(ring),
+        coefficient_friction=dry_friction(ring, contact, "friction_coefficient"),
+        breakaway=dry_friction(ring, contact, "asperity_friction"),
         load_residual=nan if film is None else film.load_residual,
         mass_residual=nan if film is None else film.mass_residual,
     )
