@@ -27,7 +27,7 @@ OTHERS = (
     {"cylinder.stroke": "120 mm"},
     {"cylinder.stroke": "800 mm", "rod.outer_diameter": "28 mm"},
     {"cylinder.bore": "63 mm", "retention.thread.diameter": "73 mm"},
-    {"cylinder.bore": "28 mm", "rod.outer_diameter": "18 mm", "rod.extension": "0 mm"},
+    {"cylinder.bore": "32 mm", "rod.outer_diameter": "18 mm", "rod.extension": "0 mm"},
     {"fluid.material": "iso_vg_46", "fluid.air_content": "3 %"},
     {"ports.throttle.area": "0.02 cm^2", "lines[2].length": "5 m"},
     {"ports.reducing_valve.natural_frequency": "60 Hz"},

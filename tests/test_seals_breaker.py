@@ -1,5 +1,6 @@
 """Faults found by attacking the seals: each stands here until it is mended."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -31,7 +32,14 @@ NO_STRESS = """    contact:
 
 def _seal(folder, *options):
     command = [sys.executable, "-m", "actuator_opt", "seal", str(KNEE), "--seal", "rod", *options]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return subprocess.run(
+        command,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"PYTHONPATH": str(DESIGNS.parent)},
+    )
 
 
 def _with_rod(lines):
