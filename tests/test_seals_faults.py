@@ -12,7 +12,7 @@ from seal_designs import KINDS, O_RING, STEP, U_CUP, evaluated, text
 
 import actuator_opt as ao
 from actuator_opt import verbs
-from actuator_opt.errors import InputError
+from actuator_opt.errors import ActuatorError, InputError
 from actuator_opt.models.seals import LAWS
 
 PROFILES = (
@@ -281,7 +281,7 @@ def test_random_seals_give_numbers_or_reasons(piston, rod, wall, bore, load):
         sets.append(("load_cases[push].side_load", "80 N"))
     try:
         found = ao.evaluate(ao.read(text(piston, rod), set=sets))
-    except InputError as refused:
+    except ActuatorError as refused:
         for one in refused.diagnostics:
             assert one.message
             assert one.remedy
