@@ -50,6 +50,29 @@ def said(found, factor):
     return found.coefficient.verdict(index), found.film.verdict(index)
 
 
+def solved(ring, *, outward=False):
+    """The film of one ring; pulled, the faces run inwards."""
+    return solve(Row((ring,), outward))
+
+
+def on_film(found, names, of_ring):
+    """A number of every ring, from its parts on the film, mean of both by their friction.
+
+    `of_ring(ring, film, slope)`; `slope` of friction over friction by name, and the oil's shear
+    over friction as "shear".
+    """
+    total = weighed = 0.0
+    for ring in found.rings:
+        film = solved(ring)
+        mu, around = ring["asperity_friction"], math.pi * ring["diameter"]
+        own = film.friction() / around
+        slope = {n: (x[0] + mu * x[1]) / own for n, x in slopes(film, names).items()}
+        slope["shear"] = film.values[0] / own
+        weighed += film.friction() * of_ring(ring, film, slope)
+        total += film.friction()
+    return weighed / total
+
+
 class Hand:
     """The default line load by hand, f = W phi, phi = (4/3) E g(C) + k p, of one ring."""
 
@@ -110,6 +133,18 @@ def thinning(name):
     return -b * here / (here - 0.7) * math.log(here) - 7e-4 * OILS[name][1]
 
 
+def thickening(name):
+    """Fall of the oil's pressure coefficient, d ln alpha/d ln T, between its points."""
+    stated = load_library().get(OILS[name][0]).properties["pressure_viscosity"]
+    at, alpha = np.array(stated.arguments), np.array(stated.values)
+    here = OILS[name][1]
+    if here < at[0]:
+        return 0.0
+    k = int(np.searchsorted(at, here)) - 1
+    slope = (alpha[k + 1] - alpha[k]) / (at[k + 1] - at[k])
+    return here * slope / np.interp(here, at, alpha)
+
+
 def test_table_1_as_printed():
     """The ten rows with their words; only the pressure is turned against the handbook's table."""
     printed = [
@@ -133,17 +168,57 @@ def test_the_point_is_the_one_of_most_friction(name, found):
     assert found.coefficient.running == pytest.approx(by_hand, rel=1e-9)
 
 
-def test_squeeze(found):
-    """By coefficient d ln f/d ln C0 = C0 phi'(C)/phi > 0.
+def test_o_rings_in_the_place_of_step_rings():
+    """Section and squeeze are the design's; nothing of the step ring is left."""
+    design = verbs.read(DESIGNS / "aalto_40_25_220.yaml").design
+    assert design.seals.piston.type == design.seals.rod.type == "step_ring"
+    rings = trends.trends(design).rings
+    assert [ring.name for ring in rings] == ["piston", "rod"]
+    for ring in rings:
+        own, stated = ring.element, getattr(design.seals, ring.name)
+        assert (own.type, own.compound, own.count) == ("o_ring", "nbr_70", 1.0)
+        assert (own.section, own.squeeze) == (stated.section, stated.squeeze)
+        assert {own.thickness, own.width, own.land, own.relief, own.taper} == {None}
+        assert ring["groove_width"] != pytest.approx(stated.groove_width)
+        assert not {"width", "land", "thickness"} & ring.numbers.keys()
 
-    Lindley's g = 1.25 C^1.5 + 50 C^6 rises and k never falls. On the film the oil takes a share of
-    the pressure, so the preload weighs more: larger still.
+
+def squeeze_by_shares(ring, film, kink):
+    """Elasticity of the asperities' load, (e_f - s e_b)/(1 - s), with s the oil's share of load.
+
+    The oil keeps its mean pressure and so takes its share of a wider contact, b = W [2 C + 0.13 +
+    0.32 (1 - exp(-2.1 p/E))]; the asperities hold the rest of the load.
+    """
+    hand = Hand(ring)
+    spread = 0.32 * (1 - math.exp(-2.1 * ring["pressure"] / ring["youngs_modulus"]))
+    e_load = hand.ring["squeeze"] * hand.slope(kink=kink)
+    e_width = 2 * ring["squeeze"] / (2 * hand.c + 0.13 + spread)
+    share = 1 - film.values[1] / (ring["section"] * hand.phi)
+    return (e_load - share * e_width) / (1 - share)
+
+
+def test_squeeze(name, found):
+    """By coefficient d ln f/d ln C0 = C0 phi'(C)/phi > 0: Lindley's g rises and k never falls.
+
+    On the film less: the contact widens faster than its load grows below a squeeze of 15 %, where
+    k is constant. The oil takes its share of the new width; on the knee that is all of the gain,
+    to within 1 %. What the law's closed forms say with the oil at its mean pressure holds within
+    0.02.
     """
     ends = [mean(found, lambda h, k=k: h.ring["squeeze"] * h.slope(kink=k)) for k in kinks(found)]
     dry, wet = pair(found, "squeeze")
     assert min(ends) * (1 - 1e-4) <= dry <= max(ends) * (1 + 1e-4)
-    assert wet > dry > 0
-    assert said(found, "squeeze") == ("agrees", "agrees")
+    told = [
+        on_film(found, [], lambda ring, film, _, k=k: squeeze_by_shares(ring, film, k))
+        for k in kinks(found)
+    ]
+    assert min(told) - 0.02 <= wet <= max(told) + 0.02
+    assert wet < dry
+    if name == "knee":  # so little that its sign says nothing
+        assert abs(wet) < 0.01
+        assert said(found, "squeeze")[0] == "agrees"
+    else:
+        assert said(found, "squeeze") == ("agrees", "agrees")
 
 
 def test_hardness(found):
@@ -162,28 +237,55 @@ def test_hardness(found):
 def test_speed(name, found):
     """The Stribeck curve falls by -2 y^2 (r - 1) e^(-y^2)/(1 + (r - 1) e^(-y^2)), y = v/v_s.
 
-    0.4 m/s is 235 Stribeck speeds: nothing is left of it. On the film speed lifts the ring off
-    the asperities while most of the friction is theirs: it falls in both.
+    0.4 m/s is 235 Stribeck speeds: nothing is left of it. On the film the faces are closest near
+    the outer edge, where the energised ring's pressure stands out most over the oil's. Pulled, they
+    part in the direction of motion: the oil loses pressure, and asperities carry more than at rest.
     """
     y, ratio = found.stribeck_ratio, found.rings[0]["breakaway_ratio"]
     fall = (ratio - 1) * math.exp(-y * y)
     dry, wet = pair(found, "relative motion speed")
     assert dry == pytest.approx(-2 * y * y * fall / (1 + fall), rel=1e-4, abs=1e-12)
-    assert wet < 0
+    assert wet > 0
     dry_said = {"knee": "no effect"}.get(name, "agrees")
-    assert said(found, "relative motion speed") == (dry_said, "agrees")
+    assert said(found, "relative motion speed") == (dry_said, "disagrees")
+    for ring in found.rings:
+        inwards = solved(ring)
+        assert np.argmin(inwards.films[0].film) > 60  # of 121 nodes from the sealed side
+        rest = solved(ring.at(speed=1e-3 * ring["speed"]))
+        assert inwards.values[1] > rest.values[1]
+
+
+def test_speed_lifts_the_ring_off_the_other_way(found):
+    """Pushed out under the same pressure the faces close in the direction of motion.
+
+    Then the oil gains pressure and asperities carry less, as the table's mixed lubrication has it.
+    Near rest both ways carry the same and the change with speed is equal and opposite: Reynolds'
+    equation is linear in a small speed.
+    """
+    for ring in found.rings:
+        out, back = solved(ring, outward=True), solved(ring)
+        slow = ring.at(speed=1e-3 * ring["speed"])
+        rest = [solved(slow, outward=way).values[1] for way in (True, False)]
+        assert out.values[1] < min(rest)
+        assert max(rest) < back.values[1]
+        assert rest[0] == pytest.approx(rest[1], rel=1e-3)
+        both = [solved(ring.at(speed=1e-2 * ring["speed"]), outward=w) for w in (True, False)]
+        gains = [one.values[1] - sum(rest) / 2 for one in both]
+        assert gains[0] == pytest.approx(-gains[1], rel=0.02)
 
 
 def test_section(found):
     """Load f = W phi(C0 - u/W): 1 + (u/W) phi'/phi, a little above 1.
 
-    On the film all lengths of the contact grow with W at the same stresses, and asperities follow
-    stresses: 1 but for the oil's lift, which a wider contact changes.
+    On the film all lengths of the contact grow with W at the same stresses. Motion enters
+    Reynolds' equation as eta v b/sigma^2, so W acts like speed beside the load's own 1, which the
+    oil's shear (sigma p, no length) lacks: 1 - shear share + the speed's elasticity.
     """
     ends = [1 + mean(found, lambda h, k=k: h.grown * h.slope(kink=k)) for k in kinks(found)]
     dry, wet = pair(found, "cross section of seal")
     assert min(ends) - 1e-4 <= dry <= max(ends) + 1e-4
-    assert wet == pytest.approx(1, abs=0.05)
+    shear = on_film(found, [], lambda _, film, slope: slope["shear"])
+    assert wet == pytest.approx(1 - shear + pair(found, "relative motion speed")[1], abs=2e-3)
     assert said(found, "cross section of seal") == ("agrees", "agrees")
 
 
@@ -205,22 +307,21 @@ def test_pressure(found):
 def test_temperature(name, found):
     """By coefficient the preload's share of d ln E/d ln T, < 0.
 
-    The oil enters a film only as viscosity times speed, so its share is the speed's elasticity
-    times d ln eta/d ln T, > 0 in mixed lubrication; the rubber's is that of the hardness times
-    d ln E/d ln T over d ln E/d ln S, < 0. On the slow cylinder the rubber's is the larger by far;
-    on the fast knee the two nearly cancel. Left out by hand, within 5 % of the oil's: Roelands'
-    law.
+    The oil's share is the film's elasticity by viscosity times d ln eta/d ln T, and that by the
+    pressure coefficient times d ln alpha/d ln T; < 0 where friction rises with speed, which enters
+    as its product with viscosity. The rubber's is that of the hardness times d ln E/d ln T over
+    d ln E/d ln S, < 0 too.
     """
     dry, wet = pair(found, "temperature")
     rubber = warming(name, found)
     assert dry == pytest.approx(rubber * mean(found, lambda h: h.preload / h.phi), rel=2e-3)
-    speed, hardness = (pair(found, f)[1] for f in (NAMES[3], NAMES[2]))
-    by_oil = speed * thinning(name)
+    hardness = pair(found, "seal material hardness")[1]
+    slope = {"viscosity": thinning(name), "viscosity_coefficient": thickening(name)}
+    by_oil = on_film(found, list(slope), lambda _, film, e: sum(e[n] * slope[n] for n in slope))
     by_rubber = hardness / gent(found.rings[0]["hardness"]) * rubber
-    assert by_rubber < 0 < by_oil
-    assert wet == pytest.approx(by_oil + by_rubber, abs=0.05 * by_oil + 1e-3)
-    wet_said = {"knee": "disagrees"}.get(name, "agrees")
-    assert said(found, "temperature") == ("agrees", wet_said)
+    assert max(by_rubber, by_oil) < 0
+    assert wet == pytest.approx(by_oil + by_rubber, rel=0.01)
+    assert said(found, "temperature") == ("agrees", "agrees")
 
 
 def test_groove_width(found):
@@ -256,24 +357,26 @@ def test_roughness_is_unknown_to_a_coefficient(found):
 
 
 def test_roughness_on_the_film(name, found):
-    """sigma^2 = sigma_1^2 + sigma_2^2: the metal weighs 1/16 of a ring that is 4 times as rough.
+    """Both faces together by similarity; pulled fast, friction falls with roughness, slow it rises.
 
-    On the fast knee rough faces stand further apart, so the oil lifts and shears less and the
-    asperities gain; friction rises with both, for the ring against the print. On the slow cylinder
-    there is no lift to lose, and no effect.
+    In units of the composite roughness sigma a film knows three numbers: eta v b/(p sigma^2),
+    asperities E eta_a sqrt(R) sigma^1.5/p, and elastic deflection p b/(E sigma); shear is sigma p
+    times a function of them. So sigma acts as the inverse square of speed, as its power 1.5 of the
+    asperities' density and, over density, as the modulus: with elasticities of friction e,
+    e_sigma = shear share - 2 e_v + 1.5 e_density + (e_E - e_density).
     """
     metal, ring = pair(found, NAMES[1])[1], pair(found, NAMES[9])[1]
-    if name != "knee":
-        assert max(abs(metal), abs(ring)) < trends.NEGLIGIBLE
-        assert said(found, NAMES[1])[1] == said(found, NAMES[9])[1] == "no effect"
-        return
-    assert said(found, NAMES[1])[1], said(found, NAMES[9])[1] == ("agrees", "disagrees")
-    assert metal / ring == pytest.approx(1 / 16, rel=0.25)
-    for one in found.rings:
-        parts = slopes(solve(Row((one,), False)), ["0.seal_roughness", "0.counterface_roughness"])
-        for drag, load, thickness, *_ in parts.values():
-            assert drag < 0 < load
-            assert thickness > 0
+    names = ["speed", "0.asperity_density", "0.face_modulus"]
+
+    def by_hand(_, film, slope):
+        speed, density, modulus = (slope[name] for name in names)
+        return slope["shear"] - 2 * speed + 0.5 * density + modulus
+
+    told = on_film(found, names, by_hand)
+    assert metal + ring == pytest.approx(told, rel=0.02)
+    assert abs(metal) < abs(ring) / 8  # (sigma_1/sigma)^2 of 1/17 and 16/17, but for the flow
+    expected = {"knee": ("disagrees", "agrees")}.get(name, ("no effect", "disagrees"))
+    assert (said(found, NAMES[1])[1], said(found, NAMES[9])[1]) == expected
 
 
 @pytest.mark.parametrize(
@@ -291,7 +394,7 @@ def test_first_order_is_that_of_films_solved_again(name, found, factor, number):
         friction = 0.0
         for ring in found.rings:
             row = Row((ring.at(**{number: change * ring[number]}),), False)
-            friction += sum(solve(row, solve(Row((ring,), False))).friction())
+            friction += solve(row, solved(ring)).friction()
         sums.append(friction)
     again = math.log(sums[0] / sums[1]) / (2 * math.log(1.02))
     assert pair(found, factor)[1] == pytest.approx(again, rel=0.02, abs=2e-6)

@@ -4,7 +4,7 @@ Table 1 lists what raises the friction of an O-ring, from an O-ring handbook. He
 design is moved by a little and the friction of its two rings is evaluated again: with coefficients
 of friction, and on the oil film. The relative change of friction over that of the factor, the
 elasticity, bears the verdict. The film answers to the first order by its exact slopes, as in every
-evaluation; how the oil's pressure coefficient changes with temperature is left out there.
+evaluation; where a contact law has a kink, as at a squeeze of 15 %, the slope is of one side.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 
 from ...design.model import Design
 from ...design.seals import Seal
-from ...errors import InputError
+from ...errors import InputError, Unsolvable
 from ..build import prepare
 from ..film_tables import floats
 from ..kernel import Subject, base, compute
@@ -198,13 +198,29 @@ def _elastomer_o_ring(design: Design, place: Place, numbers: Container[str]) -> 
     return seal.type == "o_ring" and not seal.contact and not stated
 
 
+_OF_ANOTHER = (
+    "friction_coefficient",
+    "breakaway_ratio",
+    "stribeck_speed",
+    "groove_width",
+    "thickness",
+    "width",
+    "land",
+    "relief",
+    "taper",
+    "root_clearance",
+    "back_up_material",
+    "back_up_thickness",
+)
+"""Fields of another type of seal that say nothing of the O-ring put in its place."""
+
+
 def _fitted(design: Design, replaced: Sequence[Place], model: str) -> Design:
     """The design with one O-ring at piston and rod and nothing beside them."""
     alone: dict[str, Any] = {"secondary": None, "wiper": None, "guide": None, "count": 1.0}
-    other: dict[str, Any] = dict.fromkeys(
-        ("friction_coefficient", "breakaway_ratio", "stribeck_speed", "groove_width")
-    )
+    other: dict[str, Any] = dict.fromkeys(_OF_ANOTHER)
     other |= {"type": "o_ring", "compound": ELASTOMER, "contact": (), "back_up": "none"}
+    other |= {"viscous_friction": 0.0}
     seals: dict[str, Any] = {}
     for place in PLACES:
         update = {"friction": model} | alone | (other if place in replaced else {})
@@ -219,7 +235,7 @@ def _model(subject: Subject) -> Model:
     nothing = (math.nan,) * len(FACTORS)
     try:
         found = compute(subject, subject.values(_moved(subject))).computed.metrics
-    except InputError as error:
+    except (InputError, Unsolvable) as error:
         return Model(math.nan, math.nan, nothing, error.diagnostics[0].message)
     columns = 2 * len(FACTORS) + 1
     (running,), (breakaway,) = (

@@ -17,7 +17,8 @@ from ...evaluation.study.aalto import PAPER
 from ...evaluation.study.aalto_dynamic import DynamicTest, Neighbour, Response
 from ...numeric import Array
 from .. import text
-from .aalto_text import area_text, close, listed, other_cylinder, percent
+from .aalto_text import area_text, other_cylinder
+from .paper_text import close, listed, percent
 
 NOTHING = 0.06
 """Change of a stiffness, over the static one, that counts as none."""

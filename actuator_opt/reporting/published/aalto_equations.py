@@ -2,22 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from ..blocks import ExtraTable
-
-
-@dataclass(frozen=True, slots=True)
-class Trace:
-    """Equations first to last, what they say, our functions (module.function of `models`)."""
-
-    first: int
-    last: int
-    subject: str
-    functions: tuple[str, ...] = ()
-    remark: str = ""
-    """Beside the functions, or instead of them: out of scope, and why."""
-
+from .paper_text import TRACE_COLUMNS, Trace, trace_rows
 
 _RECORD = "out of scope: evaluates measured records, not a design"
 
@@ -114,19 +100,11 @@ TRACES: tuple[Trace, ...] = (
 
 def table() -> ExtraTable:
     """Every equation of the thesis with its function."""
-    rows = tuple(
-        (
-            f"{one.first}" if one.first == one.last else f"{one.first}–{one.last}",
-            one.subject,
-            "; ".join(one.functions) or "–",
-            one.remark or "–",
-        )
-        for one in TRACES
-    )
     note = (
         "Functions stand in actuator_opt.models with formula, range and source. The thesis prints "
         "46 equations; dq/dt of eq. 43–45 and the force balance of eq. 40–42 are rows of one "
         "system here."
     )
-    columns = ("equation", "subject", "function", "remark")
-    return ExtraTable("Aalto thesis: where its equations are", columns, rows, note)
+    return ExtraTable(
+        "Aalto thesis: where its equations are", TRACE_COLUMNS, trace_rows(TRACES), note
+    )

@@ -16,7 +16,8 @@ from ...evaluation.study import aalto
 from ...evaluation.study.aalto import PAPER, Theory
 from ...evaluation.study.aalto_static import CONTENTS, ENTRAINED, Answer, StaticTest
 from .. import text
-from .aalto_text import SLASH, air_text, other_cylinder, percent, scaled
+from .aalto_text import air_text, other_cylinder
+from .paper_text import SLASH, percent, scaled
 
 SAME = 0.1
 """Relative difference up to which two air contents, or two displacements, count as the same."""

@@ -24,7 +24,8 @@ from . import (
     aalto_static_notes,
     aalto_trends,
 )
-from .aalto_text import SLASH, air_text, area_text, percent, scaled
+from .aalto_text import air_text, area_text
+from .paper_text import SLASH, percent, scaled
 
 
 def _kn_per_mm(values: Array) -> str:

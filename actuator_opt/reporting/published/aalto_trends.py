@@ -12,7 +12,7 @@ from ...evaluation.study import trends
 from ...evaluation.study.trends import FACTORS, Model, Trends, Verdict
 from .. import text
 from ..blocks import ExtraTable
-from .aalto_text import listed
+from .paper_text import listed
 
 TITLE = "Aalto thesis: what raises O-ring friction, its table 1"
 COLUMNS = ("to increase friction, as printed", "ours by coefficient", "ours on the oil film")
@@ -44,37 +44,44 @@ COEFFICIENT: Reasons = {
 }
 """Why the friction by coefficients goes the way it does."""
 
+STICKS = "that smooth rubber sticks is not in the model"
+SPREADS = "rough faces stand further apart, so that speed raises friction less"
+BEARS = "a rough face bears more of the load on its asperities"
+
 FILM: Reasons = {
-    ("squeeze", "agrees"): "asperities carry the preload, the oil a share of the pressure",
-    ("metal surface finish (RMS)", "agrees"): "rough faces stand apart: less lift of the oil, more "
-    "load on asperities; weak, as the ring is {roughness} times as rough",
+    ("squeeze", "agrees"): "the load grows with the squeeze, and by more than the oil bears under "
+    "the wider contact",
+    ("squeeze", "no effect"): "load and width of the contact grow with the squeeze, and the oil "
+    "under the wider contact bears all that the load gains",
+    ("squeeze", "disagrees"): "the contact widens faster than its load grows: the oil bears more",
+    ("metal surface finish (RMS)", "agrees"): f"{BEARS}; weak, as the ring is {{roughness}} times "
+    "as rough",
+    ("metal surface finish (RMS)", "disagrees"): f"{SPREADS}; weak, as the ring is {{roughness}} "
+    "times as rough",
     ("metal surface finish (RMS)", "no effect"): "the ring is {roughness} times as rough, and a "
     "polished metal that sticks to rubber is not in the model",
     ("seal material hardness", "agrees"): "a stiffer ring is pressed on harder",
     ("relative motion speed", "agrees"): "mixed lubrication: speed lifts the ring off",
-    ("relative motion speed", "disagrees"): "the oil's shear grows faster than speed lifts the "
-    "ring off",
-    ("relative motion speed", "no effect"): "too slow for the oil to lift the ring",
+    ("relative motion speed", "disagrees"): "running towards the pressure the faces part, the oil "
+    "loses pressure and asperities take its load; the other way speed lifts the ring off",
+    ("relative motion speed", "no effect"): "too slow to change the oil's pressure",
     ("cross section of seal", "agrees"): "load per length of circumference grows with the section",
     ("hydraulic pressure", "disagrees"): "the pressure presses the ring on, the oil carries "
     "a share of it",
     ("hydraulic pressure", "agrees"): "the oil under pressure carries more than the pressure "
     "presses on",
     ("hydraulic pressure", "no effect"): "no ring holds pressure, or the oil carries all of it",
-    ("temperature", "agrees"): "softer rubber counts for more than thinner oil",
+    ("temperature", "agrees"): "softer rubber is pressed on less, {oil}",
     ("temperature", "disagrees"): "thin oil lifts less, which counts for more than softer rubber",
     ("temperature", "no effect"): "softer rubber and less lift of thin oil cancel",
     ("groove width", "no effect"): "it acts only where the contact is as wide as the groove: here "
     "{contact} of it; an overfull groove is a missed check, not friction",
     ("diameter of rod or bore", "agrees"): "friction follows the circumference, less what the "
     "grown barrel takes",
-    ("O-ring surface finish", "disagrees"): "rough faces stand apart: less lift, more load on "
-    "asperities; that smooth rubber sticks is not in the model",
-    (
-        "O-ring surface finish",
-        "no effect",
-    ): "the oil hardly lifts the ring, whatever its roughness; "
-    "that smooth rubber sticks is not in the model",
+    ("O-ring surface finish", "agrees"): f"{SPREADS}; {STICKS}",
+    ("O-ring surface finish", "disagrees"): f"{BEARS}; {STICKS}",
+    ("O-ring surface finish", "no effect"): "what a rough face bears and what speed adds cancel; "
+    f"{STICKS}",
 }
 """Why the friction on the oil film goes the way it does."""
 
@@ -97,6 +104,9 @@ def trends_table(evaluation: Evaluation) -> ExtraTable:
         "ratio": text.trimmed(found.stribeck_ratio, 2),
         "roughness": text.trimmed(found.roughness_ratio, 2),
         "contact": f"{100 * found.contact_share:.0f} %",
+        "oil": "and thin oil acts like less speed: less friction as well"
+        if found.film.elasticities[_index("relative motion speed")] > 0
+        else "which counts for more than the lift that thin oil loses",
     }
     rows = [
         (

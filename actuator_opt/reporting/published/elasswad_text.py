@@ -9,6 +9,7 @@ from ... import units
 from ...design.materials import load_library
 from ...evaluation import Evaluation
 from .. import text
+from . import paper_text
 
 COLUMNS = ("quantity", "published", "its own formula", "ours")
 
@@ -29,15 +30,7 @@ in_mpa = partial(_text, unit="MPa", dimension="pressure")
 in_gpa = partial(_text, unit="GPa", dimension="pressure")
 in_ns_per_m = partial(_text, unit="N*s/m", dimension="damping")
 in_mpas = partial(_text, unit="mPa*s", dimension="dynamic_viscosity")
-
-
-def percent(share: float) -> str:
-    """A share in percent.
-
-    >>> percent(0.1551)
-    '15.5 %'
-    """
-    return f"{text.trimmed(100 * share, 3)} %"
+percent = partial(paper_text.percent, digits=3)
 
 
 def value(evaluation: Evaluation, name: str) -> float:

@@ -19,8 +19,8 @@ from ...models.friction import HUANG_TABLE_2
 from .. import text
 from ..blocks import ExtraTable, figure
 from . import huang_figures, huang_notes
-from .aalto_text import percent
 from .huang_text import OPEN, holds, mega, newtons, pressure_text, speed_text, times, verdict
+from .paper_text import percent
 
 CLAIMS = ("claim of the paper", "paper", "ours", "verdict")
 NEAR = 1.3

@@ -6,8 +6,7 @@ from ...evaluation.study.huang_published import PAPER
 from ...evaluation.study.huang_readings import Readings
 from .. import text
 from ..blocks import ExtraTable
-from .aalto_equations import Trace
-from .aalto_text import listed, percent
+from .paper_text import TRACE_COLUMNS, Trace, listed, percent, trace_rows
 
 TRACES: tuple[Trace, ...] = (
     Trace(1, 1, "force balance of the rod", ("models.damping.secant",), "gives the measured B"),
@@ -100,15 +99,6 @@ TRACES: tuple[Trace, ...] = (
 
 def table(found: Readings) -> ExtraTable:
     """Every equation of the paper with its function."""
-    rows = tuple(
-        (
-            f"{one.first}" if one.first == one.last else f"{one.first}–{one.last}",
-            one.subject,
-            "; ".join(one.functions) or "–",
-            one.remark or "–",
-        )
-        for one in TRACES
-    )
     note = (
         "Functions stand in actuator_opt. Beside the numbered ones the paper fits B = a v^b and "
         "B = a1 e^(b1 v) + a2 e^(b2 v), here fits.fit_power_law and fits.fit_double_exponential. "
@@ -123,5 +113,6 @@ def table(found: Readings) -> ExtraTable:
             "it down, so no film meets eq. 12; with the rough side on the rod it passes "
             f"{percent(found.swapped / found.flow - 1)} more."
         )
-    columns = ("equation", "subject", "function", "remark")
-    return ExtraTable("Huang 2017: where its equations are", columns, rows, note)
+    return ExtraTable(
+        "Huang 2017: where its equations are", TRACE_COLUMNS, trace_rows(TRACES), note
+    )

@@ -19,8 +19,8 @@ from ...evaluation.study.huang_study import HuangStudy
 from ...evaluation.study.huang_trend import BOTH
 from ...models.friction import HUANG_TABLE_2
 from .. import text
-from .aalto_text import listed, percent
 from .huang_text import mega, newtons, other_cylinder, pressure_text, speed_text, times
+from .paper_text import listed, percent
 
 NEGLIGIBLE = 0.05
 """Share of the seals up to which a part can be neglected."""

@@ -23,7 +23,6 @@ from ...models.friction import HUANG_TABLE_2
 from .. import text
 from ..blocks import ExtraTable, figure
 from . import huang_claims, huang_equations, huang_figures, huang_notes
-from .aalto_text import percent
 from .huang_figures import SHOWN
 from .huang_text import (
     mega,
@@ -32,6 +31,7 @@ from .huang_text import (
     rounded,
     speed_text,
 )
+from .paper_text import percent
 
 
 def plunger_table(design: Design, found: HuangStudy) -> ExtraTable:

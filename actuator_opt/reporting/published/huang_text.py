@@ -9,7 +9,7 @@ from ...design.model import Design
 from ...evaluation.study.huang_published import PAPER
 from ...numeric import Array
 from .. import text
-from .aalto_text import SLASH, close
+from .paper_text import SLASH, of_another_cylinder
 
 AGREES, DISAGREES, IN_PART = "agrees", "disagrees", "agrees in part"
 OPEN = "no film"
@@ -69,11 +69,4 @@ def holds(fact: bool, *values: float) -> str:
 
 def other_cylinder(design: Design) -> str:
     """Whose cylinder was measured, if it is not this one."""
-    ours = design.cylinder.bore, design.rod.outer_diameter, design.cylinder.stroke
-    theirs = PAPER.bore, PAPER.rod, PAPER.stroke
-    if all(map(close, ours, theirs)):
-        return ""
-    names = (
-        "{}/{}-{}".format(*(text.trimmed(1e3 * size) for size in sizes)) for sizes in (theirs, ours)
-    )
-    return "The paper has a {} cylinder, this design a {}: they need not agree. ".format(*names)
+    return of_another_cylinder(design, "paper", (PAPER.bore, PAPER.rod, PAPER.stroke))
