@@ -11,37 +11,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from .errors import Diagnostic, InputError
+from .least_squares import WEAK, Parameter, known
 from .models import damping as laws
 from .numeric import STEP, Array
 
-CONFIDENCE = 0.95
-"""Share of repeated tests whose bounds would hold the true value."""
-WEAK = 0.3
-"""A parameter is known when its bounds lie within this share of its value."""
-ROUNDING = 1e-6
-"""Bounds within this share of a parameter's size are near enough: an exponent of 0 is known too."""
-RANK = 1e-7
-"""Least ratio of singular values: below it a residual in double precision does not see a step."""
 FASTEST = 10.0
 """Largest decay of an exponential between neighbouring points: beyond it only one point sees it."""
 LARGEST_POWER = 300.0
 """Largest exponent that an amplitude extrapolated to rest may carry, far from overflow."""
-
-
-class Parameter(NamedTuple):
-    """A fitted value with its bounds, SI; the bounds are infinite where nothing bounds it."""
-
-    value: float
-    lower: float
-    upper: float
-    standard_error: float
-    identifiable: bool
-    """Whether the bounds lie within 30 % of the value."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -201,40 +182,32 @@ def assess(
     -------
     the fit
     """
-    from scipy.special import stdtrit  # slow to import, rarely needed
-
     fitted = law(speed=speed, **values)
     residuals = damping - fitted
     sizes = np.array([max(abs(x), (least or {}).get(key, 0.0)) or 1.0 for key, x in values.items()])
-    covariance, rank = _covariance(law, values, sizes, speed, residuals, weights)
+    slopes = np.sqrt(weights)[:, None] * _slopes(law, values, speed)
+    found = known(values, slopes, np.sqrt(weights) * residuals, sizes)
     spare = speed.size - len(values)
-    quantile = float(stdtrit(spare, (1 + CONFIDENCE) / 2)) if spare > 0 else np.inf
-    parameters = {}
-    for k, (key, value) in enumerate(values.items()):
-        error = float(np.sqrt(covariance[k, k]))
-        half = quantile * error
-        known = half <= max(WEAK * abs(value), ROUNDING * float(sizes[k]))
-        parameters[key] = Parameter(value, value - half, value + half, error, known)
     reasons = list(doubts)
     if spare == 0:
         reasons.append(f"{speed.size} points leave none to judge {len(values)} parameters by")
-    elif rank < len(values):
-        reasons.append(f"the points determine {rank} of {len(values)} parameters")
+    elif found.rank < len(values):
+        reasons.append(f"the points determine {found.rank} of {len(values)} parameters")
     else:
-        weak = [key for key, one in parameters.items() if not one.identifiable]
+        weak = [key for key, one in found.parameters.items() if not one.identifiable]
         if weak:
             reasons.append(f"bounds of {', '.join(weak)} wider than {WEAK:.0%} of the value")
     return Fit(
         name=name,
         law=law,
-        parameters=parameters,
-        covariance=covariance,
+        parameters=found.parameters,
+        covariance=found.covariance,
         speed=speed,
         damping=damping,
         residuals=residuals,
         r_squared=_r_squared(damping, fitted, weights),
         r_squared_log=_r_squared_log(damping, fitted),
-        quantile=quantile,
+        quantile=found.quantile,
         doubts=tuple(reasons),
     )
 
@@ -247,30 +220,6 @@ def _slopes(law: Callable[..., Array], values: Mapping[str, float], speed: Array
         stepped = law(speed=speed, **{**values, name: value + 1j * STEP})
         columns.append(np.broadcast_to(np.imag(stepped) / STEP, speed.shape))
     return np.stack(columns, axis=-1)
-
-
-def _covariance(
-    law: Callable[..., Array],
-    values: Mapping[str, float],
-    sizes: Array,
-    speed: Array,
-    residuals: Array,
-    weights: Array,
-) -> tuple[Array, int]:
-    """Linearised covariance of the parameters, and how many the points determine.
-
-    The columns are sensitivities, B per size of each parameter: an exponential without amplitude,
-    or two with one rate, show as a rank below the number of parameters.
-    """
-    columns = np.sqrt(weights)[:, None] * _slopes(law, values, speed) * sizes
-    _, singular, right = np.linalg.svd(columns, full_matrices=False)
-    rank = int(np.count_nonzero(singular > RANK * singular[0]))
-    count = len(values)
-    if rank < count or speed.size == count:
-        return np.full((count, count), np.inf), rank
-    variance = float(np.sum(weights * residuals**2)) / (speed.size - count)
-    scaled = right / singular[:, None]
-    return variance * (scaled.T @ scaled) * np.outer(sizes, sizes), rank
 
 
 def _r_squared(damping: Array, fitted: Array, weights: Array) -> float | None:

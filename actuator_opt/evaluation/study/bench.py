@@ -1,0 +1,163 @@
+"""What a test bench record is read with: areas, moving mass, contact forces, stiffness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from ...design.model import Design
+from ...models import forces
+from ...numeric import Array
+from ..barrel import SEAL_STEP
+from ..film_tables import floats
+from ..kernel import Subject, compute
+from ..rings import Ring
+from ..springs import Springs
+from ..touch import touch
+
+
+@dataclass(frozen=True, slots=True)
+class Bench:
+    """A design as a test bench meets it, SI.
+
+    Parameters
+    ----------
+    design : the actuator tested
+    growth : radial growth of the bore at the piston seal over chamber pressure [m/Pa]
+    mass : of what moves inside the force sensor: rod, piston, fastening [kg]
+    rings : sealing elements of the first load case
+    springs : stiffness budget
+    """
+
+    design: Design
+    bore: float
+    rod_diameter: float
+    stroke: float
+    growth: float
+    mass: float
+    load_mass: float
+    supply_pressure: float
+    rings: tuple[Ring, ...]
+    springs: Springs
+
+    @property
+    def plunger(self) -> bool:
+        """Whether no piston seal parts the chambers."""
+        return all(ring.name != "piston" for ring in self.rings)
+
+    def areas(self, highest_pressure: Array) -> tuple[Array, Array]:
+        """Piston areas of cap and rod end in the bore as grown at its higher chamber pressure.
+
+        A_1 = pi (D/2 + u)^2, A_2 = A_1 - pi d^2/4, u the growth at the piston seal: what the seal
+        closes is what the pressure pushes. Without a piston seal the rod is a plunger: pi d^2/4 and
+        nothing. Pressure gauge [Pa]; areas [m^2].
+        """
+        if self.plunger:
+            area = forces.piston_area(bore=self.rod_diameter)
+            return area + 0.0 * highest_pressure, 0.0 * highest_pressure
+        bore = self.bore + 2 * self.growth * highest_pressure
+        return (
+            forces.piston_area(bore=bore),
+            forces.annulus_area(bore=bore, rod_diameter=self.rod_diameter),
+        )
+
+    def contact_forces(self, pressure_1: Array, pressure_2: Array) -> dict[str, Array]:
+        """Normal force of all rings of piston and rod at chamber pressures, sum of f pi D [N].
+
+        The first ring of a place carries the pressure, others in the row their squeeze. Gauge
+        pressures [Pa], any shape.
+        """
+        total = {"piston": 0.0 * pressure_1, "rod": 0.0 * pressure_1}
+        for ring in self._held(pressure_1, pressure_2):
+            load = touch(ring).line_load
+            count = float(ring["count"])
+            if count != 1.0:
+                idle = touch(ring.at(pressure=0.0 * ring["pressure"]))
+                load = load + (count - 1) * idle.line_load
+            total[ring.name] = total[ring.name] + pi * ring["diameter"] * load
+        return total
+
+    def contact_pressure(self, pressure_1: float, pressure_2: float) -> float:
+        """Normal force of the rings that hold the pressure over their contact area [Pa]."""
+        held = [ring for ring in self._held(pressure_1, pressure_2) if _leads(ring)]
+        touches = [touch(ring) for ring in held]
+        around = [float(ring["diameter"]) for ring in held]
+        force = sum(d * float(one.line_load) for d, one in zip(around, touches, strict=True))
+        area = sum(d * float(one.width) for d, one in zip(around, touches, strict=True))
+        return force / area
+
+    @property
+    def contact_law(self) -> str:
+        """Contact law of the rings that hold the pressure, in words."""
+        return "; ".join(
+            f"{ring.label}: "
+            + ("stated profile" if ring.element.contact else ring.element.type.replace("_", " "))
+            + (f", {ring.element.law}" if ring.element.type in ("o_ring", "step_ring") else "")
+            for ring in self.rings
+            if _leads(ring)
+        )
+
+    def _held(self, pressure_1: Array, pressure_2: Array) -> list[Ring]:
+        """The rings at chamber pressures: the first of a place carries them."""
+        p1, p2 = (np.maximum(one, 0.0) for one in np.broadcast_arrays(pressure_1, pressure_2))
+        seen = {"piston": np.abs(p1 - p2), "rod": p1 if self.plunger else p2}
+        outer = {"piston": np.minimum(p1, p2), "rod": 0.0 * p2}
+        found = []
+        for ring in self.rings:
+            grown = self.growth * np.maximum(p1, p2) if ring.name == "piston" else 0.0
+            found.append(
+                ring.at(
+                    pressure=seen[ring.name] if _leads(ring) else 0.0 * p1,
+                    outer_pressure=outer[ring.name],
+                    squeeze_left=ring["squeeze"] - grown / ring["section"],
+                )
+            )
+        return found
+
+    def stiffness(self, position: Array) -> Array:
+        """Stiffness with closed ports at positions of the piston from the cap end [N/m]."""
+        place = np.clip(position, 0.0, self.stroke)
+        parts = self.springs.compliances(place[None, :])
+        whole = np.sum([np.broadcast_to(one, (1, place.size)) for one in _first(parts)], axis=0)
+        return 1 / whole[0]
+
+
+def _leads(ring: Ring) -> bool:
+    """Whether a ring is the one of its place that holds the pressure."""
+    return ring.groove.path == f"seals.{ring.name}."
+
+
+def _first(parts: dict[str, Array]) -> list[Array]:
+    """Compliances of the first load case, (1, positions) each."""
+    return [np.atleast_2d(np.asarray(one))[:1] for one in parts.values()]
+
+
+def bench(subject: Subject) -> Bench:
+    """What a record of the design is read with; its oil and temperature are the first case's."""
+    v = subject.values()
+    done = compute(subject, v)
+    g = done.geometry
+    driven = np.broadcast_to(_cases(done.state.driven_pressure), (len(v.cases),))
+    grown = np.max(np.real(np.atleast_2d(SEAL_STEP * done.wall.case_growth)), axis=-1)
+    grown = np.broadcast_to(grown, driven.shape)
+    loaded = driven > 0
+    growth = float(np.max(grown[loaded] / driven[loaded])) if loaded.any() else 0.0
+    return Bench(
+        design=subject.design,
+        bore=float(np.squeeze(g.bore)),
+        rod_diameter=float(np.squeeze(g.rod_diameter)),
+        stroke=float(np.squeeze(g.stroke)),
+        growth=growth,
+        mass=sum(float(np.squeeze(done.mass_parts[x])) for x in ("rod", "piston", "fastening")),
+        load_mass=float(v["load.mass"]),
+        supply_pressure=float(v["supply.pressure"]),
+        rings=tuple(floats(ring, 0) for ring in done.rings),
+        springs=done.springs,
+    )
+
+
+def _cases(value: Array) -> Array:
+    """The values of all cases of one design."""
+    return np.real(np.atleast_2d(np.asarray(value))[:, 0])

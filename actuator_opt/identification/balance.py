@@ -1,0 +1,164 @@
+"""Friction over time: what the force balance of the rod leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from ..errors import Diagnostic, InputError
+from ..evaluation.study.bench import Bench
+from ..numeric import Array
+from .conditioning import Motion, Piece
+
+RESTING = 3.0
+"""Standard deviations of the velocity's noise below which the rod may be at rest."""
+OPPOSED = 0.5
+"""Least share of the friction's power that must oppose motion; less, and a sign is wrong."""
+SURE = 0.8
+"""Share from which another order of the channels is named as the remedy."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sliding:
+    """Friction along one piece of a record, SI; arrays (samples).
+
+    Parameters
+    ----------
+    piece : the motion
+    hydraulic : p_1 A_1 - p_2 A_2 [N]
+    resisting : F_L + m a [N], what of it is not friction
+    pressure : the higher of both chambers, gauge [Pa]
+    resting : velocity below which the rod may be at rest [m/s]
+    """
+
+    piece: Piece
+    hydraulic: Array
+    resisting: Array
+    pressure: Array
+    resting: float
+
+    @property
+    def friction(self) -> Array:
+        """F_r = p_1 A_1 - p_2 A_2 - F_L - m a [N]."""
+        return self.hydraulic - self.resisting
+
+    @property
+    def moving(self) -> Array:
+        """Samples at which the rod moves for sure."""
+        return self.piece.sound & (np.abs(self.piece.velocity) > self.resting)
+
+
+def velocity_noise(motion: Motion) -> float:
+    """Standard deviation of the velocity by the position's noise and steps [m/s].
+
+    White noise s of a sample, filtered to f_c and differentiated:
+    s_v = 2 pi f_c s sqrt(2 f_c dt/3) [derived]; a step q of the sensor counts as q/sqrt 12.
+    """
+    quality = motion.quality["x"]
+    sample = max(quality.noise, quality.resolution / np.sqrt(12))
+    band = 2 * motion.cutoff * motion.sample_time
+    return float(2 * np.pi * motion.cutoff * sample * np.sqrt(band / 3))
+
+
+def slide(motion: Motion, bench: Bench, *, mass: float, load_force: float | None) -> list[Sliding]:
+    """Friction along every piece of a record.
+
+    F_r = p_1 A_1 - p_2 A_2 - F_L - m a, [Huang2017] eq. 1; areas in the bore as grown.
+
+    Parameters
+    ----------
+    motion : conditioned record; without a channel p2 the rod end is open to the air
+    bench : the actuator's areas
+    mass : what moves inside the force sensor [kg]
+    load_force : of the load where no channel F_L measures it [N]
+
+    Returns
+    -------
+    friction by piece
+    """
+    resting = max(RESTING * velocity_noise(motion), 2e-5)
+    return [_one(piece, bench, mass, load_force or 0.0, resting) for piece in motion.pieces]
+
+
+def _one(piece: Piece, bench: Bench, mass: float, load_force: float, resting: float) -> Sliding:
+    first = piece["p1"]
+    second = piece["p2"] if "p2" in piece else np.zeros_like(first)
+    highest = np.maximum(np.maximum(first, second), 0.0)
+    area_1, area_2 = bench.areas(highest)
+    load = piece.channels.get("F_L", load_force)
+    return Sliding(
+        piece,
+        first * area_1 - second * area_2,
+        load + mass * piece.acceleration,
+        highest,
+        resting,
+    )
+
+
+def opposed(slidings: Sequence[Sliding]) -> float:
+    """Share of the friction's power that opposes motion: 1 all, -1 none."""
+    power = np.concatenate([(one.friction * one.piece.velocity)[one.moving] for one in slidings])
+    whole = float(np.sum(np.abs(power)))
+    return float(np.sum(power)) / whole if whole else 0.0
+
+
+def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name: str) -> None:
+    """Refuse a record whose friction drives the rod: a channel is turned round.
+
+    Raises
+    ------
+    InputError
+        naming what would put it right, where one change does
+    """
+    share = opposed(slidings)
+    if share >= OPPOSED:
+        return
+    found = []
+    for pressures, force, way in product((False, True), repeat=3):
+        changed = pressures + force + way
+        if changed != 1:
+            continue
+        turned = [_turned(one, bench, mass, pressures, force, way) for one in slidings]
+        if opposed(turned) > SURE and _size(turned) < _size(slidings):
+            found.append((_size(turned), pressures, force))
+    about = (
+        f"the friction found drives the rod instead of opposing it ({100 * share:.0f} % of its "
+        "power opposes motion)"
+    )
+    if not found:
+        remedy = "check signs and zeros of all channels, bore and rod of the design, mass and load"
+        raise InputError(Diagnostic(about, remedy, file=name))
+    _, pressures, force = min(found)
+    if pressures:
+        what, remedy = "p1 and p2 look reversed", "swap them, e.g. with --column p1=... p2=..."
+    elif force:
+        what, remedy = "F_L looks reversed", "F_L is positive against extension: turn its sign"
+    else:
+        what, remedy = "x looks reversed", "x grows as the rod comes out: turn its sign"
+    raise InputError(Diagnostic(f"{what}: {about}", remedy, file=name))
+
+
+def _size(slidings: Sequence[Sliding]) -> float:
+    """Mean size of the friction [N]."""
+    return float(np.mean(np.concatenate([np.abs(one.friction[one.moving]) for one in slidings])))
+
+
+def _turned(
+    one: Sliding, bench: Bench, mass: float, pressures: bool, force: bool, way: bool
+) -> Sliding:
+    """The friction with one channel the other way round."""
+    piece = one.piece
+    channels = dict(piece.channels)
+    if pressures and "p2" in channels:
+        channels["p1"], channels["p2"] = channels["p2"], channels["p1"]
+    if force and "F_L" in channels:
+        channels["F_L"] = -channels["F_L"]
+    sign = -1.0 if way else 1.0
+    other = Piece(
+        piece.time, channels, sign * piece.velocity, sign * piece.acceleration, piece.sound
+    )
+    load = one.resisting[0] - mass * piece.acceleration[0] if "F_L" not in channels else 0.0
+    return _one(other, bench, mass, float(load), one.resting)

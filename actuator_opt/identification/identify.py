@@ -1,0 +1,188 @@
+"""From a test record to friction, damping and models with their bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..errors import InputError
+from ..evaluation.study.bench import Bench
+from ..fits import Fit, fit_double_exponential, fit_power_law
+from ..least_squares import quantile
+from .balance import Sliding, check_signs, slide
+from .coefficient import coefficient
+from .conditioning import Motion, condition
+from .lugre_fit import LuGreFit, fit_lugre
+from .lugre_windows import LAG
+from .points import Point, independent, steady_points
+from .record import Record
+from .result import Identification, Mean, Settings
+from .spectrum import spectrum
+from .stribeck_fit import fit_stribeck
+
+LEAST_LAG = 3e-4
+"""Least lag that is worth taking off [s]."""
+OUTSIDE = 0.02
+"""Share of the stroke by which a position may lie beyond its ends."""
+
+
+def identify(record: Record, bench: Bench, settings: Settings | None = None) -> Identification:
+    """Friction and damping of a test record.
+
+    Parameters
+    ----------
+    record : with p1, x and F_L (or `load_force`), p2 unless the rod is a plunger
+    bench : the design it was made with
+    settings : how it is read
+
+    Returns
+    -------
+    the identification
+
+    Raises
+    ------
+    InputError
+        a channel missing, a record too short or too slow, channels turned round, no motion
+    """
+    own = settings or Settings()
+    _channels(record, bench, own)
+    mass = _mass(record, bench, own)
+    lag, known = own.pressure_lag or 0.0, own.pressure_lag is not None
+    notes: list[str] = []
+    motion, slidings = _read(record, bench, own, mass, lag)
+    if any(one.moving.any() for one in slidings):
+        check_signs(slidings, bench, mass=mass, name=record.name)
+    elif np.ptp(record["x"][np.isfinite(record["x"])]) < 3 * motion.quality["x"].resolution:
+        raise record.fault("the rod never moves", "give a record of a moving rod")
+    area = float(bench.areas(np.float64(0.0))[0])
+    points = steady_points(slidings, motion)
+    stribeck = fit_stribeck(points, area)
+    lugre = fit_lugre(slidings, motion, points, stribeck, lag_known=known)
+    if isinstance(lugre, LuGreFit) and not known and _unsure(lugre):
+        known = True
+        notes.append("the reversals show no lag of the pressures; none is taken off")
+        lugre = fit_lugre(slidings, motion, points, stribeck, lag_known=known)
+    late = None if known else _late(lugre)
+    if late is not None:
+        lag = late
+        motion, slidings = _read(record, bench, own, mass, lag)
+        points = steady_points(slidings, motion)
+        stribeck = fit_stribeck(points, area)
+        lugre = fit_lugre(slidings, motion, points, stribeck, lag_known=known)
+    if late is not None:
+        notes.append(f"pressures come {1e3 * lag:.2f} ms late, by the reversals; taken off")
+    place = np.concatenate([one.piece["x"] for one in slidings])
+    beyond = OUTSIDE * bench.stroke
+    if place.min() < -beyond or place.max() > bench.stroke + beyond:
+        notes.append(
+            f"x runs from {1e3 * place.min():.1f} to {1e3 * place.max():.1f} mm, the stroke is "
+            f"{1e3 * bench.stroke:.1f} mm: its zero is not the cap end, no stiffness there"
+        )
+    mean, largest = _sizes(slidings, motion)
+    return Identification(
+        record=record,
+        bench=bench,
+        settings=own,
+        motion=motion,
+        slidings=tuple(slidings),
+        mass=mass,
+        pressure_lag=lag,
+        spectrum=spectrum(record, motion),
+        mean=mean,
+        largest=largest,
+        area=area,
+        points=points,
+        coefficient=coefficient(slidings, motion, bench),
+        stribeck=stribeck,
+        lugre=lugre,
+        fits=_fits(points),
+        notes=(*motion.notes, *notes),
+    )
+
+
+def _unsure(lugre: LuGreFit) -> bool:
+    """Whether the lag ran to the end of its range: something else is fitted by it."""
+    return "lag" in lugre.parameters and abs(lugre.parameters["lag"].value) > 0.99 * LAG
+
+
+def _late(lugre: LuGreFit | str) -> float | None:
+    """The lag left in a record, where it shows."""
+    if isinstance(lugre, str):
+        return None
+    found = lugre.parameters.get("lag")
+    if found is None:
+        return None
+    sure = found.lower > 0 or found.upper < 0
+    return found.value if sure and abs(found.value) > LEAST_LAG else None
+
+
+def _channels(record: Record, bench: Bench, settings: Settings) -> None:
+    """Refuse a record that lacks what the balance asks."""
+    for name, what in (("p1", "pressure of the cap end"), ("x", "position")):
+        if name not in record:
+            raise record.fault(
+                f"no column {name}, the {what}", f'name it with --column "{name}=..."'
+            )
+    if "p2" not in record and not bench.plunger:
+        raise record.fault(
+            "no column p2, the pressure of the rod end",
+            'name it with --column "p2=...", or write "count: 0" in seals.piston for a plunger',
+        )
+    if "F_L" not in record and settings.load_force is None:
+        raise record.fault(
+            "no column F_L, the force of the load",
+            'name it with --column "F_L=...", or state it: --load-force "0 N" for a free rod',
+        )
+
+
+def _mass(record: Record, bench: Bench, settings: Settings) -> float:
+    if settings.mass is not None:
+        return settings.mass
+    return bench.mass + (0.0 if "F_L" in record else bench.load_mass)
+
+
+def _read(
+    record: Record, bench: Bench, settings: Settings, mass: float, lag: float
+) -> tuple[Motion, list[Sliding]]:
+    motion = condition(
+        record,
+        cutoff=settings.cutoff,
+        order=settings.order,
+        compensated=settings.compensated,
+        pressure_lag=lag,
+    )
+    return motion, slide(motion, bench, mass=mass, load_force=settings.load_force)
+
+
+def _sizes(slidings: Sequence[Sliding], motion: Motion) -> tuple[Mean, float]:
+    """Mean of |F_r| while the rod moves, by means of batches, and its largest value.
+
+    Of a record without sliding, throughout.
+    """
+    sliding = any(one.moving.any() for one in slidings)
+    friction = np.concatenate(
+        [np.abs(one.friction[one.moving if sliding else one.piece.sound]) for one in slidings]
+    )
+    batches = int(np.clip(independent(friction.size, motion) / 5, 2, 20))
+    means = np.array([np.mean(one) for one in np.array_split(friction, batches)])
+    half = quantile(batches - 1) * float(np.std(means, ddof=1)) / np.sqrt(batches)
+    middle = float(np.mean(friction))
+    return Mean(middle, middle - half, middle + half), float(np.max(friction))
+
+
+def _fits(points: Sequence[Point]) -> dict[str, Fit | str]:
+    """Fits of the secant damping over speed, weighted by relative errors."""
+    speed = np.array([one.speed for one in points])
+    damping = np.array([one.damping for one in points])
+    found: dict[str, Fit | str] = {}
+    for name, fit in (
+        ("power_law", fit_power_law),
+        ("double_exponential", fit_double_exponential),
+    ):
+        positive = damping > 0
+        try:
+            found[name] = fit(speed[positive], damping[positive], 1 / damping[positive] ** 2)
+        except InputError as error:
+            found[name] = error.diagnostics[0].message
+    return found

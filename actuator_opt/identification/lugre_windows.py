@@ -1,0 +1,193 @@
+"""Windows about reversals: where bristles show, and the LuGre model integrated along them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..models import friction
+from ..numeric import Array
+from .balance import Sliding
+from .conditioning import Motion, low_pass, zero_phase
+
+BEFORE, AFTER = 0.1, 0.4
+"""Time of a window before and after the rod turns or starts [s]."""
+MOST = 24
+"""Windows looked at, spread over the record."""
+LAG = 20e-3
+"""Largest lag of the pressures looked for [s]."""
+PER_PERIOD = 12
+"""Steps of the integration per period of the cut-off, at least."""
+LASTING = 0.05
+"""Time for which a way must last to be one [s]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Windows:
+    """Stretches of a record side by side, SI; arrays (lanes, samples).
+
+    `hydraulic` has `margin` samples more at both ends, so that it can be shifted in time; `kept`
+    are the samples that are judged: independent ones, away from the ends. `blur` is the time by
+    which the steps of the position sensor hide a turn, sqrt(2 q/a) [s].
+    """
+
+    velocity: Array
+    change: Array
+    hydraulic: Array
+    resisting: Array
+    step: float
+    margin: int
+    sections: Array
+    reach: int
+    kept: Array
+    blur: float
+
+    def measured(self, lag: Array) -> Array:
+        """Friction with the hydraulic force taken `lag` later (rows,) -> (rows, lanes, samples).
+
+        Cubic interpolation between samples.
+        """
+        count = self.velocity.shape[-1]
+        rows = []
+        for one in np.atleast_1d(lag):
+            whole = int(np.floor(one / self.step))
+            part = one / self.step - whole
+            weights = (
+                -part * (part - 1) * (part - 2) / 6,
+                (part + 1) * (part - 1) * (part - 2) / 2,
+                -(part + 1) * part * (part - 2) / 2,
+                (part + 1) * part * (part - 1) / 6,
+            )
+            first = self.margin + whole - 1
+            rows.append(
+                sum(
+                    weight * self.hydraulic[:, first + k : first + k + count]
+                    for k, weight in enumerate(weights)
+                )
+            )
+        return np.stack(rows) - self.resisting
+
+    def misfit(self, values: Mapping[str, Array]) -> Array:
+        """Friction of the model less the measured, at judged samples (rows, lanes, kept).
+
+        Parameters (rows,). The model's friction passes the filter that the record has passed.
+        """
+        measured = self.measured(values["lag"])
+        found = self._integrated({n: v[:, None, None] for n, v in values.items()}, measured)
+        smooth = zero_phase(self.sections, found, reach=self.reach)
+        return (smooth - measured)[..., self.kept]
+
+    def _integrated(self, values: Mapping[str, Array], measured: Array) -> Array:
+        """LuGre friction along every window: the exact step of `models.lugre.lugre_step`.
+
+        Each begins with the bristles as bent as the friction measured there says.
+        """
+        between = (self.velocity[:, 1:] + self.velocity[:, :-1]) / 2
+        change = (self.change[:, 1:] + self.change[:, :-1]) / 2
+        level = friction.stribeck_level(
+            speed=np.abs(between),
+            coulomb=values["coulomb"],
+            static=values["static"],
+            stribeck_speed=values["stribeck_speed"],
+            exponent=values["exponent"],
+        )
+        level = level * (1 + values["pressure_slope"] * change / values["coulomb"])
+        stiffness, damping = values["bristle_stiffness"], values["bristle_damping"]
+        viscous = values["viscous"] * self.velocity
+        begun = (measured - values["offset"] - viscous)[..., :3].mean(axis=-1)
+        first = np.clip(begun, -level[..., 0], level[..., 0]) / stiffness[..., 0]
+        rate = stiffness * np.abs(between) / level
+        decay = rate * self.step
+        tail = np.exp(-decay)
+        small = decay < 1e-9
+        reach = np.where(small, 1.0, (1 - tail) / np.where(small, 1.0, decay)) * self.step
+        kept, pushed = 1 - rate * reach, between * reach
+        bent = np.empty((*level.shape[:-1], self.velocity.shape[-1]))
+        bent[..., 0] = deflection = first
+        for k in range(between.shape[-1]):
+            bent[..., k + 1] = deflection = kept[..., k] * deflection + pushed[..., k]
+        slip = np.diff(bent, axis=-1, append=bent[..., -1:]) / self.step
+        return stiffness * bent + damping * slip + viscous + values["offset"]
+
+
+def windows(slidings: Sequence[Sliding], motion: Motion, reference: float) -> Windows | None:
+    """Windows about moments at which the rod turns or starts; else spread over the record.
+
+    Parameters
+    ----------
+    slidings, motion : friction along the record, and how it was filtered
+    reference : pressure from which changes are counted [Pa]
+
+    Returns
+    -------
+    the windows, None where the record has no room for one
+    """
+    stride = max(1, int(1 / (PER_PERIOD * motion.cutoff * motion.sample_time)))
+    step = stride * motion.sample_time
+    margin = int(np.ceil(LAG / step)) + 2
+    before, after = round(BEFORE / step), round(AFTER / step)
+    room = (before + margin) * stride, (after + margin) * stride
+    places = [(one, at) for one in slidings for at in _turns(one, motion) if _fits(one, at, room)]
+    if not places:
+        apart = room[0] + room[1]
+        places = [
+            (one, at)
+            for one in slidings
+            for at in range(room[0], one.piece.time.size, apart)
+            if _fits(one, at, room)
+        ]
+    if not places:
+        return None
+    chosen = np.linspace(0, len(places) - 1, min(MOST, len(places))).round().astype(int)
+    lanes = [places[k] for k in np.unique(chosen)]
+
+    def cut(values: Sequence[Array], more: int = 0) -> Array:
+        return np.stack(
+            [
+                one[at - (before + more) * stride : at + (after + more) * stride : stride]
+                for one, (_, at) in zip(values, lanes, strict=True)
+            ]
+        )
+
+    edge = round(1 / (motion.cutoff * step))
+    apart = max(1, round(1 / (2 * motion.cutoff * step)))
+    velocity = cut([one.piece.velocity for one, _ in lanes])
+    sharpest = float(np.median(np.max(np.abs(np.gradient(velocity, step, axis=-1)), axis=-1)))
+    return Windows(
+        velocity=velocity,
+        change=cut([one.pressure for one, _ in lanes]) - reference,
+        hydraulic=cut([one.hydraulic for one, _ in lanes], margin),
+        resisting=cut([one.resisting for one, _ in lanes]),
+        step=step,
+        margin=margin,
+        sections=low_pass(
+            cutoff=motion.cutoff,
+            order=motion.order,
+            sample_time=step,
+            compensated=motion.compensated,
+        ),
+        reach=round(3 / (motion.cutoff * step)),
+        kept=np.arange(edge, before + after - edge, apart),
+        blur=float(np.sqrt(2 * motion.quality["x"].resolution / max(sharpest, 1e-12))),
+    )
+
+
+def _fits(sliding: Sliding, at: int, room: tuple[int, int]) -> bool:
+    """Whether a window about a sample lies within the piece's sound part."""
+    first, last = at - room[0], at + room[1]
+    sound = sliding.piece.sound
+    return first >= 0 and last < sound.size and bool(sound[first] and sound[last])
+
+
+def _turns(sliding: Sliding, motion: Motion) -> list[int]:
+    """Samples at which lasting sliding begins, after the other way or rest."""
+    way = np.where(sliding.moving, np.sign(sliding.piece.velocity), 0.0)
+    begins = np.flatnonzero((way != 0) & (np.diff(way, prepend=0.0) != 0))
+    lasting = round(LASTING / motion.sample_time)
+    found: list[int] = []
+    for at in map(int, begins):
+        if np.all(way[at : at + lasting] == way[at]) and (not found or at - found[-1] > lasting):
+            found.append(at)
+    return found

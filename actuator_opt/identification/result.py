@@ -1,0 +1,207 @@
+"""What a record told: friction, its coefficient, damping, models, each with bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from ..evaluation.study.bench import Bench
+from ..fits import Fit
+from ..least_squares import Parameter
+from ..numeric import Array
+from ..version import VERSION
+from .balance import Sliding
+from .coefficient import Coefficient
+from .conditioning import Motion
+from .lugre_fit import LuGreFit
+from .points import Point
+from .record import Record
+from .spectrum import Spectrum
+from .stribeck_fit import StribeckFit
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How a record is read, SI.
+
+    Parameters
+    ----------
+    cutoff, order, compensated : of the zero-phase filter
+    mass : inside the force sensor [kg]; default: rod, piston and fastening, without a force
+        channel also the design's load
+    load_force : on the rod, where no channel measures it [N]
+    pressure_lag : of the pressures [s]; None looks for it in the record
+    bootstrap : resampled records for the bounds; 0 takes those of the linearised model
+    seed : of the resampling
+    """
+
+    cutoff: float = 30.0
+    order: int = 4
+    compensated: bool = True
+    mass: float | None = None
+    load_force: float | None = None
+    pressure_lag: float | None = None
+    bootstrap: int = 0
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Mean:
+    """A mean with its 95 % bounds, SI."""
+
+    value: float
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Identification:
+    """Friction and damping of a test record, SI.
+
+    Parameters
+    ----------
+    record, bench, settings : what was read, and with what
+    motion, slidings : conditioned record, and friction along it
+    mass : taken as moving inside the force sensor [kg]
+    pressure_lag : taken off the pressures [s]
+    spectrum : what the cut-off keeps and loses
+    mean, largest : of |F_r| while the rod moves [N]
+    points : of steady sliding
+    coefficient, stribeck, lugre : or one line that says why there is none
+    fits : of the secant damping over speed, by name; one line where there is none
+    notes : what was left out, mended or assumed
+    """
+
+    record: Record
+    bench: Bench
+    settings: Settings
+    motion: Motion
+    slidings: tuple[Sliding, ...]
+    mass: float
+    pressure_lag: float
+    spectrum: Spectrum
+    mean: Mean
+    largest: float
+    area: float
+    points: tuple[Point, ...]
+    coefficient: Coefficient | str
+    stribeck: StribeckFit | str
+    lugre: LuGreFit | str
+    fits: Mapping[str, Fit | str]
+    notes: tuple[str, ...]
+
+    def series(self) -> dict[str, Array]:
+        """Quantities over time, one array each: what a CSV of the result holds, SI.
+
+        `stiffness` is NaN where the position lies beyond the stroke.
+        """
+        pieces = [one.piece for one in self.slidings]
+
+        def joined(parts: list[Array]) -> Array:
+            return np.concatenate(parts)
+
+        position = joined([one["x"] for one in pieces])
+        highest = joined([one.pressure for one in self.slidings])
+        inside = (position >= 0) & (position <= self.bench.stroke)
+        stiffness = np.where(inside, self.bench.stiffness(position), np.nan)
+        found = {
+            "time": joined([one.time for one in pieces]),
+            "position": position,
+            "velocity": joined([one.velocity for one in pieces]),
+            "acceleration": joined([one.acceleration for one in pieces]),
+            "pressure_1": joined([one["p1"] for one in pieces]),
+        }
+        if "p2" in pieces[0]:
+            found["pressure_2"] = joined([one["p2"] for one in pieces])
+        found["friction"] = joined([one.friction for one in self.slidings])
+        found["stiffness"] = stiffness
+        found["growth"] = self.bench.growth * highest
+        return found
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI; what has no value is null with its reason beside it."""
+        found: dict[str, Any] = {
+            "record": self.record.name,
+            "design": self.bench.design.name,
+            "version": VERSION,
+            "friction": {
+                "mean": self.mean.value,
+                "lower": self.mean.lower,
+                "upper": self.mean.upper,
+                "max": self.largest,
+                "pressure_loss": self.mean.value / self.area,
+                "pressure_loss_max": self.largest / self.area,
+            },
+            "mu": None,
+            "stribeck": None,
+            "lugre": None,
+            "damping": [_point(one) for one in self.points],
+            "fits": {name: _fit(one) for name, one in self.fits.items()},
+            "mass": self.mass,
+            "pressure_lag": self.pressure_lag,
+            "filter": {
+                "cutoff": self.motion.cutoff,
+                "order": self.motion.order,
+                "compensated": self.motion.compensated,
+                **self.spectrum._asdict(),
+            },
+            "channels": {name: one._asdict() for name, one in self.motion.quality.items()},
+            "notes": list(self.notes),
+        }
+        if isinstance(self.coefficient, str):
+            found["mu_why"] = self.coefficient
+        else:
+            found["mu"] = {
+                "value": self.coefficient.value,
+                "lower": self.coefficient.lower,
+                "upper": self.coefficient.upper,
+                "contact_pressure": self.coefficient.contact_pressure,
+                "contact_force": self.coefficient.contact_force,
+                "contact_law": self.coefficient.law,
+                "windows": self.coefficient.windows,
+            }
+        for name, model in (("stribeck", self.stribeck), ("lugre", self.lugre)):
+            if isinstance(model, str):
+                found[f"{name}_why"] = model
+            else:
+                found[name] = {key: _parameter(x) for key, x in model.parameters.items()}
+                found[f"{name}_held"] = dict(model.held)
+                found[f"{name}_doubts"] = list(model.doubts)
+        return found
+
+
+def _parameter(one: Parameter) -> dict[str, Any]:
+    return {
+        "value": one.value,
+        "lower": one.lower if isfinite(one.lower) else None,
+        "upper": one.upper if isfinite(one.upper) else None,
+        "identifiable": one.identifiable,
+        "verdict": one.verdict,
+    }
+
+
+def _point(one: Point) -> dict[str, Any]:
+    return {
+        "velocity": one.velocity,
+        "pressure": one.pressure,
+        "value": one.damping,
+        "standard_error": one.error / one.speed,
+        "friction": one.friction,
+        "pressure_1": one.pressure_1,
+        "pressure_2": one.pressure_2,
+        "method": one.kind,
+    }
+
+
+def _fit(fit: Fit | str) -> dict[str, Any]:
+    if isinstance(fit, str):
+        return {"why": fit}
+    return {
+        "parameters": {name: _parameter(one) for name, one in fit.parameters.items()},
+        "r_squared": fit.r_squared,
+        "doubts": list(fit.doubts),
+    }

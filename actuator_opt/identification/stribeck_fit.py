@@ -1,0 +1,338 @@
+"""The Stribeck curve of measured points: global search, least squares, bounds, verdicts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..least_squares import Parameter, known
+from ..models import friction
+from ..numeric import STEP, Array
+from .points import Point
+
+STATIC_MOST = 3.0
+"""Largest F_S over the largest friction measured."""
+SPEEDS, EXPONENTS = (2e-4, 5e-2), (0.5, 2.5)
+"""Range of the Stribeck speed [m/s] and of its exponent searched."""
+EXPONENT = 2.0
+"""Exponent where the points cannot tell it ([MECE5005], [Huang2017] Table 2)."""
+DIFFERENT = 0.05
+"""Speeds further apart than this share are different."""
+SPREAD, APART = 0.2, 3.0
+"""Least range of the pressure that can show an effect: of its highest value, and of the pressure
+that friction itself takes (without a load, friction makes the pressure)."""
+SYMBOLS = {
+    "coulomb": "F_C",
+    "static": "F_S",
+    "stribeck_speed": "v_s",
+    "exponent": "δ",
+    "viscous": "σ₂",
+    "pressure_slope": "dF_C/dp",
+    "offset": "F_0",
+}
+"""Parameters with their symbols: N, N, m/s, -, N s/m, N/Pa, N."""
+_LEVELS = (("coulomb", "viscous"), ("static", "stribeck_speed"), ("exponent",))
+"""What is asked of the points, one group after the other."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StribeckFit:
+    """A Stribeck curve, SI: F = sgn v [g(v) (1 + (p - p_0) s/F_C) + sigma_2 |v|] + F_0.
+
+    Parameters
+    ----------
+    parameters : by name of `SYMBOLS`, those the points were asked for
+    held : values that were not asked for: exponent 2, no Stribeck part, no offset
+    covariance : of the parameters in their order
+    reference_pressure : p_0 [Pa]
+    residuals : measured less fitted [N], by point
+    errors : standard error of each point as weighted [N]
+    doubts : why something was not asked for, or is not known
+    """
+
+    parameters: Mapping[str, Parameter]
+    held: Mapping[str, float]
+    covariance: Array
+    quantile: float
+    reference_pressure: float
+    residuals: Array
+    errors: Array
+    doubts: tuple[str, ...]
+
+    @property
+    def values(self) -> dict[str, float]:
+        """All parameters, fitted or held."""
+        return {**self.held, **{name: one.value for name, one in self.parameters.items()}}
+
+    def predict(self, velocity: Array, pressure: Array) -> Array:
+        """Friction at velocities [m/s] and pressures [Pa]."""
+        return curve(velocity, pressure - self.reference_pressure, **self.values)
+
+    def bounds(self, velocity: Array, pressure: Array) -> tuple[Array, Array]:
+        """Lower and upper bound of the curve at velocities and pressures."""
+        names = tuple(self.parameters)
+        slopes = _slopes(velocity, pressure - self.reference_pressure, self.values, names)
+        with np.errstate(invalid="ignore"):
+            variance = np.einsum("...i,ij,...j->...", slopes, self.covariance, slopes)
+        half = self.quantile * np.sqrt(np.maximum(variance, 0.0))
+        half = np.where(np.isfinite(half), half, np.inf)
+        middle = self.predict(velocity, pressure)
+        return middle - half, middle + half
+
+
+def curve(
+    velocity: Array,
+    pressure_change: Array,
+    *,
+    coulomb: Array,
+    static: Array,
+    stribeck_speed: Array,
+    exponent: Array,
+    viscous: Array,
+    pressure_slope: Array = 0.0,
+    offset: Array = 0.0,
+) -> Array:
+    """Friction at velocities away from rest, signed [N]."""
+    speed, way = np.abs(velocity), np.sign(velocity)
+    level = friction.stribeck_level(
+        speed=speed,
+        coulomb=coulomb,
+        static=static,
+        stribeck_speed=stribeck_speed,
+        exponent=exponent,
+    )
+    return (
+        way * (level * (1 + pressure_slope * pressure_change / coulomb) + viscous * speed) + offset
+    )
+
+
+def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
+    """The Stribeck curve through points of steady sliding, or why there is none.
+
+    Asked of the points: F_C and sigma_2; F_S and v_s where there are five speeds or more and they
+    better the fit (corrected Akaike information); the exponent where there are seven; an offset
+    where the rod runs both ways; an effect of pressure where it varies by a fifth.
+
+    Parameters
+    ----------
+    points : steady
+    area : of the piston [m^2]
+
+    Returns
+    -------
+    the fit, or one line that says what is missing
+    """
+    speeds = _different([one.speed for one in points])
+    if len(speeds) < 2:
+        at = f"one speed, {1e3 * speeds[0]:.3g} mm/s" if speeds else "no steady sliding"
+        return f"{at}: a Stribeck curve needs plateaus or sweeps of 2 speeds, 5 for F_S and v_s"
+    beside = _beside(points, area)
+    doubts: list[str] = []
+    fits = []
+    for depth, least in ((1, 2), (2, 5), (3, 7)):
+        names = [name for level in _LEVELS[:depth] for name in level] + beside
+        if len(speeds) < least or len(points) <= len(names) + 1:
+            break
+        fits.append(_fit(points, tuple(names)))
+    if not fits:
+        return (
+            f"{len(points)} points for {2 + len(beside)} parameters: give more plateaus or sweeps "
+            "at other speeds"
+        )
+    best = min(fits, key=_information)
+    if len(fits) < 2:
+        doubts.append(f"{len(speeds)} speeds do not show F_S and v_s: five or more do")
+    elif "static" not in best.parameters:
+        doubts.append("no rise of friction towards rest: F_S and v_s are not seen")
+    elif "exponent" not in best.parameters:
+        doubts.append(f"the exponent is held at {EXPONENT:g}")
+    if "offset" in best.parameters:
+        shift = best.parameters["offset"]
+        if shift.lower > 0 or shift.upper < 0:
+            doubts.append(
+                "an offset between both ways: zeros of the sensors, areas, or seals that rub "
+                "unequally; the record cannot tell which"
+            )
+    else:
+        doubts.append("one way only: an error of the sensors' zeros counts as friction")
+    return replace(best, doubts=tuple(doubts))
+
+
+def _different(speeds: Sequence[float]) -> list[float]:
+    """Speeds that differ by more than `DIFFERENT`."""
+    found: list[float] = []
+    for one in sorted(speeds):
+        if not found or one > found[-1] * (1 + DIFFERENT):
+            found.append(one)
+    return found
+
+
+def _beside(points: Sequence[Point], area: float) -> list[str]:
+    """Offset and effect of pressure, where the points can show them."""
+    ways = {one.velocity > 0 for one in points}
+    found = ["offset"] if len(ways) == 2 else []
+    own = APART * max(abs(one.friction) for one in points) / area
+    for way in ways:
+        pressures = [one.pressure for one in points if (one.velocity > 0) == way]
+        spread = max(pressures) - min(pressures)
+        if spread > max(SPREAD * max(pressures), own) and len(points) > 4:
+            return [*found, "pressure_slope"]
+    return found
+
+
+class _Data:
+    """Points as arrays, with weights 1/error."""
+
+    def __init__(self, points: Sequence[Point]) -> None:
+        self.velocity = np.array([one.velocity for one in points])
+        pressure = np.array([one.pressure for one in points])
+        errors = np.array([one.error for one in points])
+        self.friction = np.array([one.friction for one in points])
+        self.largest = float(np.max(np.abs(self.friction)))
+        floor = max(float(np.median(errors)), 1e-3 * self.largest)
+        self.error = np.maximum(errors, floor)
+        self.reference = float(np.mean(pressure))
+        self.change = pressure - self.reference
+
+    def residual(self, values: Mapping[str, float]) -> Array:
+        return (curve(self.velocity, self.change, **values) - self.friction) / self.error
+
+
+def _held(names: Sequence[str], coulomb: float) -> dict[str, float]:
+    """Values of what is not asked for."""
+    held = {"exponent": EXPONENT, "pressure_slope": 0.0, "offset": 0.0}
+    if "static" not in names:
+        held |= {"static": coulomb, "stribeck_speed": SPEEDS[0]}
+    return {name: value for name, value in held.items() if name not in names}
+
+
+def _fit(points: Sequence[Point], names: tuple[str, ...]) -> StribeckFit:
+    """Least squares for some parameters, from the best of a grid of speeds and exponents."""
+    from scipy.optimize import least_squares  # slow to import, rarely needed
+
+    data = _Data(points)
+    start = _search(data, names)
+    scale = _scales(data)
+
+    def values(x: Array) -> dict[str, float]:
+        found = dict(zip(names, x * [scale[name] for name in names], strict=True))
+        if "static" in names:  # searched as the rise over F_C, which keeps F_S >= F_C
+            found["static"] = found["coulomb"] + found["static"]
+        return _held(names, found["coulomb"]) | found
+
+    def residuals(x: Array) -> Array:
+        return data.residual(values(x))
+
+    def slopes(x: Array) -> Array:
+        columns = _slopes(data.velocity, data.change, values(x), names)
+        if "static" in names:
+            rise = columns[:, names.index("static")]
+            columns[:, names.index("coulomb")] += rise
+        return columns * [scale[name] for name in names] / data.error[:, None]
+
+    low = {"coulomb": 1e-6, "static": 0.0, "viscous": 0.0}
+    low |= {"stribeck_speed": SPEEDS[0] / scale["stribeck_speed"], "exponent": EXPONENTS[0]}
+    high = {"static": STATIC_MOST, "exponent": EXPONENTS[1]}
+    high |= {"stribeck_speed": SPEEDS[1] / scale["stribeck_speed"]}
+    bounds = (
+        [low.get(name, -np.inf) for name in names],
+        [high.get(name, np.inf) for name in names],
+    )
+    x0 = np.array([start[name] / scale[name] for name in names])
+    x0 = np.clip(x0, np.array(bounds[0]) + 1e-9, np.array(bounds[1]) - 1e-9)
+    found = least_squares(
+        residuals,
+        x0,
+        jac=slopes,
+        bounds=bounds,
+        x_scale="jac",
+        max_nfev=400,
+    )
+    best = values(found.x)
+    own = {name: best[name] for name in names}
+    jacobian = _slopes(data.velocity, data.change, best, names)
+    sizes = np.array([max(abs(own[name]), 1e-3 * scale[name]) for name in names])
+    told = known(own, jacobian / data.error[:, None], data.residual(best), sizes)
+    return StribeckFit(
+        told.parameters,
+        _held(names, best["coulomb"]),
+        told.covariance,
+        told.quantile,
+        data.reference,
+        -data.residual(best) * data.error,
+        data.error,
+        (),
+    )
+
+
+def _scales(data: _Data) -> dict[str, float]:
+    """Size of each parameter in a record like this."""
+    speed = float(np.max(np.abs(data.velocity)))
+    pressure = max(float(np.max(np.abs(data.change))), 1.0)
+    return {
+        "coulomb": data.largest,
+        "static": data.largest,
+        "stribeck_speed": 1e-3,
+        "exponent": 1.0,
+        "viscous": data.largest / speed,
+        "offset": data.largest,
+        "pressure_slope": data.largest / pressure,
+    }
+
+
+def _search(data: _Data, names: Sequence[str]) -> dict[str, float]:
+    """Start values: over a grid of Stribeck speeds and exponents the rest is linear."""
+    way, speed = np.sign(data.velocity), np.abs(data.velocity)
+    columns = {"coulomb": way, "viscous": data.velocity}
+    if "offset" in names:
+        columns["offset"] = np.ones_like(speed)
+    if "pressure_slope" in names:
+        columns["pressure_slope"] = way * data.change
+    grid: list[tuple[float, float]] = [(SPEEDS[0], EXPONENT)]
+    if "static" in names:
+        exponents = np.linspace(*EXPONENTS, 6) if "exponent" in names else [EXPONENT]
+        grid = [(v, d) for v in np.geomspace(*SPEEDS, 30) for d in exponents]
+    best, least = {}, np.inf
+    from scipy.optimize import lsq_linear  # slow to import, rarely needed
+
+    for stribeck_speed, exponent in grid:
+        own = dict(columns)
+        if "static" in names:
+            own["static"] = way * np.exp(-((speed / stribeck_speed) ** exponent))
+        matrix = np.stack(list(own.values()), axis=1) / data.error[:, None]
+        target = data.friction / data.error
+        amplitudes, *_ = np.linalg.lstsq(matrix, target, rcond=None)
+        at = dict(zip(own, amplitudes, strict=True))
+        if any(at.get(name, 1.0) < 0 for name in ("coulomb", "viscous", "static")):
+            low = [0.0 if name in ("coulomb", "viscous", "static") else -np.inf for name in own]
+            amplitudes = lsq_linear(matrix, target, (low, np.inf)).x
+            at = dict(zip(own, amplitudes, strict=True))
+        cost = float(np.sum((matrix @ amplitudes - target) ** 2))
+        if cost < least:
+            best, least = at | {"stribeck_speed": stribeck_speed, "exponent": exponent}, cost
+    return best
+
+
+def _slopes(
+    velocity: Array, change: Array, values: Mapping[str, float], names: Sequence[str]
+) -> Array:
+    """Derivatives of the curve by parameters (..., parameters), by complex steps."""
+    columns = []
+    for name in names:
+        moved = {**values, name: values[name] + 1j * STEP}
+        if name == "coulomb" and "static" not in names:
+            moved["static"] = moved["coulomb"]
+        columns.append(np.imag(curve(velocity, change, **moved)) / STEP)
+    return np.stack(columns, axis=-1)
+
+
+def _information(fit: StribeckFit) -> float:
+    """Corrected Akaike information of the weighted residuals; less is better."""
+    count, parameters = fit.residuals.size, len(fit.parameters) + 1
+    spare = count - parameters - 1
+    if spare <= 0:
+        return np.inf
+    cost = max(float(np.sum((fit.residuals / fit.errors) ** 2)), 1e-30)
+    return float(count * np.log(cost / count) + 2 * parameters * count / spare)

@@ -1,0 +1,243 @@
+"""Records as a bench would write them, of known friction: to plan a test, to check a method."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..evaluation.study.bench import Bench
+from ..models import friction, lugre
+from ..numeric import Array
+from .record import Record
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """Friction of a made-up cylinder: LuGre with a Stribeck level, SI."""
+
+    coulomb: float
+    static: float
+    stribeck_speed: float
+    exponent: float
+    viscous: float
+    bristle_stiffness: float
+    bristle_damping: float
+    pressure_slope: float = 0.0
+    """dF_C/dp of the higher chamber pressure, F_S in proportion [N/Pa]."""
+    reference_pressure: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Sensors:
+    """What sensors do to a record.
+
+    Parameters
+    ----------
+    pressure_range : of the pressure sensors [Pa]
+    pressure_noise : standard deviation over that range
+    position_step : of the position sensor [m]
+    force_noise : of the force sensor [N]
+    pressure_lag : by which pressures come late [s]
+    spikes : share of samples that are spikes, in every channel
+    pressure_offset : of p1 [Pa]
+    """
+
+    pressure_range: float = 25e6
+    pressure_noise: float = 1e-3
+    position_step: float = 10e-6
+    force_noise: float = 0.0
+    pressure_lag: float = 0.0
+    spikes: float = 0.0
+    pressure_offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Course:
+    """A prescribed motion: time, position, velocity, acceleration (samples), SI."""
+
+    time: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+
+
+def plateaus(
+    speeds: Sequence[float],
+    *,
+    travel: float,
+    begin: float,
+    step: float = 1e-3,
+    ramp: float = 0.05,
+    rest: float = 0.1,
+    longest: float = 3.0,
+) -> Course:
+    """Constant speeds out and back, each over `travel` or `longest` seconds, with smooth ramps.
+
+    Parameters
+    ----------
+    speeds : [m/s]
+    travel : of a stroke out [m]
+    begin : position of its beginning [m]
+    step : of time [s]
+    ramp : time from rest to speed, half a cosine [s]
+    rest : time at rest between strokes [s]
+    longest : time of a slow stroke at speed [s]
+
+    Returns
+    -------
+    the motion
+    """
+    parts = [np.zeros(round(rest / step))]
+    rise = (1 - np.cos(np.pi * np.arange(round(ramp / step)) * step / ramp)) / 2
+    for speed in speeds:
+        held = np.ones(round(min(max(travel / speed - ramp, ramp), longest) / step))
+        stroke = speed * np.concatenate([rise, held, rise[::-1]])
+        parts += [stroke, np.zeros(round(rest / step)), -stroke, np.zeros(round(rest / step))]
+    return _course(np.concatenate(parts), begin, step)
+
+
+def sine(
+    *,
+    amplitude: float,
+    frequency: float,
+    periods: float,
+    middle: float,
+    step: float = 1e-3,
+) -> Course:
+    """A sine of position about its middle, SI."""
+    time = step * np.arange(round(periods / frequency / step))
+    turn = 2 * np.pi * frequency
+    return Course(
+        time,
+        middle - amplitude * np.cos(turn * time),
+        amplitude * turn * np.sin(turn * time),
+        amplitude * turn**2 * np.cos(turn * time),
+    )
+
+
+def ramps(
+    *, fastest: float, duration: float, begin: float, step: float = 1e-3, repeats: int = 2
+) -> Course:
+    """Velocity up to `fastest` and back to rest along straight lines, out and back, SI."""
+    up = np.linspace(0.0, fastest, round(duration / 2 / step))
+    once = np.concatenate([up, up[::-1]])
+    return _course(np.concatenate([once, -once] * repeats), begin, step)
+
+
+def _course(velocity: Array, begin: float, step: float) -> Course:
+    time = step * np.arange(velocity.size)
+    gone = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2) * step])
+    return Course(time, begin + gone, velocity, np.gradient(velocity, step))
+
+
+def friction_along(truth: Truth, course: Course, pressure: Array) -> Array:
+    """Friction of the truth along a motion at the higher chamber pressures [N]."""
+    between = (course.velocity[1:] + course.velocity[:-1]) / 2
+    change = (pressure[1:] + pressure[:-1]) / 2 - truth.reference_pressure
+    level = friction.stribeck_level(
+        speed=between,
+        coulomb=truth.coulomb,
+        static=truth.static,
+        stribeck_speed=truth.stribeck_speed,
+        exponent=truth.exponent,
+    )
+    level = level * (1 + truth.pressure_slope * change / truth.coulomb)
+    step = float(course.time[1] - course.time[0])
+    found = np.zeros(course.time.size)
+    deflection = 0.0
+    for k, (speed, here) in enumerate(zip(between.tolist(), level.tolist(), strict=True)):
+        now = lugre.lugre_step(
+            deflection=deflection,
+            speed=speed,
+            time_step=step,
+            level=here,
+            bristle_stiffness=truth.bristle_stiffness,
+            bristle_damping=truth.bristle_damping,
+            viscous=truth.viscous,
+        )
+        deflection, found[k + 1] = now.deflection, now.force
+    return found
+
+
+def pressures(
+    bench: Bench, course: Course, force: Array, *, back_pressure: float, mass: float
+) -> tuple[Array, Array]:
+    """Chamber pressures that drive a mass against a force [Pa], the lower one at `back_pressure`.
+
+    The higher pressure and the bore it grows are found together.
+    """
+    needed = force + mass * course.acceleration
+    highest: Array = back_pressure
+    for _ in range(4):
+        area_1, area_2 = bench.areas(highest)
+        push = (needed + back_pressure * area_2) / area_1
+        pull = (back_pressure * area_1 - needed) / area_2
+        out = push >= back_pressure
+        first = np.where(out, push, back_pressure)
+        second = np.where(out, back_pressure, pull)
+        highest = np.maximum(first, second)
+    return first, second
+
+
+def record(
+    bench: Bench,
+    course: Course,
+    friction_force: Array,
+    *,
+    load: Array = 0.0,
+    mass: float = 0.0,
+    back_pressure: float = 5e5,
+    sensors: Sensors | None = None,
+    rng: np.random.Generator | None = None,
+    name: str = "synthetic",
+) -> Record:
+    """What sensors write of a motion with known friction.
+
+    Parameters
+    ----------
+    bench : the actuator
+    course : its motion
+    friction_force : signed as the velocity (samples) [N]
+    load : on the rod, against extension [N]
+    mass : inside the force sensor [kg]
+    back_pressure : of the chamber that is not driven [Pa]
+    sensors : None for perfect ones
+    rng : of the noise
+    name : of the record
+
+    Returns
+    -------
+    the record, with channels p1, p2, x, F_L
+    """
+    load = np.broadcast_to(load, course.time.shape).astype(float)
+    p1, p2 = pressures(bench, course, friction_force + load, back_pressure=back_pressure, mass=mass)
+    channels = {"p1": p1, "p2": p2, "x": course.position, "F_L": load}
+    if sensors is not None:
+        channels = _sensed(channels, course.time, sensors, rng or np.random.default_rng(0))
+    return Record(course.time, channels, name)
+
+
+def _sensed(
+    channels: Mapping[str, Array], time: Array, sensors: Sensors, rng: np.random.Generator
+) -> dict[str, Array]:
+    """Channels with lag, offset, noise, steps and spikes."""
+    found = dict(channels)
+    scatter = {
+        "p1": sensors.pressure_noise * sensors.pressure_range,
+        "p2": sensors.pressure_noise * sensors.pressure_range,
+        "F_L": sensors.force_noise,
+    }
+    for name in ("p1", "p2"):
+        found[name] = np.interp(time - sensors.pressure_lag, time, found[name])
+    found["p1"] = found["p1"] + sensors.pressure_offset
+    for name, sigma in scatter.items():
+        found[name] = found[name] + sigma * rng.standard_normal(time.size)
+    if sensors.position_step:
+        found["x"] = sensors.position_step * np.round(found["x"] / sensors.position_step)
+    for name, values in found.items():
+        hit = rng.random(time.size) < sensors.spikes
+        height = max(float(np.ptp(values)), 1e-6)
+        found[name] = np.where(hit, values + height * rng.uniform(-1, 1, time.size), values)
+    return found
