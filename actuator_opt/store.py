@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 from .errors import Diagnostic, InputError
+from .suggest import closest
 
 _PACKAGE = Path(__file__).resolve().parent
 
@@ -38,6 +39,41 @@ def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
         return checkout / name
     message = f'the data folder "{name}" is missing from this installation'
     raise InputError(Diagnostic(message, "install the package again", str(packaged)))
+
+
+def read_bytes(path: Path, *, most: int, kinds: tuple[str, ...], what: str) -> bytes:
+    """The first `most` bytes of a file that a person named.
+
+    Parameters
+    ----------
+    path : of the file
+    most : bytes to read
+    kinds : endings of such files, to suggest one of a near name
+    what : such a file is, in words
+
+    Raises
+    ------
+    InputError : it is not there, a folder, or not to be read
+    """
+    try:
+        with path.open("rb") as stream:
+            return stream.read(most)
+    except FileNotFoundError:
+        raise InputError(Diagnostic("no such file", _near(path, kinds), str(path))) from None
+    except IsADirectoryError:
+        raise InputError(Diagnostic("is a folder", f"name a {what} in it", str(path))) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(Diagnostic(f"cannot be read: {reason}", "", str(path))) from None
+
+
+def _near(path: Path, kinds: tuple[str, ...]) -> str:
+    try:
+        names = [one.name for one in path.parent.iterdir() if one.suffix in kinds]
+    except OSError:
+        return "check the path"
+    match = closest(path.name, names)
+    return f"did you mean {path.parent / match}?" if match else "check the path"
 
 
 def require_writable(path: Path) -> None:

@@ -8,10 +8,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from .. import quantities
+from .. import quantities, suggest
 from ..errors import Diagnostic, InputError
 from ..quantities import Quantity
-from . import choice_list, suggest, wishes
+from . import choice_list, wishes
 from .faults import cross_field, material_faults
 from .kinds import Fraction, Of, ValueFault, example, what
 from .model import Design, Ply

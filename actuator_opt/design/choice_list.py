@@ -13,8 +13,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
+from .. import suggest
 from ..quantities import Quantity
-from . import suggest
 from .kinds import Fraction, MaterialName, Text, ValueFault, what
 from .material import ROLES
 from .model import Design

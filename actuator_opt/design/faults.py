@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from .. import quantities
-from . import circuit_faults, material_laws, seal_faults, suggest, wall_faults
+from .. import quantities, suggest
+from . import circuit_faults, material_laws, seal_faults, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
 from .structure import Loc, child, leaves

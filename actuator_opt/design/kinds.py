@@ -18,7 +18,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from .. import quantities, units
 from ..numeric import Array
 from ..quantities import Quantity
-from .suggest import shown
+from ..suggest import shown
 
 _LONGEST_NUMBER = 100
 _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d")

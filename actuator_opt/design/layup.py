@@ -19,11 +19,11 @@ from typing import Any, NamedTuple
 
 from .. import quantities, units
 from ..errors import Diagnostic
+from ..suggest import shown
 from .kinds import ValueFault, example, read_quantity, what
 from .model import MOST_LAYERS, Ply
 from .paths import spell
 from .structure import Loc, child, child_at, lists_of
-from .suggest import shown
 from .yaml_source import Document, Shorthand, Span
 
 EXAMPLE = "[90_4 / +-25_2 / 0]s"

@@ -16,10 +16,10 @@ from typing import Any, TypeAlias
 from .. import units
 from ..errors import Diagnostic, InputError
 from ..quantities import INPUTS, MATERIAL_PROPERTIES, Quantity
+from ..suggest import remedy, shown
 from . import material, yaml_source
 from .kinds import ValueFault, read_quantity, what
 from .material import Material, Property, Spread
-from .suggest import remedy, shown
 
 _TOP = re.compile(r"(?m)^(?P<quote>['\"]?)(?P<name>[^\W\d][\w.+-]*)(?P=quote)[ \t]*:")
 _STRAY = re.compile(r"(?m)^(?!#|---|['\"]?[^\W\d][\w.+-]*['\"]?[ \t]*:)\S.*$")

@@ -13,10 +13,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from .. import quantities
+from .. import quantities, suggest
 from ..errors import Diagnostic, InputError, UsageError
 from ..quantities import Quantity
-from . import suggest
 from .kinds import Fraction, ValueFault
 from .model import Design
 from .section import Section

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, Literal
 
-from .. import units
+from .. import suggest, units
 from ..errors import Diagnostic, InputError
 from ..quantities import Quantity
-from . import layup, suggest
+from ..store import read_bytes
+from . import layup
 from .build import MOST_FAULTS, build, copy_tree
 from .kinds import ValueFault
 from .model import Design
@@ -201,26 +202,8 @@ def _open(source: str | Path) -> tuple[str, str]:
         return source, TEXT
     if source == "-":
         return decode(sys.stdin.buffer.read(MAX_BYTES + 1), STDIN), STDIN
-    path, file = Path(source), str(source)
-    try:
-        with path.open("rb") as stream:
-            return decode(stream.read(MAX_BYTES + 1), file), file
-    except FileNotFoundError:
-        raise InputError(Diagnostic("no such file", _near(path), file)) from None
-    except IsADirectoryError:
-        raise InputError(Diagnostic("is a folder", "name a design file in it", file)) from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(Diagnostic(f"cannot be read: {reason}", "", file)) from None
-
-
-def _near(path: Path) -> str:
-    try:
-        names = [p.name for p in path.parent.iterdir() if p.suffix in (".yaml", ".yml")]
-    except OSError:
-        return "check the path"
-    match = suggest.closest(path.name, names)
-    return f"did you mean {path.parent / match}?" if match else "check the path"
+    data = read_bytes(Path(source), most=MAX_BYTES + 1, kinds=(".yaml", ".yml"), what="design file")
+    return decode(data, str(source)), str(source)
 
 
 def library() -> Materials:

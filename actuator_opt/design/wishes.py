@@ -10,9 +10,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from .. import quantities
+from .. import quantities, suggest
 from ..quantities import Quantity
-from . import suggest
 from .kinds import ValueFault, example, read_quantity, what
 from .model import Design
 from .paths import Target, resolve

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import yaml
 
 from ..errors import Diagnostic, InputError
+from ..suggest import shown
 from .structure import Loc
-from .suggest import shown
 
 try:
     from yaml.cyaml import CParser as _Parser  # type: ignore[attr-defined]

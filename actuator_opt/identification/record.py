@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import io
 import re
 from collections.abc import Mapping, Sequence
@@ -14,6 +13,7 @@ import numpy as np
 from .. import units
 from ..errors import Diagnostic, InputError
 from ..numeric import Array
+from ..suggest import remedy as remedy_for
 
 
 class Channel(NamedTuple):
@@ -219,9 +219,7 @@ def _columns(
             continue
         wanted, unit = _named(header)
         if wanted not in names:
-            near = difflib.get_close_matches(wanted, names, 1)
-            remedy = f'did you mean "{near[0]}"?' if near else f"columns are {_list(names)}"
-            fault(f'no column "{_short(wanted)}" for {channel}', remedy)
+            fault(f'no column "{_short(wanted)}" for {channel}', remedy_for(wanted, names))
             continue
         places[channel] = names.index(wanted)
         if unit:
