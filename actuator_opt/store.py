@@ -41,12 +41,12 @@ def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
     raise InputError(Diagnostic(message, "install the package again", str(packaged)))
 
 
-def read_bytes(path: Path, *, most: int, kinds: tuple[str, ...], what: str) -> bytes:
+def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: str) -> bytes:
     """The first `most` bytes of a file that a person named.
 
     Parameters
     ----------
-    path : of the file
+    source : of the file, as the person wrote it
     most : bytes to read
     kinds : endings of such files, to suggest one of a near name
     what : such a file is, in words
@@ -55,16 +55,17 @@ def read_bytes(path: Path, *, most: int, kinds: tuple[str, ...], what: str) -> b
     ------
     InputError : it is not there, a folder, or not to be read
     """
+    path, name = Path(source), str(source)
     try:
         with path.open("rb") as stream:
             return stream.read(most)
     except FileNotFoundError:
-        raise InputError(Diagnostic("no such file", _near(path, kinds), str(path))) from None
+        raise InputError(Diagnostic("no such file", _near(path, kinds), name)) from None
     except IsADirectoryError:
-        raise InputError(Diagnostic("is a folder", f"name a {what} in it", str(path))) from None
+        raise InputError(Diagnostic("is a folder", f"name a {what} in it", name)) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(Diagnostic(f"cannot be read: {reason}", "", str(path))) from None
+        raise InputError(Diagnostic(f"cannot be read: {reason}", "", name)) from None
 
 
 def _near(path: Path, kinds: tuple[str, ...]) -> str:

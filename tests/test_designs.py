@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from actuator_opt import verbs
+from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.reporting.published import published_tables
 
 DESIGNS = Path(__file__).parents[1] / "designs"
@@ -27,7 +28,7 @@ GROUPS = {
 
 
 @pytest.fixture(scope="module")
-def optima() -> dict[str, verbs.Optimisation]:
+def optima() -> dict[str, Optimisation]:
     """Every shipped design that has variables, optimised from few starts."""
     return {
         path.stem: verbs.optimise(actuator, starts=3, prices=False)
@@ -70,7 +71,7 @@ def test_a_shipped_optimisation_is_optimal(optima) -> None:
         assert not any(check.status == "missed" for check in optimum.evaluation.checks), name
 
 
-def _active(optimum: verbs.Optimisation) -> list[str]:
+def _active(optimum: Optimisation) -> list[str]:
     """Metrics of the requirements block that hold with no margin."""
     rows = optimum.evaluation.requirements
     names = [r.metric for r in rows if r.path.startswith("requirements.") and r.margin < 1e-6]

@@ -202,7 +202,7 @@ def _open(source: str | Path) -> tuple[str, str]:
         return source, TEXT
     if source == "-":
         return decode(sys.stdin.buffer.read(MAX_BYTES + 1), STDIN), STDIN
-    data = read_bytes(Path(source), most=MAX_BYTES + 1, kinds=(".yaml", ".yml"), what="design file")
+    data = read_bytes(source, most=MAX_BYTES + 1, kinds=(".yaml", ".yml"), what="design file")
     return decode(data, str(source)), str(source)
 
 

@@ -1,0 +1,140 @@
+"""A design as read, and its faults."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..design import Design, LoadedDesign, Source, read_design, with_values
+from ..errors import Diagnostic, InputError
+from ..evaluation import Subject, compute, prepare
+from ..evaluation.plugin import Plugin, View, collect, load
+from ..quantities import METRICS
+
+Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
+
+
+@dataclass(frozen=True, slots=True)
+class Actuator:
+    """A design as read: the design, where its values stand, and the user's own metrics."""
+
+    design: Design
+    source: Source | None = None
+    plugins: tuple[Plugin, ...] = ()
+
+    def subject(self) -> Subject:
+        """The design with its materials and numbers, ready for the models."""
+        return prepare(self.design, plugins=self.plugins)
+
+    def changed(self, values: Mapping[str, float | str]) -> Actuator:
+        """The same actuator with other numbers by PATH (SI, or text with a unit)."""
+        known = METRICS | {plugin.name: plugin.quantity for plugin in self.plugins}
+        design = with_values(self.design, dict(values), metrics=known)
+        return Actuator(design, self.source, self.plugins)
+
+
+def _plugins(given: Plugins) -> tuple[Plugin, ...]:
+    found: list[Plugin] = []
+    for item in given:
+        if isinstance(item, Plugin):
+            found.append(item)
+        elif isinstance(item, (str, Path)):
+            found += load(item)
+        else:
+            found += collect(item)
+    names = [plugin.name for plugin in found]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(Diagnostic(f"the metric {twice} is declared twice", "rename one of them"))
+    return tuple(found)
+
+
+def read(
+    source: str | Path,
+    *,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    plugins: Plugins = (),
+) -> Actuator:
+    """Read a design file (a path, ``"-"`` for standard input, or the text itself).
+
+    Parameters
+    ----------
+    source : path or text
+    set : values to replace, by PATH; a bare number is SI
+    plugins : the user's metrics and constraints: decorated functions or Python files
+
+    Raises
+    ------
+    InputError
+        with every fault of the file, each with its place and remedy
+    """
+    own = _plugins(plugins)
+    pairs = set.items() if isinstance(set, Mapping) else set
+    loaded: LoadedDesign = read_design(
+        source,
+        overrides=[(path, str(value)) for path, value in pairs],
+        metrics=METRICS | {plugin.name: plugin.quantity for plugin in own},
+    )
+    return Actuator(loaded.design, loaded.source, own)
+
+
+def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -> Actuator:
+    """Any form of a design as an actuator."""
+    if isinstance(design, Actuator):
+        return design
+    if isinstance(design, Design):
+        return Actuator(design, None, _plugins(plugins))
+    return read(design, plugins=plugins)
+
+
+def check(
+    source: str | Path,
+    *,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    plugins: Plugins = (),
+) -> list[Diagnostic]:
+    """All faults of a design file; an empty list for a good one. Parameters as `read`.
+
+    Found too: variables that no model reads, requirements that no model answers.
+    """
+    try:
+        actuator = read(source, set=set, plugins=plugins)
+        subject = actuator.subject()
+        faults = unanswered(actuator, subject)
+        if faults:
+            return faults
+        if actuator.design.choices:
+            from ..optimisation.choices import possible
+
+            possible(subject)
+        elif actuator.design.variables:
+            from ..optimisation.actuator import build
+
+            build(subject, place(actuator))
+    except InputError as error:
+        return error.diagnostics
+    return []
+
+
+def place(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
+    """What makes a fault of a variable's PATH, with its place in the file."""
+    return None if actuator.source is None else actuator.source.of_variable
+
+
+def unanswered(actuator: Actuator, subject: Subject) -> list[Diagnostic]:
+    """Requirements on metrics that this design does not have."""
+    if not actuator.design.requirements:
+        return []
+    computed = compute(subject, subject.values()).computed
+    faults = []
+    for metric, limit in actuator.design.requirements.items():
+        if computed.metrics.get(metric):
+            continue
+        path = f"requirements.{metric}.{'max' if limit.min is None else 'min'}"
+        message = f"cannot be met: {computed.why.get(metric, 'it does not apply to this design')}"
+        remedy = "remove the requirement, or add what it needs"
+        source = actuator.source
+        found = source.diagnostic(path, message, remedy) if source is not None else None
+        faults.append(found or Diagnostic(message, remedy, path=path))
+    return faults

@@ -1,0 +1,58 @@
+"""Evaluate, optimise, price."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..design import Design
+from ..errors import InputError
+from ..evaluation import Evaluation
+from ..evaluation import evaluate as evaluate_subject
+from .actuator import Actuator, Plugins, as_actuator, place, unanswered
+
+if TYPE_CHECKING:
+    from ..optimisation.result import Optimisation, Sensitivity
+
+
+def evaluate(design: Actuator | Design | str | Path, *, plugins: Plugins = ()) -> Evaluation:
+    """Every metric, requirement and check of a design as it stands."""
+    return evaluate_subject(as_actuator(design, plugins).subject())
+
+
+def optimise(
+    design: Actuator | Design | str | Path,
+    *,
+    algorithm: str = "auto",
+    starts: int = 6,
+    seed: int = 0,
+    plugins: Plugins = (),
+    prices: bool = True,
+    max_seconds: float | None = None,
+    whole_plies: bool = False,
+) -> Optimisation:
+    """The best design; parameters as `optimise.run.optimise`."""
+    from ..optimisation.run import optimise as run
+
+    actuator = as_actuator(design, plugins)
+    subject = actuator.subject()
+    faults = unanswered(actuator, subject)
+    if faults:
+        raise InputError(faults)
+    return run(
+        subject,
+        fault=place(actuator),
+        algorithm=algorithm,
+        starts=starts,
+        seed=seed,
+        prices=prices,
+        max_seconds=max_seconds,
+        whole_plies=whole_plies,
+    )
+
+
+def sensitivity(
+    design: Actuator | Design | str | Path, *, seed: int = 0, plugins: Plugins = ()
+) -> tuple[Sensitivity, ...]:
+    """What each requirement and parameter costs at the design's optimum."""
+    return optimise(design, seed=seed, plugins=plugins).sensitivities

@@ -1,0 +1,112 @@
+"""Reports of designs, and designs written down."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..design import Design, Source
+from ..errors import Diagnostic, UsageError
+from ..evaluation import Evaluation, Subject, prepare
+from .actuator import Actuator
+
+if TYPE_CHECKING:
+    from ..evaluation.rings import Place
+    from ..evaluation.study.seal import SealStudy
+    from ..optimisation.result import Optimisation
+    from ..reporting import ExtraTable, ReportFile
+
+_LAST_SECOND = 253_402_300_799
+"""End of the year 9999, the last a date can hold."""
+
+
+def _seal_studies(subject: Subject) -> list[SealStudy]:
+    """The seal sheets of a report: every place of the design that asks for an oil film."""
+    from ..evaluation.study.seal import study
+
+    places: tuple[Place, ...] = ("piston", "rod")
+    asked = [x for x in places if getattr(subject.design.seals, x).friction == "film"]
+    moving = any(case.speed > 0 for case in subject.design.load_cases)
+    return [study(subject, x, curves=True, mapped=True) for x in asked if moving]
+
+
+def report(
+    subject: Evaluation | Optimisation,
+    *,
+    folder: str | Path = "reports",
+    stem: str | None = None,
+    actuator: Actuator | None = None,
+    command: str = "",
+    date: str | None = None,
+    extra_tables: Sequence[ExtraTable] = (),
+) -> list[ReportFile]:
+    """Write the PDF and PNG report of an evaluation or an optimisation.
+
+    Parameters
+    ----------
+    subject : what to report
+    folder, stem : where to; default: the design's name in ``reports/``
+    actuator : the design as read, for the input listing and attachment
+    command : what made the report, printed on it
+    date : ISO date; default: SOURCE_DATE_EPOCH, else none
+    extra_tables : further tables
+    """
+    from ..design.writer import to_yaml
+    from ..reporting import write_report
+    from ..reporting.published import published_tables
+
+    source = None if actuator is None else actuator.source
+    text = source.text if source is not None else to_yaml(subject.design)
+    name = file_name(subject.design, source)
+    return write_report(
+        subject,
+        folder=Path(folder),
+        stem=stem or Path(name).stem,
+        source_text=text,
+        source_name=name,
+        command=command,
+        date=date or date_from_environment(),
+        extra_tables=[*published_tables(subject), *extra_tables],
+        seals=_seal_studies(prepare(subject.design)),
+    )
+
+
+def file_name(design: Design, source: Source | None) -> str:
+    """Name of the design's file; of a design that came without one, its own name made fit."""
+    if source is not None and not source.file.startswith("<"):
+        return Path(source.file).name
+    name = re.sub(r"[^\w-]+", "_", design.name).strip("_")
+    return f"{name or 'design'}.yaml"
+
+
+def date_from_environment() -> str | None:
+    """The date of SOURCE_DATE_EPOCH (UTC), or None.
+
+    Raises
+    ------
+    UsageError : it is no count of seconds
+    """
+    stamp = os.environ.get("SOURCE_DATE_EPOCH", "").strip()
+    if not stamp:
+        return None
+    digits = stamp.isdecimal() and stamp.isascii() and len(stamp) <= 12
+    if not digits or int(stamp) > _LAST_SECOND:
+        message = f'SOURCE_DATE_EPOCH "{stamp[:40]}" is no count of seconds since 1970'
+        raise UsageError(Diagnostic(message, "write e.g. 1700000000, or unset it"))
+    from datetime import UTC, datetime
+
+    return datetime.fromtimestamp(int(stamp), UTC).date().isoformat()
+
+
+def save(design: Actuator | Design, path: str | Path, *, source: Source | None = None) -> Path:
+    """Write a design file that keeps full precision, comments and order where it can."""
+    from ..design.writer import to_yaml
+    from ..store import write_text
+
+    if isinstance(design, Actuator):
+        source = source or design.source
+        design = design.design
+    return write_text(Path(path), to_yaml(design, source))
