@@ -4,8 +4,8 @@
 >>> ao.__version__
 '0.4.0'
 
-The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `report`, `save`) are the same
-as in the terminal. Heavy modules load when a verb needs them.
+The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `seal`, `identify`, `calibrate`,
+`report`, `save`) are the same as in the terminal. Heavy modules load when a verb needs them.
 """
 
 from __future__ import annotations
@@ -21,13 +21,23 @@ if TYPE_CHECKING:
     from .evaluation.plugin import constraint, metric
     from .verbs import (
         Actuator,
+        Calibrated,
+        bending,
+        calibrate,
         check,
         evaluate,
+        identify,
         optimise,
         read,
+        read_record,
         report,
         save,
+        seal,
         sensitivity,
+        write_calibration,
+        write_identification,
+        write_seal,
+        write_series,
     )
 
 __version__ = version.VERSION
@@ -35,36 +45,56 @@ __version__ = version.VERSION
 _HOMES = {
     "Actuator": "verbs",
     "ActuatorError": "errors",
+    "Calibrated": "verbs",
     "Diagnostic": "errors",
     "InputError": "errors",
+    "bending": "verbs",
+    "calibrate": "verbs",
     "check": "verbs",
     "constraint": "evaluation.plugin",
     "evaluate": "verbs",
+    "identify": "verbs",
     "load_library": "design.materials",
     "metric": "evaluation.plugin",
     "optimise": "verbs",
     "read": "verbs",
+    "read_record": "verbs",
     "report": "verbs",
     "save": "verbs",
+    "seal": "verbs",
     "sensitivity": "verbs",
+    "write_calibration": "verbs",
+    "write_identification": "verbs",
+    "write_seal": "verbs",
+    "write_series": "verbs",
 }
 
 __all__ = [
     "Actuator",
     "ActuatorError",
+    "Calibrated",
     "Diagnostic",
     "InputError",
     "__version__",
+    "bending",
+    "calibrate",
     "check",
     "constraint",
     "evaluate",
+    "identify",
     "load_library",
     "metric",
     "optimise",
     "read",
+    "read_record",
     "report",
     "save",
+    "seal",
     "sensitivity",
+    "write_calibration",
+    "write_identification",
+    "write_seal",
+    "write_series",
 ]
 
 

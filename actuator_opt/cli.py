@@ -14,6 +14,7 @@ import typer
 from typer.exceptions import TyperException
 
 from . import cli_materials, streams
+from .cli_records import calibrate, identify
 from .cli_seal import seal
 from .cli_shared import (
     assignments,
@@ -221,6 +222,8 @@ def _outcome(result: Optimisation) -> ExitCode:
 
 app.command("optimize", hidden=True)(optimise)
 app.command()(seal)
+app.command()(identify)
+app.command()(calibrate)
 
 
 @app.command()

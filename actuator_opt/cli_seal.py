@@ -8,9 +8,10 @@ from typing import Annotated
 import typer
 
 from . import streams
-from .cli_shared import check_targets, command_line, read_actuator, say_files
+from .cli_shared import check_targets, command_line, given, read_actuator, say_files
 from .errors import Diagnostic, ExitCode, UsageError
 from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Report, Seed, Set
+from .quantities import INPUTS
 
 
 def seal(
@@ -65,8 +66,8 @@ def seal(
     study = verbs.seal(
         actuator,
         place=place,  # type: ignore[arg-type]
-        speed=_given("--speed", speed, "speed"),
-        pressure=_given("--pressure", pressure, "pressure"),
+        speed=given("--speed", speed, INPUTS["speed"]),
+        pressure=given("--pressure", pressure, INPUTS["pressure"]),
         mapped=mapped,
         curves=report,
         finite_elements=finite_elements,
@@ -89,15 +90,3 @@ def seal(
     if not study.converged:
         raise typer.Exit(ExitCode.SOLVER_FAILED)
 
-
-def _given(option: str, text: str | None, name: str) -> float | None:
-    """The SI number of an option in the quantity's unit."""
-    from .design.kinds import ValueFault, read_quantity
-    from .quantities import INPUTS
-
-    if text is None:
-        return None
-    try:
-        return read_quantity(text, INPUTS[name])
-    except ValueFault as fault:
-        raise UsageError(Diagnostic(f"{option}: {fault.message}", fault.remedy)) from None

@@ -14,6 +14,7 @@ from .errors import Diagnostic, ExitCode, UsageError
 if TYPE_CHECKING:
     from .evaluation import Evaluation
     from .optimisation.result import Optimisation
+    from .quantities import Quantity
     from .verbs import Actuator
 
 
@@ -29,6 +30,18 @@ def read_actuator(design: str, sets: list[str] | None, plugins: list[Path] | Non
     from .verbs import read
 
     return read(design, set=assignments(sets), plugins=plugins or [])
+
+
+def given(option: str, text: str | None, quantity: Quantity) -> float | None:
+    """The SI number of an option in its quantity's unit."""
+    from .design.kinds import ValueFault, read_quantity
+
+    if text is None:
+        return None
+    try:
+        return read_quantity(text, quantity)
+    except ValueFault as fault:
+        raise UsageError(Diagnostic(f"{option}: {fault.message}", fault.remedy)) from None
 
 
 def leave_by(evaluation: Evaluation) -> None:

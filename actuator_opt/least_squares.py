@@ -42,6 +42,12 @@ class Parameter(NamedTuple):
         return "weakly identifiable" if signed else "not identifiable"
 
 
+def rated(value: float, lower: float, upper: float, standard_error: float) -> Parameter:
+    """A value with its bounds, judged: identifiable within `WEAK` of it."""
+    near = max(value - lower, upper - value) <= WEAK * abs(value)
+    return Parameter(value, lower, upper, standard_error, bool(near))
+
+
 class Known(NamedTuple):
     """Parameters of a fit with their covariance; infinite where the points leave one open."""
 

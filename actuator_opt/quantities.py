@@ -294,3 +294,12 @@ METRICS = _table("""
  geometry_head_groove | -      | length      | mm   | | | wall left beside the grooves of the head
  geometry_head_wall   | -      | length      | mm   | | | wall left over the rod seal groove
 """)
+
+RECORDS = _table("""
+ cutoff               | f_c    | frequency   | Hz     | 0.01  | 100000 | cut-off frequency of the filter
+ moving_mass          | m      | mass        | kg     | 0     | 1e6    | mass moving inside the force sensor
+ load_force           | F_L    | force       | N      | -2e7  | 2e7    | force of the load, against extension
+ pressure_lag         | tau    | time        | ms     | -1000 | 1000   | time by which the pressures come late
+ span                 | L      | length      | mm     | 1     | 20000  | span between the supports
+""")
+"""What a command states about a test record; magnitudes but for a force and a time."""

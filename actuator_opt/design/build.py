@@ -27,6 +27,7 @@ _TABLE_KEYS = {
     "requirements": "metrics such as stiffness_min, each with min or max",
     "choices": "PATHs such as seals.rod.compound, each with a list of allowed values",
     "waivers": "metrics such as seal_section, each with a reason",
+    "measured": "PATHs such as seals.rod.friction_coefficient, each with lower, upper and record",
     "materials": "names of materials, each with its changed properties",
 }
 """What the keys of the tables of free names are."""
@@ -174,8 +175,9 @@ def _word(value: object) -> str:
 
 def _unknown_key(loc: Loc, tree: Any) -> Fault:
     section, _ = _section_at(tree, loc[:-1])
-    if loc[0] in ("variables", "requirements") and len(loc) == 3:
-        names = ["lower", "upper", "start"] if loc[0] == "variables" else ["min", "max"]
+    table = entries(Design).get(str(loc[0]))
+    if table is not None and table.shape == "table" and table.section and len(loc) == 3:
+        names = list(entries(table.section))
     else:
         names = list(entries(section)) if section else []
         names += ["plies"] if section is Ply else []

@@ -293,6 +293,17 @@ class Variable(Section):
     start: float
 
 
+class Measured(Section):
+    """What a test record says of a value of the design: bounds that hold it with 95 %.
+
+    SI; in the file, units by PATH.
+    """
+
+    lower: float
+    upper: float
+    record: Annotated[str, Text("the record, as a report names it", 200)]
+
+
 class Limit(Section):
     """Limits of a metric (SI); in the file, units by the metric."""
 
@@ -356,6 +367,8 @@ class Design(Section):
     choices: dict[str, tuple[float | bool | str | Fraction, ...]] = {}  # noqa: RUF012 (pydantic copies it)
     requirements: dict[str, Limit] = {}  # noqa: RUF012 (pydantic copies it)
     waivers: dict[str, Annotated[str, Text("why the check does not apply")]] = {}  # noqa: RUF012 (pydantic copies it)
+    measured: dict[str, Measured] = {}  # noqa: RUF012 (pydantic copies it)
+    """Bounds of values that a test record gave, by PATH."""
     materials: dict[str, dict[str, float]] = {}  # noqa: RUF012 (pydantic copies it)
     """Properties (SI) that replace the library's in this design, by material name."""
     objective: Objective = Objective(minimise="mass")

@@ -23,8 +23,9 @@ from .structure import Entry, Loc, child, child_at, entries, leaves, number_of
 
 _PATH = re.compile(r"[^.\[\]=]+(\[[^\[\]=]+\])?(\.[^.\[\]=]+(\[[^\[\]=]+\])?)*")
 _TOKEN = re.compile(r"\[([^\[\]]+)\]|([^.\[\]]+)")
-_BOUNDS = ("lower", "upper", "start")
+_ENDS = {"variables": ("lower", "upper", "start"), "measured": ("lower", "upper", "record")}
 _LIMITS = ("min", "max")
+_TABLES = (*_ENDS, "requirements", "materials", "waivers", "objective")
 
 
 class _Token(NamedTuple):
@@ -89,7 +90,14 @@ def resolve(path: str, tree: Any, metrics: Mapping[str, Quantity] | None = None)
     head, _, rest = path.partition(".")
     if rest and head == "choices":
         raise ValueFault(f"{path}: is a list, not a value", "change the list in the file")
-    if rest and head in ("variables", "requirements", "materials", "waivers", "objective"):
+    if rest and head in (
+        "variables",
+        "requirements",
+        "materials",
+        "waivers",
+        "objective",
+        "measured",
+    ):
         return _resolve_table(head, rest, tree, quantities.METRICS if metrics is None else metrics)
     tokens = [_Token(m[1] or m[2], m[1] is not None) for m in _TOKEN.finditer(path)]
     return _resolve_section(path, tokens, tree, tree, Design, ())
@@ -147,11 +155,12 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
         if rest not in ("minimise", "maximise"):
             raise _unknown(path, tree, ["objective.minimise", "objective.maximise"])
         return Target(path, (head, rest), None)
-    if head == "variables":
-        if not name or last not in _BOUNDS:
-            raise ValueFault(f"{path}: no such PATH", f"end it with .{', .'.join(_BOUNDS)}")
+    if head in _ENDS:
+        if not name or last not in _ENDS[head]:
+            raise ValueFault(f"{path}: no such PATH", f"end it with .{', .'.join(_ENDS[head])}")
         target = resolve(name, tree, metrics)
-        return Target(f"{head}.{target.path}.{last}", (head, target.path, last), target.quantity)
+        quantity = None if last == "record" else target.quantity
+        return Target(f"{head}.{target.path}.{last}", (head, target.path, last), quantity)
     if head == "requirements":
         if last not in _LIMITS or not name:
             raise ValueFault(f"{path}: no such PATH", f"end it with .{' or .'.join(_LIMITS)}")

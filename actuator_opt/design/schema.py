@@ -47,6 +47,7 @@ def json_schema(
     schema = _section(Design, materials)
     properties = schema["properties"]
     properties["variables"] |= _variables(definitions)
+    properties["measured"] |= _measured(definitions)
     properties["choices"] |= _choices()
     properties["requirements"] |= _requirements(metrics, definitions)
     properties["objective"] |= _objective(metrics)
@@ -278,6 +279,21 @@ def _variables(definitions: Schema) -> Schema:
     }
     help = "What the optimiser may move: PATH with lower and upper bound."
     return {"description": help} | _by_path(movable)
+
+
+def _measured(definitions: Schema) -> Schema:
+    known: Schema = {}
+    for path, entry in _of_parts().items():
+        if isinstance(entry.kind, Of):
+            known[path] = bounds = _bounds(entry.kind, path, definitions)
+            bounds["required"] = [*bounds["required"], "record"]
+            del bounds["properties"]["start"]
+            bounds["properties"]["record"] = {
+                "type": "string",
+                "description": "the record, as a report names it",
+            }
+    help = "What a test record says of values above: PATH with 95 % bounds and the record's name."
+    return {"description": help} | _by_path(known)
 
 
 def _choices() -> Schema:

@@ -1,4 +1,4 @@
-"""What a person wants: variables, requirements, objective, waivers, changed material properties.
+"""What a person wants and knows: variables, requirements, measured values and the other tables.
 
 Their units depend on what they name (a PATH, a metric, a property). Each function turns the
 texts of its block into SI numbers in place and yields the faults it finds.
@@ -100,6 +100,44 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
         faults = [_number(bounds, (*loc, key), quantity) for key in ("lower", "upper", "start")]
         yield from (fault for fault in faults if fault)
         yield from _start(loc, bounds, target, tree)
+
+
+def measured(tree: dict[str, Any]) -> Iterator[Fault]:
+    """PATHs of numbers that are set, bounds in their range and in order."""
+    block = tree.get("measured")
+    if not isinstance(block, dict):
+        return
+    for path, bounds in block.items():
+        loc = ("measured", path)
+        if in_faulty_block(path, tree):
+            block[path] = {"lower": 0.0, "upper": 1.0, "record": "-"}  # as for variables
+            continue
+        try:
+            target = resolve(path, tree)
+        except ValueFault as fault:
+            message = fault.message.removeprefix(f"{path}: ")
+            yield Fault(loc, message, fault.remedy, at_key=True)
+            continue
+        if target.quantity is None or target.entry is None:
+            yield Fault(loc, "is no number of the actuator", "remove the entry", at_key=True)
+            continue
+        if target.path != path:
+            yield Fault(loc, "is not the canonical PATH", f"write {target.path}", at_key=True)
+        if value_at(tree, target.loc) is None:
+            message = f"{path} is not set, so it has no bounds"
+            yield Fault(loc, message, "set it, or remove the entry", at_key=True)
+        if not isinstance(bounds, dict):
+            if bounds is not None:
+                remedy = 'write "lower: …", "upper: …" and "record: …"'
+                yield Fault(loc, f"need bounds, not {what(bounds)}", remedy)
+            continue
+        faults = [_number(bounds, (*loc, key), target.quantity) for key in ("lower", "upper")]
+        yield from (fault for fault in faults if fault)
+        low, high = bounds.get("lower"), bounds.get("upper")
+        if isinstance(low, float) and isinstance(high, float) and low > high:
+            text = target.quantity.text
+            message = f"bounds reversed: upper {text(high)} is below lower {text(low)}"
+            yield Fault((*loc, "upper"), message, "swap them")
 
 
 def in_faulty_block(path: str, tree: dict[str, Any]) -> bool:
@@ -241,6 +279,7 @@ def materials(tree: dict[str, Any]) -> Iterator[Fault]:
 def recheck(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
     """All of the above."""
     yield from variables(tree)
+    yield from measured(tree)
     yield from requirements(tree, metrics)
     yield from objective(tree, metrics)
     yield from waivers(tree, metrics)

@@ -97,6 +97,10 @@ def to_yaml(
     return "\n".join(_lines(_stated(to_tree(design), Design, design), (), writer, "")) + "\n"
 
 
+_TABLES = (("variables",), ("requirements",), ("measured",))
+"""Tables of sections under free names."""
+
+
 class _CannotEdit(Exception):
     """The text does not have the shape of the design (flow style, removed blocks, plies)."""
 
@@ -120,7 +124,7 @@ class _Leaves:
     def quantity(self, loc: Loc, value: object) -> Quantity | None:
         """The quantity of the number at a place of a design file."""
         head = loc[0]
-        if head == "variables":
+        if head in ("variables", "measured"):
             return resolve(str(loc[1]), self.design, self.metrics).quantity
         if head == "choices":
             return quantity_of_choice(str(loc[1]), value, self.design)
@@ -189,7 +193,7 @@ def _stated(
 ) -> dict[str, Any]:
     """A tree without what the model would assume anyway."""
     stated: dict[str, Any] = {}
-    table = loc in (("variables",), ("requirements",))
+    table = loc in _TABLES
     for key, value in node.items():
         here = (*loc, key)
         if not table and _is_default(key, value, section, here, design):
@@ -300,7 +304,7 @@ def _compare(
     """Collect the edits of one block."""
     if not isinstance(old, dict) or any(key not in node for key in old):
         raise _CannotEdit
-    table = loc in (("variables",), ("requirements",))
+    table = loc in _TABLES
     for key, value in node.items():
         here = (*loc, key)
         below = section if table else _below(section, key)

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..design.model import PLAIN_CAP
+from ..design.paths import quantity_of
 from ..models import laminate
 from . import motion_range, oil, oil_range, seal_doubts, springs
 from .barrel import LAMINATES, kind
@@ -79,6 +80,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
     yield from motion_range.warnings(v, subject.design, done.motion, done.state, done.computed)
     if done.wall.missing:
         yield "burst_factor", f"barrel: {done.wall.missing[0]}"
+    yield from _measured(subject, v)
     for material in subject.materials.values():
         if material.warning:
             yield "", f"{material.name}: {material.warning}"
@@ -90,6 +92,19 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
                 f"larger, {1e6 * float(np.max(g.piston_clearance)):.0f} um"
             ),
         )
+
+
+def _measured(subject: Subject, v: Values) -> Iterable[tuple[str, str]]:
+    """Values that lie outside what a test record said of them."""
+    for path, known in subject.design.measured.items():
+        value = float(np.real(np.squeeze(v[path]))) if path in v else None
+        if value is not None and not known.lower <= value <= known.upper:
+            text = quantity_of(path, subject.design).text
+            yield (
+                "",
+                f"{path}: {text(value)} lies outside what {known.record} measured, "
+                f"{text(known.lower)} to {text(known.upper)}: the record does not speak for it",
+            )
 
 
 def _wall_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..design.model import Design
 from ..design.seals import Wiper
@@ -205,13 +206,10 @@ def _share(ring: Ring, films: Films) -> Ring:
 
 def _beside(v: Values, design: Design, geometry: Geometry, state: State) -> Friction:
     """Coulomb friction of wipers, and of guide rings under the side load."""
-    total: Array = 0.0
+    total: Array = sum((one.friction for one in wipers(v, design, geometry, state)), 0.0)
     carried = side_reactions(geometry, state)
-    for name, grooves, diameter in places(geometry):
-        wiper = getattr(design.seals, name).wiper
+    for name, grooves, _ in places(geometry):
         for groove in grooves:
-            if groove.role == "wiper" and wiper is not None:
-                total = total + _wiper(v, wiper, groove, diameter, state.temperature)
             if groove.role == "guide":
                 total = total + retention.guide_friction(
                     force=carried[name],
@@ -220,8 +218,30 @@ def _beside(v: Values, design: Design, geometry: Geometry, state: State) -> Fric
     return Friction(total, total, 0.0)
 
 
-def _wiper(v: Values, wiper: Wiper, groove: Groove, diameter: Array, temperature: Array) -> Array:
-    """Friction of a wiper: the lip of a U-cup without pressure."""
+class WiperFriction(NamedTuple):
+    """A wiper in its place: PATH of its block, its coefficient, its Coulomb friction [N]."""
+
+    path: str
+    coefficient: Array
+    friction: Array
+
+
+def wipers(
+    v: Values, design: Design, geometry: Geometry, state: State
+) -> tuple[WiperFriction, ...]:
+    """Friction of every wiper: the lip of a U-cup without pressure."""
+    found = []
+    for name, grooves, diameter in places(geometry):
+        wiper = getattr(design.seals, name).wiper
+        for groove in grooves:
+            if groove.role == "wiper" and wiper is not None:
+                found.append(_wiper(v, wiper, groove, diameter, state.temperature))
+    return tuple(found)
+
+
+def _wiper(
+    v: Values, wiper: Wiper, groove: Groove, diameter: Array, temperature: Array
+) -> WiperFriction:
     at, compound = groove.path, f"materials.{wiper.compound}."
     interference = lip_seal.lip_interference(section=groove.section, gland_depth=groove.gland_depth)
     load = lip_seal.line_load(
@@ -236,6 +256,7 @@ def _wiper(v: Values, wiper: Wiper, groove: Groove, diameter: Array, temperature
     )
     stated = f"{at}friction_coefficient"
     coefficient = v[stated] if stated in v else v[f"{compound}friction_coefficient"]
-    return friction.seal_friction(
+    rubbed = friction.seal_friction(
         line_load=load, diameter=diameter, friction_coefficient=coefficient
     )
+    return WiperFriction(at, coefficient, rubbed)

@@ -1,7 +1,23 @@
 """Identification: friction, damping and modulus from the records of a test bench."""
 
+from .bending import BendingResult, Specimen, bending
+from .calibration import Calibration, calibration
+from .csv_table import decode_record
 from .identify import identify
 from .record import CHANNELS, Record, parse_record
 from .result import Identification, Settings
 
-__all__ = ["CHANNELS", "Identification", "Record", "Settings", "identify", "parse_record"]
+__all__ = [
+    "CHANNELS",
+    "BendingResult",
+    "Calibration",
+    "Identification",
+    "Record",
+    "Settings",
+    "Specimen",
+    "bending",
+    "calibration",
+    "decode_record",
+    "identify",
+    "parse_record",
+]

@@ -10,12 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
+from ..errors import InputError
 from ..numeric import Array
+from .cleaning import ROBUST, Quality, clean, runs
 from .record import CHANNELS, Record
 
 CUTOFF, ORDER = 30.0, 4
@@ -27,25 +27,17 @@ SHORTEST = 6.0
 """Periods of the cut-off that a piece of the record lasts at least."""
 EDGE = 2.0
 """Periods of the cut-off at both ends of a piece where the filter knows too little."""
-GAP, BRIDGE = 3.5, 5
-"""A step of time over the usual one that is a gap; missing samples that a straight line bridges."""
-SPIKE, QUANTA, RANGE = 6.0, 3.0, 1e-3
-"""A spike stands out of its neighbours' median by so many robust standard deviations, by so many
-steps of the sensor, and by so much of the channel's range."""
-NEEDED = ("p1", "p2", "x", "F_L", "v")
+BRIDGE = 5
+"""Missing samples that a straight line bridges; more where they last less than a quarter of a
+period of the cut-off."""
+ORDERS = 10
+"""Highest order of a pass (a choice: beyond it the filter rings for longer than `EDGE`)."""
+SAMPLED = 100_000
+"""Samples of a piece that tell its noise (a choice: to 0.3 %)."""
+LATEST = 0.5
+"""Largest lag that is taken off [s] (a choice: a hundred times that of a pressure sensor)."""
+NEEDED = ("p1", "p2", "x", "F_L")
 """Channels whose missing samples break a record."""
-
-
-class Quality(NamedTuple):
-    """What a channel is worth."""
-
-    missing: int
-    spikes: int
-    clipped: int
-    resolution: float
-    """Least step between samples, SI."""
-    noise: float
-    """Standard deviation of a sample, what the filter takes away, SI."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,12 +103,19 @@ def pass_cutoff(*, cutoff: float, order: int) -> float:
 
 
 def low_pass(*, cutoff: float, order: int, sample_time: float, compensated: bool) -> Array:
-    """Second-order sections of one pass."""
+    """Second-order sections of one pass; with both, the gain at `cutoff` is exact at any sampling.
+
+    The bilinear transform takes f to tan(pi f dt): compensated is what it makes of the cut-off.
+    Far below the Nyquist frequency that is f_c/(sqrt 2 - 1)^(1/2n).
+    """
     from scipy.signal import butter  # slow to import, rarely needed
 
-    corner = pass_cutoff(cutoff=cutoff, order=order) if compensated else cutoff
-    nyquist = 0.5 / sample_time
-    return butter(order, min(corner, 0.99 * nyquist), fs=1 / sample_time, output="sos")
+    corner = math.tan(math.pi * cutoff * sample_time)  # as the bilinear transform bends it
+    if compensated:
+        corner = pass_cutoff(cutoff=corner, order=order)
+    return butter(
+        order, math.atan(corner) / (math.pi * sample_time), fs=1 / sample_time, output="sos"
+    )
 
 
 def zero_phase(sections: Array, values: Array, *, reach: int) -> Array:
@@ -153,16 +152,25 @@ def condition(
     InputError
         time that does not increase, samples too few or too far apart, nothing left unbroken
     """
+    _choices(record, cutoff, order, pressure_lag)
     time = _time(record)
-    step = float(np.median(np.diff(time)))
+    steps = np.diff(time)
+    step = float(np.median(steps))
     _sampling(record, time, step, cutoff)
     notes = list(record.notes)
     quality: dict[str, Quality] = {}
     cleaned: dict[str, Array] = {}
     for name in CHANNELS:
-        if name in record:
-            cleaned[name], quality[name] = _clean(record[name], step)
-    uneven = float(np.max(np.abs(np.diff(time) - step))) > 0.01 * step
+        if name not in record:
+            continue
+        if np.isfinite(record[name]).any():
+            pressure = name in ("p1", "p2")
+            cleaned[name], quality[name] = clean(record[name], step, pressure=pressure)
+        elif name in NEEDED:
+            raise record.fault(f"{name} has no sample", "mend the sensor, or leave the column out")
+        else:
+            notes.append(f"{name} has no sample: left out")
+    uneven = np.abs(steps[steps < 1.5 * step] - step).max() > 0.01 * step
     breaks = _breaks(time, cleaned, step, cutoff)
     shortest = SHORTEST / cutoff
     sections = low_pass(cutoff=cutoff, order=order, sample_time=step, compensated=compensated)
@@ -175,10 +183,7 @@ def condition(
         own = {name: one[first:last] for name, one in cleaned.items()}
         pieces.append(_piece(time[first:last], own, step, cutoff, sections, pressure_lag))
     if not pieces:
-        raise record.fault(
-            f"no stretch of {shortest:.2g} s without a gap, a clipped or a missing channel",
-            "mend the sensors, or give a longer record",
-        )
+        raise _nothing(record, quality, shortest)
     if len(breaks) > 1:
         notes.append(
             f"{len(breaks) - 1} gaps; {len(pieces)} pieces used"
@@ -198,88 +203,81 @@ def condition(
         name: one._replace(noise=_noise(time, record[name], name, pieces))
         for name, one in quality.items()
     }
-    return Motion(
-        tuple(pieces),
-        step,
-        cutoff,
-        order,
-        compensated,
-        quality,
-        tuple(notes),
-    )
+    return Motion(tuple(pieces), step, cutoff, order, compensated, quality, tuple(notes))
+
+
+def _choices(record: Record, cutoff: float, order: int, lag: float) -> None:
+    """Refuse a filter that is none."""
+    if not (math.isfinite(cutoff) and cutoff > 0):
+        raise record.fault(f"a cut-off of {cutoff:g} Hz", 'give one above zero: --cutoff "30 Hz"')
+    if order != order or int(order) != order or not 1 <= order <= ORDERS:
+        raise record.fault(
+            f"a filter of order {order:g}", f"give a whole number from 1 to {ORDERS}"
+        )
+    if not abs(lag) <= LATEST:
+        raise record.fault(
+            f"a lag of the pressures of {lag:g} s", f"give one within {LATEST:g} s either way"
+        )
 
 
 def _time(record: Record) -> Array:
     """The time of every sample, increasing."""
     time = record.time
+    if time.size < 2:
+        raise record.fault("one sample", "give a record of a second or more")
     lost = np.flatnonzero(~np.isfinite(time))
     if lost.size:
         raise record.fault("no time", "give every sample its time", int(lost[0]))
-    if time.size < 2:
-        raise record.fault("one sample", "give a record of a second or more")
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
         at = int(back[0]) + 1
-        word = "stands still" if time[at] == time[at - 1] else "runs backwards"
-        raise record.fault(f"time {word} at {time[at]:.6g} s", "sort or mend the record", at)
+        times = f", {back.size} times in all" if back.size > 1 else ""
+        if time[at] == time[at - 1]:
+            word, remedy = "stands still", "write time with more digits, one line per time"
+        else:
+            word, remedy = "runs backwards", "sort the lines by time, or give one test at a time"
+        raise record.fault(f"time {word} at {time[at]:.9g} s{times}", remedy, at)
     return time
+
+
+def _nothing(record: Record, quality: dict[str, Quality], shortest: float) -> InputError:
+    """Nothing is left unbroken: because of what."""
+    worst = max(
+        ((one.missing + one.clipped, name) for name, one in quality.items() if name in NEEDED),
+        default=(0, ""),
+    )
+    why = "gaps in time"
+    if worst[0] > BRIDGE:
+        one = quality[worst[1]]
+        why = f"{worst[1]} misses {one.missing} samples and is clipped in {one.clipped}"
+    return record.fault(
+        f"no stretch of {shortest:.2g} s is unbroken: {why}",
+        "mend the sensors, or give a longer record",
+    )
 
 
 def _sampling(record: Record, time: Array, step: float, cutoff: float) -> None:
     """Refuse a record the filter cannot work on."""
-    span = float(time[-1] - time[0])
-    if span < SHORTEST / cutoff:
-        raise record.fault(
-            f"the record lasts {span:.3g} s, too short for a filter at {cutoff:g} Hz",
-            f"give {SHORTEST / cutoff:.2g} s or more",
-        )
+    span, shortest = float(time[-1] - time[0]), SHORTEST / cutoff
     if step * cutoff * SLOWEST > 1:
         most = 1 / (SLOWEST * step)
+        hint = "; or is t in ms?" if step >= 0.1 and 1e-3 * step * cutoff * SLOWEST <= 1 else ""
         raise record.fault(
             f"{1 / step:.4g} samples per second are too few for a cut-off of {cutoff:g} Hz",
-            f'sample faster, or filter lower: --cutoff "{most:.3g} Hz" at most',
+            f'sample faster, or filter lower: --cutoff "{_floor(most):g} Hz" at most{hint}',
+        )
+    if span < shortest:
+        hint = "; or is t in s?" if step < 2e-5 and 1e3 * span >= shortest else ""
+        raise record.fault(
+            f"the record lasts {span:.3g} s, too short for a filter at {cutoff:g} Hz",
+            f"give {shortest:.2g} s or more{hint}",
         )
 
 
-def _clean(values: Array, step: float) -> tuple[Array, Quality]:
-    """A channel without spikes and clipped samples (NaN there), and how many there were."""
-    from scipy.ndimage import median_filter
-
-    absent = ~np.isfinite(values)
-    if absent.all():
-        return values, Quality(values.size, 0, 0, 0.0, 0.0)
-    kept = values[~absent]
-    steps = np.abs(np.diff(kept))
-    resolution = float(np.min(steps[steps > 0])) if np.any(steps > 0) else 0.0
-    clipped = _clipped(kept)
-    size = 2 * int(np.clip(round(5e-3 / step), 2, 5)) + 1
-    middle = median_filter(kept, size=size, mode="nearest")
-    apart = np.abs(kept - middle)
-    low, high = np.percentile(kept, (1, 99))
-    least = max(QUANTA * resolution, RANGE * float(high - low))
-    least = max(SPIKE * 1.4826 * float(np.median(apart)), least)
-    passing = 2 * np.abs(np.gradient(middle))  # a spike beside it moves the median by a sample
-    spikes = (apart > least + passing) & ~clipped
-    kept = np.where(spikes | clipped, np.nan, kept)
-    out = np.full(values.shape, np.nan)
-    out[~absent] = kept
-    counts = int(absent.sum()), int(spikes.sum()), int(clipped.sum())
-    return out, Quality(*counts, resolution, 0.0)
-
-
-def _clipped(values: Array) -> Array:
-    """Samples that stand at the channel's highest or lowest value while others never repeat."""
-    same = np.diff(values) == 0
-    out = np.zeros(values.shape, dtype=bool)
-    for end in (values.min(), values.max()):
-        at = values == end
-        runs = same & at[:-1]
-        elsewhere = same[~at[:-1]]
-        if runs.sum() < 5 or elsewhere.size == 0 or elsewhere.mean() > 0.02:
-            continue
-        out[:-1] |= runs
-        out[1:] |= runs
-    return out
+def _floor(value: float) -> float:
+    """Rounded down to three digits."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return math.floor(value / unit) * unit
 
 
 def _breaks(
@@ -290,25 +288,15 @@ def _breaks(
     longest = max(BRIDGE, round(0.25 / (cutoff * step)))
     for name, values in channels.items():
         if name in NEEDED:
-            torn |= _long_runs(np.isnan(values), longest)
-    cuts = np.flatnonzero(np.diff(time) > GAP * step) + 1
-    inside = ~torn
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], inside.astype(int), [0]))))
-    found = []
-    for first, last in zip(edges[::2], edges[1::2], strict=True):
-        here = [first, *cuts[(cuts > first) & (cuts < last)], last]
-        found += [(int(a), int(b)) for a, b in pairwise(here)]
-    return found
-
-
-def _long_runs(flags: Array, longest: int) -> Array:
-    """Those flags that stand in runs longer than `longest`."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], flags.astype(int), [0]))))
-    out = np.zeros(flags.size, dtype=bool)
-    for first, last in zip(edges[::2], edges[1::2], strict=True):
-        if last - first > longest:
-            out[first:last] = True
-    return out
+            first, last = runs(np.isnan(values))
+            long = last - first > longest
+            for a, b in zip(first[long], last[long], strict=True):
+                torn[a:b] = True
+    first, last = runs(~torn)
+    cuts = np.flatnonzero(np.diff(time) > (longest + 1.5) * step) + 1
+    cuts = cuts[~torn[cuts] & ~torn[cuts - 1]]
+    first, last = np.sort(np.append(first, cuts)), np.sort(np.append(last, cuts))
+    return list(zip(first.tolist(), last.tolist(), strict=True))
 
 
 def _piece(
@@ -343,6 +331,8 @@ def _noise(time: Array, values: Array, name: str, pieces: Sequence[Piece]) -> fl
     apart = []
     for piece in pieces:
         if name in piece:
-            within = (time >= piece.time[0]) & (time <= piece.time[-1]) & np.isfinite(values)
-            apart.append(values[within] - np.interp(time[within], piece.time, piece[name]))
-    return float(1.4826 * np.median(np.abs(np.concatenate(apart)))) if apart else 0.0
+            first, last = np.searchsorted(time, (piece.time[0], piece.time[-1] + 1e-9))
+            known = np.flatnonzero(np.isfinite(values[first:last])) + first
+            known = known[:: max(1, known.size // SAMPLED)]
+            apart.append(values[known] - np.interp(time[known], piece.time, piece[name]))
+    return float(ROBUST * np.median(np.abs(np.concatenate(apart)))) if apart else 0.0

@@ -13,13 +13,13 @@ from ..least_squares import quantile
 from .balance import Sliding, check_signs, slide
 from .coefficient import coefficient
 from .conditioning import Motion, condition
-from .lugre_fit import LuGreFit, fit_lugre
+from .lugre_fit import LuGreFit, fit_lugre, settling_distance
 from .lugre_windows import LAG
-from .points import Point, independent, steady_points
+from .points import SETTLED, Point, independent, steady_points
 from .record import Record
 from .result import Identification, Mean, Settings
 from .spectrum import spectrum
-from .stribeck_fit import fit_stribeck
+from .stribeck_fit import StribeckFit, fit_stribeck
 
 LEAST_LAG = 3e-4
 """Least lag that is worth taking off [s]."""
@@ -56,22 +56,19 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
     elif np.ptp(record["x"][np.isfinite(record["x"])]) < 3 * motion.quality["x"].resolution:
         raise record.fault("the rod never moves", "give a record of a moving rod")
     area = float(bench.areas(np.float64(0.0))[0])
-    points = steady_points(slidings, motion)
-    stribeck = fit_stribeck(points, area)
-    lugre = fit_lugre(slidings, motion, points, stribeck, lag_known=known)
+    points, stribeck, lugre = _models(slidings, motion, area, known)
     if isinstance(lugre, LuGreFit) and not known and _unsure(lugre):
         known = True
         notes.append("the reversals show no lag of the pressures; none is taken off")
         lugre = fit_lugre(slidings, motion, points, stribeck, lag_known=known)
     late = None if known else _late(lugre)
+    settling = settling_distance(lugre)
     if late is not None:
         lag = late
         motion, slidings = _read(record, bench, own, mass, lag)
-        points = steady_points(slidings, motion)
-        stribeck = fit_stribeck(points, area)
-        lugre = fit_lugre(slidings, motion, points, stribeck, lag_known=known)
-    if late is not None:
         notes.append(f"pressures come {1e3 * lag:.2f} ms late, by the reversals; taken off")
+    if late is not None or settling > SETTLED:
+        points, stribeck, lugre = _models(slidings, motion, area, known, settling)
     place = np.concatenate([one.piece["x"] for one in slidings])
     beyond = OUTSIDE * bench.stroke
     if place.min() < -beyond or place.max() > bench.stroke + beyond:
@@ -99,6 +96,22 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
         fits=_fits(points),
         notes=(*motion.notes, *notes),
     )
+
+
+def _models(
+    slidings: Sequence[Sliding],
+    motion: Motion,
+    area: float,
+    lag_known: bool,
+    settling: float = SETTLED,
+) -> tuple[tuple[Point, ...], StribeckFit | str, LuGreFit | str]:
+    """Points of steady sliding, and the models through them."""
+    points = steady_points(slidings, motion, settling)
+    stribeck = fit_stribeck(points, area)
+    lugre = fit_lugre(
+        slidings, motion, points, stribeck, lag_known=lag_known, settling=settling
+    )
+    return points, stribeck, lugre
 
 
 def _unsure(lugre: LuGreFit) -> bool:

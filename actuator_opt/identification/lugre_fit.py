@@ -16,19 +16,28 @@ from ..numeric import Array
 from .balance import Sliding
 from .conditioning import Motion
 from .lugre_windows import LAG, Windows, windows
-from .points import Point
-from .stribeck_fit import EXPONENT, EXPONENTS, SPEEDS, StribeckFit, curve
+from .points import SETTLED, SETTLING, Point
+from .stribeck_fit import EXPONENT, EXPONENTS, SPEEDS, Steady, StribeckFit
 
 TRAVELS = (1e-6, 3e-3)
 """Travel F_S/sigma_0 of the bristles searched [m]."""
 DAMPING_TIMES = (1e-6, 0.3)
 """sigma_1/sigma_0 searched [s]."""
+USUAL = 5e-3
+"""Lag that pressures commonly have [s], standard deviation of what is expected of it before the
+record is looked at (a choice: sensors and lines of a bench, 0 to 10 ms)."""
 BLUR = 40e-3
 """Time by which a turn may be hidden for a lag to be looked for [s]: ten times a usual lag."""
 STEP = 1e-4
 """Step of the central differences over the size of a parameter."""
 SYMBOLS = {"bristle_stiffness": "σ₀", "bristle_damping": "σ₁", "lag": "τ"}
 """Parameters beside those of the Stribeck curve: N/m, N s/m, s."""
+MODEL = 1e-3
+"""Least scatter of the windows over the largest friction (a choice, as of the points): below it the
+filtered motion limits the model, not noise."""
+ROUNDS = 3
+"""Searches, each with the windows weighed by their scatter about the last (a choice: the second
+changes the weights by a few percent)."""
 LOGARITHMIC = ("bristle_stiffness", "bristle_damping", "stribeck_speed")
 """Parameters searched by their logarithm."""
 
@@ -59,6 +68,14 @@ class LuGreFit:
         return {**self.held, **{name: one.value for name, one in self.parameters.items()}}
 
 
+def settling_distance(lugre: LuGreFit | str) -> float:
+    """Distance after a reversal from which sliding is steady [m], by bristles that are known."""
+    if isinstance(lugre, str) or not lugre.parameters["bristle_stiffness"].identifiable:
+        return SETTLED
+    level = max(lugre.values.get("static", 0.0), lugre.values["coulomb"])
+    return max(SETTLED, SETTLING * level / lugre.values["bristle_stiffness"])
+
+
 def fit_lugre(
     slidings: Sequence[Sliding],
     motion: Motion,
@@ -66,6 +83,7 @@ def fit_lugre(
     stribeck: StribeckFit | str,
     *,
     lag_known: bool,
+    settling: float = SETTLED,
 ) -> LuGreFit | str:
     """The LuGre model of a record, or why there is none.
 
@@ -80,6 +98,7 @@ def fit_lugre(
     points : of steady sliding
     stribeck : the curve through them, where the search begins
     lag_known : whether to ask for sigma_1; else for the lag of the pressures, sigma_1 held at 0
+    settling : distance after a reversal from which sliding is steady [m]
 
     Returns
     -------
@@ -87,7 +106,8 @@ def fit_lugre(
     """
     curve_known = stribeck if isinstance(stribeck, StribeckFit) else None
     reference = 0.0 if curve_known is None else curve_known.reference_pressure
-    found = windows(slidings, motion, reference)
+    slowest = np.inf if curve_known is None else min(one.speed for one in points)
+    found = windows(slidings, motion, reference, slowest, settling)
     if found is None:
         return "no half second of an unbroken record about a reversal: bristles show only there"
     if lag_known or found.blur < BLUR:
@@ -111,19 +131,15 @@ class _Problem:
         lag_known: bool,
     ) -> None:
         self.windows = found
-        points = points if stribeck is not None else ()
-        self.velocity = np.array([one.velocity for one in points])
-        self.friction = np.array([one.friction for one in points])
+        self.steady = None
         self.largest = float(np.max(np.abs(found.measured(np.zeros(1))[..., found.kept])))
         self.spread = 1.0
         if stribeck is None:
-            self.change = self.errors = np.zeros(0)
             self.begin = {"coulomb": self.largest, "offset": 0.0}
             self.held = {"viscous": 0.0, "exponent": EXPONENT, "pressure_slope": 0.0}
             self.held["stribeck_speed"] = SPEEDS[0]
         else:
-            pressure = np.array([one.pressure for one in points])
-            self.change, self.errors = pressure - stribeck.reference_pressure, stribeck.errors
+            self.steady = Steady(points, stribeck.errors * stribeck.scatter)
             self.begin = {name: one.value for name, one in stribeck.parameters.items()}
             self.held = dict(stribeck.held)
             self._ask_for_static(stribeck)
@@ -135,17 +151,20 @@ class _Problem:
         """F_S and v_s begin at what the windows show, where the points do not know them."""
         seen = stribeck.parameters.get("static")
         if seen is None or not seen.identifiable:
-            for name in ("static", "stribeck_speed"):
+            for name in ("static", "stribeck_speed", "exponent"):
                 self.held.pop(name, None)
             self.begin |= {
+                "exponent": EXPONENT,
                 "static": max(self.largest, 1.01 * self.begin["coulomb"]),
                 "stribeck_speed": float(np.sqrt(SPEEDS[0] * SPEEDS[1])),
             }
 
     def _sizes(self) -> Array:
         """Size of each searched parameter: 1 of a logarithm."""
-        speed = np.max(np.abs(self.velocity), initial=1e-3)
-        change = np.max(np.abs(self.change), initial=1e5)
+        speed, change = 1e-3, 1e5
+        if self.steady is not None:
+            speed = max(speed, float(np.max(np.abs(self.steady.velocity))))
+            change = max(change, float(np.max(np.abs(self.steady.change))))
         size = {
             "coulomb": self.largest,
             "static": self.largest,
@@ -169,10 +188,13 @@ class _Problem:
     def residuals(self, rows: Array) -> Array:
         """Weighted residuals of rows of searched parameters (rows, residuals)."""
         values = self.values(rows)
-        lanes = self.windows.misfit(values) / self.spread
+        lanes = (self.windows.misfit(values) / self.spread).reshape(len(rows), -1)
+        if "lag" in self.names:
+            lanes = np.concatenate([values["lag"][:, None] / USUAL, lanes], axis=1)
+        if self.steady is None:
+            return lanes
         steady = {n: v[:, None] for n, v in values.items() if n not in SYMBOLS}
-        points = (curve(self.velocity, self.change, **steady) - self.friction) / self.errors
-        return np.concatenate([points, lanes.reshape(len(rows), -1)], axis=1)
+        return np.concatenate([self.steady.residual(steady), lanes], axis=1)
 
     def one(self, x: Array) -> Array:
         """Weighted residuals of one row."""
@@ -220,8 +242,14 @@ class _Problem:
                     }
                     rows.append([own[name] for name in self.names])
         table = np.array(rows)
-        cost = np.sum(self.residuals(table) ** 2, axis=1)
-        return table[int(np.argmin(cost))]
+        best, least = table[0], np.inf
+        for one in self.windows.options[[0, -1]]:
+            self.windows = replace(self.windows, velocity=one)
+            cost = np.sum(self.residuals(table) ** 2, axis=1)
+            k = int(np.argmin(cost))
+            if cost[k] < least:
+                best, least = table[k], cost[k]
+        return best
 
     def descend(self, x: Array) -> Array:
         """Least squares within the limits."""
@@ -243,24 +271,52 @@ class _Problem:
 
     def scatter(self, x: Array) -> float:
         """Standard deviation of the windows' residuals [N]."""
-        return max(float(np.std(self.windows.misfit(self.values(x[None])))), 1e-9)
+        judged = self.windows.judged.sum()
+        square = np.sum(self.windows.misfit(self.values(x[None])) ** 2) / max(judged, 1.0)
+        return max(float(np.sqrt(square)), MODEL * self.largest)
+
+    def whitened(self, residuals: Array, slopes: Array) -> Array:
+        """Slopes J' of as many independent unit residuals that know as much: J'^T J' = cov^-1.
+
+        cov = H^-1 J^T R J H^-1, H = J^T J, R the residuals' covariance: points are independent,
+        lanes share one autocovariance c_k = sum r_t r_(t+k)/n [SeberWild1989]. With J = U S V^T,
+        J' = L^-1 S V^T, L L^T = U^T R U [derived].
+        """
+        from scipy.linalg import solve_triangular, toeplitz  # slow to import, rarely needed
+
+        lanes, count = self.windows.judged.shape
+        split = residuals.size - lanes * count
+        left, singular, right = np.linalg.svd(slopes * self.sizes, full_matrices=False)
+        own = residuals[split:].reshape(lanes, count)
+        judged = max(float(self.windows.judged.sum()) - slopes.shape[1], 1.0)
+        lags = [float(np.sum(own[:, : count - k] * own[:, k:])) / judged for k in range(count)]
+        lags[0] = max(lags[0], (MODEL * self.largest / self.spread) ** 2)
+        steep = left[split:].reshape(lanes, count, -1)
+        inner = left[:split].T @ left[:split]
+        inner = inner + np.einsum("lip,ij,ljq->pq", steep, toeplitz(lags), steep, optimize=True)
+        root = np.linalg.cholesky(inner)
+        return solve_triangular(root, singular[:, None] * right, lower=True) / self.sizes
 
     def solve(self) -> LuGreFit:
         """Search, weigh the windows by their own scatter, search again, and bound."""
         x = self.start()
-        self.spread = self.scatter(x)
-        x = self.descend(x)
-        self.spread = self.scatter(x)
-        x = self.descend(x)
+        for _ in range(ROUNDS):
+            self.windows = self.windows.chosen(self.values(x[None]))
+            self.spread = self.scatter(x)
+            x = self.descend(x)
         found = {name: float(one[0]) for name, one in self.values(x[None]).items()}
         own = {name: found[name] for name in self.names}
         chain = np.array([own[name] if name in LOGARITHMIC else 1.0 for name in self.names])
         least = 1e-3 * self.sizes * chain
+        residuals = self.one(x)
+        slopes = self.whitened(residuals, self.slopes(x)) / chain
+        spare = residuals.size - int(np.sum(self.windows.judged == 0)) - len(own)
         told = known(
             own,
-            self.slopes(x) / chain,
-            self.one(x),
+            slopes,
+            np.ones(1) * np.sqrt(max(spare, 0)),
             np.maximum(np.abs(list(own.values())), least),
+            spare=spare,
         )
         doubts = [
             f"{SYMBOLS[name]} is {one.verdict}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from ..models import friction
 from ..numeric import Array
 from .balance import Sliding
 from .conditioning import Motion, low_pass, zero_phase
+from .pace import velocities
+from .points import SETTLED, settled
 
 BEFORE, AFTER = 0.1, 0.4
 """Time of a window before and after the rod turns or starts [s]."""
@@ -30,10 +32,13 @@ class Windows:
 
     `hydraulic` has `margin` samples more at both ends, so that it can be shifted in time; `kept`
     are the samples that are judged: independent ones, away from the ends. `blur` is the time by
-    which the steps of the position sensor hide a turn, sqrt(2 q/a) [s].
+    which the steps of the position sensor hide a turn, sqrt(2 q/a) [s]. `options` (cut-offs, lanes,
+    samples) are velocities by lower cut-offs of the position, `velocity` the ones taken. `judged`
+    (lanes, kept) is 0 where points of steady sliding say the same, else 1.
     """
 
     velocity: Array
+    options: Array
     change: Array
     hydraulic: Array
     resisting: Array
@@ -42,6 +47,7 @@ class Windows:
     sections: Array
     reach: int
     kept: Array
+    judged: Array
     blur: float
 
     def measured(self, lag: Array) -> Array:
@@ -77,7 +83,20 @@ class Windows:
         measured = self.measured(values["lag"])
         found = self._integrated({n: v[:, None, None] for n, v in values.items()}, measured)
         smooth = zero_phase(self.sections, found, reach=self.reach)
-        return (smooth - measured)[..., self.kept]
+        return (smooth - measured)[..., self.kept] * self.judged
+
+    def chosen(self, values: Mapping[str, Array]) -> Windows:
+        """With the velocity in every lane under which the model follows the friction best.
+
+        In slow motion the steps of the position sensor pass the record's filter and look like
+        motion, at a start a lower cut-off blurs the motion: the friction tells which.
+        """
+        costs = [
+            np.sum(replace(self, velocity=one).misfit(values)[0] ** 2, axis=-1)
+            for one in self.options
+        ]
+        best = np.argmin(np.stack(costs), axis=0)
+        return replace(self, velocity=self.options[best, np.arange(best.size)])
 
     def _integrated(self, values: Mapping[str, Array], measured: Array) -> Array:
         """LuGre friction along every window: the exact step of `models.lugre.lugre_step`.
@@ -112,13 +131,21 @@ class Windows:
         return stiffness * bent + damping * slip + viscous + values["offset"]
 
 
-def windows(slidings: Sequence[Sliding], motion: Motion, reference: float) -> Windows | None:
+def windows(
+    slidings: Sequence[Sliding],
+    motion: Motion,
+    reference: float,
+    slowest: float = np.inf,
+    settling: float = SETTLED,
+) -> Windows | None:
     """Windows about moments at which the rod turns or starts; else spread over the record.
 
     Parameters
     ----------
     slidings, motion : friction along the record, and how it was filtered
     reference : pressure from which changes are counted [Pa]
+    slowest : speed from which points of steady sliding say what settled sliding says [m/s]
+    settling : distance after a reversal from which sliding is steady [m]
 
     Returns
     -------
@@ -153,10 +180,15 @@ def windows(slidings: Sequence[Sliding], motion: Motion, reference: float) -> Wi
 
     edge = round(1 / (motion.cutoff * step))
     apart = max(1, round(1 / (2 * motion.cutoff * step)))
-    velocity = cut([one.piece.velocity for one, _ in lanes])
-    sharpest = float(np.median(np.max(np.abs(np.gradient(velocity, step, axis=-1)), axis=-1)))
+    kept = np.arange(edge, before + after - edge, apart)
+    told = cut([_settled_above(one, slowest, settling) for one, _ in lanes])[:, kept]
+    span = (-before * stride, after * stride)
+    options = np.stack([velocities(one.piece, motion, at + span[0], at + span[1])[:, ::stride] for one, at in lanes], 1)
+    velocity = options[0]
+    sharpest = float(np.median(np.max(np.abs(np.gradient(options[-1], step, axis=-1)), axis=-1)))
     return Windows(
         velocity=velocity,
+        options=options,
         change=cut([one.pressure for one, _ in lanes]) - reference,
         hydraulic=cut([one.hydraulic for one, _ in lanes], margin),
         resisting=cut([one.resisting for one, _ in lanes]),
@@ -169,9 +201,17 @@ def windows(slidings: Sequence[Sliding], motion: Motion, reference: float) -> Wi
             compensated=motion.compensated,
         ),
         reach=round(3 / (motion.cutoff * step)),
-        kept=np.arange(edge, before + after - edge, apart),
+        kept=kept,
+        judged=np.where(told, 0.0, 1.0),
         blur=float(np.sqrt(2 * motion.quality["x"].resolution / max(sharpest, 1e-12))),
     )
+
+
+def _settled_above(sliding: Sliding, slowest: float, settling: float) -> Array:
+    """Samples of settled sliding that is no slower than a speed."""
+    found = np.zeros(sliding.piece.time.size, dtype=bool)
+    found[settled(sliding, settling)] = True
+    return found & (np.abs(sliding.piece.velocity) >= slowest)
 
 
 def _fits(sliding: Sliding, at: int, room: tuple[int, int]) -> bool:

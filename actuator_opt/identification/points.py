@@ -10,19 +10,28 @@ import numpy as np
 from ..numeric import Array
 from .balance import Sliding
 from .conditioning import Motion
+from .pace import velocities
 
 STEADY, FLOOR = 0.04, 2e-5
 """A plateau keeps its speed within this share, or this speed [m/s]."""
 LASTING = 0.15
-"""Least time of a plateau [s]; its first and last fifth are left out."""
+"""Least time of a plateau [s]; its first and last fifth are left out, and what has not slid
+`SETTLED` where enough is left."""
 ALIKE = 0.06
 """Plateaus within this share of speed are one point."""
 PER_DECADE = 8
 """Speeds per decade of a sweep's points."""
 SETTLED = 5e-4
-"""Distance after a reversal from which sliding is steady [m], ten usual breakaway travels."""
+"""Distance after a reversal from which sliding is steady [m], ten usual breakaway travels; of a
+record with known bristles `SETTLING` of its own."""
+SETTLING = 8.0
+"""Breakaway travels F_S/sigma_0 after which sliding is steady: 2 e^-8 is below 0.1 %."""
 LEVELS = 0.1
 """Pressures within this share of the highest are one level."""
+
+PRIOR = 8
+"""Independent samples that the scatter usual in the record counts for in a point's own (a choice:
+some points have four)."""
 
 Kind = Literal["plateau", "sweep"]
 
@@ -31,7 +40,8 @@ class Point(NamedTuple):
     """Friction in steady sliding, signed as the velocity; SI.
 
     `error` is the standard error of the friction; `weight` the time behind it [s]; `pressure` the
-    higher of both chambers, gauge.
+    higher of both chambers, gauge; `spread` the standard deviation of the velocities behind a
+    sweep's point: over a bend of the curve the mean friction is not that of the mean velocity.
     """
 
     velocity: float
@@ -42,6 +52,7 @@ class Point(NamedTuple):
     error: float
     weight: float
     kind: Kind
+    spread: float = 0.0
 
     @property
     def speed(self) -> float:
@@ -54,7 +65,9 @@ class Point(NamedTuple):
         return self.friction / self.velocity
 
 
-def steady_points(slidings: Sequence[Sliding], motion: Motion) -> tuple[Point, ...]:
+def steady_points(
+    slidings: Sequence[Sliding], motion: Motion, settling: float = SETTLED
+) -> tuple[Point, ...]:
     """Points of steady sliding: of plateaus where they are, else of sweeps through the speeds.
 
     A record whose plateaus hold three speeds or most of the moving time is one of plateaus.
@@ -63,19 +76,21 @@ def steady_points(slidings: Sequence[Sliding], motion: Motion) -> tuple[Point, .
     ----------
     slidings : friction by piece
     motion : for the filter's memory
+    settling : distance after a reversal from which sliding is steady [m]
 
     Returns
     -------
     points in order of direction, pressure and speed
     """
-    plateaus = [one for sliding in slidings for one in _plateaus(sliding, motion)]
+    plateaus = [one for sliding in slidings for one in _plateaus(sliding, motion, settling)]
+    plateaus = _moderated(plateaus, motion)
     merged = _merged(plateaus)
     moving = sum(float(one.moving.sum()) for one in slidings) * motion.sample_time
     held = sum(one.weight for one in plateaus)
     speeds = {round(np.log(one.speed) / ALIKE) for one in merged}
     if merged and (len(speeds) >= 3 or held > 0.4 * moving):
         return _ordered(merged)
-    return _ordered(_swept(slidings, motion)) or _ordered(merged)
+    return _ordered(_swept(slidings, motion, settling)) or _ordered(merged)
 
 
 def _ordered(points: Sequence[Point]) -> tuple[Point, ...]:
@@ -87,7 +102,21 @@ def independent(count: float, motion: Motion) -> float:
     return max(count * min(2 * motion.cutoff * motion.sample_time, 1.0), 1.0)
 
 
-def _plateaus(sliding: Sliding, motion: Motion) -> Iterator[Point]:
+def _moderated(points: Sequence[Point], motion: Motion) -> list[Point]:
+    """Points with errors drawn towards the record's usual scatter: few samples tell their own ill.
+
+    s^2 = (n_0 s_0^2 + n s_i^2)/(n_0 + n), s_0^2 the median [Smyth2004].
+    """
+    if not points:
+        return []
+    count = np.array([max(2 * motion.cutoff * one.weight - 1, 1.0) for one in points])
+    own = np.array([one.error for one in points]) ** 2 * count
+    drawn = (PRIOR * np.median(own) + count * own) / (PRIOR + count)
+    errors = np.sqrt(drawn / count)
+    return [one._replace(error=float(error)) for one, error in zip(points, errors, strict=True)]
+
+
+def _plateaus(sliding: Sliding, motion: Motion, settling: float) -> Iterator[Point]:
     """Stretches of constant velocity in one piece."""
     from scipy.signal import savgol_filter
 
@@ -109,7 +138,11 @@ def _plateaus(sliding: Sliding, motion: Motion) -> Iterator[Point]:
         out = ~usable[i:] | (np.abs(velocity[i:] - velocity[i]) > allowed[i])
         last = i + (int(np.argmax(out)) if out.any() else out.size)
         fifth = (last - i) // 5
-        yield _point(sliding, motion, np.arange(i + fifth, last - fifth), "plateau")
+        first = i + fifth
+        away = i + round(settling / (abs(float(velocity[i])) * step))
+        if last - fifth - away > least // 2:
+            first = max(first, away)
+        yield _point(sliding, motion, np.arange(first, last - fifth), "plateau")
         i = last
 
 
@@ -169,12 +202,13 @@ def _mean(group: Sequence[Point]) -> Point:
     return Point(v, p, p1, p2, mean, error, float(weights.sum()), group[0].kind)
 
 
-def _swept(slidings: Sequence[Sliding], motion: Motion) -> list[Point]:
+def _swept(slidings: Sequence[Sliding], motion: Motion, settling: float) -> list[Point]:
     """Means over bins of velocity and pressure, rising and falling speed with equal weight.
 
-    A bin passed one way only is left out: there a lag would count as friction.
+    A bin passed one way only is left out: there a lag would count as friction. The velocity is that
+    by the lowest cut-off that the position bears: steps of its sensor would blur slow bins.
     """
-    parts = [_settled(one) for one in slidings]
+    parts = [settled(one, settling) for one in slidings]
     if not any(at.size for at in parts):
         return []
 
@@ -182,8 +216,9 @@ def _swept(slidings: Sequence[Sliding], motion: Motion) -> list[Point]:
         return np.concatenate([one[at] for one, at in zip(values, parts, strict=True)])
 
     pieces = [one.piece for one in slidings]
-    velocity = all_of([one.velocity for one in pieces])
-    rising = all_of([one.velocity * one.acceleration for one in pieces]) > 0
+    paces = [velocities(one, motion, 0, one.time.size)[-1] for one in pieces]
+    velocity = all_of(paces)
+    rising = all_of([one * np.gradient(one) for one in paces]) > 0
     friction = all_of([one.friction for one in slidings])
     pressure = all_of([one.pressure for one in slidings])
     first = all_of([one["p1"] for one in pieces])
@@ -191,28 +226,41 @@ def _swept(slidings: Sequence[Sliding], motion: Motion) -> list[Point]:
     speed_bin = np.floor(PER_DECADE * np.log10(np.abs(velocity)))
     top = float(np.percentile(pressure, 99)) or 1.0
     level_bin = np.floor(pressure / (2 * LEVELS * top))
-    keys = np.stack([velocity < 0, level_bin, speed_bin, rising], axis=1)
+    keys = np.stack([velocity < 0, level_bin, speed_bin], axis=1)
     found, inverse = np.unique(keys, axis=0, return_inverse=True)
-    halves: dict[tuple[float, ...], list[Point]] = {}
-    for k, key in enumerate(found):
-        at = np.flatnonzero(inverse.reshape(-1) == k)
-        size = independent(at.size, motion)
-        if size < 3:
+    order = np.argsort(inverse.reshape(-1), kind="stable")
+    groups = np.split(order, np.cumsum(np.bincount(inverse.reshape(-1)))[:-1])
+    own: list[Point] = []
+    for at in groups[: len(found)]:
+        halves = _alike(at, np.abs(velocity[at]), rising[at])
+        if halves is None or min(independent(one.size, motion) for one in halves) < 3:
             continue
-        rest = friction[at] - np.polyval(np.polyfit(velocity[at], friction[at], 1), velocity[at])
-        halves.setdefault(tuple(key[:3]), []).append(
-            Point(
-                float(np.mean(velocity[at])),
-                float(np.mean(pressure[at])),
-                float(np.mean(first[at])),
-                float(np.mean(second[at])),
-                float(np.mean(friction[at])),
-                float(np.std(rest) / np.sqrt(max(size - 2, 1))),
-                at.size * motion.sample_time,
-                "sweep",
+        for half in halves:
+            size = independent(half.size, motion)
+            line = np.polyfit(velocity[half], friction[half], 1)
+            rest = friction[half] - np.polyval(line, velocity[half])
+            numbers = (velocity, pressure, first, second, friction)
+            own.append(
+                Point(
+                    *(float(np.mean(one[half])) for one in numbers),
+                    float(np.std(rest) / np.sqrt(max(size - 2, 1))),
+                    half.size * motion.sample_time,
+                    "sweep",
+                    float(np.std(velocity[half])),
+                )
             )
-        )
-    return [_halves(both) for both in halves.values() if len(both) == 2]
+    moderated = _moderated(own, motion)
+    return [_halves(both) for both in zip(moderated[::2], moderated[1::2], strict=True)]
+
+
+def _alike(at: Array, speed: Array, rising: Array) -> tuple[Array, Array] | None:
+    """Samples of rising and of falling speed, both over the speeds that both pass."""
+    if rising.all() or not rising.any():
+        return None
+    low = max(float(speed[rising].min()), float(speed[~rising].min()))
+    high = min(float(speed[rising].max()), float(speed[~rising].max()))
+    inside = (speed >= low) & (speed <= high)
+    return at[inside & rising], at[inside & ~rising]
 
 
 def _halves(both: Sequence[Point]) -> Point:
@@ -220,11 +268,13 @@ def _halves(both: Sequence[Point]) -> Point:
     numbers = np.mean([one[:5] for one in both], axis=0)
     error = float(np.sqrt(sum(one.error**2 for one in both)) / 2)
     v, p, p1, p2, mean = map(float, numbers)
-    return Point(v, p, p1, p2, mean, error, sum(one.weight for one in both), "sweep")
+    apart = (both[0].velocity - both[1].velocity) / 2
+    spread = float(np.sqrt((both[0].spread ** 2 + both[1].spread ** 2) / 2 + apart**2))
+    return Point(v, p, p1, p2, mean, error, sum(one.weight for one in both), "sweep", spread)
 
 
-def _settled(sliding: Sliding) -> Array:
-    """Samples that have slid `SETTLED` since the last reversal or rest."""
+def settled(sliding: Sliding, settling: float = SETTLED) -> Array:
+    """Samples that have slid a distance [m] since the last reversal or rest."""
     piece, moving = sliding.piece, sliding.moving
     way = np.where(moving, np.sign(piece.velocity), 0.0)
     begins = np.flatnonzero(np.diff(way, prepend=0.0) != 0)
@@ -232,4 +282,4 @@ def _settled(sliding: Sliding) -> Array:
     start[begins] = begins
     start = np.maximum.accumulate(start)
     gone = np.abs(piece["x"] - piece["x"][start])
-    return np.flatnonzero(moving & (gone > SETTLED))
+    return np.flatnonzero(moving & (gone > settling))

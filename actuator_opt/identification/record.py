@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import io
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,8 +11,11 @@ import numpy as np
 
 from .. import units
 from ..errors import Diagnostic, InputError
+from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array
 from ..suggest import remedy as remedy_for
+from ..suggest import shown
+from .csv_table import Sheet, numbers, read_sheet
 
 
 class Channel(NamedTuple):
@@ -46,10 +48,20 @@ CHANNELS = {
 }
 """Channels by their name, as a header writes it: ``t [s]``, ``p1 [bar]``. Pressures are gauge."""
 
-_BRACKETS = re.compile(r"(?P<name>.*?)\s*[\[(]\s*(?P<unit>[^\])]*?)\s*[\])]\s*")
-_ABSENT = {"", "-", "--", "na", "n/a", "nan", "null", "none", "#n/a", "inf", "-inf", "+inf"}
-_SHOWN = 60
-"""Letters of a cell or a list of columns that a message repeats."""
+_HEADER = re.compile(
+    r"(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>(?:[^()]|\([^()]*\))*)\))\s*"
+)
+_LONGEST = 200
+"""Letters of a header cell that may hold a unit (a choice: what is longer is no header)."""
+_OPTIONAL = ("v", "T")
+"""Channels that nothing asks for: a column called "Speed [rpm]" is another speed."""
+_ABSOLUTE = re.compile(
+    r"(?i)(?P<unit>(?:[mkh]?pa|m?bar|psi))[\s_]*\(?(?P<kind>a|abs|absolute|g|gauge)\)?\.?"
+)
+_SIGNS = (("µ", "u"), ("μ", "u"), ("℃", "°C"), ("℉", "°F"), ("º", "°"))
+_SECONDS = {"sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms"}
+_LARGEST = 1e30
+"""What is larger, SI, is a missing sample: loggers write 1e38 for none (a choice)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,6 +75,7 @@ class Record:
     name : of the file
     notes : what the reader left out
     first_line : of the samples in the file; None for a record that came from no file
+    lines : of every sample in the file, where comments or blank lines stand between them
     """
 
     time: Array
@@ -70,6 +83,7 @@ class Record:
     name: str = "record"
     notes: tuple[str, ...] = ()
     first_line: int | None = None
+    lines: Array | None = None
 
     def __getitem__(self, name: str) -> Array:
         return self.channels[name]
@@ -79,6 +93,8 @@ class Record:
 
     def line(self, sample: int) -> int | None:
         """Line of a sample in its file."""
+        if self.lines is not None:
+            return int(self.lines[sample])
         return None if self.first_line is None else self.first_line + sample
 
     def fault(self, message: str, remedy: str, sample: int | None = None) -> InputError:
@@ -94,7 +110,8 @@ def parse_record(
 
     The first line that is no comment names the columns with their units, ``p1 [bar]`` or
     ``p1 (bar)`` or ``p1 / bar``; units may also stand in a line of their own below. Columns are
-    separated by commas, semicolons or tabs; with the latter two a decimal comma is read.
+    separated by commas, semicolons or tabs; with the latter two a decimal comma is read. Absolute
+    pressures, ``bara`` or ``psi abs``, become gauge by the standard atmosphere, which a note says.
 
     Parameters
     ----------
@@ -112,69 +129,42 @@ def parse_record(
     InputError
         no header, an unknown or doubled column, a missing or wrong unit, a cell that is no number
     """
-    lines = text.split("\n")
-    header_line, header, separator = _header(lines, name)
-    cells = [cell.strip().strip('"').strip() for cell in header.split(separator)]
-    below = header_line + 1
-    while below < len(lines) and _skipped(lines[below]):
-        below += 1
-    units_row = _units_row(lines[below] if below < len(lines) else "", separator, len(cells))
-    first = below + (units_row is not None)
-    found = _columns(cells, units_row, columns or {}, name, header_line + 1)
-    table = _table("\n".join(lines[first:]), separator, len(cells), name, first + 1)
-    if not table.size:
+    sheet = read_sheet(text, name)
+    found = _columns(sheet, columns or {})
+    table, lines = numbers(sheet, [one.place for one in found.values()])
+    if not lines.size:
         message = "no samples below the header"
         raise InputError(Diagnostic(message, "give one line per sample", file=name))
     values = {
-        channel: _converted(table[:, place], unit) for channel, (place, unit) in found.items()
+        channel: _converted(table[:, k], one) for k, (channel, one) in enumerate(found.items())
     }
-    unused = [cell for i, cell in enumerate(cells) if i not in {x[0] for x in found.values()}]
-    notes = (f"columns that are no channel: {_list(unused)}",) if unused else ()
+    used = {one.place for one in found.values()}
+    unused = [cell for k, cell in enumerate(sheet.header) if cell and k not in used]
+    notes = [f"columns that are no channel: {_list(unused)}"] if unused else []
+    notes += [
+        f"{channel}: absolute pressure, less the standard atmosphere of 1.01325 bar"
+        for channel, one in found.items()
+        if one.absolute
+    ]
+    first = int(lines[0])
+    broken = int(lines[-1]) - first + 1 != lines.size
     time = values.pop("t")
-    return Record(time, values, name, notes, first + 1)
+    return Record(time, values, name, tuple(notes), first, lines if broken else None)
 
 
-def _skipped(line: str) -> bool:
-    stripped = line.strip()
-    return not stripped or stripped.startswith("#")
+class _Column(NamedTuple):
+    """Where a channel stands, and in what unit."""
 
-
-def _header(lines: Sequence[str], name: str) -> tuple[int, str, str]:
-    """Line of the header, its text, and what separates the columns."""
-    for i, line in enumerate(lines):
-        if _skipped(line):
-            continue
-        separator = next((one for one in "\t;," if one in line), ",")
-        if _is_number(line.split(separator)[0]):
-            message = "no header: the first line that is no comment begins with a number"
-            remedy = 'name the columns with their units, e.g. "t [s],p1 [bar],p2 [bar],x [mm]"'
-            raise InputError(Diagnostic(message, remedy, file=name, line=i + 1))
-        return i, line.strip("\r\n"), separator
-    raise InputError(Diagnostic("the record is empty", "give a CSV file", file=name))
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell.strip().replace(",", "."))
-    except ValueError:
-        return False
-    return True
-
-
-def _units_row(line: str, separator: str, count: int) -> list[str] | None:
-    """The units that stand in a line of their own, if they do."""
-    cells = [cell.strip().strip('"').strip("[]() ") for cell in line.split(separator)]
-    texts = [cell for cell in cells if cell and not _is_number(cell)]
-    if len(cells) != count or not texts or any(_is_number(cell) for cell in cells):
-        return None
-    return None if all(cell.lower() in _ABSENT for cell in cells) else cells
+    place: int
+    unit: units.Unit
+    absolute: bool
 
 
 def _named(cell: str) -> tuple[str, str]:
     """Name and unit of a header cell; no unit is empty."""
-    match = _BRACKETS.fullmatch(cell)
+    match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST else None
     if match is not None:
-        return match["name"], match["unit"]
+        return match["name"], (match["square"] or match["round"] or "").strip()
     name, _, unit = cell.partition("/")
     return name.strip(), unit.strip()
 
@@ -184,121 +174,161 @@ def _plain(name: str) -> str:
     return re.sub(r"[\W_]", "", name).lower()
 
 
-def _channel(name: str) -> str | None:
-    """The channel a header name means."""
-    if name in CHANNELS:
-        return name
+def _unit(text: str, dimension: str) -> tuple[units.Unit, bool]:
+    """The unit a header writes, and whether it is an absolute pressure."""
+    text = " ".join(text.split())
+    for sign, plain in _SIGNS:
+        text = text.replace(sign, plain)
+    text = _SECONDS.get(text.lower(), text).replace("° ", "°").replace("deg ", "deg")
+    absolute = False
+    if dimension == "pressure" and (match := _ABSOLUTE.fullmatch(text)) is not None:
+        text, absolute = match["unit"], match["kind"].lower().startswith("a")
+        text = {one.lower(): one for one in units.units_of(dimension)}.get(text.lower(), text)
+    try:
+        return units.unit(text, dimension), absolute
+    except units.UnitError:
+        alike = [one for one in units.units_of(dimension) if one.upper() == text]
+        if len(alike) != 1:
+            raise
+        return units.unit(alike[0], dimension), absolute
+
+
+def _fits(text: str, dimension: str) -> bool:
+    try:
+        _unit(text, dimension)
+    except units.UnitError:
+        return False
+    return True
+
+
+def _channel(name: str, unit: str) -> str | None:
+    """The channel a header name means; the unit decides between t and T."""
     plain = _plain(name)
-    for channel, one in CHANNELS.items():
-        if plain in (_plain(channel), *one.others):
-            return channel
-    return None
+    alike = [c for c, one in CHANNELS.items() if plain in (_plain(c), *one.others)]
+    fitting = [c for c in alike if _fits(unit, CHANNELS[c].dimension)]
+    if name in fitting or (name in alike and not fitting):
+        return name
+    if fitting or not alike:
+        return fitting[0] if fitting else None
+    return None if unit and alike[0] in _OPTIONAL else alike[0]
 
 
-def _columns(
-    cells: Sequence[str],
-    units_row: Sequence[str] | None,
-    stated: Mapping[str, str],
-    name: str,
-    line: int,
-) -> dict[str, tuple[int, units.Unit]]:
+def _stated(sheet: Sheet, own: list[tuple[str, str]], header: str) -> tuple[int, str]:
+    """Column of a header that the caller names, and the unit it states with it.
+
+    Raises
+    ------
+    LookupError
+        with the number of columns that bear the name
+    """
+    wanted, unit = _named(header)
+    names = [one[0] for one in own]
+    for name, column_unit, among in (
+        (header.strip(), "", sheet.header),
+        (wanted, unit, sheet.header),
+        (wanted, unit, names),
+        (header.strip(), "", names),
+    ):
+        if among.count(name) == 1:
+            place = among.index(name)
+            return place, column_unit or own[place][1]
+        if among.count(name):
+            raise LookupError(among.count(name))
+    raise LookupError(0)
+
+
+def _columns(sheet: Sheet, stated: Mapping[str, str]) -> dict[str, _Column]:
     """Column and unit of every channel."""
     faults: list[Diagnostic] = []
 
     def fault(message: str, remedy: str) -> None:
-        faults.append(Diagnostic(message, remedy, file=name, line=line))
+        if not any(one.message == message for one in faults):
+            faults.append(Diagnostic(message, remedy, file=sheet.name, line=sheet.header_line))
 
-    own = [_named(cell) for cell in cells]
-    if units_row is not None:
-        own = [(a, b or units_row[i]) for i, (a, b) in enumerate(own)]
+    own = [_named(cell) for cell in sheet.header]
+    if sheet.units is not None:
+        own = [(a, b or sheet.units[i]) for i, (a, b) in enumerate(own)]
     names = [one[0] for one in own]
-    places: dict[str, int] = {}
-    for channel, header in stated.items():
-        if channel not in CHANNELS:
-            fault(f'"{channel}" is no channel', f"use one of {', '.join(CHANNELS)}")
-            continue
-        wanted, unit = _named(header)
-        if wanted not in names:
-            fault(f'no column "{_short(wanted)}" for {channel}', remedy_for(wanted, names))
-            continue
-        places[channel] = names.index(wanted)
-        if unit:
-            own[places[channel]] = (wanted, unit)
-    for i, (header, _) in enumerate(own):
-        found = _channel(header)
-        if found is None or found in stated or i in places.values():
+    places = _stated_places(sheet, own, stated, fault)
+    taken = set(places.values())
+    doubled = set()
+    for i, (header, unit) in enumerate(own):
+        found = _channel(header, unit)
+        if found is None or found in stated or i in taken or found in doubled:
             continue
         if found in places:
-            other = cells[places[found]]
+            doubled.add(found)
+            one, other = sheet.header[places[found]], sheet.header[i]
             fault(
-                f'columns "{_short(other)}" and "{_short(cells[i])}" are both {found}',
-                f'say which with --column "{found}=NAME", or rename one',
+                f'columns "{shown(one)}" and "{shown(other)}" are both {found}',
+                "rename or delete one"
+                if one == other
+                else f'say which with --column "{found}=NAME", or rename one',
             )
         places.setdefault(found, i)
-    if "t" not in places:
+    if "t" not in places and "t" not in stated:
         fault(f"no column t; columns are {_list(names)}", 'name it with --column "t=NAME [s]"')
     read = {}
     for channel, i in places.items():
         known, (header, unit) = CHANNELS[channel], own[i]
+        header = shown(header)
         if not unit:
             example = units.units_of(known.dimension)[0]
             fault(
-                f'column "{_short(header)}" states no unit',
-                f'write e.g. "{_short(header)} [{example}]" into the header, or '
-                f'--column "{channel}={_short(header)} [{example}]"',
+                f'column "{header}" states no unit',
+                f'write e.g. "{header} [{example}]" into the header, or '
+                f'--column "{channel}={header} [{example}]"',
             )
             continue
         try:
-            read[channel] = i, units.unit(unit, known.dimension)
+            read[channel] = _Column(i, *_unit(unit, known.dimension))
         except units.UnitError as error:
-            fault(f'column "{_short(header)}": {error.message}', error.remedy)
+            fault(f'column "{header}": {shown(error.message, 120)}', shown(error.remedy, 120))
     if faults:
         raise InputError(faults)
     return read
 
 
-def _table(text: str, separator: str, columns: int, name: str, first: int) -> Array:
-    """The cells as numbers, NaN where there is none."""
-    if separator != "," and "," in text:
-        text = text.replace(",", ".")
-    try:
-        return np.loadtxt(io.StringIO(text), delimiter=separator, ndmin=2, comments=None)
-    except ValueError:
-        pass
-    rows = []
-    for i, line in enumerate(text.split("\n")):
-        if not line.strip():
+def _stated_places(
+    sheet: Sheet,
+    own: list[tuple[str, str]],
+    stated: Mapping[str, str],
+    fault: Callable[[str, str], None],
+) -> dict[str, int]:
+    """Columns the caller names; their units go into `own`."""
+    places: dict[str, int] = {}
+    for channel, header in stated.items():
+        if channel not in CHANNELS:
+            fault(f'"{shown(channel)}" is no channel', f"use one of {', '.join(CHANNELS)}")
             continue
-        cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]
-        if len(cells) != columns:
-            message = f"{len(cells)} cells, the header has {columns} columns"
-            remedy = "give every line as many cells as the header"
-            raise InputError(Diagnostic(message, remedy, file=name, line=first + i))
-        rows.append([_number(cell, name, first + i) for cell in cells])
-    return np.array(rows)
+        try:
+            place, unit = _stated(sheet, own, header)
+        except LookupError as error:
+            wanted = shown(_named(header)[0])
+            if error.args[0]:
+                fault(f'{error.args[0]} columns are called "{wanted}"', "rename all but one")
+            else:
+                remedy = shown(remedy_for(wanted, [one[0] for one in own]), 200)
+                fault(f'no column "{wanted}" for {channel}', remedy)
+            continue
+        for other, taken in places.items():
+            if taken == place:
+                title = shown(sheet.header[place])
+                fault(f'column "{title}" is named for {other} and {channel}', "name two columns")
+        places[channel] = place
+        own[place] = own[place][0], unit
+    return places
 
 
-def _number(cell: str, name: str, line: int) -> float:
-    try:
-        return float(cell)
-    except ValueError:
-        if cell.lower() in _ABSENT:
-            return float("nan")
-    message = f'"{_short(cell)}" is no number'
-    raise InputError(
-        Diagnostic(message, "write a number, or leave the cell empty", file=name, line=line)
-    )
-
-
-def _converted(values: Array, unit: units.Unit) -> Array:
-    """SI values; what is not finite is missing."""
-    return np.where(np.isfinite(values), values * unit.scale + unit.offset, np.nan)
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
+def _converted(values: Array, column: _Column) -> Array:
+    """SI values, pressures gauge; what is not finite is missing."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = np.asarray(column.unit.to_si(values))
+        if column.absolute:
+            found = found - ATMOSPHERIC_PRESSURE
+        return np.where(np.abs(found) < _LARGEST, found, np.nan)
 
 
 def _list(names: Sequence[str]) -> str:
     """Names in quotes, as many as a line holds."""
-    return _short(", ".join(f'"{name}"' for name in names))
+    return shown(", ".join(f'"{name}"' for name in names))

@@ -6,13 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..numeric import Array
 from .conditioning import Motion
 from .record import Record
 
 SHARE = 0.999
 """Share of the velocity's power that counts as the motion."""
-
-
 ABOVE = 4.0
 """Times its noise that the velocity's spectrum shows motion."""
 
@@ -23,7 +22,7 @@ class Spectrum(NamedTuple):
     Parameters
     ----------
     motion : 99.9 % of the velocity's power lies below
-    floor : the position's spectrum stands on its noise from here on; 0 where it never does
+    floor : above the motion the position's spectrum is noise from here on; 0 where it never is
     kept : share of the velocity's power that passes the filter
     """
 
@@ -33,6 +32,8 @@ class Spectrum(NamedTuple):
 
     def says(self, cutoff: float) -> str:
         """Whether a cut-off [Hz] fits the record, in one line."""
+        if self.motion == 0:
+            return "the position shows no motion above its noise"
         if self.motion > cutoff:
             return (
                 f"the motion reaches {self.motion:.3g} Hz, beyond the cut-off: raise --cutoff, "
@@ -74,13 +75,29 @@ def spectrum(record: Record, motion: Motion) -> Spectrum:
     )
     slope = (2 * np.sin(np.pi * frequency * step) / step) ** 2
     upper = frequency > 0.25 / step
-    white = slope * float(np.median(power[upper] / slope[upper]))
-    clear = np.where(power > ABOVE * white, power - white, 0.0)
+    level = float(np.median(power[upper] / slope[upper]))
+    variance = max(level * 0.5 / step, motion.quality["x"].resolution ** 2 / 12)
+    loud = (power > ABOVE * level * slope) & (frequency > 0)
+    clear = np.where(loud & _moves(frequency, power, slope, loud, variance), power, 0.0)
+    clear = np.maximum(clear - level * slope, 0.0)
     total = np.cumsum(clear)
-    if total[-1] == 0:
+    if np.sum(clear[1:] / slope[1:]) * frequency[1] <= variance:
         return Spectrum(0.0, 0.0, 1.0)
     edge = float(frequency[int(np.searchsorted(total, SHARE * total[-1]))])
-    drowned = np.flatnonzero((power < ABOVE * white) & (frequency > 0))
+    drowned = np.flatnonzero((clear == 0) & (frequency > edge))
     floor = float(frequency[drowned[0]]) if drowned.size else 0.0
     kept = float(np.sum(clear[frequency <= motion.cutoff]) / total[-1])
     return Spectrum(edge, floor, kept)
+
+
+def _moves(frequency: Array, power: Array, slope: Array, loud: Array, variance: float) -> Array:
+    """Frequencies at which what stands above the white noise is motion.
+
+    The steps q of a sensor draw lines at v/q that hold up to q^2/(2 pi^2) of the position's power,
+    less than their variance q^2/12: past the motion's own hill a line counts from there on.
+    """
+    place = np.where(loud, power / np.where(slope > 0, slope, 1.0), 0.0)
+    peak = int(np.argmax(place))
+    quiet = np.flatnonzero(~loud[peak:])
+    foot = peak + (int(quiet[0]) if quiet.size else loud.size)
+    return (np.arange(loud.size) < foot) | (place * frequency[1] > variance)

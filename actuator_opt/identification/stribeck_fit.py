@@ -33,6 +33,8 @@ SYMBOLS = {
     "offset": "F_0",
 }
 """Parameters with their symbols: N, N, m/s, -, N s/m, N/Pa, N."""
+MODEL = 1e-3
+"""Error of a point over the largest friction beside its scatter (a choice: no curve is better)."""
 _LEVELS = (("coulomb", "viscous"), ("static", "stribeck_speed"), ("exponent",))
 """What is asked of the points, one group after the other."""
 
@@ -65,6 +67,12 @@ class StribeckFit:
     def values(self) -> dict[str, float]:
         """All parameters, fitted or held."""
         return {**self.held, **{name: one.value for name, one in self.parameters.items()}}
+
+    @property
+    def scatter(self) -> float:
+        """Standard deviation of the residuals over the points' errors."""
+        spare = self.residuals.size - len(self.parameters)
+        return float(np.sqrt(np.sum((self.residuals / self.errors) ** 2) / spare))
 
     def predict(self, velocity: Array, pressure: Array) -> Array:
         """Friction at velocities [m/s] and pressures [Pa]."""
@@ -112,8 +120,9 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
     """The Stribeck curve through points of steady sliding, or why there is none.
 
     Asked of the points: F_C and sigma_2; F_S and v_s where there are five speeds or more and they
-    better the fit (corrected Akaike information); the exponent where there are seven; an offset
-    where the rod runs both ways; an effect of pressure where it varies by a fifth.
+    better the fit (corrected Akaike information), with the exponent where there are seven: asked for
+    only where it betters the fit it would be biased, and F_S with it; an offset where the rod runs
+    both ways; an effect of pressure where it varies by a fifth.
 
     Parameters
     ----------
@@ -142,12 +151,17 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
             "at other speeds"
         )
     best = min(fits, key=_information)
+    if "static" in best.parameters:
+        best = fits[-1]
     if len(fits) < 2:
         doubts.append(f"{len(speeds)} speeds do not show F_S and v_s: five or more do")
     elif "static" not in best.parameters:
         doubts.append("no rise of friction towards rest: F_S and v_s are not seen")
     elif "exponent" not in best.parameters:
-        doubts.append(f"the exponent is held at {EXPONENT:g}")
+        doubts.append(
+            f"the exponent is held at {EXPONENT:g}, bounds of F_S and v_s hold for it alone: seven "
+            "speeds show it"
+        )
     if "offset" in best.parameters:
         shift = best.parameters["offset"]
         if shift.lower > 0 or shift.upper < 0:
@@ -182,22 +196,33 @@ def _beside(points: Sequence[Point], area: float) -> list[str]:
     return found
 
 
-class _Data:
-    """Points as arrays, with weights 1/error."""
+class Steady:
+    """Points as arrays, with weights 1/error; their curve is the mean over each point's spread."""
 
-    def __init__(self, points: Sequence[Point]) -> None:
+    def __init__(self, points: Sequence[Point], error: Array | None = None) -> None:
         self.velocity = np.array([one.velocity for one in points])
+        self.spread = np.array([one.spread for one in points])
         pressure = np.array([one.pressure for one in points])
         errors = np.array([one.error for one in points])
         self.friction = np.array([one.friction for one in points])
         self.largest = float(np.max(np.abs(self.friction)))
-        floor = max(float(np.median(errors)), 1e-3 * self.largest)
-        self.error = np.maximum(errors, floor)
+        self.error = np.hypot(errors, MODEL * self.largest) if error is None else error
         self.reference = float(np.mean(pressure))
         self.change = pressure - self.reference
 
-    def residual(self, values: Mapping[str, float]) -> Array:
-        return (curve(self.velocity, self.change, **values) - self.friction) / self.error
+    def predict(self, values: Mapping[str, Array]) -> Array:
+        """Friction of the points: the mean at v - s and v + s has the spread's mean square."""
+        both = (self.velocity - self.spread, self.velocity + self.spread)
+        return sum(curve(one, self.change, **values) for one in both) / 2
+
+    def residual(self, values: Mapping[str, Array]) -> Array:
+        """Fitted less measured, over the error."""
+        return (self.predict(values) - self.friction) / self.error
+
+    def slopes(self, values: Mapping[str, float], names: Sequence[str]) -> Array:
+        """Derivatives of the friction by parameters (points, parameters)."""
+        both = (self.velocity - self.spread, self.velocity + self.spread)
+        return sum(_slopes(one, self.change, values, names) for one in both) / 2
 
 
 def _held(names: Sequence[str], coulomb: float) -> dict[str, float]:
@@ -212,7 +237,7 @@ def _fit(points: Sequence[Point], names: tuple[str, ...]) -> StribeckFit:
     """Least squares for some parameters, from the best of a grid of speeds and exponents."""
     from scipy.optimize import least_squares  # slow to import, rarely needed
 
-    data = _Data(points)
+    data = Steady(points)
     start = _search(data, names)
     scale = _scales(data)
 
@@ -226,7 +251,7 @@ def _fit(points: Sequence[Point], names: tuple[str, ...]) -> StribeckFit:
         return data.residual(values(x))
 
     def slopes(x: Array) -> Array:
-        columns = _slopes(data.velocity, data.change, values(x), names)
+        columns = data.slopes(values(x), names)
         if "static" in names:
             rise = columns[:, names.index("static")]
             columns[:, names.index("coulomb")] += rise
@@ -252,7 +277,7 @@ def _fit(points: Sequence[Point], names: tuple[str, ...]) -> StribeckFit:
     )
     best = values(found.x)
     own = {name: best[name] for name in names}
-    jacobian = _slopes(data.velocity, data.change, best, names)
+    jacobian = data.slopes(best, names)
     sizes = np.array([max(abs(own[name]), 1e-3 * scale[name]) for name in names])
     told = known(own, jacobian / data.error[:, None], data.residual(best), sizes)
     return StribeckFit(
@@ -267,7 +292,7 @@ def _fit(points: Sequence[Point], names: tuple[str, ...]) -> StribeckFit:
     )
 
 
-def _scales(data: _Data) -> dict[str, float]:
+def _scales(data: Steady) -> dict[str, float]:
     """Size of each parameter in a record like this."""
     speed = float(np.max(np.abs(data.velocity)))
     pressure = max(float(np.max(np.abs(data.change))), 1.0)
@@ -282,7 +307,7 @@ def _scales(data: _Data) -> dict[str, float]:
     }
 
 
-def _search(data: _Data, names: Sequence[str]) -> dict[str, float]:
+def _search(data: Steady, names: Sequence[str]) -> dict[str, float]:
     """Start values: over a grid of Stribeck speeds and exponents the rest is linear."""
     way, speed = np.sign(data.velocity), np.abs(data.velocity)
     columns = {"coulomb": way, "viscous": data.velocity}

@@ -95,7 +95,7 @@ def plateaus(
         held = np.ones(round(min(max(travel / speed - ramp, ramp), longest) / step))
         stroke = speed * np.concatenate([rise, held, rise[::-1]])
         parts += [stroke, np.zeros(round(rest / step)), -stroke, np.zeros(round(rest / step))]
-    return _course(np.concatenate(parts), begin, step)
+    return course(np.concatenate(parts), begin=begin, step=step)
 
 
 def sine(
@@ -123,10 +123,11 @@ def ramps(
     """Velocity up to `fastest` and back to rest along straight lines, out and back, SI."""
     up = np.linspace(0.0, fastest, round(duration / 2 / step))
     once = np.concatenate([up, up[::-1]])
-    return _course(np.concatenate([once, -once] * repeats), begin, step)
+    return course(np.concatenate([once, -once] * repeats), begin=begin, step=step)
 
 
-def _course(velocity: Array, begin: float, step: float) -> Course:
+def course(velocity: Array, *, begin: float, step: float) -> Course:
+    """The motion of a velocity from a first position, SI."""
     time = step * np.arange(velocity.size)
     gone = np.concatenate([[0.0], np.cumsum((velocity[1:] + velocity[:-1]) / 2) * step])
     return Course(time, begin + gone, velocity, np.gradient(velocity, step))

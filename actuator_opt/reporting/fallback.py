@@ -141,6 +141,10 @@ def _title(flow: _Flow, data: Mapping[str, Any]) -> None:
 
 
 def _block(flow: _Flow, block: Mapping[str, Any]) -> None:
+    if block["kind"] == "pair":
+        for one in (one for side in block["sides"] for one in side):
+            _block(flow, one)
+        return
     height = block["ink"]["height"] if block["kind"] == "figure" else 8.0
     flow.need(9.0 + height)
     flow.y += 4.0

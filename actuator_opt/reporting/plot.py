@@ -18,8 +18,13 @@ def curve(
     console: Console,
     width: int,
     height: int,
+    *,
+    ends: tuple[str, str] | None = None,
 ) -> list[str]:
-    """Lines of a plot of (x, y) points with an optional horizontal limit; x in mm."""
+    """Lines of a plot of (x, y) points with an optional horizontal limit.
+
+    `ends` are the words below its first and last x; without them x is in mm.
+    """
     points = [(x, y) for x, y in points if math.isfinite(x) and math.isfinite(y)]
     if len(points) < 2 or points[-1][0] <= points[0][0]:
         return []
@@ -51,10 +56,10 @@ def curve(
         lines.append(f"{console.paint(f'{head:>{margin - 2}} {tick}', 'dim')}{cells}")
     corner, rule = ("└", "─") if console.unicode else ("+", "-")
     axis = f"{'':{margin - 1}}{corner}{rule * columns}"
-    left = console.say(trimmed(points[0][0], 3))
-    right = console.say(f"{trimmed(points[-1][0], 4)} mm")
-    ends = f"{'':{margin}}{left}{right:>{columns - len(left)}}"
-    return [*lines, console.paint(axis, "dim"), console.paint(ends, "dim")]
+    first, last = ends or (trimmed(points[0][0], 3), f"{trimmed(points[-1][0], 4)} mm")
+    left, right = console.say(first), console.say(last)
+    below = f"{'':{margin}}{left}{right:>{columns - len(left)}}"
+    return [*lines, console.paint(axis, "dim"), console.paint(below, "dim")]
 
 
 def _trace(

@@ -80,7 +80,7 @@ def _panel(
     usable = values[np.isfinite(values) & (values > 0)]
     bounds = levels(float(usable.min()), float(usable.max()))
     table = np.ma.masked_invalid(np.log10(np.where(values > 0, values, np.nan)))
-    _bands(axes, xs, ys, table, bounds)
+    bands(axes, xs, ys, table, bounds)
     for i, j in zip(*np.nonzero(table.mask if table.mask is not np.False_ else []), strict=True):
         _missing(axes, xs[int(j)], ys[int(i)])
     place, level = math.log10(1e3 * study.drive.speed), study.drive.pressure / 1e5
@@ -88,7 +88,7 @@ def _panel(
         dot(axes, place, level, BLACK)
     marks = [(v, trimmed(v)) for v in ticks(ys[0], ys[-1], 5)]
     _frame(axes, title, level_ticks(xs[0], xs[-1]), marks)
-    _scale(ink, box, bounds)
+    scale(ink, box, bounds)
 
 
 def _frame(axes: Axes, title: str, x_ticks: Any, y_ticks: Any) -> None:
@@ -109,7 +109,7 @@ def _frame(axes: Axes, title: str, x_ticks: Any, y_ticks: Any) -> None:
     ink.text(axes.left - 1.4, axes.top - 3.6, words, size=7.0, bold=True)
 
 
-def _bands(
+def bands(
     axes: Axes, xs: Sequence[float], ys: Sequence[float], table: Any, bounds: Sequence[float]
 ) -> None:
     """Bands between levels, bilinear in the logarithm; a thin line at every level."""
@@ -138,7 +138,7 @@ def _missing(axes: Axes, x: float, y: float) -> None:
         axes.ink.line((at[0] - 0.7, at[1] - side), (at[0] + 0.7, at[1] + side), pen=0.2)
 
 
-def _scale(ink: Ink, box: tuple[float, float, float, float], bounds: Sequence[float]) -> None:
+def scale(ink: Ink, box: tuple[float, float, float, float], bounds: Sequence[float]) -> None:
     """The bands beside the frame, with the level between two of them."""
     x, count = box[0] + box[2] + 2.5, len(bounds) - 1
     high = min(box[3] / count, 6.0)

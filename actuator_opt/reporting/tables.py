@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .. import quantities
+from ..design.paths import get, quantity_of
 from ..evaluation.result import Evaluation, Requirement
 from . import text
 from .blocks import Block, Cell, ExtraTable, bar, clean, column, notes, share, soft, status, table
@@ -162,7 +163,7 @@ def models(evaluation: Evaluation) -> Block:
 
 
 def assumptions(evaluation: Evaluation) -> Block:
-    """Library values that nobody checked, and checks taken out by the author."""
+    """Library values that nobody checked, values of test records, checks the author took out."""
     groups: dict[tuple[str, str, str], list[str]] = {}
     for row in evaluation.unverified:
         words = f"{row.property} {text.pretty(row.value)}"
@@ -171,6 +172,13 @@ def assumptions(evaluation: Evaluation) -> Block:
         [soft(material), soft("; ".join(values)), soft(source), soft(text.pretty(note) or DASH)]
         for (material, source, note), values in groups.items()
     ]
+    for path, known in evaluation.design.measured.items():
+        quantity = quantity_of(path, evaluation.design)
+        ends = [text.value_text(quantity, end, 3) for end in (known.lower, known.upper)]
+        value = get(evaluation.design, path)
+        shown = text.value_text(quantity, value if isinstance(value, float) else None, 3)
+        words = f"{shown} ({' to '.join(ends)})"
+        rows.append([soft(path), soft(words), soft(known.record), "test record, 95 % bounds"])
     rows += [
         ["waived check", soft(metric), "the author", soft(reason)]
         for metric, reason in evaluation.design.waivers.items()

@@ -1,21 +1,39 @@
-"""The verbs of the library: read, check, evaluate, optimise, sensitivity, seal, report, save."""
+"""The verbs of the library: one name each in the terminal and in scripts."""
 
 from .actuator import Actuator, check, read
 from .optimum import evaluate, optimise, sensitivity
+from .records import (
+    Calibrated,
+    bending,
+    calibrate,
+    identify,
+    read_record,
+    write_calibration,
+    write_identification,
+    write_series,
+)
 from .reports import date_from_environment, report, save
 from .seals import seal, with_contact, write_seal
 
 __all__ = [
     "Actuator",
+    "Calibrated",
+    "bending",
+    "calibrate",
     "check",
     "date_from_environment",
     "evaluate",
+    "identify",
     "optimise",
     "read",
+    "read_record",
     "report",
     "save",
     "seal",
     "sensitivity",
     "with_contact",
+    "write_calibration",
+    "write_identification",
     "write_seal",
+    "write_series",
 ]

@@ -8,12 +8,13 @@ from math import pi
 import numpy as np
 
 from ...design.model import Design
-from ...models import forces
+from ...models import forces, friction
 from ...numeric import Array
 from ..barrel import SEAL_STEP
 from ..film_tables import floats
 from ..kernel import Subject, compute
 from ..rings import Ring
+from ..sealing import STRIBECK_EXPONENT, WiperFriction, wipers
 from ..springs import Springs
 from ..touch import touch
 
@@ -27,7 +28,7 @@ class Bench:
     design : the actuator tested
     growth : radial growth of the bore at the piston seal over chamber pressure [m/Pa]
     mass : of what moves inside the force sensor: rod, piston, fastening [kg]
-    rings : sealing elements of the first load case
+    rings, wipers : of the first load case
     springs : stiffness budget
     """
 
@@ -40,6 +41,7 @@ class Bench:
     load_mass: float
     supply_pressure: float
     rings: tuple[Ring, ...]
+    wipers: tuple[WiperFriction, ...]
     springs: Springs
 
     @property
@@ -63,21 +65,54 @@ class Bench:
             forces.annulus_area(bore=bore, rod_diameter=self.rod_diameter),
         )
 
-    def contact_forces(self, pressure_1: Array, pressure_2: Array) -> dict[str, Array]:
-        """Normal force of all rings of piston and rod at chamber pressures, sum of f pi D [N].
+    def normal_forces(self, pressure_1: Array, pressure_2: Array) -> list[tuple[Ring, Array]]:
+        """Every ring with its normal force at chamber pressures, f pi D [N].
 
         The first ring of a place carries the pressure, others in the row their squeeze. Gauge
         pressures [Pa], any shape.
         """
-        total = {"piston": 0.0 * pressure_1, "rod": 0.0 * pressure_1}
+        found = []
         for ring in self._held(pressure_1, pressure_2):
             load = touch(ring).line_load
             count = float(ring["count"])
             if count != 1.0:
                 idle = touch(ring.at(pressure=0.0 * ring["pressure"]))
                 load = load + (count - 1) * idle.line_load
-            total[ring.name] = total[ring.name] + pi * ring["diameter"] * load
+            found.append((ring, pi * ring["diameter"] * load))
+        return found
+
+    def contact_forces(self, pressure_1: Array, pressure_2: Array) -> dict[str, Array]:
+        """Normal force of all rings of piston and rod at chamber pressures [N]."""
+        total = {"piston": 0.0 * pressure_1, "rod": 0.0 * pressure_1}
+        for ring, force in self.normal_forces(pressure_1, pressure_2):
+            total[ring.name] = total[ring.name] + force
         return total
+
+    def coulomb(self, pressure_1: Array, pressure_2: Array) -> Array:
+        """Coulomb friction that the design states: rings and wipers, no side load on guides [N]."""
+        rings = self.normal_forces(pressure_1, pressure_2)
+        wiped = sum(float(one.friction) for one in self.wipers)
+        return sum((ring["friction_coefficient"] * force for ring, force in rings), wiped)
+
+    def sliding(self, speed: Array, pressure_1: Array, pressure_2: Array) -> tuple[Array, Array]:
+        """Friction that the design states, without side load on guides: level and viscous [N].
+
+        The level is Coulomb friction and what of breakaway is left at a speed [m/s]. Gauge
+        pressures [Pa].
+        """
+        level = sum((float(one.friction) for one in self.wipers), 0.0 * speed)
+        viscous = 0.0 * speed
+        for ring, force in self.normal_forces(pressure_1, pressure_2):
+            coulomb = ring["friction_coefficient"] * force
+            level = level + friction.stribeck_level(
+                speed=speed,
+                coulomb=coulomb,
+                static=ring["breakaway_ratio"] * coulomb,
+                stribeck_speed=ring["stribeck_speed"],
+                exponent=STRIBECK_EXPONENT,
+            )
+            viscous = viscous + ring["viscous_friction"] * speed
+        return level, viscous
 
     def contact_pressure(self, pressure_1: float, pressure_2: float) -> float:
         """Normal force of the rings that hold the pressure over their contact area [Pa]."""
@@ -154,8 +189,17 @@ def bench(subject: Subject) -> Bench:
         load_mass=float(v["load.mass"]),
         supply_pressure=float(v["supply.pressure"]),
         rings=tuple(floats(ring, 0) for ring in done.rings),
+        wipers=tuple(
+            WiperFriction(one.path, _first_of(one.coefficient), _first_of(one.friction))
+            for one in wipers(v, subject.design, g, done.state)
+        ),
         springs=done.springs,
     )
+
+
+def _first_of(value: Array) -> float:
+    """A number of the first case of one design."""
+    return float(np.ravel(np.real(np.asarray(value)))[0])
 
 
 def _cases(value: Array) -> Array:

@@ -1,0 +1,265 @@
+"""The commands `identify` and `calibrate`: what a test bench measured, and what it changes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from . import streams
+from .cli_shared import check_targets, command_line, given, read_actuator, say_files
+from .errors import Diagnostic, ExitCode, UsageError
+from .options import REPORTS, Date, Json, Out, PluginFile, Quiet, Report, Seed, Set
+from .quantities import RECORDS
+
+if TYPE_CHECKING:
+    from .verbs import Actuator
+    from .verbs.records import Part
+
+RecordFile = Annotated[str, typer.Argument(metavar="RECORD", help="CSV file of the test record.")]
+Tested = Annotated[
+    str, typer.Option("--design", metavar="DESIGN", help="Design file of the actuator tested.")
+]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--column",
+        metavar="CHANNEL=NAME",
+        help='Column of a channel (t, p1, p2, x, v, F_L, T, w), e.g. "p1=Channel 3 [bar]". '
+        "Repeatable.",
+    ),
+]
+Cutoff = Annotated[
+    str, typer.Option("--cutoff", metavar="F", help='Cut-off of the zero-phase filter, "30 Hz".')
+]
+Order = Annotated[
+    int,
+    typer.Option("--order", min=1, max=10, metavar="N", help="Order of each of its two passes."),
+]
+Uncompensated = Annotated[
+    bool,
+    typer.Option("--uncompensated", help="Let both passes be -6 dB at the cut-off, not -3 dB."),
+]
+Mass = Annotated[
+    str | None,
+    typer.Option(
+        "--mass", metavar="M", help='Moving mass, e.g. "1.2 kg"; default: rod, piston (and load).'
+    ),
+]
+LoadForce = Annotated[
+    str | None,
+    typer.Option(
+        "--load-force",
+        metavar="F",
+        help='Load where no channel F_L measures it, e.g. "0 N" for a free rod.',
+    ),
+]
+PressureLag = Annotated[
+    str | None,
+    typer.Option(
+        "--pressure-lag",
+        metavar="T",
+        help='Lag of the pressures, e.g. "4 ms"; default: found by the reversals.',
+    ),
+]
+Bootstrap = Annotated[
+    int,
+    typer.Option(
+        "--bootstrap",
+        min=0,
+        max=10000,
+        metavar="N",
+        help="Bounds from N resampled records (200 or more) instead of the linearised model.",
+    ),
+]
+
+
+def identify(
+    record: RecordFile,
+    design: Tested,
+    columns: Columns = None,
+    cutoff: Cutoff = "30 Hz",
+    order: Order = 4,
+    uncompensated: Uncompensated = False,
+    mass: Mass = None,
+    load_force: LoadForce = None,
+    pressure_lag: PressureLag = None,
+    bootstrap: Bootstrap = 0,
+    csv: Annotated[
+        Path | None,
+        typer.Option("--csv", metavar="FILE", help="Save friction, stiffness, growth over time."),
+    ] = None,
+    span: Annotated[
+        str | None,
+        typer.Option(
+            "--span",
+            metavar="L",
+            help='Span of a bending test (channels F_L, w), e.g. "300 mm": gives a modulus.',
+        ),
+    ] = None,
+    part: Annotated[
+        str, typer.Option("--part", metavar="rod|barrel", help="What was bent.")
+    ] = "rod",
+    sets: Set = None,
+    plugin: PluginFile = None,
+    report: Report = False,
+    out: Out = REPORTS,
+    date: Date = None,
+    seed: Seed = 0,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Friction and damping from a test record, with bounds."""
+    from . import verbs
+
+    check_targets(out if report else None, date, csv)
+    named = _columns(columns)
+    length = given("--span", span, RECORDS["span"])
+    settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
+    actuator = read_actuator(design, sets, plugin)
+    if length is not None:
+        _bend(record, actuator, length, part, named, as_json=as_json, quiet=quiet)
+        return
+    found = verbs.identify(
+        record, design=actuator, columns=named, bootstrap=bootstrap, seed=seed, **settings
+    )
+    files = []
+    if csv is not None:
+        files.append(verbs.write_series(found, csv).to_dict())
+    if report:
+        files += [
+            file.to_dict()
+            for file in verbs.write_identification(
+                found, folder=out, actuator=actuator, command=command_line(), date=date
+            )
+        ]
+    if as_json:
+        streams.out_json(found.to_dict() | ({"files": files} if files else {}))
+    elif not quiet:
+        from .reporting.identification_text import identification_text
+
+        streams.out(identification_text(found, **streams.style()), end="")
+        say_files(files)
+
+
+def calibrate(
+    record: RecordFile,
+    design: Tested,
+    write: Annotated[
+        Path | None,
+        typer.Option("--write", metavar="FILE", help="Save the design with the measured values."),
+    ] = None,
+    columns: Columns = None,
+    cutoff: Cutoff = "30 Hz",
+    order: Order = 4,
+    uncompensated: Uncompensated = False,
+    mass: Mass = None,
+    load_force: LoadForce = None,
+    pressure_lag: PressureLag = None,
+    bootstrap: Bootstrap = 0,
+    search: Annotated[
+        bool,
+        typer.Option(
+            "--optimise/--no-optimise", help="Also find the best design before and after."
+        ),
+    ] = True,
+    sets: Set = None,
+    plugin: PluginFile = None,
+    report: Report = False,
+    out: Out = REPORTS,
+    date: Date = None,
+    seed: Seed = 0,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Put a record's friction into its design; show what that changes."""
+    from . import verbs
+
+    check_targets(out if report else None, date, write)
+    settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
+    actuator = read_actuator(design, sets, plugin)
+    found = verbs.calibrate(
+        record,
+        design=actuator,
+        columns=_columns(columns),
+        search=search,
+        bootstrap=bootstrap,
+        seed=seed,
+        **settings,
+    )
+    files: list[dict[str, Any]] = []
+    if write is not None:
+        files.append({"path": str(verbs.save(found.actuator, write))})
+    if report:
+        files += [
+            file.to_dict()
+            for file in verbs.write_calibration(
+                found, folder=out, command=command_line(), date=date
+            )
+        ]
+    if as_json:
+        streams.out_json(found.to_dict() | ({"files": files} if files else {}))
+    elif not quiet:
+        from .reporting.calibration_text import calibration_text
+
+        streams.out(calibration_text(found.calibration, found.redesign, **streams.style()), end="")
+        say_files(files)
+    if not found.redesign.stands.met:
+        raise typer.Exit(ExitCode.MISSED)
+
+
+def _bend(
+    record: str,
+    actuator: Actuator,
+    span: float,
+    part: str,
+    columns: dict[str, str],
+    *,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """A bending test to a modulus."""
+    from . import verbs
+
+    if part not in ("rod", "barrel"):
+        raise UsageError(Diagnostic(f'--part "{part}"', "write rod or barrel"))
+    own: Part = part  # type: ignore[assignment]
+    found = verbs.bending(record, design=actuator, span=span, part=own, columns=columns)
+    if as_json:
+        streams.out_json(found.to_dict())
+    elif not quiet:
+        from .reporting.identification_text import bending_text
+
+        streams.out(bending_text(found, **streams.style()), end="")
+
+
+def _columns(texts: list[str] | None) -> dict[str, str]:
+    """Channel and column of every ``--column``."""
+    found: dict[str, str] = {}
+    for text in texts or []:
+        channel, equals, name = text.partition("=")
+        if not equals or not channel.strip() or not name.strip():
+            message = f'--column "{text}" is no CHANNEL=NAME'
+            raise UsageError(Diagnostic(message, 'write e.g. "p1=Channel 3 [bar]"'))
+        found[channel.strip()] = name.strip()
+    return found
+
+
+def _settings(
+    cutoff: str,
+    order: int,
+    uncompensated: bool,
+    mass: str | None,
+    load_force: str | None,
+    pressure_lag: str | None,
+) -> dict[str, Any]:
+    """How a record is read, SI."""
+    return {
+        "cutoff": given("--cutoff", cutoff, RECORDS["cutoff"]),
+        "order": order,
+        "compensated": not uncompensated,
+        "mass": given("--mass", mass, RECORDS["moving_mass"]),
+        "load_force": given("--load-force", load_force, RECORDS["load_force"]),
+        "pressure_lag": given("--pressure-lag", pressure_lag, RECORDS["pressure_lag"]),
+    }

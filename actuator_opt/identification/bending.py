@@ -1,0 +1,391 @@
+"""Bending test to modulus: the slope of force over deflection in its straight part, with bounds.
+
+The straight part lies between the strains 0.0005 and 0.0025 of the outer fibre, as the chord of
+ISO 178 and ISO 14125, counted from where the straight line meets zero force (toe compensation of
+ASTM D790, annex A1). ASTM D7264 takes 0.001 to 0.003; ASTM D790 leaves the chord open and prefers
+the steepest tangent, which noise makes too steep.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import inf, isfinite
+from typing import Any
+
+import numpy as np
+
+from ..errors import Diagnostic, InputError
+from ..least_squares import WEAK, Parameter, quantile
+from ..models import bending_test, column, rod
+from .record import Record
+from .straight import BENT, SHARES, Loop, Term, by_way, mean, scatter, slopes, straight
+
+STRAINS = (0.0005, 0.0025)
+"""Strains between which the slope is taken, ISO 178 and ISO 14125."""
+SHORT = 0.5
+"""Least share of the strains' range that a test must cover to be read by strain (a choice)."""
+SLENDER = 16.0
+"""Least span over depth, ISO 178 and ASTM D790."""
+SHEARED = 0.1
+"""Share of shear in the deflection by bending from which the modulus rests on it (a choice)."""
+APART = 0.05
+"""Difference of loading and unloading slope from which friction or creep is named (a choice)."""
+NOISY = 0.02
+"""Scatter 1 - r^2 that lets noise of the deflection lower the slope by as much (a choice)."""
+POISSON = 0.3
+"""Poisson's ratio of the shear coefficient where none is stated (a choice: from 0 to 0.5 the
+coefficient of a round section changes by 9 %)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Specimen:
+    """What was bent, SI: a round bar or tube, or any section by its second moment.
+
+    Parameters
+    ----------
+    span : L between the supports [m]
+    outer_diameter, inner_diameter : of the round section [m]
+    second_moment : I about the neutral axis, or of `equivalent_second_moment`, in place of the
+        diameters [m^4]
+    depth : of such a section in the plane of bending [m]; without it strains are not known
+    shear_modulus : G of the round section [Pa]
+    poissons_ratio : of its shear coefficient [-]
+    shear_compliance : 1/(kappa G A), in place of `shear_modulus` [1/N]
+    local_compliance : C of dents, supports and frame, deflection per force [m/N]
+    """
+
+    span: float
+    outer_diameter: float | None = None
+    inner_diameter: float = 0.0
+    second_moment: float | None = None
+    depth: float | None = None
+    shear_modulus: float | None = None
+    poissons_ratio: float = POISSON
+    shear_compliance: float | None = None
+    local_compliance: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what is no specimen."""
+        for name in ("span", "outer_diameter", "second_moment", "depth", "shear_modulus"):
+            one = getattr(self, name)
+            if one is not None and not (isfinite(one) and one > 0):
+                _refuse(f"{name} is {one:g}, it must be above 0", f"state the {name} measured")
+        for name in ("inner_diameter", "shear_compliance", "local_compliance"):
+            one = getattr(self, name)
+            if one is not None and not (isfinite(one) and one >= 0):
+                _refuse(f"{name} is {one:g}, it must not be below 0", f"state the {name} measured")
+        outer = self.outer_diameter
+        if (outer is None) == (self.second_moment is None):
+            _refuse(
+                "the section is not known" if outer is None else "the section is stated twice",
+                "state either outer_diameter and inner_diameter or second_moment",
+            )
+        if outer is not None and self.inner_diameter >= outer:
+            _refuse(
+                f"the inner diameter, {1e3 * self.inner_diameter:g} mm, leaves no material inside "
+                f"the outer, {1e3 * outer:g} mm",
+                "swap or correct the diameters",
+            )
+        if self.shear_modulus is not None and (outer is None or self.shear_compliance is not None):
+            _refuse(
+                "shear_modulus needs the diameters, and no shear_compliance beside it",
+                "state shear_compliance alone, 1/(kappa G A)",
+            )
+
+    @property
+    def inertia(self) -> float:
+        """Second moment of the section [m^4]."""
+        if self.outer_diameter is None:
+            return self.second_moment or 0.0
+        outer, inner = self.outer_diameter, self.inner_diameter
+        return float(rod.second_moment(outer_diameter=outer, inner_diameter=inner))
+
+    @property
+    def height(self) -> float | None:
+        """Depth in the plane of bending [m]."""
+        return self.outer_diameter or self.depth
+
+    @property
+    def shear(self) -> float | None:
+        """1/(kappa G A) [1/N], where known."""
+        outer, inner = self.outer_diameter, self.inner_diameter
+        if self.shear_modulus is None or outer is None:
+            return self.shear_compliance
+        kappa = column.cowper_tube(poissons_ratio=self.poissons_ratio, radius_ratio=inner / outer)
+        area = rod.section_area(outer_diameter=outer, inner_diameter=inner)
+        return float(1 / (kappa * self.shear_modulus * area))
+
+    def deflection(self, strain: float) -> float | None:
+        """Deflection of the middle at a strain of the outer fibre, e L^2/(6 D) (ISO 178) [m]."""
+        return None if self.height is None else strain * self.span**2 / (6 * self.height)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BendingResult:
+    """What a bending test told, SI; bounds are those of the record.
+
+    Beside them an error of the span counts three times, of a solid bar's diameter four times.
+
+    Parameters
+    ----------
+    slope : k_0, mean of loading and unloading [N/m]
+    loading, unloading : slopes of each [N/m]; None where the record has none
+    as_published : E = k_0 L^3/(48 I), nothing taken off [Pa]
+    modulus : the same with what is known of shear and dents taken off [Pa]
+    taken_off : what was: "shear", "dents"
+    shear_share : 12 E I/(kappa G A L^2), deflection by shear over that by bending; None: not known
+    strains : of the outer fibre between which the slope was taken; None: depth not known
+    deflections : the same as deflections from zero force [m]
+    bent : change of slope along the straight part over the slope
+    hysteresis : work lost over work done, mean of the cycles; None without unloading
+    cycles : of loading and unloading
+    samples : in the straight part
+    doubts : what the modulus rests on
+    """
+
+    record: Record
+    specimen: Specimen
+    slope: Parameter
+    loading: float | None
+    unloading: float | None
+    as_published: Parameter
+    modulus: Parameter
+    taken_off: tuple[str, ...]
+    shear_share: float | None
+    strains: tuple[float, float] | None
+    deflections: tuple[float, float]
+    bent: float
+    hysteresis: float | None
+    cycles: int
+    samples: int
+    doubts: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI; what has no value is null."""
+        height = self.specimen.height
+        return {
+            "record": self.record.name,
+            "slope": {
+                **_plain(self.slope), "loading": self.loading, "unloading": self.unloading
+            },
+            "modulus": _plain(self.modulus),
+            "modulus_as_published": _plain(self.as_published),
+            "taken_off": list(self.taken_off),
+            "shear_share": self.shear_share,
+            "span": self.specimen.span,
+            "second_moment": self.specimen.inertia,
+            "slenderness": None if height is None else self.specimen.span / height,
+            "strains": None if self.strains is None else list(self.strains),
+            "deflections": list(self.deflections),
+            "bent": self.bent,
+            "hysteresis": self.hysteresis,
+            "cycles": self.cycles,
+            "samples": self.samples,
+            "doubts": list(self.doubts),
+            "notes": list(self.record.notes),
+        }  # fmt: skip
+
+
+def _plain(one: Parameter) -> dict[str, Any]:
+    return {
+        "value": one.value,
+        "lower": one.lower if isfinite(one.lower) else None,
+        "upper": one.upper if isfinite(one.upper) else None,
+        "identifiable": one.identifiable,
+        "verdict": one.verdict,
+    }
+
+
+def _refuse(message: str, remedy: str) -> None:
+    raise InputError(Diagnostic(f"bending specimen: {message}", remedy))
+
+
+def bending(record: Record, specimen: Specimen) -> BendingResult:
+    """The bending modulus of a three-point bending test.
+
+    Slope of force over deflection in the straight part, each branch with offsets of its own, mean
+    of loading and unloading: friction at the supports that grows with the load makes one as much
+    too steep as the other too flat. 95 % bounds for noise that remembers, `straight.term`, wider by
+    what the slope changes along the part it is taken from.
+
+    Parameters
+    ----------
+    record : with channels F_L, w, of a specimen that is not loaded at first; both grow as it is
+        bent, or both fall; any offsets
+    specimen : span, section, and what is known of shear and dents
+
+    Returns
+    -------
+    slope, modulus as published and with shear and dents taken off
+
+    Raises
+    ------
+    InputError
+        a channel missing or still, too few samples, a sign turned round, give beyond what is seen
+
+    References
+    ----------
+    [ElAsswad2018] eq. 13
+    """
+    loop = Loop(record)
+    zeros, low, high, by_strain = _range(loop, specimen)
+    parts, ends, bent, unsure, cut = straight(loop, zeros, low, high)
+    found = slopes(parts, 1, record)
+    ways = {way: mean(one).value for way, one in by_way(parts, 1).items()}
+    slope = _parameter(found, unsure)
+    if slope.value <= 0:
+        raise record.fault("F_L falls as w grows in the straight part", "check the record")
+    published = _modulus(slope, specimen, published=True)
+    modulus = _modulus(slope, specimen)
+    if not isfinite(modulus.value):
+        raise record.fault(
+            f"shear and dents alone give more than the {1e6 / slope.value:.4g} um/N measured",
+            "check the shear modulus, the local compliance and the span",
+        )
+    shear = specimen.shear
+    share = None
+    if shear is not None:
+        share = 12 * modulus.value * specimen.inertia * shear / specimen.span**2
+    one = specimen.deflection(1.0)
+    result = BendingResult(
+        record=record,
+        specimen=specimen,
+        slope=slope,
+        loading=ways.get(True),
+        unloading=ways.get(False),
+        as_published=published,
+        modulus=modulus,
+        taken_off=tuple(
+            name
+            for name, x in (("shear", shear), ("dents", specimen.local_compliance))
+            if x is not None
+        ),
+        shear_share=share,
+        strains=None if one is None else (ends[0] / one, ends[1] / one),
+        deflections=ends,
+        bent=bent,
+        hysteresis=loop.hysteresis(),
+        cycles=max(sum(x.loading for x in loop.branches), 1),
+        samples=sum(x.deflection.size for x in parts),
+        doubts=(),
+    )
+    doubts = _doubts_of_record(result, by_strain=by_strain, cut=cut, noise=scatter(parts))
+    return replace(result, doubts=(*doubts, *_doubts_of_specimen(result)))
+
+
+def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, bool]:
+    """Zero of every branch and the range from there, found together; whether by strain."""
+    zeros = loop.begins()
+    first, last = (specimen.deflection(one) for one in STRAINS)
+    low = high = 0.0
+    by_strain = False
+    for _ in range(8):
+        top = loop.top(zeros)
+        low, high, by_strain = SHARES[0] * top, SHARES[1] * top, False
+        if first is not None and last is not None and high - first >= SHORT * (last - first):
+            low, high, by_strain = first, min(last, high), True
+        before, zeros = zeros, loop.zeros(loop.cut(low, high, zeros))
+        if np.allclose(before, zeros, rtol=0, atol=1e-4 * (high - low)):
+            break
+    return zeros, low, high, by_strain
+
+
+def _parameter(found: Term, unsure: float) -> Parameter:
+    """A slope with its bounds, a share by which it changes along its part counted in."""
+    error = float(np.sqrt(found.variance))
+    half = quantile(found.freedom) * error + unsure * abs(found.value)
+    near = half <= WEAK * abs(found.value)
+    return Parameter(found.value, found.value - half, found.value + half, error, bool(near))
+
+
+def _modulus(slope: Parameter, specimen: Specimen, *, published: bool = False) -> Parameter:
+    """The modulus of a slope and of its bounds."""
+
+    def of(one: float) -> float:
+        return float(
+            bending_test.bending_modulus(
+                slope=one,
+                span=specimen.span,
+                second_moment=specimen.inertia,
+                shear_compliance=0.0 if published else specimen.shear or 0.0,
+                local_compliance=0.0 if published else specimen.local_compliance or 0.0,
+            )
+        )
+
+    value, low = of(slope.value), -inf if slope.lower <= 0 else of(slope.lower)
+    high = of(slope.upper)
+    high = high if isfinite(high) else inf
+    steep = (value / slope.value) ** 2 * 48 * specimen.inertia / specimen.span**3
+    near = max(high - value, value - low) <= WEAK * value
+    return Parameter(value, low, high, steep * slope.standard_error, near)
+
+
+def _doubts_of_record(
+    result: BendingResult, *, by_strain: bool, cut: bool, noise: float
+) -> list[str]:
+    """What the slope rests on."""
+    found = []
+    for name, one in (("slope", result.slope), ("modulus", result.modulus)):
+        if not one.identifiable:
+            found.append(f"the {name} is {one.verdict}")
+            break
+    strains = result.strains
+    if strains is None:
+        found.append(
+            "the depth of the section is not known: the slope is taken between "
+            f"{SHARES[0]:.0%} and {SHARES[1]:.0%} of the highest force, not between strains"
+        )
+    elif not by_strain:
+        found.append(
+            f"the test is too short for the strains {STRAINS[0]:g} to {STRAINS[1]:g}: the slope "
+            f"is taken between {strains[0]:.2g} and {strains[1]:.2g}"
+        )
+    if cut:
+        low, high = (1e3 * one for one in result.deflections)
+        found.append(
+            f"force over deflection is bent: the slope is taken where it is straight, from "
+            f"{low:.3g} to {high:.3g} mm"
+        )
+    if abs(result.bent) > BENT:
+        found.append(
+            f"the slope changes by {result.bent:.0%} along the part it is taken from: yielding, "
+            "slip, or supports that settle"
+        )
+    if result.unloading is None or result.loading is None:
+        found.append(
+            f"{'loading' if result.unloading is None else 'unloading'} only: friction at the "
+            "supports and creep count as stiffness"
+        )
+    elif abs(result.loading - result.unloading) > APART * result.slope.value:
+        share = (result.loading - result.unloading) / result.slope.value
+        found.append(
+            f"loading is {share:.0%} steeper than unloading: friction at the supports, creep or "
+            "damage; their mean is taken"
+        )
+    if noise > NOISY:
+        found.append(
+            f"force and deflection scatter: noise of the deflection alone would make the slope "
+            f"{noise:.0%} too low"
+        )
+    return found
+
+
+def _doubts_of_specimen(result: BendingResult) -> list[str]:
+    """What shear and dents leave open."""
+    found = []
+    specimen, share = result.specimen, result.shear_share
+    height = specimen.height
+    if share is None:
+        found.append("shear is not taken off, no shear modulus is stated: the modulus is low")
+    elif share > SHEARED:
+        found.append(
+            f"shear gives {share:.0%} of what bending gives: the modulus rests on the shear modulus"
+        )
+    if height is not None and specimen.span < SLENDER * height:
+        found.append(
+            f"the span is {specimen.span / height:.1f} depths, less than {SLENDER:g}: shear and "
+            "dents are not small"
+        )
+    if specimen.local_compliance is None:
+        found.append("dents at rollers and supports are not taken off: the modulus is low")
+    return found

@@ -1,0 +1,351 @@
+"""Bounds by resampling instead of the linearised model: a wild bootstrap of points and windows.
+
+Points of steady sliding are few, and one alone often carries a parameter (the slowest F_S, the
+fastest sigma_2): drawing them with replacement would lose it. Their residuals are drawn instead
+(Wu 1986), each with the variance that it and its own error together say it has: of independent
+noise of unit weight, E[noise_i^2 | residuals] = r_i^2 + h_i s^2, h_i the leverage, s^2 the sum of
+squares over n - p [derived]. Where the fit bends to a point, its own error counts; else its
+residual. Windows about reversals are blocks, as their samples remember: all residuals of one are
+drawn together, which keeps what neighbours share. To first order this is the bootstrap of whole
+windows; the windows themselves stay, so that no draw lacks one way or the sharpest turns.
+
+Each draw also scales the noise by sqrt(nu/chi^2_nu), as its size is known from nu spare points or
+windows only: for a linear model the bounds are then Student's t. Every draw is fitted again from
+the optimum, F_S and v_s from three starts, by damped Gauss-Newton steps within the limits of the
+search. Bounds are percentiles: they keep to the limits, follow skewed parameters, and do not change
+with how a parameter is written. The acceleration that BCa adds is taken from fits without one point
+at a time, which do not exist where that point alone carries a parameter.
+
+What was asked of the points is not asked again: the bounds are those of the parameters chosen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..errors import Diagnostic, InputError
+from ..least_squares import CONFIDENCE, WEAK, Parameter, quantile
+from ..numeric import STEP, Array
+from .balance import Sliding
+from .conditioning import Motion
+from .lugre_fit import LOGARITHMIC, SYMBOLS, TRAVELS, LuGreFit
+from .lugre_windows import LAG, Windows, windows
+from .many_fits import Search, relaxed
+from .points import Point
+from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, StribeckFit, curve
+
+FEWEST = 80
+"""Resamples at least: two lie beyond each bound."""
+STARTS = (1.0, 1 / 3, 3.0)
+"""Stribeck speeds over that of the optimum from which a draw is fitted (a choice: the grid of the
+first search is three times finer)."""
+STEPS, LUGRE_STEPS = 40, 8
+"""Steps of a fit, and of one whose slopes are those of the optimum (a choice: the bounds of the
+synthetic records stand still beyond)."""
+LEAST_WINDOWS = 3
+"""Windows that can be drawn (a choice: with two the noise is known from one difference)."""
+ROWS = 256
+"""Draws integrated at once, for the memory they take."""
+DIFFERENCE = 1e-4
+"""Step of the central differences over the size of a number, as in `lugre_fit`."""
+RANK = 1e-10
+"""Least ratio of singular values of slopes that count for the leverage: rounding lies below."""
+LOGS = ("stribeck_speed", "bristle_stiffness")
+"""Searched by their logarithm; sigma_1, which may be 0, is not."""
+PHYSICAL = ("static", "viscous", "bristle_damping")
+"""Parameters whose lower end is one of physics: F_C for F_S, else 0."""
+AT_END = 1e-6
+"""Distance from the end of a search, over its size, at which it is reached."""
+
+
+def resampled(
+    slidings: Sequence[Sliding],
+    motion: Motion,
+    points: Sequence[Point],
+    stribeck: StribeckFit | str,
+    lugre: LuGreFit | str,
+    *,
+    count: int,
+    seed: int,
+) -> tuple[StribeckFit | str, LuGreFit | str]:
+    """Both models of a record with bounds by resampling.
+
+    Values stay; bounds, standard errors (half the bounds over Student's t) and verdicts change. A
+    parameter that the linearised model leaves open stays open, and so does one whose draws run to
+    an end of the search. The Stribeck curve's covariance stays that of the linearised model.
+
+    Parameters
+    ----------
+    slidings, motion, points : as both were fitted to
+    stribeck, lugre : the fits, or why there is none
+    count : of resamples
+    seed : of the draws: the same one gives the same bounds
+
+    Returns
+    -------
+    the fits with new bounds
+
+    Raises
+    ------
+    InputError
+        fewer resamples than have a tail
+    """
+    if count < FEWEST:
+        message = f"{count} resamples have no tail of 2.5 %"
+        raise InputError(Diagnostic(message, f"take {FEWEST} or more, 200 as a rule"))
+    first, second = (np.random.default_rng(one) for one in np.random.SeedSequence(seed).spawn(2))
+    curve_known = stribeck if isinstance(stribeck, StribeckFit) else None
+    if isinstance(lugre, LuGreFit):
+        reference = 0.0 if curve_known is None else curve_known.reference_pressure
+        found = windows(slidings, motion, reference)
+        if found is not None:
+            lugre = _lugre(found, points, curve_known, lugre, count, second)
+    if curve_known is not None:
+        stribeck = resampled_stribeck(points, curve_known, count=count, rng=first)
+    return stribeck, lugre
+
+
+def resampled_stribeck(
+    points: Sequence[Point], fit: StribeckFit, *, count: int, rng: np.random.Generator
+) -> StribeckFit:
+    """A Stribeck curve with bounds by resampling its points."""
+    asked = _asked(fit.parameters)
+    spare = len(points) - len(fit.parameters)
+    if not asked or spare < 1:
+        return fit
+    errors, values = fit.errors, fit.values
+    velocity = np.array([one.velocity for one in points])
+    change = np.array([one.pressure for one in points]) - fit.reference_pressure
+    largest = max(abs(one.friction) for one in points)
+    search = _search(asked, values, largest, {"coulomb": (1e-6 * largest, np.inf)})
+
+    def model(rows: Array) -> Array:
+        own = {name: x[:, None] for name, x in _natural(search.names, rows, values).items()}
+        return curve(velocity, change, **own) / errors
+
+    def slopes(rows: Array) -> Array:
+        steps = 1j * STEP * np.eye(rows.shape[1])
+        return np.stack([np.imag(model(rows + one)) / STEP for one in steps], axis=-1)
+
+    best = _searched(search.names, values)[None]
+    rest = fit.residuals / errors
+    spread = _spreads(slopes(best)[0], rest, float(np.sum(rest**2)) / spare)
+    noise = spread * rng.standard_normal((count, spread.size)) * _scales(rng, spare, count)
+    starts = STARTS if "stribeck_speed" in asked else STARTS[:1]
+    target = np.tile(model(best) + noise, (len(starts), 1))
+    rows = np.repeat(best, target.shape[0], axis=0)
+    if "stribeck_speed" in asked:
+        rows[:, asked.index("stribeck_speed")] += np.repeat(np.log(starts), count)
+    found, cost = relaxed(lambda x, at: model(x) - target[at], slopes, rows, search, STEPS)
+    least = np.argmin(cost.reshape(-1, count), axis=0)
+    found = found.reshape(-1, count, best.size)[least, np.arange(count)]
+    return replace(fit, parameters=_bounded(fit.parameters, search, found, values, spare))
+
+
+def _lugre(
+    found: Windows,
+    points: Sequence[Point],
+    stribeck: StribeckFit | None,
+    fit: LuGreFit,
+    count: int,
+    rng: np.random.Generator,
+) -> LuGreFit:
+    """A LuGre model with bounds by resampling points and windows."""
+    blocks = found.velocity.shape[0]
+    asked = _asked(fit.parameters)
+    if not asked or blocks < LEAST_WINDOWS:
+        doubt = f"{blocks} windows are too few to resample: bounds of the linearised model"
+        return replace(fit, doubts=(*fit.doubts, doubt)) if asked else fit
+    problem = _LuGre(found, points if stribeck is not None else (), stribeck, fit, asked)
+    best = _searched(asked, fit.values)
+    rest = problem.misfit(best[None])[0]
+    jacobian = problem.slopes(best)
+    steady = rest.size - blocks * found.kept.size
+    asked_of_points = 0 if stribeck is None else len(stribeck.parameters)
+    spare = max(steady - asked_of_points, 1)
+    variance = float(np.sum(rest[:steady] ** 2)) / spare
+    spread = _spreads(jacobian, rest, variance)[:steady]
+    noise = np.concatenate(
+        [
+            spread * rng.standard_normal((count, steady)) * _scales(rng, spare, count),
+            np.repeat(rng.standard_normal((count, blocks)), found.kept.size, axis=1)
+            * rest[steady:]
+            * np.sqrt(blocks / (blocks - 1))
+            * _scales(rng, blocks - 1, count),
+        ],
+        axis=1,
+    )
+    rows = []
+    for first in range(0, count, ROWS):
+        target = rest + noise[first : first + ROWS]
+
+        def misfit(x: Array, at: Array, target: Array = target) -> Array:
+            return problem.misfit(x) - target[at]
+
+        begin = np.repeat(best[None], target.shape[0], axis=0)
+        rows.append(
+            relaxed(misfit, lambda _: jacobian[None], begin, problem.search, LUGRE_STEPS)[0]
+        )
+    parameters = _bounded(
+        fit.parameters, problem.search, np.concatenate(rows), fit.values, blocks - 1
+    )
+    was = {f"{SYMBOLS[n]} is {fit.parameters[n].verdict}" for n in _bristles(fit.parameters)}
+    doubts = [one for one in fit.doubts if one not in was]
+    doubts += [
+        f"{SYMBOLS[name]} is {parameters[name].verdict}"
+        for name in _bristles(parameters)
+        if not parameters[name].identifiable
+    ]
+    return replace(fit, parameters=parameters, doubts=tuple(doubts))
+
+
+def _bristles(parameters: Mapping[str, Parameter]) -> list[str]:
+    return [name for name in LOGARITHMIC[:2] if name in parameters]
+
+
+class _LuGre:
+    """Weighted residuals of points and windows over searched numbers, as `lugre_fit` has them."""
+
+    def __init__(
+        self,
+        found: Windows,
+        points: Sequence[Point],
+        stribeck: StribeckFit | None,
+        fit: LuGreFit,
+        asked: tuple[str, ...],
+    ) -> None:
+        self.windows, self.spread = found, fit.misfit
+        self.velocity = np.array([one.velocity for one in points])
+        self.friction = np.array([one.friction for one in points])
+        self.errors = np.zeros(0) if stribeck is None else stribeck.errors
+        reference = 0.0 if stribeck is None else stribeck.reference_pressure
+        self.change = np.array([one.pressure for one in points]) - reference
+        self.values = fit.values
+        self.largest = float(np.max(np.abs(found.measured(np.zeros(1))[..., found.kept])))
+        soft, stiff = (np.log(self.largest / one) for one in reversed(TRAVELS))
+        ends = {
+            "coulomb": (1e-3 * self.largest, np.inf),
+            "bristle_stiffness": (soft, stiff),
+            "lag": (-LAG, LAG),
+        }
+        self.search = _search(asked, self.values, self.largest, ends)
+
+    def misfit(self, rows: Array) -> Array:
+        """Weighted residuals (rows, residuals)."""
+        values = _natural(self.search.names, rows, self.values)
+        lanes = self.windows.misfit(values) / self.spread
+        steady = {n: x[:, None] for n, x in values.items() if n not in SYMBOLS}
+        points = (curve(self.velocity, self.change, **steady) - self.friction) / self.errors
+        return np.concatenate([points, lanes.reshape(rows.shape[0], -1)], axis=1)
+
+    def slopes(self, best: Array) -> Array:
+        """Derivatives at the optimum by central differences (residuals, searched)."""
+        speed = np.max(np.abs(self.velocity), initial=1e-3)
+        size = {
+            "coulomb": self.largest,
+            "static": self.largest,
+            "viscous": self.largest / speed,
+            "offset": self.largest,
+            "pressure_slope": self.largest / np.max(np.abs(self.change), initial=1e5),
+            "bristle_damping": 1e-2 * self.values["bristle_stiffness"],
+            "lag": 1e-2,
+        }
+        steps = DIFFERENCE * np.array([size.get(name, 1.0) for name in self.search.names])
+        moved = self.misfit(np.concatenate([best + np.diag(steps), best - np.diag(steps)]))
+        return ((moved[: best.size] - moved[best.size :]) / (2 * steps[:, None])).T
+
+
+def _asked(parameters: Mapping[str, Parameter]) -> tuple[str, ...]:
+    """Parameters that the linearised model bounds."""
+    return tuple(name for name, one in parameters.items() if np.isfinite(one.standard_error))
+
+
+def _search(
+    asked: tuple[str, ...],
+    values: Mapping[str, float],
+    largest: float,
+    ends: Mapping[str, tuple[float, float]],
+) -> Search:
+    """Ends of the search; an optimum at one lies within it."""
+    usual = {
+        "static": (0.0, STATIC_MOST * largest),
+        "stribeck_speed": (float(np.log(SPEEDS[0])), float(np.log(SPEEDS[1]))),
+        "exponent": EXPONENTS,
+        "viscous": (0.0, np.inf),
+        "bristle_damping": (0.0, np.inf),
+    } | dict(ends)
+    best = _searched(asked, values)
+    pairs = [usual.get(name, (-np.inf, np.inf)) for name in asked]
+    low = np.minimum([one[0] for one in pairs], best)
+    return Search(asked, low, np.maximum([one[1] for one in pairs], best))
+
+
+def _searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
+    """Searched numbers of parameters: logarithms, and F_S as its rise over F_C."""
+    own = dict(values)
+    own["static"] = own.get("static", own["coulomb"]) - own["coulomb"]
+    return np.array([np.log(own[n]) if n in LOGS else own[n] for n in names])
+
+
+def _natural(names: Sequence[str], rows: Array, values: Mapping[str, float]) -> dict[str, Array]:
+    """Parameters (rows,) of searched numbers (rows, searched), the others as they are."""
+    own = {
+        name: np.exp(column) if name in LOGS else column
+        for name, column in zip(names, rows.T, strict=True)
+    }
+    found = {name: np.full(rows.shape[0], x) for name, x in values.items()} | own
+    if "static" in own:
+        found["static"] = found["coulomb"] + own["static"]
+    elif "static" not in values or values["static"] == values["coulomb"]:
+        found["static"] = found["coulomb"]
+    return found
+
+
+def _spreads(slopes: Array, residuals: Array, variance: float) -> Array:
+    """Standard deviation of the noise in each weighted residual, sqrt(r^2 + h s^2)."""
+    lengths = np.linalg.norm(slopes, axis=0)
+    left, singular, _ = np.linalg.svd(
+        slopes / np.where(lengths > 0, lengths, 1.0), full_matrices=False
+    )
+    leverage = np.sum(left[:, singular > RANK * singular[0]] ** 2, axis=1)
+    return np.sqrt(residuals**2 + leverage * variance)
+
+
+def _scales(rng: np.random.Generator, freedom: int, count: int) -> Array:
+    """Size of the noise in each draw over that of the residuals (count, 1)."""
+    return np.sqrt(freedom / rng.chisquare(freedom, (count, 1)))
+
+
+def _bounded(
+    parameters: Mapping[str, Parameter],
+    search: Search,
+    found: Array,
+    values: Mapping[str, float],
+    spare: int,
+) -> dict[str, Parameter]:
+    """Parameters with percentiles for bounds; draws at an open end of the search have none."""
+    count = found.shape[0]
+    natural = _natural(search.names, found, values)
+    tail = max(int((count + 1) * (1 - CONFIDENCE) / 2), 1)
+    unseen = np.zeros(count, dtype=bool)
+    if "static" in search.names:
+        unseen = found[:, search.names.index("static")] <= AT_END * values["coulomb"]
+    result = dict(parameters)
+    for k, name in enumerate(search.names):
+        value, draws = parameters[name].value, natural[name].copy()
+        near = AT_END * max(abs(found[:, k]).max(), 1e-300)
+        if name not in PHYSICAL:
+            draws[found[:, k] <= search.low[k] + near] = -np.inf
+        draws[found[:, k] >= search.high[k] - near] = np.inf
+        if name in ("stribeck_speed", "exponent"):
+            draws[unseen] = np.resize([-np.inf, np.inf], int(unseen.sum()))
+        draws.sort()
+        low, high = min(draws[tail - 1], value), max(draws[count - tail], value)
+        with np.errstate(invalid="ignore"):
+            error = (high - low) / (2 * quantile(spare))
+        sure = max(high - value, value - low) <= WEAK * abs(value)
+        result[name] = Parameter(value, float(low), float(high), float(error), bool(sure))
+    return result

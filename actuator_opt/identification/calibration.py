@@ -1,0 +1,316 @@
+"""From a record to the friction numbers of the design it was made with, each with its bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import exp, hypot, log, sqrt
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..design.model import Measured
+from ..errors import Diagnostic, InputError
+from ..evaluation.study.bench import Bench
+from ..least_squares import Parameter, quantile, rated
+from ..numeric import Array
+from ..quantities import INPUTS
+from .lugre_fit import LuGreFit
+from .points import Point
+from .result import Identification
+from .stribeck_fit import StribeckFit
+
+KEYS = ("friction_coefficient", "breakaway_ratio", "stribeck_speed", "viscous_friction")
+"""Keys of a seal that a record can give."""
+_ASKED = ("coulomb", "static", "stribeck_speed", "viscous")
+"""Parameters of the fits behind them."""
+MISFIT = 0.1
+"""Share of F_C by which the contact law may miss the friction measured at other pressures before
+it is said (a choice: a third of what makes a parameter weakly identifiable)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Learned:
+    """One number of the cylinder that the record told, and how it is shared among the seals.
+
+    Parameters
+    ----------
+    name : of the design's key: friction_coefficient, breakaway_ratio, stribeck_speed or
+        viscous_friction
+    known : of the cylinder, SI; of friction_coefficient, the factor on what the design stated
+    shares : of each seal by PATH: its value over that of the cylinder
+    before : what the design stated or took from the compound, by PATH
+    source : the fit it comes from
+    """
+
+    name: str
+    known: Parameter
+    shares: Mapping[str, float]
+    before: Mapping[str, float]
+    source: str
+
+    def values(self) -> dict[str, float]:
+        """By PATH, SI."""
+        return {path: self.known.value * share for path, share in self.shares.items()}
+
+    def measured(self, record: str) -> dict[str, Measured]:
+        """Bounds by PATH, within what the design can state."""
+        least = INPUTS[self.name].lower
+        most = INPUTS[self.name].upper
+        return {
+            path: Measured(
+                lower=min(max(self.known.lower * share, least), most),
+                upper=min(max(self.known.upper * share, least), most),
+                record=record,
+            )
+            for path, share in self.shares.items()
+        }
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI."""
+        found = self.measured("record")
+        return {
+            "source": self.source,
+            "verdict": self.known.verdict,
+            "values": {
+                path: {
+                    "value": value,
+                    "lower": found[path].lower,
+                    "upper": found[path].upper,
+                    "before": self.before[path],
+                }
+                for path, value in self.values().items()
+            },
+        }
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Calibration:
+    """What a record changes in the seals of its design.
+
+    Parameters
+    ----------
+    identification : of the record
+    learned : what the record told
+    left : by key, why the design's value stays
+    coulomb, stated : Coulomb friction measured, and as the design stated it, at the record's
+        mean pressures [N]
+    doubts : what the numbers rest on
+    """
+
+    identification: Identification
+    learned: tuple[Learned, ...]
+    left: Mapping[str, str]
+    coulomb: float
+    stated: float
+    doubts: tuple[str, ...]
+
+    def values(self) -> dict[str, float]:
+        """New numbers by PATH, SI."""
+        return {path: value for one in self.learned for path, value in one.values().items()}
+
+    def measured(self) -> dict[str, Measured]:
+        """Their bounds by PATH."""
+        name = Path(self.identification.record.name).name
+        return {p: m for one in self.learned for p, m in one.measured(name).items()}
+
+
+def calibration(identification: Identification) -> Calibration:
+    """The friction numbers that a record gives the seals of its design.
+
+    The coefficients of all rings and wipers change by one factor, so that the Coulomb friction of
+    the design at the pressures of the steady points is that measured; the record of a cylinder
+    cannot tell piston from rod. F_S/F_C and v_s become those of every ring, sigma_2 is shared by
+    circumference. Each comes from the fit that knows it best; what none knows stays as it is. A
+    record of one speed gives the factor alone.
+
+    Parameters
+    ----------
+    identification : with points of steady sliding
+
+    Returns
+    -------
+    the calibration
+
+    Raises
+    ------
+    InputError
+        no steady sliding, or friction that the design takes from an oil film
+    """
+    bench, points = identification.bench, identification.points
+    _refuse_film(bench)
+    if not points:
+        raise identification.record.fault(
+            "no steady sliding: nothing to calibrate the seals with",
+            "record plateaus of constant speed, or slow sweeps, in both directions",
+        )
+    coulomb = np.asarray(bench.coulomb(*_pressures(points)))
+    doubts: list[str] = []
+    if isinstance(identification.stribeck, StribeckFit):
+        learned, left, level = _from_fits(identification, identification.stribeck, coulomb)
+        doubts += _doubts(points, identification.stribeck, level, coulomb)
+    else:
+        learned, level = _from_level(bench, points)
+        left = dict.fromkeys(KEYS[1:], identification.stribeck)
+    doubts += _beyond(bench, points)
+    doubts.append(
+        "one factor for all rings and wipers: a record of the cylinder cannot tell piston from rod"
+    )
+    return Calibration(
+        identification,
+        learned,
+        left,
+        float(np.mean(level)),
+        float(np.mean(coulomb)),
+        tuple(doubts),
+    )
+
+
+def _refuse_film(bench: Bench) -> None:
+    for ring in bench.rings:
+        if ring.element.friction == "film":
+            message = "the friction of this seal comes from an oil film: records give coefficients"
+            remedy = 'write "friction: coefficient" to calibrate it'
+            path = f"{ring.groove.path}friction"
+            raise InputError(Diagnostic(message, remedy, path=path))
+
+
+def _pressures(points: Sequence[Point]) -> tuple[Array, Array]:
+    """Chamber pressures of the points [Pa]."""
+    return (
+        np.array([one.pressure_1 for one in points]),
+        np.array([one.pressure_2 for one in points]),
+    )
+
+
+def _from_fits(
+    identification: Identification, stribeck: StribeckFit, stated: Array
+) -> tuple[tuple[Learned, ...], dict[str, str], Array]:
+    """What the Stribeck curve and the bristles told, and the Coulomb level by point."""
+    bench = identification.bench
+    known = {name: _best(identification, name) for name in _ASKED}
+    coulomb, source = known["coulomb"] or (stribeck.parameters["coulomb"], "Stribeck fit")
+    pressure = np.array([one.pressure for one in identification.points])
+    slope = stribeck.values["pressure_slope"]
+    level = coulomb.value + slope * (pressure - stribeck.reference_pressure)
+    factor = float(level @ stated / (stated @ stated))
+    learned = [_coefficient(_times(coulomb, factor / coulomb.value), bench, source)]
+    left: dict[str, str] = {}
+    static, speed, viscous = (known[name] for name in _ASKED[1:])
+    if static is None or speed is None:
+        why = "the record does not show how friction rises towards rest"
+        left |= {"breakaway_ratio": why, "stribeck_speed": why}
+    else:
+        learned.append(_alike("breakaway_ratio", _ratio(static[0], coulomb), bench, static[1]))
+        learned.append(_alike("stribeck_speed", speed[0], bench, speed[1]))
+    if viscous is None:
+        left["viscous_friction"] = "the record does not show how friction rises with speed"
+    else:
+        learned.append(_viscous(viscous[0], bench, viscous[1]))
+    return tuple(learned), left, level
+
+
+def _from_level(bench: Bench, points: Sequence[Point]) -> tuple[tuple[Learned, ...], Array]:
+    """The factor alone, from friction at one speed; its rise at other speeds as the design says."""
+    speed = np.array([one.speed for one in points])
+    measured = np.array([one.friction * np.sign(one.velocity) for one in points])
+    level, viscous = bench.sliding(speed, *_pressures(points))
+    factors = (measured - viscous) / level
+    value = float(np.mean(factors))
+    errors = np.array([one.error for one in points]) / level
+    scatter = float(np.std(factors, ddof=1)) if factors.size > 1 else 0.0
+    error = max(scatter, float(np.mean(errors))) / sqrt(factors.size)
+    half = quantile(max(factors.size - 1, 1)) * error
+    known = rated(value, value - half, value + half, error)
+    source = f"friction at {1e3 * float(np.mean(speed)):.3g} mm/s"
+    return (_coefficient(known, bench, source),), value * np.asarray(
+        bench.coulomb(*_pressures(points))
+    )
+
+
+def _best(identification: Identification, name: str) -> tuple[Parameter, str] | None:
+    """A parameter from the fit that bounds it best, with the fit's name; None where none does."""
+    fits = (("Stribeck fit", identification.stribeck), ("LuGre fit", identification.lugre))
+    found = [
+        (fit.parameters[name], source)
+        for source, fit in fits
+        if isinstance(fit, (StribeckFit, LuGreFit)) and name in fit.parameters
+    ]
+    found = [one for one in found if one[0].verdict != "not identifiable"]
+    return min(found, key=lambda one: one[0].standard_error / one[0].value, default=None)
+
+
+def _times(one: Parameter, factor: float) -> Parameter:
+    """A parameter in another unit, `factor` > 0."""
+    value, lower, upper, error, known = one
+    return Parameter(factor * value, factor * lower, factor * upper, factor * error, known)
+
+
+def _ratio(over: Parameter, under: Parameter) -> Parameter:
+    """F_S/F_C with the bounds of both as if independent; by their logarithms, so above zero."""
+    ratio = over.value / under.value
+    up = hypot(log(over.upper / over.value), log(under.value / under.lower))
+    down = hypot(log(over.value / over.lower), log(under.upper / under.value))
+    error = ratio * hypot(over.standard_error / over.value, under.standard_error / under.value)
+    return rated(ratio, ratio * exp(-down), ratio * exp(up), error)
+
+
+def _coefficient(factor: Parameter, bench: Bench, source: str) -> Learned:
+    """One factor on every coefficient of rings and wipers."""
+    stated = {ring.groove.path: float(ring["friction_coefficient"]) for ring in bench.rings}
+    stated |= {one.path: float(one.coefficient) for one in bench.wipers}
+    shares = {f"{path}friction_coefficient": value for path, value in stated.items()}
+    return Learned("friction_coefficient", factor, shares, shares, source)
+
+
+def _alike(name: str, known: Parameter, bench: Bench, source: str) -> Learned:
+    """The same number for every ring."""
+    before = {f"{ring.groove.path}{name}": float(ring[name]) for ring in bench.rings}
+    return Learned(name, known, dict.fromkeys(before, 1.0), before, source)
+
+
+def _viscous(known: Parameter, bench: Bench, source: str) -> Learned:
+    """sigma_2 shared by circumference."""
+    whole = sum(float(ring["diameter"]) for ring in bench.rings)
+    paths = [f"{ring.groove.path}viscous_friction" for ring in bench.rings]
+    return Learned(
+        "viscous_friction",
+        known,
+        {path: float(r["diameter"]) / whole for path, r in zip(paths, bench.rings, strict=True)},
+        {path: float(r["viscous_friction"]) for path, r in zip(paths, bench.rings, strict=True)},
+        source,
+    )
+
+
+def _doubts(
+    points: Sequence[Point], stribeck: StribeckFit, level: Array, stated: Array
+) -> Iterator[str]:
+    """What the design's friction cannot follow: an offset, another rise with pressure."""
+    offset = stribeck.parameters.get("offset")
+    if offset is not None and (offset.lower > 0 or offset.upper < 0):
+        yield (
+            f"the offset of {offset.value:.3g} N between both ways is not in the design's "
+            "friction, which is their mean"
+        )
+    apart = level - float(level @ stated / (stated @ stated)) * stated
+    worst = int(np.argmax(np.abs(apart)))
+    share = float(apart[worst] / np.mean(level))
+    if abs(share) > MISFIT:
+        yield (
+            f"the friction measured parts from the contact law by {100 * share:+.0f} % of F_C at "
+            f"{points[worst].pressure / 1e5:.3g} bar: the factor is their mean over the record's "
+            "pressures and does not hold beyond them"
+        )
+
+
+def _beyond(bench: Bench, points: Sequence[Point]) -> Iterator[str]:
+    """Duties of the design that the record does not reach."""
+    fastest = max(case.speed for case in bench.design.load_cases)
+    speed, pressure = max(one.speed for one in points), max(one.pressure for one in points)
+    if fastest > 1.05 * speed or bench.supply_pressure > 1.05 * pressure:
+        yield (
+            f"the record reaches {1e3 * speed:.3g} mm/s and {pressure / 1e5:.3g} bar, the design "
+            f"{1e3 * fastest:.3g} mm/s and {bench.supply_pressure / 1e5:.3g} bar: beyond the record "
+            "friction is extrapolated by contact law and Stribeck curve"
+        )

@@ -1,0 +1,227 @@
+"""A channel without its faults: spikes, clipped samples; the step and the noise of its sensor."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..numeric import Array
+
+SPIKE, QUANTA, RANGE = 6.0, 3.0, 1e-3
+"""A spike stands out of its neighbours' median by so many robust standard deviations, by so many
+steps of the sensor, and by so much of the channel's range."""
+JUMP, BURST, FLANK = 0.7, 0.45, 0.3
+"""A spike rises within a sample by so much of its height; by `BURST`, if its flanks do not go on
+outside with `FLANK` of the step at its edge (choices: three stray samples side by side rise by half
+or more, the top of a triangle as wide as the median's window by a third, of a half sine by 0.6)."""
+WINDOW = 5e-3
+"""Half the time over which neighbours are looked at [s] (a choice: a sixth of a 30 Hz period)."""
+SAMPLED = 100_000
+"""Samples of a channel that tell its spread (a choice: to 1 %)."""
+LEVELS = 20_000
+"""Samples that tell the step of a sensor (a choice: some per step of a fine one)."""
+HELD = 6
+"""Samples for which a channel stands at its end to be clipped, at least."""
+FLICKER = 0.6
+"""Noise in steps of the sensor from which a level held is no coincidence: a true plateau would
+leave its step in every second sample."""
+TURNS = 0.3
+"""Share of its steps after which a noisy channel turns (2/3 for white noise alone)."""
+ROBUST = 1.4826
+"""Standard deviation of a normal variable over its median deviation."""
+
+
+class Quality(NamedTuple):
+    """What a channel is worth."""
+
+    missing: int
+    spikes: int
+    clipped: int
+    resolution: float
+    """Least step between samples, SI."""
+    noise: float
+    """Standard deviation of a sample, what the filter takes away, SI."""
+
+
+def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality]:
+    """A channel without spikes and clipped samples, and how many there were.
+
+    Parameters
+    ----------
+    values : raw samples, NaN where missing
+    step : of time [s]
+    pressure : a chamber open to the tank stands at its least pressure, which is no clipping
+
+    Returns
+    -------
+    the samples, NaN where there is none to trust, and what the channel is worth
+    """
+    from scipy.ndimage import median_filter  # slow to import, rarely needed
+
+    absent = ~np.isfinite(values)
+    if absent.all():
+        return values, Quality(values.size, 0, 0, 0.0, 0.0)
+    whole = not absent.any()
+    kept = values if whole else values[~absent]
+    size = 2 * int(np.clip(round(WINDOW / step), 2, 5)) + 1
+    middle = median_filter(kept, size=size, mode="nearest")
+    quantum = resolution(middle) or resolution(kept)
+    spikes = _spikes(kept, middle, quantum)
+    spikes |= _strays(kept, spikes, quantum)
+    clipped = _clipped(kept, spikes, quantum, pressure=pressure)
+    spikes &= ~clipped
+    out = np.full(values.shape, np.nan)
+    out[~absent] = np.where(spikes | clipped, np.nan, kept)
+    counts = values.size - kept.size, int(spikes.sum()), int(clipped.sum())
+    return out, Quality(*counts, quantum, 0.0)
+
+
+def resolution(values: Array) -> float:
+    """Step of a sensor: the lowest hundredth of the gaps between the levels that it shows.
+
+    Give the running median: a stray sample makes levels anywhere, the median hardly any.
+    """
+    levels = np.unique(values[:: max(1, values.size // LEVELS)])
+    gaps = np.diff(levels)
+    gaps = np.sort(gaps[gaps > 1e-9 * (levels[-1] - levels[0])])  # less is rounding
+    return float(gaps[gaps.size // 100]) if gaps.size else 0.0
+
+
+def runs(flags: Array) -> tuple[Array, Array]:
+    """First and one past the last sample of every run of flags."""
+    turns = np.flatnonzero(np.diff(flags.astype(np.int8), prepend=0, append=0))
+    return turns[::2], turns[1::2]
+
+
+def _spikes(values: Array, middle: Array, quantum: float) -> Array:
+    """Samples far from the median of their neighbours that rise at once, as no true peak does."""
+    apart = np.abs(values - middle)
+    every = slice(None, None, max(1, values.size // SAMPLED))
+    spread = np.sort(values[every])
+    low, high = spread[spread.size // 100], spread[-1 - spread.size // 100]
+    deviation = ROBUST * float(np.median(apart[every]))
+    least = max(SPIKE * deviation, QUANTA * quantum, RANGE * float(high - low))
+    if not np.any(middle != middle[0]) and np.mean(apart > 0) < 0.01:
+        least = 0.0  # a constant with a few strays
+    out = apart > least
+    at = np.flatnonzero(out)
+    before, after = np.maximum(at - 1, 0), np.minimum(at + 1, values.size - 1)
+    passing = np.abs(middle[after] - middle[before])  # a neighbour moves the median by a sample
+    out[at] = apart[at] > least + passing
+    for a, b in zip(*_peaks(values, apart, *runs(out)), strict=True):
+        out[a:b] = False
+    return out
+
+
+def _strays(values: Array, spikes: Array, quantum: float) -> Array:
+    """Single samples beside the straight line through their neighbours, spikes left out.
+
+    A stray h bends the line by -h/2, h, -h/2; a step by h/2, -h/2, a kink once.
+    """
+    at = np.flatnonzero(~spikes)
+    if at.size < 5:
+        return np.zeros(values.shape, dtype=bool)
+    whole = np.arange(values.size)
+    straight = np.interp(whole, at, values[at]) if at.size < values.size else values
+    bent = np.zeros(values.shape)
+    bent[1:-1] = straight[1:-1] - (straight[2:] + straight[:-2]) / 2
+    sample = np.abs(bent[:: max(1, values.size // SAMPLED)])
+    least = max(SPIKE * ROBUST * float(np.median(sample)), QUANTA * quantum)
+    found = np.flatnonzero(np.abs(bent) > least)
+    found = found[(found > 1) & (found < values.size - 2)]
+    found = found[~spikes[found]]
+    for side in (-1, 1):
+        share = -bent[found + side] / bent[found]
+        found = found[(share > 0.25) & (share < 0.75)]
+    out = np.zeros(values.shape, dtype=bool)
+    out[found] = True
+    return out
+
+
+def _peaks(values: Array, apart: Array, first: Array, last: Array) -> tuple[Array, Array]:
+    """Those runs of outstanding samples that are the tops of true peaks."""
+    if not first.size:
+        return first, last
+    rise = np.abs(np.diff(values, prepend=values[0], append=values[-1]))
+    height = np.maximum.reduceat(np.append(apart, 0.0), np.stack([first, last], 1).ravel())[::2]
+    steps = np.maximum.reduceat(np.append(rise, 0.0), np.stack([first, last + 1], 1).ravel())[::2]
+    wide = np.pad(values, 2, mode="edge")
+    goes_on = np.ones(first.size, dtype=bool)
+    for edge, beyond in (
+        (wide[first + 2] - wide[first + 1], wide[first + 1] - wide[first]),
+        (wide[last + 1] - wide[last + 2], wide[last + 2] - wide[last + 3]),
+    ):
+        goes_on &= beyond * np.sign(edge) > FLANK * np.abs(edge)
+    peak = (steps < BURST * height) | (goes_on & (steps < JUMP * height))
+    return first[peak], last[peak]
+
+
+def _clipped(values: Array, spikes: Array, quantum: float, *, pressure: bool) -> Array:
+    """Samples at the end of a sensor's range.
+
+    A channel is clipped where it stands still at its highest or lowest level, for longer than
+    anywhere else, and either its noise would not let it stand, or it comes there at full speed.
+    """
+    out = np.zeros(values.shape, dtype=bool)
+    first = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
+    length = np.diff(first, append=values.size)
+    level = values[first]
+    held = length >= HELD
+    if values.size < 4 * HELD or not held.any():
+        return out
+    ends = (level[held].max(),) if pressure else (level[held].max(), level[held].min())
+    free = ~np.isin(level, [level[held].min(), level[held].max()])
+    if length[free].sum() < 0.2 * values.size:  # little else than two levels: nothing to compare
+        return out
+    turns = np.sign(np.diff(values[np.repeat(free, length)]))
+    turns = turns[turns != 0]
+    restless = turns.size > 1 and float(np.mean(turns[1:] != turns[:-1])) > TURNS
+    noise = _noise(values, np.repeat(free, length))
+    stay = _stay(noise, quantum)
+    for end in ends:
+        beyond = (values > end) if end == level[held].max() else (values < end)
+        here = held & (level == end)
+        if np.mean(beyond & ~spikes) > 0.005 or length[here].max() < 4 * length[free].max():
+            continue
+        longest = float(length[here].max())  # 1e-4: by chance in one record of ten thousand
+        chance = values.size * stay**longest < 1e-4
+        flickers = restless and noise > FLICKER * quantum and chance
+        if flickers or _abrupt(values, first[here], length[here], quantum):
+            for a, n in zip(first[here], length[here], strict=True):
+                out[a : a + n] = True
+    return out
+
+
+def _noise(values: Array, free: Array) -> float:
+    """Standard deviation of white noise, by second differences, whose noise is sqrt 6 of it."""
+    bent = values[2:] - 2 * values[1:-1] + values[:-2]
+    bent = bent[free[2:] & free[1:-1] & free[:-2]]
+    return ROBUST * float(np.median(np.abs(bent))) / np.sqrt(6) if bent.size else 0.0
+
+
+def _stay(noise: float, quantum: float) -> float:
+    """Chance that noise leaves a sample on its step, P(|n| < q/2)."""
+    from math import erf
+
+    return erf(quantum / (2 * np.sqrt(2) * noise)) if noise > 0 else 1.0
+
+
+def _abrupt(values: Array, first: Array, length: Array, quantum: float) -> bool:
+    """Whether a channel comes to a level, or leaves it, without slowing down.
+
+    The step into the level is cut short by it; of the two before, the later is no smaller.
+    """
+    came = first[first >= 3]
+    goes = (first + length - 1)[first + length + 3 <= values.size]
+    later = np.concatenate(
+        [values[came - 1] - values[came - 2], values[goes + 1] - values[goes + 2]]
+    )
+    early = np.concatenate(
+        [values[came - 2] - values[came - 3], values[goes + 2] - values[goes + 3]]
+    )
+    later, early = np.abs(later), np.abs(early)
+    steps = np.abs(np.diff(values))
+    least = max(QUANTA * quantum, 0.3 * float(np.median(steps[steps > 0])))
+    fast = (later > least) & (later > 0.75 * early) & (early > 0.75 * later)
+    return later.size > 0 and float(np.mean(fast)) > 0.5

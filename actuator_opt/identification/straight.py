@@ -1,0 +1,381 @@
+"""Straight parts of a loading test: branches of loading and unloading, slopes with bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import inf, isfinite
+from typing import NamedTuple
+
+import numpy as np
+
+from ..least_squares import quantile
+from ..numeric import Array
+from .record import CHANNELS, Record
+
+TERMS = 8
+"""Cosines of a long-run variance (a choice: few enough for noise that remembers an eighth of a
+branch, at the price of bounds 18 % wider than those of known noise)."""
+PER_TERM = 4
+"""Spare samples per cosine at least (a choice: so much may short records remember)."""
+MEMORY = 0.99
+"""Largest correlation of neighbouring residuals counted with (a choice: beyond it the fit itself
+takes the noise for part of the slope)."""
+FEWEST = 5
+"""Samples of a branch without which it has no slope (a choice: three spare)."""
+OUTSTANDING, PART = 10.0, 0.02
+"""A spike stands out of five neighbours' median by so many robust standard deviations and by this
+share of the range (a choice: far outside noise, well inside what would move a slope)."""
+
+SHARES = (0.2, 0.8)
+"""Shares of the highest force between which it is taken where the test stops short of the strains
+or the depth is not known (a choice: the toe and the turn at the top lie outside)."""
+BENT = 0.02
+"""Change of slope along the straight part that is let pass (a choice: the chord is then within
+1 % of the tangents at both ends)."""
+FOLLOWS = 0.3
+"""Least correlation of force and deflection (a choice: 90 % of approach leave 0.46)."""
+TOP, BEGUN = 0.9, 0.05
+"""Shares of the highest force: what follows the last of the first is slip or failure, and where
+the search for zero begins (a choice: both beyond usual noise)."""
+BACK = 0.25
+"""Share of the deflection's range that a way back takes to be an unloading (a choice)."""
+CUTS = ((0.0, 1.0), (0.25, 1.0), (0.0, 0.75), (0.5, 1.0), (0.25, 0.75), (0.0, 0.5))
+"""Parts of the range that are tried in turn until one is straight (a choice: the longest first, a
+toe sooner than a top)."""
+
+
+class Branch(NamedTuple):
+    """Samples from one turn of the deflection to the next."""
+
+    samples: slice
+    loading: bool
+
+
+class Term(NamedTuple):
+    """A coefficient of a polynomial with its variance and the degrees of freedom behind that."""
+
+    value: float
+    variance: float
+    freedom: float
+
+
+def despiked(values: Array) -> Array:
+    """A channel without single samples that stand out (NaN there)."""
+    from scipy.ndimage import maximum_filter1d, median_filter  # slow to import, rarely needed
+
+    known = np.isfinite(values)
+    kept = values[known]
+    if kept.size < FEWEST:
+        return values
+    middle = median_filter(kept, size=5, mode="mirror")
+    apart = np.abs(kept - middle)
+    low, high = np.percentile(middle, (1, 99))
+    least = max(OUTSTANDING * 1.4826 * float(np.median(apart)), PART * float(high - low))
+    # the median lags where the channel turns or ends
+    passing = 2 * maximum_filter1d(np.abs(np.gradient(middle)), 5)
+    out = np.array(values, dtype=float)
+    out[known] = np.where(apart > least + passing, np.nan, kept)
+    return out
+
+
+def branches(deflection: Array, least: float) -> list[Branch]:
+    """Stretches between turns after which the deflection goes back by `least` or more."""
+    values = deflection.tolist()
+    turns: list[int] = []
+    low = high = way = 0
+    for k, one in enumerate(values):
+        low = k if one < values[low] else low
+        high = k if one > values[high] else high
+        if way >= 0 and values[high] - one >= least:
+            turns.append(high)
+            way, low = -1, k
+        elif way <= 0 and one - values[low] >= least:
+            turns.append(low)
+            way, high = 1, k
+    turns.append(high if way > 0 else low)
+    return [
+        Branch(slice(first, end + 1), values[end] > values[first])
+        for first, end in pairwise(turns)
+        if abs(values[end] - values[first]) >= least
+    ]
+
+
+def term(x: Array, y: Array, degree: int) -> Term:
+    """Highest coefficient of a least-squares polynomial, for noise that remembers.
+
+    The variance is that of the scores c e (c the column free of lower powers, e the residuals) at
+    frequency zero, as the mean over the first cosines of the samples in order (Mueller 2007;
+    Lazarus, Lewis, Stock and Watson 2018), and Student's t has a degree of freedom for each. What
+    the fit takes away of each is made up for as of noise with the memory of the residuals
+    [derived]; no less than for white noise.
+
+    Parameters
+    ----------
+    x, y : of the samples in order
+    degree : of the polynomial
+
+    Returns
+    -------
+    the coefficient of x^degree
+    """
+    scale = float(np.ptp(x)) / 2
+    size = (x - np.mean(x)) / scale
+    basis, _ = np.linalg.qr(np.vander(size, degree + 1, increasing=True))
+    column = basis[:, -1]
+    along = float(column @ size**degree)
+    rest = y - basis @ (basis.T @ y)
+    count = x.size
+    terms = int(np.clip((count - degree - 1) // PER_TERM, 1, TERMS))
+    phase = np.pi * (np.arange(count) + 0.5) / count
+    waves = np.cos(np.arange(1, terms + 1)[:, None] * phase) * column
+    free = waves - (waves @ basis) @ basis.T
+    memory = _memory(rest, degree)
+    seen = np.sum(free * _remembered(free, memory), axis=1)
+    meant = float(column @ _remembered(column, memory))
+    level = meant * float(np.mean((waves @ rest) ** 2 / seen))
+    white = float(np.sum(rest**2)) / (count - degree - 1)
+    unit = along * scale**degree
+    return Term(float(column @ y) / unit, max(level, white) / unit**2, terms)
+
+
+def _memory(rest: Array, degree: int) -> float:
+    """Correlation of neighbouring residuals, with what a polynomial's fit takes of it put back.
+
+    A constant takes (1 + 3 r)/n, a trend (2 + 4 r)/n (Marriott and Pope 1954); so on by degree.
+    """
+    size, whole = rest.size, float(np.sum(rest**2))
+    seen = float(rest[1:] @ rest[:-1]) / whole if whole > 0 else 0.0
+    spare = max(size - degree - 3, 1)
+    return float(np.clip((seen * size + degree + 1) / spare, 0.0, MEMORY))
+
+
+def _remembered(rows: Array, memory: float) -> Array:
+    """Rows times the correlations memory^|i - j|."""
+    from scipy.signal import lfilter  # slow to import, rarely needed
+
+    ahead = lfilter([1.0], [1.0, -memory], rows, axis=-1)
+    back = lfilter([1.0], [1.0, -memory], rows[..., ::-1], axis=-1)[..., ::-1]
+    return ahead + back - rows
+
+
+def mean(terms: Sequence[Term]) -> Term:
+    """Mean of independent coefficients; degrees of freedom after Satterthwaite."""
+    variances = np.array([one.variance for one in terms]) / len(terms) ** 2
+    whole = float(np.sum(variances))
+    parts = float(np.sum(variances**2 / [one.freedom for one in terms]))
+    freedom = whole**2 / parts if parts > 0 else min(one.freedom for one in terms)
+    return Term(float(np.mean([one.value for one in terms])), whole, freedom)
+
+
+def pooled(groups: Sequence[Sequence[Term]]) -> Term:
+    """Mean of the means of groups; where members scatter beyond their noise, that scatter counts.
+
+    Beyond: by the F test at 95 %. Members of one place in their groups, loading and unloading of a
+    cycle, are taken to move together.
+    """
+    from scipy.special import fdtri  # slow to import, rarely needed
+
+    found = mean([mean(one) for one in groups])
+    spare = sum(len(one) - 1 for one in groups)
+    if spare == 0 or found.variance == 0:
+        return found
+    apart = sum(
+        (one.value - mean(group).value) ** 2 / one.variance for group in groups for one in group
+    )
+    ratio = apart / spare
+    if ratio <= fdtri(spare, sum(one.freedom for group in groups for one in group), 0.95):
+        return found
+    several = [[one.value for one in group] for group in groups if len(group) > 1]
+    between = float(np.mean([np.var(one, ddof=1) / len(one) for one in several]))
+    return Term(found.value, max(between, found.variance), max(len(one) for one in several) - 1)
+
+
+class Part(NamedTuple):
+    """Samples of one branch in the straight part."""
+
+    deflection: Array
+    force: Array
+    loading: bool
+
+
+class Straight(NamedTuple):
+    """The straight part.
+
+    Parameters
+    ----------
+    parts : its samples
+    ends : deflections from zero force [m]
+    bent : change of slope from end to end over the slope
+    unsure : what of that is more than noise
+    cut : whether a part of the range was left out
+    """
+
+    parts: list[Part]
+    ends: tuple[float, float]
+    bent: float
+    unsure: float
+    cut: bool
+
+
+class Loop:
+    """Force over deflection by branches."""
+
+    def __init__(self, record: Record) -> None:
+        self.record = record
+        self.deflection, self.force = _channels(record)
+        self.least = BACK * float(np.ptp(self.deflection))
+        self.floor = float(np.percentile(self.force, 1))
+        self.branches = [self._kept(one) for one in branches(self.deflection, self.least)]
+
+    def _kept(self, branch: Branch) -> Branch:
+        """A loading branch up to its highest force: what follows is slip or failure."""
+        if not branch.loading:
+            return branch
+        first, force = branch.samples.start, self.force[branch.samples]
+        high = self.floor + TOP * (float(np.max(force)) - self.floor)
+        return Branch(slice(first, first + int(np.flatnonzero(force >= high)[-1]) + 1), True)
+
+    def cut(self, low: float, high: float, zeros: Sequence[float]) -> list[Part]:
+        """Samples of every branch between two deflections from its zero."""
+        parts = []
+        for zero, (samples, loading) in zip(zeros, self.branches, strict=True):
+            w, force = self.deflection[samples], self.force[samples]
+            inside = (w - zero >= low) & (w - zero <= high)
+            parts.append(Part(w[inside], force[inside], loading))
+        return parts
+
+    def begins(self) -> list[float]:
+        """Deflection at which the force of every branch is `BEGUN` of its highest."""
+        found = []
+        for samples, _ in self.branches:
+            force = self.force[samples] - self.floor
+            at = int(np.argmin(np.abs(force - BEGUN * np.max(force))))
+            found.append(float(self.deflection[samples][at]))
+        return found
+
+    def zeros(self, parts: Sequence[Part]) -> list[float]:
+        """Deflection at which the straight line of every branch meets zero force."""
+        slope = slopes(parts, 1, self.record).value
+        return [
+            float(np.mean(one.deflection) - (np.mean(one.force) - self.floor) / slope)
+            if one.deflection.size
+            else inf
+            for one in parts
+        ]
+
+    def top(self, zeros: Sequence[float]) -> float:
+        """Largest deflection from zero, median of the branches."""
+        tops = [
+            float(np.max(self.deflection[one.samples])) - zero
+            for zero, one in zip(zeros, self.branches, strict=True)
+            if isfinite(zero)
+        ]
+        return float(np.median(tops))
+
+    def hysteresis(self) -> float | None:
+        """Work lost over work done, of unloadings after loadings."""
+        shares = []
+        for first, second in pairwise(self.branches):
+            if not first.loading or second.loading:
+                continue
+            done, back = (
+                abs(float(np.trapezoid(self.force[x] - self.floor, self.deflection[x])))
+                for x in (first.samples, slice(first.samples.stop - 1, second.samples.stop))
+            )
+            shares.append(1 - back / done)
+        return float(np.mean(shares)) if shares else None
+
+
+def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
+    """Coefficient of a degree, mean of loading and unloading; every branch has its own offsets."""
+    groups = by_way(parts, degree)
+    if not groups:
+        most = max((one.deflection.size for one in parts), default=0)
+        raise record.fault(
+            f"{most} samples in the straight part of the longest loading, {FEWEST} are needed",
+            "sample faster, load slower, or look after noise of the channels",
+        )
+    return pooled(list(groups.values()))
+
+
+def by_way(parts: Sequence[Part], degree: int) -> dict[bool, list[Term]]:
+    """Coefficients of the branches, by loading."""
+    groups: dict[bool, list[Term]] = {}
+    for one in parts:
+        if one.deflection.size >= FEWEST and np.unique(one.deflection).size > degree + 1:
+            groups.setdefault(one.loading, []).append(term(one.deflection, one.force, degree))
+    return groups
+
+
+def scatter(parts: Sequence[Part]) -> float:
+    """1 - r^2 of force over deflection, least of the branches: both ways of regression differ so.
+
+    Noise of the deflection alone lowers the slope by this share [derived].
+    """
+    found = [
+        1 - float(np.corrcoef(one.deflection, one.force)[0, 1]) ** 2
+        for one in parts
+        if one.deflection.size >= FEWEST and np.ptp(one.force) > 0
+    ]
+    return min(found, default=0.0)
+
+
+def _channels(record: Record) -> tuple[Array, Array]:
+    """Deflection and force of the samples that have both, loading upwards."""
+    for name in ("F_L", "w"):
+        if name not in record:
+            raise record.fault(
+                f"no column {name}, the {'force' if name == 'F_L' else CHANNELS[name].label}",
+                f'name it with --column "{name}=..."',
+            )
+    w, force = despiked(record["w"]), despiked(record["F_L"])
+    both = np.isfinite(w) & np.isfinite(force)
+    if both.sum() < 2 * FEWEST:
+        raise record.fault(
+            f"{both.sum()} samples with force and deflection, {2 * FEWEST} are needed",
+            "give a record of the whole loading",
+        )
+    w, force = w[both], force[both]
+    for values, name, what in ((w, "w", "deflection"), (force, "F_L", "force")):
+        if np.ptp(values) == 0:
+            raise record.fault(
+                f"{name} stands still, single samples apart: no {what}",
+                "give a record of a loaded specimen",
+            )
+    most = int(np.argmax(np.abs(force - force[0]))) + 1  # before a failure
+    most = most if most >= 2 * FEWEST else w.size
+    follows = float(np.corrcoef(w[:most], force[:most])[0, 1]) if np.ptp(w[:most]) else 0.0
+    if follows <= -FOLLOWS:
+        raise record.fault(
+            "F_L falls as w grows", "turn the sign of F_L or w: both grow as the specimen is bent"
+        )
+    if follows < FOLLOWS:
+        raise record.fault(
+            f"F_L does not follow w (correlation {follows:.2f})", "check both columns"
+        )
+    down = w[0] - np.min(w) > np.max(w) - w[0]
+    return (-w, -force) if down else (w, force)
+
+
+def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Straight:
+    """The longest part of a range along which the slope does not change, else all of it."""
+    found: list[Straight] = []
+    for first, last in CUTS:
+        ends = low + first * (high - low), low + last * (high - low)
+        parts = loop.cut(*ends, zeros)
+        if found and not all(by_way(parts, 2).get(one.loading) for one in parts):
+            break
+        slope, curve = slopes(parts, 1, loop.record), slopes(parts, 2, loop.record)
+        length = ends[1] - ends[0]
+        bent = 2 * length * curve.value / slope.value
+        half = quantile(curve.freedom) * float(np.sqrt(curve.variance))
+        beyond = max(abs(bent) - abs(2 * length * half / slope.value), 0.0)
+        pairs = zip(zeros, loop.zeros(parts), strict=True)
+        moved = float(np.median([old - new for old, new in pairs if isfinite(new)]))
+        whole = (ends[0] + moved, ends[1] + moved)
+        one = Straight(parts, whole, bent, beyond, (first, last) != CUTS[0])
+        if abs(bent) <= BENT or beyond == 0:
+            return one
+        found.append(one)
+    return found[0]

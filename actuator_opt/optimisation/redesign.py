@@ -1,0 +1,242 @@
+"""What measured values change: requirements of the design as it stands, and its optimum."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import hypot
+from typing import Any
+
+from ..design.build import with_values
+from ..design.model import Measured
+from ..errors import InputError
+from ..evaluation import Evaluation, Subject, evaluate, prepare
+from ..evaluation.result import Requirement
+from .result import Optimisation
+from .run import optimise
+
+
+@dataclass(frozen=True, slots=True)
+class Shift:
+    """A requirement before and after, and how far the bounds of what was measured move it.
+
+    `lower` and `upper` bound the value after (SI), None where nothing bounds it.
+    """
+
+    before: Requirement
+    after: Requirement
+    lower: float | None
+    upper: float | None
+
+    @property
+    def move(self) -> float:
+        """Change of the margin, a share of the limit; negative is worse."""
+        if self.before.margin is None or self.after.margin is None:
+            return 0.0
+        return self.after.margin - self.before.margin
+
+    @property
+    def verdict(self) -> str:
+        """What happened, in one word."""
+        if self.before.met == self.after.met:
+            return "still met" if self.after.met else "still missed"
+        return "now met" if self.after.met else "now missed"
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI."""
+        return {
+            "name": self.after.name,
+            "metric": self.after.metric,
+            "sense": self.after.sense,
+            "limit": self.after.limit,
+            "before": self.before.value,
+            "after": self.after.value,
+            "lower": self.lower,
+            "upper": self.upper,
+            "margin_before": self.before.margin,
+            "margin_after": self.after.margin,
+            "verdict": self.verdict,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Redesign:
+    """A design before and after new values, as it stands and at its optimum.
+
+    `best_before` and `best_after` are None for a design without variables.
+    """
+
+    stood: Evaluation
+    stands: Evaluation
+    shifts: tuple[Shift, ...]
+    best_before: Optimisation | None
+    best_after: Optimisation | None
+
+    @property
+    def moved(self) -> Shift | None:
+        """The requirement that moved most; None where none moved."""
+        if not self.shifts:
+            return None
+        most = max(self.shifts, key=lambda one: abs(one.move))
+        return most if most.move != 0 else None
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What changed, in words."""
+        found = [self._moved_words()]
+        before, after = self.best_before, self.best_after
+        if before is not None and after is not None:
+            found += _optimum_words(before, after)
+        return tuple(found)
+
+    def _moved_words(self) -> str:
+        most = self.moved
+        if most is None:
+            return "no requirement moves"
+        quantity = self.stands.metrics[most.after.metric].quantity
+        low, high = most.lower, most.upper
+        bounds = (
+            ""
+            if low is None or high is None
+            else f" ({quantity.text(low)} to {quantity.text(high)})"
+        )
+        sign = "at least" if most.after.sense == "min" else "at most"
+        old = "-" if most.before.value is None else quantity.text(most.before.value)
+        new = "-" if most.after.value is None else quantity.text(most.after.value)
+        return (
+            f"what moves most is {most.after.name}: {old} to {new}{bounds}, {sign} "
+            f"{quantity.text(most.after.limit)} asked: {most.verdict}"
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI."""
+        found: dict[str, Any] = {
+            "requirements": [one.to_dict() for one in self.shifts],
+            "moved": None if self.moved is None else self.moved.after.name,
+            "sentences": list(self.sentences),
+            "optimum": None,
+        }
+        before, after = self.best_before, self.best_after
+        if before is not None and after is not None:
+            found["optimum"] = {
+                "objective": {
+                    "metric": after.objective_metric,
+                    "before": before.objective_value if solved(before) else None,
+                    "after": after.objective_value if solved(after) else None,
+                },
+                "status": {"before": before.status, "after": after.status},
+                "variables": {
+                    new.path: {"before": old.value, "after": new.value}
+                    for old, new in zip(before.variables, after.variables, strict=True)
+                },
+                "active": {"before": active(before), "after": active(after)},
+            }
+        return found
+
+
+def solved(one: Optimisation) -> bool:
+    """Whether an optimisation found a design that meets its requirements."""
+    return one.evaluation.met and one.infeasibility is None
+
+
+def active(one: Optimisation) -> list[str]:
+    """What an optimum stands on."""
+    return [] if one.kkt is None else list(one.kkt.active)
+
+
+def redesign(
+    before: Subject,
+    after: Subject,
+    learned: Sequence[Mapping[str, Measured]],
+    *,
+    seed: int = 0,
+    search: bool = True,
+) -> Redesign:
+    """Both designs evaluated and, where they have variables, optimised.
+
+    The bounds of a requirement's value: each group of measured values at its bounds, all others as
+    they are, half the changes added as squares.
+
+    Parameters
+    ----------
+    before, after : the design with the old and the new values
+    learned : groups of measured values that move together, by PATH
+    seed : of the searches
+    search : whether to optimise
+    """
+    stood, stands = evaluate(before), evaluate(after)
+    bounds = _bounds(after, stands, learned)
+    shifts = tuple(
+        Shift(old, new, *bounds.get(new.name, (None, None)))
+        for old, new in zip(stood.requirements, stands.requirements, strict=True)
+    )
+    if not (search and after.design.variables and after.design.requirements):
+        return Redesign(stood, stands, shifts, None, None)
+    best = [optimise(one, seed=seed, prices=False) for one in (before, after)]
+    return Redesign(stood, stands, shifts, *best)
+
+
+def _bounds(
+    subject: Subject, middle: Evaluation, learned: Sequence[Mapping[str, Measured]]
+) -> dict[str, tuple[float | None, float | None]]:
+    """Values of the requirements between the bounds of what was measured."""
+    values = {row.name: row.value for row in middle.requirements}
+    squares = dict.fromkeys(values, 0.0)
+    for group in learned:
+        ends = []
+        for end in ("lower", "upper"):
+            moved = {path: getattr(known, end) for path, known in group.items()}
+            try:
+                design = with_values(subject.design, moved)
+            except InputError:
+                return {}
+            ends.append(evaluate(prepare(design, plugins=subject.plugins)).requirements)
+        for low, high in zip(*ends, strict=True):
+            if low.value is not None and high.value is not None:
+                squares[low.name] = hypot(squares[low.name], (high.value - low.value) / 2)
+    return {
+        name: (None, None) if value is None else (value - squares[name], value + squares[name])
+        for name, value in values.items()
+    }
+
+
+def _optimum_words(before: Optimisation, after: Optimisation) -> list[str]:
+    """How the optimum changes, and what it stands on."""
+    metric = after.evaluation.metrics[after.objective_metric]
+    if not (solved(before) and solved(after)):
+        states = [
+            "there is a design that meets every requirement"
+            if solved(one)
+            else "no design meets every requirement"
+            for one in (before, after)
+        ]
+        return [f"before, {states[0]}; now, {states[1]}", *_repairs(after)]
+    old, new = before.objective_value, after.objective_value
+    text = metric.quantity.text
+    first = (
+        f"the best design: {after.objective_metric} {text(old, 5)} to {text(new, 5)} "
+        f"({100 * (new / old - 1):+.1f} %)"
+    )
+    return [first, *_active_words(active(before), active(after))]
+
+
+def _repairs(one: Optimisation) -> list[str]:
+    """The smallest change of limits that lets a design meet them."""
+    if one.infeasibility is None:
+        return []
+    found = []
+    for row in one.infeasibility.joint:
+        if row.get("needed") is not None:
+            quantity = one.evaluation.metrics[row["metric"]].quantity
+            limits = f"{quantity.text(row['limit'])} to {quantity.text(row['needed'])}"
+            found.append(f"{row['parameter']} {limits}")
+    return [f"the smallest change of limits that would do: {', '.join(found)}"] if found else []
+
+
+def _active_words(old: Sequence[str], new: Sequence[str]) -> list[str]:
+    """Which limits the optimum newly stands on, and which it left."""
+    pairs = (
+        ([one for one in new if one not in old], "newly at its limit"),
+        ([one for one in old if one not in new], "no longer at its limit"),
+    )
+    return [f"{what}: {', '.join(names)}" for names, what in pairs if names]

@@ -1,0 +1,112 @@
+"""What a calibration says in numbers and sentences, for paper and terminal alike."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from ..identification.calibration import Calibration
+from ..optimisation.redesign import Redesign, Shift, solved
+from ..quantities import INPUTS
+from . import text
+from .optimum import sentence
+
+LEARNED_HEADS = ("number of the seal", "stated", "measured", "lower", "upper", "from")
+SHIFT_HEADS = ("requirement", "limit", "as stated", "as measured", "lower", "upper", "verdict")
+OPTIMUM_HEADS = ("best design", "as stated", "as measured", "change")
+
+
+class Line(NamedTuple):
+    """A row of cells; `state` is met, missed or empty."""
+
+    cells: tuple[str, ...]
+    state: str = ""
+
+
+def learned(found: Calibration) -> list[Line]:
+    """Every number the record gave, with its bounds and what stood there before."""
+    lines = []
+    for one in found.learned:
+        quantity = INPUTS[one.name]
+        bounds = one.measured("record")
+        for path, value in one.values().items():
+            numbers = (one.before[path], value, bounds[path].lower, bounds[path].upper)
+            cells = [text.value_text(quantity, number, 3) for number in numbers]
+            lines.append(Line((path, *cells, one.source)))
+    return lines
+
+
+def shifts(found: Redesign, *, moved: bool = False) -> list[Line]:
+    """Requirements before and after, the one that moved most first; `moved`: none that did not."""
+    ordered = sorted(found.shifts, key=lambda one: -abs(one.move))
+    return [_shift(one) for one in ordered if one.move != 0 or not moved]
+
+
+def _shift(one: Shift) -> Line:
+    quantity = text.metric(one.after.metric)
+    values = (one.before.value, one.after.value, one.lower, one.upper)
+    cells = [text.value_text(quantity, value) for value in values]
+    if one.move == 0:
+        cells[1:] = ["same", "", ""]
+    limit = text.limit_text(quantity, one.after.sense, one.after.limit)
+    state = "met" if one.after.met else "missed"
+    return Line((one.after.name, limit, *cells, one.verdict), state)
+
+
+def optimum(found: Redesign) -> list[Line]:
+    """Objective and variables of the best designs before and after."""
+    before, after = found.best_before, found.best_after
+    if before is None or after is None:
+        return []
+    metric = text.metric(after.objective_metric)
+    old, new = (one.objective_value if solved(one) else None for one in (before, after))
+    lines = [
+        Line(
+            (
+                after.objective_metric,
+                text.value_text(metric, old, 5),
+                text.value_text(metric, new, 5),
+                _change(old, new),
+            )
+        )
+    ]
+    if old is None or new is None:
+        return lines
+    for a, b in zip(before.variables, after.variables, strict=True):
+        quantity = INPUTS[b.quantity]
+        lines.append(
+            Line(
+                (
+                    b.path,
+                    text.value_text(quantity, a.value),
+                    text.value_text(quantity, b.value),
+                    _change(a.value, b.value),
+                )
+            )
+        )
+    return lines
+
+
+def _change(old: float | None, new: float | None) -> str:
+    if old is None or new is None or old == 0:
+        return text.DASH
+    return text.margin_text(new / old - 1)
+
+
+def what(found: Calibration) -> str:
+    """The record and its outcome in one sentence."""
+    own = found.identification
+    ratio = found.coulomb / found.stated
+    return (
+        f"Record {Path(own.record.name).name}: Coulomb friction is {100 * ratio:.0f} % of what the "
+        f"design states at the record's pressures, {text.number(found.coulomb)} N instead of "
+        f"{text.number(found.stated)} N."
+    )
+
+
+def remarks(found: Calibration, changes: Redesign) -> list[str]:
+    """What changed, what was left, what it all rests on."""
+    said = list(changes.sentences)
+    said += [f"{key} stays as the design says: {why}" for key, why in found.left.items()]
+    said += found.doubts
+    return [sentence(text.pretty(words)) for words in dict.fromkeys(said)]

@@ -1,0 +1,320 @@
+"""Records of a test bench: read, identified, and put into the design they were made with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from ..design import Design
+from ..errors import Diagnostic, InputError
+from ..evaluation import prepare
+from .actuator import Actuator, as_actuator
+from .reports import date_from_environment, file_name
+
+if TYPE_CHECKING:
+    from ..identification import BendingResult, Calibration, Identification, Record, Specimen
+    from ..optimisation.redesign import Redesign
+    from ..reporting import ReportFile
+
+Part = Literal["rod", "barrel"]
+
+MOST_BYTES = 1_000_000_000
+"""Largest file of a record."""
+
+
+def read_record(source: str | Path, *, columns: Mapping[str, str] | None = None) -> Record:
+    """Read the CSV file of a test record.
+
+    Parameters
+    ----------
+    source : path
+    columns : header by channel where it is none of the known names, with a unit where the file
+        states none: ``{"p1": "Channel 3 [bar]"}``
+
+    Returns
+    -------
+    the record, SI
+
+    Raises
+    ------
+    InputError
+        no such file, an unknown or doubled column, a missing unit, a cell that is no number
+    """
+    from ..identification import decode_record, parse_record
+    from ..store import read_bytes
+
+    kinds = (".csv", ".txt", ".tsv")
+    data = read_bytes(source, most=MOST_BYTES + 1, kinds=kinds, what="CSV file")
+    text = decode_record(data, str(source), most=MOST_BYTES)
+    return parse_record(text, name=str(source), columns=columns)
+
+
+def identify(
+    record: Record | str | Path,
+    *,
+    design: Actuator | Design | str | Path,
+    columns: Mapping[str, str] | None = None,
+    cutoff: float = 30.0,
+    order: int = 4,
+    compensated: bool = True,
+    mass: float | None = None,
+    load_force: float | None = None,
+    pressure_lag: float | None = None,
+    bootstrap: int = 0,
+    seed: int = 0,
+) -> Identification:
+    """Friction and damping from a test record of the actuator.
+
+    F_r = p_1 A_1 - p_2 A_2 - F_L - m a, areas in the bore as grown.
+
+    Parameters
+    ----------
+    record : as read, or its path
+    design : the actuator as tested
+    columns : as `read_record`
+    cutoff, order, compensated : of the zero-phase Butterworth filter [Hz]; compensated: both
+        passes together are -3 dB at the cut-off
+    mass : moving inside the force sensor [kg]; default: rod, piston and fastening, without a
+        force channel also the design's load
+    load_force : against extension where no channel measures it [N]
+    pressure_lag : of the pressures [s]; None looks for it in the record
+    bootstrap : resampled records for the bounds; 0 takes those of the linearised model
+    seed : of the resampling
+
+    Returns
+    -------
+    the identification
+
+    Raises
+    ------
+    InputError
+        a channel missing, a record too short, channels turned round, no motion
+    """
+    from ..evaluation.study.bench import bench
+    from ..identification import Settings
+    from ..identification import identify as run
+
+    settings = Settings(
+        cutoff=cutoff,
+        order=order,
+        compensated=compensated,
+        mass=mass,
+        load_force=load_force,
+        pressure_lag=pressure_lag,
+        bootstrap=bootstrap,
+        seed=seed,
+    )
+    own = as_actuator(design).subject()
+    found = read_record(record, columns=columns) if isinstance(record, (str, Path)) else record
+    return run(found, bench(own), settings)
+
+
+def bending(
+    record: Record | str | Path,
+    *,
+    span: float | None = None,
+    design: Actuator | Design | str | Path | None = None,
+    part: Part = "rod",
+    specimen: Specimen | None = None,
+    columns: Mapping[str, str] | None = None,
+) -> BendingResult:
+    """Modulus of a part from a three-point bending test, channels F_L and w.
+
+    Parameters
+    ----------
+    record : as read, or its path
+    span : between the supports [m]
+    design, part : whose section was bent, "rod" or "barrel"; of a metal part its shear modulus
+        too is taken from there
+    specimen : in place of span, design and part
+    columns : as `read_record`
+
+    Raises
+    ------
+    InputError
+        a channel missing, no straight part, no section
+    """
+    from ..identification import bending as run
+
+    if specimen is None:
+        if span is None or design is None:
+            message = "the section of the bending test is not known"
+            raise InputError(Diagnostic(message, "give span and design, or a specimen"))
+        specimen = _specimen(as_actuator(design), part, span)
+    found = read_record(record, columns=columns) if isinstance(record, (str, Path)) else record
+    return run(found, specimen)
+
+
+def _specimen(actuator: Actuator, part: Part, span: float) -> Specimen:
+    """A part of a design as a bar on two supports."""
+    from ..evaluation import compute
+    from ..identification import Specimen
+
+    subject = actuator.subject()
+    g = compute(subject, subject.values()).geometry
+    outer, inner = (
+        (g.rod_diameter, g.rod_inner_diameter)
+        if part == "rod"
+        else (2 * g.outer_radius, 2 * g.inner_radius)
+    )
+    layers = subject.design.barrel.layup if part == "barrel" else subject.design.rod.layup
+    names = {ply.material for ply in layers} if layers else {subject.design.rod.material}
+    metal = subject.materials[names.pop()] if len(names) == 1 else None
+    modulus = None if metal is None else metal.properties.get("youngs_modulus")
+    poisson = None if metal is None else metal.properties.get("poissons_ratio")
+    shear = None
+    if modulus is not None and poisson is not None:
+        shear = modulus.value / (2 * (1 + poisson.value))
+    return Specimen(
+        span=span,
+        outer_diameter=float(np.squeeze(outer)),
+        inner_diameter=float(np.squeeze(inner)),
+        shear_modulus=shear,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Calibrated:
+    """A design with the friction that a record measured, and what that changes.
+
+    Parameters
+    ----------
+    actuator : with the new values and their bounds
+    calibration : what the record told
+    redesign : before and after, as tested and at the optimum
+    """
+
+    actuator: Actuator
+    calibration: Calibration
+    redesign: Redesign
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI."""
+        own = self.calibration
+        return {
+            "record": own.identification.record.name,
+            "name": self.actuator.design.name,
+            "learned": {one.name: one.to_dict() for one in own.learned},
+            "left": dict(own.left),
+            "coulomb": {"measured": own.coulomb, "stated": own.stated},
+            "doubts": list(own.doubts),
+            **self.redesign.to_dict(),
+        }
+
+
+def calibrate(
+    record: Identification | Record | str | Path,
+    *,
+    design: Actuator | Design | str | Path,
+    columns: Mapping[str, str] | None = None,
+    search: bool = True,
+    **settings: Any,
+) -> Calibrated:
+    """The design with the seal friction that its record measured.
+
+    Coefficients of friction, breakaway ratio, Stribeck speed and viscous friction of the seals,
+    their bounds under ``measured``; requirements before and after; the optimum before and after.
+
+    Parameters
+    ----------
+    record : as read or identified, or its path
+    design : the actuator as tested
+    columns, settings : as `identify`
+    search : whether to optimise before and after
+
+    Raises
+    ------
+    InputError
+        as `identify`; no steady sliding; friction that the design takes from an oil film
+    """
+    from ..identification import Identification
+    from ..identification import calibration as learn
+    from ..optimisation.redesign import redesign
+
+    before = as_actuator(design)
+    identified = (
+        record
+        if isinstance(record, Identification)
+        else identify(record, design=before, columns=columns, **settings)
+    )
+    found = learn(identified)
+    after = before.changed(found.values())
+    known = {**after.design.measured, **found.measured()}
+    after = Actuator(
+        after.design.model_copy(update={"measured": known}), before.source, before.plugins
+    )
+    groups = [one.measured(identified.record.name) for one in found.learned]
+    changes = redesign(before.subject(), after.subject(), groups, search=search)
+    return Calibrated(after, found, changes)
+
+
+def write_identification(
+    identification: Identification,
+    *,
+    folder: str | Path = "reports",
+    actuator: Actuator | None = None,
+    command: str = "",
+    date: str | None = None,
+) -> list[ReportFile]:
+    """Write the page of an identification (PDF and PNG); parameters as `report`."""
+    from ..design.writer import to_yaml
+    from ..evaluation.build import spec_hash
+    from ..reporting.identification_document import write_identification_sheet
+
+    design = identification.bench.design
+    source = None if actuator is None else actuator.source
+    return write_identification_sheet(
+        identification,
+        folder=Path(folder),
+        stem=f"{Path(identification.record.name).stem}_identification",
+        source_text=source.text if source is not None else to_yaml(design),
+        source_name=file_name(design, source),
+        command=command,
+        spec_hash=spec_hash(prepare(design)),
+        date=date or date_from_environment(),
+    )
+
+
+def write_series(identification: Identification, path: str | Path) -> ReportFile:
+    """Write friction, stiffness and bore growth over time as CSV."""
+    from ..reporting.identification_csv import write_series as write
+
+    return write(identification, Path(path))
+
+
+def write_calibration(
+    calibrated: Calibrated,
+    *,
+    folder: str | Path = "reports",
+    command: str = "",
+    date: str | None = None,
+) -> list[ReportFile]:
+    """Write the page of a calibration (PDF and PNG), the new design attached.
+
+    Parameters
+    ----------
+    calibrated : what `calibrate` found
+    folder : where to
+    command, date : as `report`
+    """
+    from ..design.writer import to_yaml
+    from ..evaluation.build import spec_hash
+    from ..reporting.calibration_document import write_calibration_sheet
+
+    actuator = calibrated.actuator
+    record = calibrated.calibration.identification.record
+    return write_calibration_sheet(
+        calibrated.calibration,
+        calibrated.redesign,
+        folder=Path(folder),
+        stem=f"{Path(record.name).stem}_calibration",
+        source_text=to_yaml(actuator.design, actuator.source),
+        source_name=file_name(actuator.design, actuator.source),
+        command=command,
+        spec_hash=spec_hash(prepare(actuator.design)),
+        date=date or date_from_environment(),
+    )
