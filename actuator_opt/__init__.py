@@ -2,7 +2,7 @@
 
 >>> import actuator_opt as ao
 >>> ao.__version__
-'0.4.0'
+'0.5.0'
 
 The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `seal`, `identify`, `calibrate`,
 `report`, `save`) are the same as in the terminal. Heavy modules load when a verb needs them.
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .design.materials import load_library
     from .errors import ActuatorError, Diagnostic, InputError
     from .evaluation.plugin import constraint, metric
+    from .identification import Identification
     from .verbs import (
         Actuator,
         Calibrated,
@@ -47,6 +48,7 @@ _HOMES = {
     "ActuatorError": "errors",
     "Calibrated": "verbs",
     "Diagnostic": "errors",
+    "Identification": "identification",
     "InputError": "errors",
     "bending": "verbs",
     "calibrate": "verbs",
@@ -74,6 +76,7 @@ __all__ = [
     "ActuatorError",
     "Calibrated",
     "Diagnostic",
+    "Identification",
     "InputError",
     "__version__",
     "bending",

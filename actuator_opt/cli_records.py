@@ -229,7 +229,7 @@ def _bend(
     if as_json:
         streams.out_json(found.to_dict())
     elif not quiet:
-        from .reporting.identification_text import bending_text
+        from .reporting.bending_text import bending_text
 
         streams.out(bending_text(found, **streams.style()), end="")
 

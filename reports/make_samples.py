@@ -1,4 +1,5 @@
-"""Write the committed reports into reports/samples: one for each shipped design, and the studies.
+"""Write the committed reports into reports/samples: one for each shipped design, the studies, and the
+pages of the test record.
 
 Run from the root of the checkout; the same input gives the same bytes.
 """
@@ -37,6 +38,9 @@ def main() -> None:
         study = runpy.run_path(str(ROOT / "designs" / "scripts" / f"{name}.py"))
         sheets = study["write"](study["compute"](), ROOT / "reports" / "samples")
         print(f"reports/samples/{name}.pdf", sheets, "sheets")
+    example = runpy.run_path(str(ROOT / "designs" / "scripts" / "knee_calibration.py"))
+    for path in example["pages"](ROOT / "reports" / "samples"):
+        print(path.relative_to(ROOT))
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ COURSES = {
     "plateaus": lambda: synthetic.plateaus(SPEEDS, travel=0.05, begin=0.02, longest=0.8),
     "sine": lambda: synthetic.sine(amplitude=0.04, frequency=0.4, periods=4, middle=0.055),
     "ramp": lambda: synthetic.ramps(fastest=0.05, duration=2.0, begin=0.02, repeats=2),
-    "pre-sliding": lambda: synthetic.sine(amplitude=8e-5, frequency=0.5, periods=4, middle=0.055),
+    "pre-sliding": lambda: synthetic.sine(amplitude=1.2e-4, frequency=0.5, periods=4, middle=0.055),
     "one speed": lambda: synthetic.plateaus([0.05] * 2, travel=0.05, begin=0.015),
 }
 KINDS = (*COURSES, "gaps", "outside", "levels", "plunger", "one way", "bare")

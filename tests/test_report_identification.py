@@ -169,6 +169,7 @@ def test_bounds_tell_how_many_digits_are_shown():
     """Four digits at most, none finer than the bounds; a lag far inside its bounds is 0."""
     assert rows.rounded(148.23, 146.21, 150.25) == ("148.2", "146.2", "150.2")
     assert rows.rounded(1.4e-6, -0.3, 0.3) == ("0.000", "−0.300", "0.300")
+    assert rows.rounded(4.604, -329.2, 338.6) == ("4.60", "−329", "339")
     assert rows.rounded(1e-20, -1e-19, 3e-19)[0] == "1.0×10⁻²⁰"
     assert rows.rounded(2.0, -math.inf, math.inf) == ("2.000", "−∞", "∞")
 

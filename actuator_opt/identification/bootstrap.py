@@ -57,6 +57,8 @@ LOGS = ("stribeck_speed", "bristle_stiffness")
 """Searched by their logarithm; sigma_1, which may be 0, is not."""
 PHYSICAL = ("static", "viscous", "bristle_damping")
 """Parameters whose lower end is one of physics: F_C for F_S, else 0."""
+SIGNED = ("offset", "pressure_slope", "lag")
+"""Parameters that may be 0: bounds about 0 do not say that they are not known."""
 AT_END = 1e-6
 """Distance from the end of a search, over its size, at which it is reached."""
 
@@ -75,7 +77,9 @@ def resampled(
 
     Values stay; bounds, standard errors (half the bounds over Student's t) and verdicts change. A
     parameter that the linearised model leaves open stays open, and so does one whose draws run to
-    an end of the search. The Stribeck curve's covariance stays that of the linearised model.
+    an end of the search. One that it calls not identifiable keeps the wider of both bounds: the
+    optimum lies in a flat valley then, and draws show the scatter about it, not the valley. The
+    Stribeck curve's covariance stays that of the linearised model.
 
     Parameters
     ----------
@@ -344,6 +348,9 @@ def _bounded(
             draws[unseen] = np.resize([-np.inf, np.inf], int(unseen.sum()))
         draws.sort()
         low, high = min(draws[tail - 1], value), max(draws[count - tail], value)
+        was = parameters[name]
+        if name not in SIGNED and was.verdict == "not identifiable":
+            low, high = min(low, was.lower), max(high, was.upper)
         with np.errstate(invalid="ignore"):
             error = (high - low) / (2 * quantile(spare))
         sure = max(high - value, value - low) <= WEAK * abs(value)

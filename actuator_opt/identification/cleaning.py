@@ -26,6 +26,9 @@ HELD = 6
 FLICKER = 0.6
 """Noise in steps of the sensor from which a level held is no coincidence: a true plateau would
 leave its step in every second sample."""
+LIVE = 0.2
+"""Share of a channel that must not stand at its ends to be judged by the rest (a choice: four
+times as many as strays)."""
 TURNS = 0.3
 """Share of its steps after which a noisy channel turns (2/3 for white noise alone)."""
 ROBUST = 1.4826
@@ -67,8 +70,9 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
     size = 2 * int(np.clip(round(WINDOW / step), 2, 5)) + 1
     middle = median_filter(kept, size=size, mode="nearest")
     quantum = resolution(middle) or resolution(kept)
-    spikes = _spikes(kept, middle, quantum)
-    spikes |= _strays(kept, spikes, quantum)
+    live = _live(kept)
+    spikes = _spikes(kept, middle, quantum, live)
+    spikes |= _strays(kept, spikes, quantum, live)
     clipped = _clipped(kept, spikes, quantum, pressure=pressure)
     spikes &= ~clipped
     out = np.full(values.shape, np.nan)
@@ -80,12 +84,49 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
 def resolution(values: Array) -> float:
     """Step of a sensor: the lowest hundredth of the gaps between the levels that it shows.
 
-    Give the running median: a stray sample makes levels anywhere, the median hardly any.
+    Give the running median: a stray sample makes levels anywhere, the median hardly any. Where
+    that is less, the lowest hundredth of the steps from sample to sample.
     """
-    levels = np.unique(values[:: max(1, values.size // LEVELS)])
-    gaps = np.diff(levels)
-    gaps = np.sort(gaps[gaps > 1e-9 * (levels[-1] - levels[0])])  # less is rounding
-    return float(gaps[gaps.size // 100]) if gaps.size else 0.0
+    picked = np.random.default_rng(0).integers(values.size, size=min(LEVELS, values.size))
+    levels = np.sort(values[picked])  # at random: an even stride beats with a periodic motion
+    steps = np.abs(np.diff(values[: 50 * LEVELS]))
+    least = 1e-9 * float(levels[-1] - levels[0])  # less is rounding
+    found = [_hundredth(one[one > least]) for one in (np.diff(levels), steps)]
+    return min((one for one in found if one > 0), default=0.0)
+
+
+def _hundredth(values: Array) -> float:
+    return (
+        float(np.partition(values, values.size // 100)[values.size // 100]) if values.size else 0.0
+    )
+
+
+def _levels(values: Array) -> tuple[Array, Array]:
+    """Where a channel comes to another level, and for how many samples it stays."""
+    first = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
+    return first, np.diff(first, append=values.size)
+
+
+def _live(values: Array) -> Array:
+    """Samples that do not stand at the channel's ends, which tell nothing of its noise.
+
+    All, where these are few: then the channel is one level, and strays.
+    """
+    first, length = _levels(values)
+    held = length >= HELD
+    if not held.any():
+        return np.ones(values.shape, dtype=bool)
+    level = values[first]
+    ends = (level == level[held].min()) | (level == level[held].max())
+    live = np.repeat(~(ends & held), length)
+    return live if np.mean(live) > LIVE else np.ones_like(live)
+
+
+def _spread(values: Array, live: Array) -> float:
+    """Robust standard deviation of some samples."""
+    some = values[live]
+    some = some[:: max(1, some.size // SAMPLED)]
+    return ROBUST * float(np.median(np.abs(some))) if some.size else 0.0
 
 
 def runs(flags: Array) -> tuple[Array, Array]:
@@ -94,27 +135,26 @@ def runs(flags: Array) -> tuple[Array, Array]:
     return turns[::2], turns[1::2]
 
 
-def _spikes(values: Array, middle: Array, quantum: float) -> Array:
+def _spikes(values: Array, middle: Array, quantum: float, live: Array) -> Array:
     """Samples far from the median of their neighbours that rise at once, as no true peak does."""
     apart = np.abs(values - middle)
-    every = slice(None, None, max(1, values.size // SAMPLED))
-    spread = np.sort(values[every])
-    low, high = spread[spread.size // 100], spread[-1 - spread.size // 100]
-    deviation = ROBUST * float(np.median(apart[every]))
-    least = max(SPIKE * deviation, QUANTA * quantum, RANGE * float(high - low))
+    some = np.sort(values[:: max(1, values.size // LEVELS)])
+    low, high = some[some.size // 100], some[-1 - some.size // 100]
+    least = max(SPIKE * _spread(apart, live), QUANTA * quantum, RANGE * float(high - low))
     if not np.any(middle != middle[0]) and np.mean(apart > 0) < 0.01:
         least = 0.0  # a constant with a few strays
     out = apart > least
     at = np.flatnonzero(out)
-    before, after = np.maximum(at - 1, 0), np.minimum(at + 1, values.size - 1)
-    passing = np.abs(middle[after] - middle[before])  # a neighbour moves the median by a sample
+    before, after = np.maximum(at - 2, 0), np.minimum(at + 2, values.size - 1)
+    here = middle[at]  # a neighbour moves the median by a sample, a turn flattens it
+    passing = np.maximum(np.abs(middle[after] - here), np.abs(middle[before] - here))
     out[at] = apart[at] > least + passing
     for a, b in zip(*_peaks(values, apart, *runs(out)), strict=True):
         out[a:b] = False
     return out
 
 
-def _strays(values: Array, spikes: Array, quantum: float) -> Array:
+def _strays(values: Array, spikes: Array, quantum: float, live: Array) -> Array:
     """Single samples beside the straight line through their neighbours, spikes left out.
 
     A stray h bends the line by -h/2, h, -h/2; a step by h/2, -h/2, a kink once.
@@ -122,12 +162,12 @@ def _strays(values: Array, spikes: Array, quantum: float) -> Array:
     at = np.flatnonzero(~spikes)
     if at.size < 5:
         return np.zeros(values.shape, dtype=bool)
-    whole = np.arange(values.size)
-    straight = np.interp(whole, at, values[at]) if at.size < values.size else values
+    gone = np.flatnonzero(spikes)
+    straight = values.copy()
+    straight[gone] = np.interp(gone, at, values[at])
     bent = np.zeros(values.shape)
     bent[1:-1] = straight[1:-1] - (straight[2:] + straight[:-2]) / 2
-    sample = np.abs(bent[:: max(1, values.size // SAMPLED)])
-    least = max(SPIKE * ROBUST * float(np.median(sample)), QUANTA * quantum)
+    least = max(SPIKE * _spread(bent, live), QUANTA * quantum)
     found = np.flatnonzero(np.abs(bent) > least)
     found = found[(found > 1) & (found < values.size - 2)]
     found = found[~spikes[found]]
@@ -164,15 +204,14 @@ def _clipped(values: Array, spikes: Array, quantum: float, *, pressure: bool) ->
     anywhere else, and either its noise would not let it stand, or it comes there at full speed.
     """
     out = np.zeros(values.shape, dtype=bool)
-    first = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
-    length = np.diff(first, append=values.size)
+    first, length = _levels(values)
     level = values[first]
     held = length >= HELD
     if values.size < 4 * HELD or not held.any():
         return out
     ends = (level[held].max(),) if pressure else (level[held].max(), level[held].min())
     free = ~np.isin(level, [level[held].min(), level[held].max()])
-    if length[free].sum() < 0.2 * values.size:  # little else than two levels: nothing to compare
+    if length[free].sum() < LIVE * values.size:  # little else than two levels: nothing to compare
         return out
     turns = np.sign(np.diff(values[np.repeat(free, length)]))
     turns = turns[turns != 0]

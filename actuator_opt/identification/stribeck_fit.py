@@ -332,7 +332,7 @@ def _search(data: Steady, names: Sequence[str]) -> dict[str, float]:
         at = dict(zip(own, amplitudes, strict=True))
         if any(at.get(name, 1.0) < 0 for name in ("coulomb", "viscous", "static")):
             low = [0.0 if name in ("coulomb", "viscous", "static") else -np.inf for name in own]
-            amplitudes = lsq_linear(matrix, target, (low, np.inf)).x
+            amplitudes = lsq_linear(matrix, target, (low, np.inf), method="bvls").x
             at = dict(zip(own, amplitudes, strict=True))
         cost = float(np.sum((matrix @ amplitudes - target) ** 2))
         if cost < least:

@@ -76,6 +76,10 @@ COEFFICIENTS = {
 """Parameters of the fits of the secant damping."""
 
 
+NOTHING = 2e-3
+"""A value below this share of its bounds' half width is as good as 0 (a choice: 3 digits)."""
+
+
 class Row(NamedTuple):
     """A parameter as printed: value with unit, bounds without, and its verdict."""
 
@@ -96,8 +100,12 @@ def _row(shown: Shown, one: Parameter) -> Row:
 def rounded(value: float, lower: float, upper: float) -> tuple[str, str, str]:
     """A value and its bounds, no finer than the bounds tell, four digits at most.
 
+    A value keeps three digits unless it is nothing beside its bounds.
+
     >>> rounded(4.904e-4, -0.4223, 0.4233), rounded(148.23, 146.21, 150.25)
     (('0.000', '−0.422', '0.423'), ('148.2', '146.2', '150.2'))
+    >>> rounded(4.604, -329.2, 338.6)
+    ('4.60', '−329', '339')
     """
     half, largest = (upper - lower) / 2, max(abs(value), abs(lower), abs(upper))
     if not 0 < half < math.inf:
@@ -105,7 +113,8 @@ def rounded(value: float, lower: float, upper: float) -> tuple[str, str, str]:
     if not 1e-3 <= largest < 1e6:
         return number(value, 2), number(lower, 2), number(upper, 2)
     places = min(decimals(half, 3), decimals(largest, 4))
-    return fixed(value, places), fixed(lower, places), fixed(upper, places)
+    own = places if abs(value) < NOTHING * half else max(places, min(decimals(value, 3), 4))
+    return fixed(value, own), fixed(lower, places), fixed(upper, places)
 
 
 def parameter_rows(parameters: Mapping[str, Parameter]) -> list[Row]:

@@ -86,7 +86,7 @@ def made(own: Bench) -> Record:
 
 
 def write(record: Record, path: Path) -> None:
-    """The record as a bench would write it."""
+    """Write the record as a bench would."""
     names = list(COLUMNS)
     lines = [
         "# SYNTHETIC record of the knee prototype, made by designs/scripts/knee_calibration.py",
@@ -121,6 +121,22 @@ def recovered(calibrated: ao.Calibrated) -> list[list[str]]:
     return rows
 
 
+def pages(folder: Path) -> list[Path]:
+    """Write the page of the record and that of the redesign."""
+    knee = ao.read(DESIGN)
+    found = ao.identify(RECORD, design=knee)
+    return _pages(knee, found, ao.calibrate(found, design=knee), folder)
+
+
+def _pages(
+    knee: ao.Actuator, found: ao.Identification, calibrated: ao.Calibrated, folder: Path
+) -> list[Path]:
+    command = "python designs/scripts/knee_calibration.py"
+    files = ao.write_identification(found, folder=folder, actuator=knee, command=command)
+    files += ao.write_calibration(calibrated, folder=folder, command=command)
+    return [file.path for file in files]
+
+
 def main() -> None:
     """Print what the record changes; write the pages where a folder is given."""
     from actuator_opt.reporting.calibration_text import calibration_text
@@ -138,11 +154,8 @@ def main() -> None:
     print(calibration_text(calibrated.calibration, calibrated.redesign))
     print(aligned(recovered(calibrated), right=(1, 2, 3, 4, 5)))
     if asked.out is not None:
-        command = "python designs/scripts/knee_calibration.py"
-        files = ao.write_identification(found, folder=asked.out, actuator=knee, command=command)
-        files += ao.write_calibration(calibrated, folder=asked.out, command=command)
-        for file in files:
-            print(f"wrote {file.path}")
+        for path in _pages(knee, found, calibrated, asked.out):
+            print(f"wrote {path}")
 
 
 if __name__ == "__main__":
