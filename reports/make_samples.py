@@ -1,5 +1,4 @@
-"""Write the committed reports into reports/samples: one for each shipped design, the studies, and the
-pages of the test record.
+"""Write the committed reports into reports/samples: of shipped designs, studies, the test record.
 
 Run from the root of the checkout; the same input gives the same bytes.
 """

@@ -109,16 +109,20 @@ def way(velocity, begin, step=SAMPLE / FINE):
 
 
 def plateaus(speeds, *, travel=0.06, begin=0.02, longest=2.0, rise=0.08, rest=0.15):
-    """Constant speeds out and back, from rest to rest by smooth fifth-order ramps."""
+    """Constant speeds out and back, from rest to rest by smooth fifth-order ramps.
+
+    Strokes begin at other places of the sensor's steps, as on a bench.
+    """
     step = SAMPLE / FINE
     s = np.arange(round(rise / step)) * step / rise
     ramp = s**3 * (10 - 15 * s + 6 * s * s)
     still = np.zeros(round(rest / step))
     parts = [still]
-    for speed in speeds:
-        held = np.ones(round(min(travel / speed - rise, longest) / step))
-        stroke = speed * np.concatenate([ramp, held, 1 - ramp])
-        parts += [stroke, still, -stroke, still]
+    for k, speed in enumerate(speeds):
+        count = round(min(travel / speed - rise, longest) / step)
+        more = round((37e-6 * (k + 1)) % 1e-4 / (speed * step))
+        out, back = (np.concatenate([ramp, np.ones(n), 1 - ramp]) for n in (count, count + more))
+        parts += [speed * out, still, -speed * back, still]
     return way(np.concatenate(parts), begin)
 
 

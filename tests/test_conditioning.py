@@ -501,6 +501,7 @@ def test_the_cutoff_advised_is_one_that_works():
         ({"order": 11}, "a filter of order 11"),
         ({"order": 2.5}, "a filter of order 2.5"),
         ({"order": math.nan}, "a filter of order nan"),
+        ({"order": math.inf}, "a filter of order inf"),
         ({"pressure_lag": math.nan}, "a lag of the pressures of nan s; give one within 0.5 s"),
         ({"pressure_lag": 3.0}, "a lag of the pressures of 3 s"),
     ],
@@ -520,9 +521,25 @@ def test_broken_channels_are_named():
     )
     torn = np.where(np.arange(record.time.size) % 100 < 20, np.nan, record["p1"])
     line = refusal(but(record, p1=torn))
-    assert "no stretch of 0.2 s is unbroken: p1 misses 2000 samples and is clipped in 0" in line
+    assert "no stretch of 0.2 s is unbroken: p1 has 2000 missing, 0 stray and 0 clipped" in line
     gaps = np.flatnonzero(np.arange(record.time.size) % 100 >= 20)
     assert "no stretch of 0.2 s is unbroken: gaps in time" in refusal(kept(record, gaps))
+
+
+def test_times_that_come_in_bunches_are_refused():
+    """Samples doubled within a nanosecond would make even steps without number."""
+    record, _ = made(1.0)
+    bunched = np.sort(np.concatenate([record.time, record.time + 1e-9, record.time + 2e-9]))
+    tripled = {name: np.repeat(one, 3) for name, one in record.channels.items()}
+    line = refusal(Record(bunched, tripled, "r.csv", first_line=2))
+    assert "r.csv:2: sample times are too uneven: most are 1e-09 s apart, the mean is" in line
+
+
+def test_a_record_without_position_is_refused():
+    """Nothing moves without a position."""
+    record, _ = made(1.0)
+    line = refusal(Record(record.time, {"p1": record["p1"]}, "r.csv"))
+    assert line == 'r.csv: no column x, the position; name it with --column "x=..."'
 
 
 @settings(max_examples=150)

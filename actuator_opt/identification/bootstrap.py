@@ -134,7 +134,7 @@ def resampled_stribeck(
         steps = 1j * STEP * np.eye(rows.shape[1])
         return np.stack([np.imag(model(rows + one)) / STEP for one in steps], axis=-1)
 
-    best = _searched(search.names, values)[None]
+    best = searched(search.names, values)[None]
     rest = fit.residuals / errors
     spread = _spreads(slopes(best)[0], rest, float(np.sum(rest**2)) / spare)
     noise = spread * rng.standard_normal((count, spread.size)) * _scales(rng, spare, count)
@@ -163,8 +163,8 @@ def _lugre(
     if not asked or blocks < LEAST_WINDOWS:
         doubt = f"{blocks} windows are too few to resample: bounds of the linearised model"
         return replace(fit, doubts=(*fit.doubts, doubt)) if asked else fit
-    problem = _LuGre(found, points if stribeck is not None else (), stribeck, fit, asked)
-    best = _searched(asked, fit.values)
+    problem = LuGreResiduals(found, points if stribeck is not None else (), stribeck, fit, asked)
+    best = searched(asked, fit.values)
     rest = problem.misfit(best[None])[0]
     jacobian = problem.slopes(best)
     steady = rest.size - blocks * found.kept.size
@@ -210,7 +210,7 @@ def _bristles(parameters: Mapping[str, Parameter]) -> list[str]:
     return [name for name in LOGARITHMIC[:2] if name in parameters]
 
 
-class _LuGre:
+class LuGreResiduals:
     """Weighted residuals of points and windows over searched numbers, as `lugre_fit` has them."""
 
     def __init__(
@@ -281,13 +281,13 @@ def _search(
         "viscous": (0.0, np.inf),
         "bristle_damping": (0.0, np.inf),
     } | dict(ends)
-    best = _searched(asked, values)
+    best = searched(asked, values)
     pairs = [usual.get(name, (-np.inf, np.inf)) for name in asked]
     low = np.minimum([one[0] for one in pairs], best)
     return Search(asked, low, np.maximum([one[1] for one in pairs], best))
 
 
-def _searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
+def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
     """Searched numbers of parameters: logarithms, and F_S as its rise over F_C."""
     own = dict(values)
     own["static"] = own.get("static", own["coulomb"]) - own["coulomb"]

@@ -32,6 +32,8 @@ BRIDGE = 5
 period of the cut-off."""
 ORDERS = 10
 """Highest order of a pass (a choice: beyond it the filter rings for longer than `EDGE`)."""
+CROWDED = 3.0
+"""Mean step of time over the usual one (a choice: even steps then hold three times the samples)."""
 SAMPLED = 100_000
 """Samples of a piece that tell its noise (a choice: to 0.3 %)."""
 LATEST = 0.5
@@ -153,13 +155,52 @@ def condition(
         time that does not increase, samples too few or too far apart, nothing left unbroken
     """
     _choices(record, cutoff, order, pressure_lag)
+    if "x" not in record:
+        raise record.fault("no column x, the position", 'name it with --column "x=..."')
     time = _time(record)
     steps = np.diff(time)
     step = float(np.median(steps))
     _sampling(record, time, step, cutoff)
     notes = list(record.notes)
-    quality: dict[str, Quality] = {}
+    cleaned, quality = _cleaned(record, step, notes)
+    sections = low_pass(cutoff=cutoff, order=order, sample_time=step, compensated=compensated)
+    pieces, dropped = [], []
+    for first, last in _breaks(time, cleaned, step, cutoff):
+        span = float(time[last - 1] - time[first])
+        if span < SHORTEST / cutoff:
+            dropped.append(span)
+            continue
+        if span > CROWDED * step * (last - first):
+            raise record.fault(
+                f"sample times are too uneven: most are {step:.3g} s apart, the mean is "
+                f"{span / (last - first):.3g} s",
+                "give one line per sample, at even times",
+                first,
+            )
+        own = {name: one[first:last] for name, one in cleaned.items()}
+        pieces.append(_piece(time[first:last], own, step, cutoff, sections, pressure_lag))
+    if not pieces:
+        raise _nothing(record, quality, SHORTEST / cutoff)
+    gaps = len(pieces) + len(dropped) - 1
+    if gaps:
+        short = f", {sum(dropped):.3g} s too short to use" if dropped else ""
+        notes.append(f"{gaps} gaps; {len(pieces)} pieces used{short}")
+    if np.abs(steps[steps < 1.5 * step] - step).max() > 0.01 * step:
+        notes.append(f"sample times are uneven: drawn to even steps of {1e3 * step:.4g} ms")
+    quality = {
+        name: one._replace(noise=_noise(time, record[name], name, pieces))
+        for name, one in quality.items()
+    }
+    notes += _told(quality, time.size)
+    return Motion(tuple(pieces), step, cutoff, order, compensated, quality, tuple(notes))
+
+
+def _cleaned(
+    record: Record, step: float, notes: list[str]
+) -> tuple[dict[str, Array], dict[str, Quality]]:
+    """Every channel without spikes and clipped samples, and what it is worth."""
     cleaned: dict[str, Array] = {}
+    quality: dict[str, Quality] = {}
     for name in CHANNELS:
         if name not in record:
             continue
@@ -170,47 +211,28 @@ def condition(
             raise record.fault(f"{name} has no sample", "mend the sensor, or leave the column out")
         else:
             notes.append(f"{name} has no sample: left out")
-    uneven = np.abs(steps[steps < 1.5 * step] - step).max() > 0.01 * step
-    breaks = _breaks(time, cleaned, step, cutoff)
-    shortest = SHORTEST / cutoff
-    sections = low_pass(cutoff=cutoff, order=order, sample_time=step, compensated=compensated)
-    pieces, dropped = [], 0.0
-    for first, last in breaks:
-        span = float(time[last - 1] - time[first])
-        if span < shortest:
-            dropped += span
-            continue
-        own = {name: one[first:last] for name, one in cleaned.items()}
-        pieces.append(_piece(time[first:last], own, step, cutoff, sections, pressure_lag))
-    if not pieces:
-        raise _nothing(record, quality, shortest)
-    if len(breaks) > 1:
-        notes.append(
-            f"{len(breaks) - 1} gaps; {len(pieces)} pieces used"
-            + (f", {dropped:.3g} s too short to use" if dropped else "")
-        )
-    if uneven:
-        notes.append(f"sample times are uneven: drawn to even steps of {1e3 * step:.4g} ms")
-    for name, one in quality.items():
+    return cleaned, quality
+
+
+def _told(quality: dict[str, Quality], samples: int) -> list[str]:
+    """What was taken out of the channels, as notes."""
+    return [
+        f"{name}: {count} samples {what} of {samples}"
+        for name, one in quality.items()
         for count, what in (
             (one.missing, "missing"),
             (one.spikes, "spikes"),
             (one.clipped, "clipped"),
-        ):
-            if count:
-                notes.append(f"{name}: {count} samples {what} of {time.size}")
-    quality = {
-        name: one._replace(noise=_noise(time, record[name], name, pieces))
-        for name, one in quality.items()
-    }
-    return Motion(tuple(pieces), step, cutoff, order, compensated, quality, tuple(notes))
+        )
+        if count
+    ]
 
 
 def _choices(record: Record, cutoff: float, order: int, lag: float) -> None:
     """Refuse a filter that is none."""
     if not (math.isfinite(cutoff) and cutoff > 0):
         raise record.fault(f"a cut-off of {cutoff:g} Hz", 'give one above zero: --cutoff "30 Hz"')
-    if order != order or int(order) != order or not 1 <= order <= ORDERS:
+    if not 1 <= order <= ORDERS or int(order) != order:
         raise record.fault(
             f"a filter of order {order:g}", f"give a whole number from 1 to {ORDERS}"
         )
@@ -243,13 +265,20 @@ def _time(record: Record) -> Array:
 def _nothing(record: Record, quality: dict[str, Quality], shortest: float) -> InputError:
     """Nothing is left unbroken: because of what."""
     worst = max(
-        ((one.missing + one.clipped, name) for name, one in quality.items() if name in NEEDED),
+        (
+            (one.missing + one.spikes + one.clipped, name)
+            for name, one in quality.items()
+            if name in NEEDED
+        ),
         default=(0, ""),
     )
     why = "gaps in time"
     if worst[0] > BRIDGE:
         one = quality[worst[1]]
-        why = f"{worst[1]} misses {one.missing} samples and is clipped in {one.clipped}"
+        why = (
+            f"{worst[1]} has {one.missing} missing, {one.spikes} stray and {one.clipped} clipped "
+            "samples"
+        )
     return record.fault(
         f"no stretch of {shortest:.2g} s is unbroken: {why}",
         "mend the sensors, or give a longer record",

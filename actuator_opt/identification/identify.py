@@ -108,9 +108,7 @@ def _models(
     """Points of steady sliding, and the models through them."""
     points = steady_points(slidings, motion, settling)
     stribeck = fit_stribeck(points, area)
-    lugre = fit_lugre(
-        slidings, motion, points, stribeck, lag_known=lag_known, settling=settling
-    )
+    lugre = fit_lugre(slidings, motion, points, stribeck, lag_known=lag_known, settling=settling)
     return points, stribeck, lugre
 
 

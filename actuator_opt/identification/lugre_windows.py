@@ -33,12 +33,14 @@ class Windows:
     `hydraulic` has `margin` samples more at both ends, so that it can be shifted in time; `kept`
     are the samples that are judged: independent ones, away from the ends. `blur` is the time by
     which the steps of the position sensor hide a turn, sqrt(2 q/a) [s]. `options` (cut-offs, lanes,
-    samples) are velocities by lower cut-offs of the position, `velocity` the ones taken. `judged`
+    samples) are velocities by lower cut-offs of the position, `velocity` the ones taken; `turn` is
+    the sample at which the rod turns or starts. `judged`
     (lanes, kept) is 0 where points of steady sliding say the same, else 1.
     """
 
     velocity: Array
     options: Array
+    turn: int
     change: Array
     hydraulic: Array
     resisting: Array
@@ -49,6 +51,23 @@ class Windows:
     kept: Array
     judged: Array
     blur: float
+
+    @property
+    def fastest(self) -> float:
+        """Largest speed in the windows [m/s]."""
+        return float(np.max(np.abs(self.velocity)))
+
+    @property
+    def largest(self) -> float:
+        """Largest friction in the windows [N]."""
+        return float(np.max(np.abs(self.measured(np.zeros(1))[..., self.kept])))
+
+    def bending_time(self, travel: float) -> float:
+        """Longest time in a window that the rod takes for a distance from its turn or start [s]."""
+        place = np.cumsum(self.velocity, axis=-1) * self.step
+        near = np.abs(place - place[:, self.turn, None]) < travel
+        after = np.cumprod(near[:, self.turn :], axis=-1).sum(axis=-1)
+        return float(np.max(after) * self.step)
 
     def measured(self, lag: Array) -> Array:
         """Friction with the hydraulic force taken `lag` later (rows,) -> (rows, lanes, samples).
@@ -183,12 +202,19 @@ def windows(
     kept = np.arange(edge, before + after - edge, apart)
     told = cut([_settled_above(one, slowest, settling) for one, _ in lanes])[:, kept]
     span = (-before * stride, after * stride)
-    options = np.stack([velocities(one.piece, motion, at + span[0], at + span[1])[:, ::stride] for one, at in lanes], 1)
+    options = np.stack(
+        [
+            velocities(one.piece, motion, at + span[0], at + span[1])[:, ::stride]
+            for one, at in lanes
+        ],
+        1,
+    )
     velocity = options[0]
     sharpest = float(np.median(np.max(np.abs(np.gradient(options[-1], step, axis=-1)), axis=-1)))
     return Windows(
         velocity=velocity,
         options=options,
+        turn=before,
         change=cut([one.pressure for one, _ in lanes]) - reference,
         hydraulic=cut([one.hydraulic for one, _ in lanes], margin),
         resisting=cut([one.resisting for one, _ in lanes]),

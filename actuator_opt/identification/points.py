@@ -140,8 +140,7 @@ def _plateaus(sliding: Sliding, motion: Motion, settling: float) -> Iterator[Poi
         fifth = (last - i) // 5
         first = i + fifth
         away = i + round(settling / (abs(float(velocity[i])) * step))
-        if last - fifth - away > least // 2:
-            first = max(first, away)
+        first = max(first, min(away, last - fifth - least // 2))
         yield _point(sliding, motion, np.arange(first, last - fifth), "plateau")
         i = last
 
@@ -264,9 +263,13 @@ def _alike(at: Array, speed: Array, rising: Array) -> tuple[Array, Array] | None
 
 
 def _halves(both: Sequence[Point]) -> Point:
-    """Rising and falling speed as one point of equal weights: what lags cancels."""
+    """Rising and falling speed as one point of equal weights: what lags cancels.
+
+    To first order: a quarter of their difference counts as error (a choice).
+    """
     numbers = np.mean([one[:5] for one in both], axis=0)
-    error = float(np.sqrt(sum(one.error**2 for one in both)) / 2)
+    lagging = (both[0].friction - both[1].friction) / 4
+    error = float(np.sqrt(sum(one.error**2 for one in both) / 4 + lagging**2))
     v, p, p1, p2, mean = map(float, numbers)
     apart = (both[0].velocity - both[1].velocity) / 2
     spread = float(np.sqrt((both[0].spread ** 2 + both[1].spread ** 2) / 2 + apart**2))

@@ -267,7 +267,12 @@ def _columns(sheet: Sheet, stated: Mapping[str, str]) -> dict[str, _Column]:
             )
         places.setdefault(found, i)
     if "t" not in places and "t" not in stated:
-        fault(f"no column t; columns are {_list(names)}", 'name it with --column "t=NAME [s]"')
+        fault(
+            f"no column t; columns are {_list(names)}",
+            'name it with --column "t=NAME [s]"'
+            if len(names) > 1
+            else 'separate columns by commas, semicolons or tabs, begin other lines with "#"',
+        )
     read = {}
     for channel, i in places.items():
         known, (header, unit) = CHANNELS[channel], own[i]

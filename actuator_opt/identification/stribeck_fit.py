@@ -10,6 +10,7 @@ import numpy as np
 from ..least_squares import Parameter, known
 from ..models import friction
 from ..numeric import STEP, Array
+from .doubtful import PARTED, hidden, opened
 from .points import Point
 
 STATIC_MOST = 3.0
@@ -162,6 +163,12 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
             f"the exponent is held at {EXPONENT:g}, bounds of F_S and v_s hold for it alone: seven "
             "speeds show it"
         )
+    speeds_sorted = sorted(points, key=lambda one: one.speed)
+    falls = abs(speeds_sorted[-1].friction) < abs(speeds_sorted[0].friction)
+    why = hidden(best.parameters, speeds_sorted[-1].speed, falls)
+    if why is not None:
+        doubts.append(why)
+        best = replace(best, parameters=opened(best.parameters, PARTED))
     if "offset" in best.parameters:
         shift = best.parameters["offset"]
         if shift.lower > 0 or shift.upper < 0:

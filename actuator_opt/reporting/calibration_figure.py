@@ -13,7 +13,17 @@ from ..identification.points import LEVELS, Point
 from ..optimisation.redesign import Redesign, Shift
 from .bode import dot, level_ticks
 from .figures import Axes, fitted, legend, ticks
-from .identification_axes import IN, OUT, SURE, Box, error_bar, even_range, even_ticks, log_range
+from .identification_axes import (
+    IN,
+    OUT,
+    SURE,
+    Box,
+    error_bar,
+    even_range,
+    even_ticks,
+    log_range,
+    ways,
+)
 from .identification_rows import FORCE, SPEED
 from .ink import BLACK, BLUE, GREY, WHITE, Ink, spread_within
 from .text import trimmed, unit_text
@@ -94,16 +104,7 @@ def _friction(ink: Ink, box: Box, points: Sequence[Point], stated: Bench, measur
         for (_, group), y in zip(ends[::-1], places, strict=True):
             level = round(float(np.mean([one.pressure for one in group])) / 1e5)
             ink.text(box[0] + box[2] + 1.5, y, f"{level} bar", color=GREY)
-    _ways(ink, box[0], box[1] - 2.4, shown)
-
-
-def _ways(ink: Ink, x: float, y: float, points: Sequence[Point]) -> None:
-    """What the two marks mean."""
-    for words, style in (("out", OUT), ("in", IN)):
-        if any((one.velocity > 0) == (words == "out") for one in points):
-            ink.circle(x + 1.0, y, 0.75, fill=style["fill"], stroke=style["color"], pen=0.3)
-            ink.text(x + 2.6, y, words)
-            x += 8.5
+    ways(ink, box[0], box[1] - 2.4, shown)
 
 
 def _force(one: Point) -> float:

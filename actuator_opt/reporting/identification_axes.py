@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..identification.points import Point
 from ..numeric import Array
 from .bode import level_ticks
 from .fallback import wrap
@@ -94,7 +95,11 @@ class Velocities:
         if not self.logarithmic:
             low, high = (v * self.high / (self.range[1] or -self.range[0]) for v in self.range)
             count = max(2, int(axes.width / 9.0))
-            return spaced([(v, w, 1) for v, w in even_ticks(low, high, count)], axes)
+            values = even_ticks(low, high, count)
+            kept = spaced([(v, w, 1) for v, w in values], axes)
+            if len(kept) < 2:  # rather both ends than zero alone
+                kept = spaced([(v, w, -round(1e6 * abs(v))) for v, w in values], axes)
+            return kept
         found = [(0.0, "0", 0)]
         for place, words in level_ticks(math.log10(self.least), math.log10(self.high)):
             value = 10.0**place
@@ -191,3 +196,12 @@ def band(axes: Axes, xs: Sequence[float], low: Sequence[float], high: Sequence[f
         lower = [(axes.x(x), axes.y(y)) for x, y, _ in run]
         if len(run) > 1:
             axes.ink.path([[*upper, *lower[::-1]]], fill="#d5e6f0", stroke=None, closed=True)
+
+
+def ways(ink: Ink, x: float, y: float, points: Sequence[Point]) -> None:
+    """What the marks of both ways mean, in one line from `x`."""
+    for words, style in (("out", OUT), ("in", IN)):
+        if any((one.velocity > 0) == (words == "out") for one in points):
+            ink.circle(x + 1.0, y, 0.75, fill=style["fill"], stroke=style["color"], pen=0.3)
+            ink.text(x + 2.6, y, words)
+            x += 8.5

@@ -33,6 +33,7 @@ from .identification_axes import (
     log_ticks,
     reason,
     spaced,
+    ways,
 )
 from .identification_map import map_panel, pressure_levels
 from .identification_rows import FORCE, SPEED
@@ -99,7 +100,9 @@ def _friction_panel(ink: Ink, box: Box, found: Identification, fit: StribeckFit)
     axis = Velocities([SPEED.to_display(one.velocity) for one in found.points])
     curves = _stribeck_curves(found.points, fit, axis)
     ends = [one.friction + side * SURE * one.error for one in found.points for side in (-1, 1)]
-    ends += [float(v) for _, _, middle, _, _, _ in curves for v in middle]
+    least = abs(axis.at(axis.low))  # towards rest the curve may leave the frame: nothing is seen
+    for xs, _, middle, _, _, _ in curves:
+        ends += [v for x, v in zip(xs, middle, strict=True) if abs(x) >= least]
     marks = _level_marks(found.lugre, axis)
     axes = Axes(ink, box, axis.range, even_range([*ends, *(f for f, _, _ in marks)], zero=True))
     for xs, _, _, low, high, _ in curves:
@@ -279,7 +282,7 @@ def _damping_column(ink: Ink, box: Box, found: Identification) -> None:
         left, top, width, tall = reason(ink, (left, top - 1.0, width, tall + 1.0), why)
         top, tall = top + 1.0, tall - 1.0
     names = [(_NAMES.get(name, name), FIT_STYLES.get(name, _LUGRE)) for name in fits]
-    _way_words(ink, left, top + 0.2, found.points)
+    ways(ink, left, top - 2.2, found.points)
     top, tall = top + 3.4, tall - 3.4
     legend(ink, left + width, top - 2.4, names)
     residual = max(0.22 * tall, 9.0) if fits else 0.0
@@ -288,15 +291,6 @@ def _damping_column(ink: Ink, box: Box, found: Identification) -> None:
     _damping_panel(ink, upper, usable, fits, across)
     if fits:
         _ratio_panel(ink, (left, top + tall - residual, width, residual), usable, fits, across)
-
-
-def _way_words(ink: Ink, x: float, y: float, points: Sequence[Point]) -> None:
-    """What the two marks mean."""
-    for words, style in (("out", OUT), ("in", IN)):
-        if any((one.velocity > 0) == (words == "out") for one in points):
-            ink.circle(x + 1.0, y - 2.4, 0.75, fill=style["fill"], stroke=style["color"], pen=0.3)
-            ink.text(x + 2.6, y - 2.4, words)
-            x += 8.5
 
 
 def _damping_panel(
