@@ -232,6 +232,18 @@ def test_bursts_of_spikes_are_taken_out(heights):
     assert error_of(motion, "x", record, truth) < 5e-5
 
 
+@pytest.mark.parametrize("lasts", [25, 100])
+def test_a_burst_of_garbage_is_cut_out(lasts):
+    """Where a channel is noise as high as its range, for 25 or 100 ms, the record is cut."""
+    record, truth = made(30)
+    rng = np.random.default_rng(4)
+    garbage = np.arange(record.time.size) % 3000 < lasts
+    values = np.where(garbage, 0.05 + 0.05 * rng.uniform(-1, 1, garbage.size), record["x"])
+    motion = condition(but(record, x=values))
+    assert error_of(motion, "x", record, truth) < 3e-4
+    assert motion.duration > 28
+
+
 def test_a_turn_of_pressure_is_no_spike():
     """A step, a fast ramp and a saw tooth of pressure lose nothing to the search for spikes."""
     rng = np.random.default_rng(0)
@@ -371,6 +383,8 @@ def test_dropped_samples(lost, pieces):
         assert sum(piece.time.size for piece in motion.pieces) >= left.size
         if pieces == 2:
             assert "1 gaps; 2 pieces used" in motion.notes
+        elif broken.time.size < record.time.size:
+            assert f"time leaves out {lost} samples: bridged" in motion.notes
 
 
 def test_missing_samples_of_what_is_not_needed_break_nothing():

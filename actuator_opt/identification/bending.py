@@ -233,8 +233,6 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
     found = slopes(parts, 1, record)
     ways = {way: mean(one).value for way, one in by_way(parts, 1).items()}
     slope = _parameter(found, unsure)
-    if slope.value <= 0:
-        raise record.fault("F_L falls as w grows in the straight part", "check the record")
     published = _modulus(slope, specimen, published=True)
     modulus = _modulus(slope, specimen)
     if not isfinite(modulus.value):

@@ -31,11 +31,11 @@ from ..least_squares import CONFIDENCE, WEAK, Parameter, quantile
 from ..numeric import STEP, Array
 from .balance import Sliding
 from .conditioning import Motion
-from .lugre_fit import LOGARITHMIC, SYMBOLS, TRAVELS, LuGreFit
+from .lugre_problem import LOGARITHMIC, SYMBOLS, TRAVELS, LuGreFit
 from .lugre_windows import LAG, Windows, windows
 from .many_fits import Search, relaxed
-from .points import Point
-from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, StribeckFit, curve
+from .points import SETTLED, Point
+from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, Steady, StribeckFit
 
 FEWEST = 80
 """Resamples at least: two lie beyond each bound."""
@@ -72,14 +72,16 @@ def resampled(
     *,
     count: int,
     seed: int,
+    settling: float = SETTLED,
 ) -> tuple[StribeckFit | str, LuGreFit | str]:
     """Both models of a record with bounds by resampling.
 
     Values stay; bounds, standard errors (half the bounds over Student's t) and verdicts change. A
     parameter that the linearised model leaves open stays open, and so does one whose draws run to
     an end of the search. One that it calls not identifiable keeps the wider of both bounds: the
-    optimum lies in a flat valley then, and draws show the scatter about it, not the valley. The
-    Stribeck curve's covariance stays that of the linearised model.
+    optimum lies in a flat valley then, and draws show the scatter about it, not the valley. So do
+    those of LuGre where F_C is open or a lag is not looked for: its bounds hold more than scatter
+    then. The Stribeck curve's covariance stays that of the linearised model.
 
     Parameters
     ----------
@@ -87,6 +89,7 @@ def resampled(
     stribeck, lugre : the fits, or why there is none
     count : of resamples
     seed : of the draws: the same one gives the same bounds
+    settling : distance after a reversal from which sliding is steady, as the fits took it [m]
 
     Returns
     -------
@@ -104,7 +107,8 @@ def resampled(
     curve_known = stribeck if isinstance(stribeck, StribeckFit) else None
     if isinstance(lugre, LuGreFit):
         reference = 0.0 if curve_known is None else curve_known.reference_pressure
-        found = windows(slidings, motion, reference)
+        slowest = np.inf if curve_known is None else min(one.speed for one in points)
+        found = windows(slidings, motion, reference, slowest, settling)
         if found is not None:
             lugre = _lugre(found, points, curve_known, lugre, count, second)
     if curve_known is not None:
@@ -116,33 +120,31 @@ def resampled_stribeck(
     points: Sequence[Point], fit: StribeckFit, *, count: int, rng: np.random.Generator
 ) -> StribeckFit:
     """A Stribeck curve with bounds by resampling its points."""
-    asked = _asked(fit.parameters)
-    spare = len(points) - len(fit.parameters)
-    if not asked or spare < 1:
+    names = tuple(fit.parameters)
+    spare = len(points) - len(names)
+    if spare < 1:
         return fit
     errors, values = fit.errors, fit.values
-    velocity = np.array([one.velocity for one in points])
-    change = np.array([one.pressure for one in points]) - fit.reference_pressure
-    largest = max(abs(one.friction) for one in points)
-    search = _search(asked, values, largest, {"coulomb": (1e-6 * largest, np.inf)})
+    steady = Steady(points, errors)
+    search = _search(names, values, steady.largest, {"coulomb": (1e-6 * steady.largest, np.inf)})
 
     def model(rows: Array) -> Array:
-        own = {name: x[:, None] for name, x in _natural(search.names, rows, values).items()}
-        return curve(velocity, change, **own) / errors
+        own = {name: x[:, None] for name, x in natural(names, rows, values).items()}
+        return steady.predict(own) / errors
 
     def slopes(rows: Array) -> Array:
         steps = 1j * STEP * np.eye(rows.shape[1])
         return np.stack([np.imag(model(rows + one)) / STEP for one in steps], axis=-1)
 
-    best = searched(search.names, values)[None]
+    best = searched(names, values)[None]
     rest = fit.residuals / errors
     spread = _spreads(slopes(best)[0], rest, float(np.sum(rest**2)) / spare)
     noise = spread * rng.standard_normal((count, spread.size)) * _scales(rng, spare, count)
-    starts = STARTS if "stribeck_speed" in asked else STARTS[:1]
+    starts = STARTS if "stribeck_speed" in names else STARTS[:1]
     target = np.tile(model(best) + noise, (len(starts), 1))
     rows = np.repeat(best, target.shape[0], axis=0)
-    if "stribeck_speed" in asked:
-        rows[:, asked.index("stribeck_speed")] += np.repeat(np.log(starts), count)
+    if "stribeck_speed" in names:
+        rows[:, names.index("stribeck_speed")] += np.repeat(np.log(starts), count)
     found, cost = relaxed(lambda x, at: model(x) - target[at], slopes, rows, search, STEPS)
     least = np.argmin(cost.reshape(-1, count), axis=0)
     found = found.reshape(-1, count, best.size)[least, np.arange(count)]
@@ -159,17 +161,15 @@ def _lugre(
 ) -> LuGreFit:
     """A LuGre model with bounds by resampling points and windows."""
     blocks = found.velocity.shape[0]
-    asked = _asked(fit.parameters)
-    if not asked or blocks < LEAST_WINDOWS:
+    if blocks < LEAST_WINDOWS:
         doubt = f"{blocks} windows are too few to resample: bounds of the linearised model"
-        return replace(fit, doubts=(*fit.doubts, doubt)) if asked else fit
-    problem = LuGreResiduals(found, points if stribeck is not None else (), stribeck, fit, asked)
-    best = searched(asked, fit.values)
+        return replace(fit, doubts=(*fit.doubts, doubt))
+    problem = LuGreResiduals(found, points, stribeck, fit)
+    best = searched(tuple(fit.parameters), fit.values)
     rest = problem.misfit(best[None])[0]
     jacobian = problem.slopes(best)
     steady = rest.size - blocks * found.kept.size
-    asked_of_points = 0 if stribeck is None else len(stribeck.parameters)
-    spare = max(steady - asked_of_points, 1)
+    spare = max(steady - (0 if stribeck is None else len(stribeck.parameters)), 1)
     variance = float(np.sum(rest[:steady] ** 2)) / spare
     spread = _spreads(jacobian, rest, variance)[:steady]
     noise = np.concatenate(
@@ -193,8 +193,10 @@ def _lugre(
         rows.append(
             relaxed(misfit, lambda _: jacobian[None], begin, problem.search, LUGRE_STEPS)[0]
         )
+    unseen = {"lag", "bristle_damping"} <= set(fit.held)
+    wider = unseen or not np.isfinite(fit.parameters["coulomb"].upper)
     parameters = _bounded(
-        fit.parameters, problem.search, np.concatenate(rows), fit.values, blocks - 1
+        fit.parameters, problem.search, np.concatenate(rows), fit.values, blocks - 1, wider
     )
     was = {f"{SYMBOLS[n]} is {fit.parameters[n].verdict}" for n in _bristles(fit.parameters)}
     doubts = [one for one in fit.doubts if one not in was]
@@ -214,61 +216,53 @@ class LuGreResiduals:
     """Weighted residuals of points and windows over searched numbers, as `lugre_fit` has them."""
 
     def __init__(
-        self,
-        found: Windows,
-        points: Sequence[Point],
-        stribeck: StribeckFit | None,
-        fit: LuGreFit,
-        asked: tuple[str, ...],
+        self, found: Windows, points: Sequence[Point], stribeck: StribeckFit | None, fit: LuGreFit
     ) -> None:
-        self.windows, self.spread = found, fit.misfit
-        self.velocity = np.array([one.velocity for one in points])
-        self.friction = np.array([one.friction for one in points])
-        self.errors = np.zeros(0) if stribeck is None else stribeck.errors
-        reference = 0.0 if stribeck is None else stribeck.reference_pressure
-        self.change = np.array([one.pressure for one in points]) - reference
-        self.values = fit.values
-        self.largest = float(np.max(np.abs(found.measured(np.zeros(1))[..., found.kept])))
+        self.names, self.values = tuple(fit.parameters), fit.values
+        best = searched(self.names, self.values)
+        self.windows = found.chosen(natural(self.names, best[None], self.values))
+        self.spread, self.largest, self.steady = fit.misfit, found.largest, None
+        if stribeck is not None:
+            self.steady = Steady(points, stribeck.errors * stribeck.scatter)
         soft, stiff = (np.log(self.largest / one) for one in reversed(TRAVELS))
         ends = {
             "coulomb": (1e-3 * self.largest, np.inf),
             "bristle_stiffness": (soft, stiff),
             "lag": (-LAG, LAG),
         }
-        self.search = _search(asked, self.values, self.largest, ends)
+        self.search = _search(self.names, self.values, self.largest, ends)
 
     def misfit(self, rows: Array) -> Array:
         """Weighted residuals (rows, residuals)."""
-        values = _natural(self.search.names, rows, self.values)
-        lanes = self.windows.misfit(values) / self.spread
+        values = natural(self.names, rows, self.values)
+        lanes = (self.windows.misfit(values) / self.spread).reshape(rows.shape[0], -1)
+        if self.steady is None:
+            return lanes
         steady = {n: x[:, None] for n, x in values.items() if n not in SYMBOLS}
-        points = (curve(self.velocity, self.change, **steady) - self.friction) / self.errors
-        return np.concatenate([points, lanes.reshape(rows.shape[0], -1)], axis=1)
+        return np.concatenate([self.steady.residual(steady), lanes], axis=1)
 
     def slopes(self, best: Array) -> Array:
         """Derivatives at the optimum by central differences (residuals, searched)."""
-        speed = np.max(np.abs(self.velocity), initial=1e-3)
+        speed, change = 1e-3, 1e5
+        if self.steady is not None:
+            speed = max(speed, float(np.max(np.abs(self.steady.velocity))))
+            change = max(change, float(np.max(np.abs(self.steady.change))))
         size = {
             "coulomb": self.largest,
             "static": self.largest,
             "viscous": self.largest / speed,
             "offset": self.largest,
-            "pressure_slope": self.largest / np.max(np.abs(self.change), initial=1e5),
+            "pressure_slope": self.largest / change,
             "bristle_damping": 1e-2 * self.values["bristle_stiffness"],
             "lag": 1e-2,
         }
-        steps = DIFFERENCE * np.array([size.get(name, 1.0) for name in self.search.names])
+        steps = DIFFERENCE * np.array([size.get(name, 1.0) for name in self.names])
         moved = self.misfit(np.concatenate([best + np.diag(steps), best - np.diag(steps)]))
         return ((moved[: best.size] - moved[best.size :]) / (2 * steps[:, None])).T
 
 
-def _asked(parameters: Mapping[str, Parameter]) -> tuple[str, ...]:
-    """Parameters that the linearised model bounds."""
-    return tuple(name for name, one in parameters.items() if np.isfinite(one.standard_error))
-
-
 def _search(
-    asked: tuple[str, ...],
+    names: tuple[str, ...],
     values: Mapping[str, float],
     largest: float,
     ends: Mapping[str, tuple[float, float]],
@@ -281,10 +275,10 @@ def _search(
         "viscous": (0.0, np.inf),
         "bristle_damping": (0.0, np.inf),
     } | dict(ends)
-    best = searched(asked, values)
-    pairs = [usual.get(name, (-np.inf, np.inf)) for name in asked]
+    best = searched(names, values)
+    pairs = [usual.get(name, (-np.inf, np.inf)) for name in names]
     low = np.minimum([one[0] for one in pairs], best)
-    return Search(asked, low, np.maximum([one[1] for one in pairs], best))
+    return Search(names, low, np.maximum([one[1] for one in pairs], best))
 
 
 def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
@@ -294,7 +288,7 @@ def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
     return np.array([np.log(own[n]) if n in LOGS else own[n] for n in names])
 
 
-def _natural(names: Sequence[str], rows: Array, values: Mapping[str, float]) -> dict[str, Array]:
+def natural(names: Sequence[str], rows: Array, values: Mapping[str, float]) -> dict[str, Array]:
     """Parameters (rows,) of searched numbers (rows, searched), the others as they are."""
     own = {
         name: np.exp(column) if name in LOGS else column
@@ -329,17 +323,24 @@ def _bounded(
     found: Array,
     values: Mapping[str, float],
     spare: int,
+    wider: bool = False,
 ) -> dict[str, Parameter]:
-    """Parameters with percentiles for bounds; draws at an open end of the search have none."""
+    """Parameters with percentiles for bounds; draws at an open end of the search have none.
+
+    `wider` keeps the wider of both bounds for all.
+    """
     count = found.shape[0]
-    natural = _natural(search.names, found, values)
+    own = natural(search.names, found, values)
     tail = max(int((count + 1) * (1 - CONFIDENCE) / 2), 1)
     unseen = np.zeros(count, dtype=bool)
     if "static" in search.names:
         unseen = found[:, search.names.index("static")] <= AT_END * values["coulomb"]
     result = dict(parameters)
     for k, name in enumerate(search.names):
-        value, draws = parameters[name].value, natural[name].copy()
+        was = parameters[name]
+        if not np.isfinite(was.standard_error):
+            continue
+        value, draws = was.value, own[name].copy()
         near = AT_END * max(abs(found[:, k]).max(), 1e-300)
         if name not in PHYSICAL:
             draws[found[:, k] <= search.low[k] + near] = -np.inf
@@ -348,8 +349,7 @@ def _bounded(
             draws[unseen] = np.resize([-np.inf, np.inf], int(unseen.sum()))
         draws.sort()
         low, high = min(draws[tail - 1], value), max(draws[count - tail], value)
-        was = parameters[name]
-        if name not in SIGNED and was.verdict == "not identifiable":
+        if wider or (name not in SIGNED and was.verdict == "not identifiable"):
             low, high = min(low, was.lower), max(high, was.upper)
         with np.errstate(invalid="ignore"):
             error = (high - low) / (2 * quantile(spare))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, hypot, log, sqrt
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -112,7 +111,7 @@ class Calibration:
 
     def measured(self) -> dict[str, Measured]:
         """Their bounds by PATH."""
-        name = Path(self.identification.record.name).name
+        name = self.identification.record.file_name
         return {p: m for one in self.learned for p, m in one.measured(name).items()}
 
 
@@ -311,6 +310,6 @@ def _beyond(bench: Bench, points: Sequence[Point]) -> Iterator[str]:
     if fastest > 1.05 * speed or bench.supply_pressure > 1.05 * pressure:
         yield (
             f"the record reaches {1e3 * speed:.3g} mm/s and {pressure / 1e5:.3g} bar, the design "
-            f"{1e3 * fastest:.3g} mm/s and {bench.supply_pressure / 1e5:.3g} bar: beyond the record "
+            f"{1e3 * fastest:.3g} mm/s and {bench.supply_pressure / 1e5:.3g} bar: beyond it "
             "friction is extrapolated by contact law and Stribeck curve"
         )

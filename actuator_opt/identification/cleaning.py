@@ -21,6 +21,9 @@ SAMPLED = 100_000
 """Samples of a channel that tell its spread (a choice: to 1 %)."""
 LEVELS = 20_000
 """Samples that tell the step of a sensor (a choice: some per step of a fine one)."""
+CROWD, GARBAGE = 0.2, 0.5
+"""Shares of spikes in two windows from which the rest is doubted, and is garbage (choices: of strays at random 5 % come
+so close once in 1e10 samples, 10 % once in 1e6; noise as high as the range is three quarters)."""
 HELD = 6
 """Samples for which a channel stands at its end to be clipped, at least."""
 FLICKER = 0.6
@@ -71,8 +74,10 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
     middle = median_filter(kept, size=size, mode="nearest")
     quantum = resolution(middle) or resolution(kept)
     live = _live(kept)
-    spikes = _spikes(kept, middle, quantum, live)
+    least = _least(kept, middle, quantum, live)
+    spikes = _spikes(kept, middle, least)
     spikes |= _strays(kept, spikes, quantum, live)
+    spikes |= _garbage(kept, spikes, least, size)
     clipped = _clipped(kept, spikes, quantum, pressure=pressure)
     spikes &= ~clipped
     out = np.full(values.shape, np.nan)
@@ -135,14 +140,19 @@ def runs(flags: Array) -> tuple[Array, Array]:
     return turns[::2], turns[1::2]
 
 
-def _spikes(values: Array, middle: Array, quantum: float, live: Array) -> Array:
-    """Samples far from the median of their neighbours that rise at once, as no true peak does."""
+def _least(values: Array, middle: Array, quantum: float, live: Array) -> float:
+    """Least height of a spike over the median of its neighbours."""
     apart = np.abs(values - middle)
+    if not np.any(middle != middle[0]) and np.mean(apart > 0) < 0.01:
+        return 0.0  # a constant with a few strays
     some = np.sort(values[:: max(1, values.size // LEVELS)])
     low, high = some[some.size // 100], some[-1 - some.size // 100]
-    least = max(SPIKE * _spread(apart, live), QUANTA * quantum, RANGE * float(high - low))
-    if not np.any(middle != middle[0]) and np.mean(apart > 0) < 0.01:
-        least = 0.0  # a constant with a few strays
+    return max(SPIKE * _spread(apart, live), QUANTA * quantum, RANGE * float(high - low))
+
+
+def _spikes(values: Array, middle: Array, least: float) -> Array:
+    """Samples far from the median of their neighbours that rise at once, as no true peak does."""
+    apart = np.abs(values - middle)
     out = apart > least
     at = np.flatnonzero(out)
     before, after = np.maximum(at - 2, 0), np.minimum(at + 2, values.size - 1)
@@ -177,6 +187,26 @@ def _strays(values: Array, spikes: Array, quantum: float, live: Array) -> Array:
     out = np.zeros(values.shape, dtype=bool)
     out[found] = True
     return out
+
+
+def _garbage(values: Array, spikes: Array, least: float, size: int) -> Array:
+    """What else is no good where spikes crowd.
+
+    In a short crowd the samples outside what stands before and behind it; of a long one all.
+    """
+    from scipy.ndimage import maximum_filter1d, uniform_filter1d  # slow to import, rarely needed
+
+    wide = 2 * size + 1
+    dense = uniform_filter1d(spikes.astype(np.float32), wide, mode="constant")
+    out = np.zeros(values.shape, dtype=bool)
+    for a, b in zip(*runs(dense > CROWD), strict=True):
+        before, behind = slice(max(a - size, 0), a), slice(b, b + size)
+        left, right = values[before][~spikes[before]], values[behind][~spikes[behind]]
+        if left.size and right.size and b - a < 4 * wide:
+            low, high = np.sort([np.median(left), np.median(right)])
+            out[a:b] = (values[a:b] < low - least) | (values[a:b] > high + least)
+    core = dense > GARBAGE
+    return out | maximum_filter1d(core, wide) if core.any() else out
 
 
 def _peaks(values: Array, apart: Array, first: Array, last: Array) -> tuple[Array, Array]:

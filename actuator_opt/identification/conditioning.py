@@ -185,6 +185,11 @@ def condition(
     if gaps:
         short = f", {sum(dropped):.3g} s too short to use" if dropped else ""
         notes.append(f"{gaps} gaps; {len(pieces)} pieces used{short}")
+    skipped = float(
+        np.sum(np.round(steps[steps < (_bridged(step, cutoff) + 1.5) * step] / step) - 1)
+    )
+    if skipped > 0:
+        notes.append(f"time leaves out {skipped:.0f} samples: bridged")
     if np.abs(steps[steps < 1.5 * step] - step).max() > 0.01 * step:
         notes.append(f"sample times are uneven: drawn to even steps of {1e3 * step:.4g} ms")
     quality = {
@@ -309,12 +314,17 @@ def _floor(value: float) -> float:
     return math.floor(value / unit) * unit
 
 
+def _bridged(step: float, cutoff: float) -> int:
+    """Missing samples that a straight line bridges."""
+    return max(BRIDGE, round(0.25 / (cutoff * step)))
+
+
 def _breaks(
     time: Array, channels: dict[str, Array], step: float, cutoff: float
 ) -> list[tuple[int, int]]:
     """First and one past the last sample of every unbroken stretch."""
     torn = np.zeros(time.size, dtype=bool)
-    longest = max(BRIDGE, round(0.25 / (cutoff * step)))
+    longest = _bridged(step, cutoff)
     for name, values in channels.items():
         if name in NEEDED:
             first, last = runs(np.isnan(values))

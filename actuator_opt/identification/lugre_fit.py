@@ -14,12 +14,19 @@ import numpy as np
 from .balance import Sliding
 from .conditioning import Motion
 from .doubtful import opened, widened
-from .lugre_problem import USUAL, LuGreFit, Problem
+from .lugre_problem import LOGARITHMIC, SYMBOLS, TRAVELS, USUAL, LuGreFit, Problem
 from .lugre_windows import Windows, windows
 from .points import SETTLED, SETTLING, Point
 from .stribeck_fit import EXPONENT, StribeckFit
 
-__all__ = ["LuGreFit", "fit_lugre", "settling_distance"]
+__all__ = [
+    "LOGARITHMIC",
+    "SYMBOLS",
+    "TRAVELS",
+    "LuGreFit",
+    "fit_lugre",
+    "settling_distance",
+]
 
 BLUR = 40e-3
 """Time by which a turn may be hidden for a lag to be looked for [s]: ten times a usual lag."""

@@ -22,6 +22,9 @@ LAG = 20e-3
 """Largest lag of the pressures looked for [s]."""
 PER_PERIOD = 12
 """Steps of the integration per period of the cut-off, at least."""
+SAMPLES, LEFT = 2.0, 0.05
+"""Independent samples that a rod must take for a few breakaway travels, and their share that may
+still count as rest (a choice)."""
 LASTING = 0.05
 """Time for which a way must last to be one [s]."""
 
@@ -34,8 +37,9 @@ class Windows:
     are the samples that are judged: independent ones, away from the ends. `blur` is the time by
     which the steps of the position sensor hide a turn, sqrt(2 q/a) [s]. `options` (cut-offs, lanes,
     samples) are velocities by lower cut-offs of the position, `velocity` the ones taken; `turn` is
-    the sample at which the rod turns or starts. `judged`
-    (lanes, kept) is 0 where points of steady sliding say the same, else 1.
+    the sample at which the rod turns or starts. `steady`
+    (lanes, kept) is 0 where points of steady sliding say the same, else 1; `judged` is 0 also in
+    windows that are left out; `quick` says that all should be.
     """
 
     velocity: Array
@@ -49,8 +53,10 @@ class Windows:
     sections: Array
     reach: int
     kept: Array
+    steady: Array
     judged: Array
     blur: float
+    quick: bool = False
 
     @property
     def fastest(self) -> float:
@@ -62,12 +68,18 @@ class Windows:
         """Largest friction in the windows [N]."""
         return float(np.max(np.abs(self.measured(np.zeros(1))[..., self.kept])))
 
-    def bending_time(self, travel: float) -> float:
-        """Longest time in a window that the rod takes for a distance from its turn or start [s]."""
+    def resolved(self, travel: float) -> Windows:
+        """Without windows in which the rod takes less than `SAMPLES` for a distance from its turn.
+
+        There the filter has blurred the motion that bends the bristles. All, where none is left.
+        """
         place = np.cumsum(self.velocity, axis=-1) * self.step
-        near = np.abs(place - place[:, self.turn, None]) < travel
-        after = np.cumprod(near[:, self.turn :], axis=-1).sum(axis=-1)
-        return float(np.max(after) * self.step)
+        gone = np.abs(place - place[:, self.turn, None])[:, self.turn :]
+        near = np.cumprod(gone < travel, axis=-1)
+        taken = np.sum(near * (gone > LEFT * travel), axis=-1)
+        slow = taken >= SAMPLES * (self.kept[1] - self.kept[0])
+        judged = self.steady * slow[:, None]
+        return replace(self, judged=judged if slow.any() else self.steady, quick=not slow.any())
 
     def measured(self, lag: Array) -> Array:
         """Friction with the hydraulic force taken `lag` later (rows,) -> (rows, lanes, samples).
@@ -228,6 +240,7 @@ def windows(
         ),
         reach=round(3 / (motion.cutoff * step)),
         kept=kept,
+        steady=np.where(told, 0.0, 1.0),
         judged=np.where(told, 0.0, 1.0),
         blur=float(np.sqrt(2 * motion.quality["x"].resolution / max(sharpest, 1e-12))),
     )

@@ -238,10 +238,16 @@ def _swept(slidings: Sequence[Sliding], motion: Motion, settling: float) -> list
             size = independent(half.size, motion)
             line = np.polyfit(velocity[half], friction[half], 1)
             rest = friction[half] - np.polyval(line, velocity[half])
-            numbers = (velocity, pressure, first, second, friction)
+            v, p, p1, p2, mean = (
+                float(np.mean(one[half])) for one in (velocity, pressure, first, second, friction)
+            )
             own.append(
                 Point(
-                    *(float(np.mean(one[half])) for one in numbers),
+                    v,
+                    p,
+                    p1,
+                    p2,
+                    mean,
                     float(np.std(rest) / np.sqrt(max(size - 2, 1))),
                     half.size * motion.sample_time,
                     "sweep",

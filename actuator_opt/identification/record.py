@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -90,6 +91,11 @@ class Record:
 
     def __contains__(self, name: object) -> bool:
         return name in self.channels
+
+    @property
+    def file_name(self) -> str:
+        """Name of its file without the folders: what a page prints."""
+        return Path(self.name).name
 
     def line(self, sample: int) -> int | None:
         """Line of a sample in its file."""

@@ -233,7 +233,8 @@ class Loop:
         if not branch.loading:
             return branch
         first, force = branch.samples.start, self.force[branch.samples]
-        high = self.floor + TOP * (float(np.max(force)) - self.floor)
+        most = float(np.max(force))
+        high = most - (1 - TOP) * abs(most - self.floor)
         return Branch(slice(first, first + int(np.flatnonzero(force >= high)[-1]) + 1), True)
 
     def cut(self, low: float, high: float, zeros: Sequence[float]) -> list[Part]:
@@ -257,6 +258,11 @@ class Loop:
     def zeros(self, parts: Sequence[Part]) -> list[float]:
         """Deflection at which the straight line of every branch meets zero force."""
         slope = slopes(parts, 1, self.record).value
+        if slope <= 0:
+            raise self.record.fault(
+                "F_L does not grow with w in the straight part",
+                "check both columns, and their noise",
+            )
         return [
             float(np.mean(one.deflection) - (np.mean(one.force) - self.floor) / slope)
             if one.deflection.size
@@ -283,7 +289,8 @@ class Loop:
                 abs(float(np.trapezoid(self.force[x] - self.floor, self.deflection[x])))
                 for x in (first.samples, slice(first.samples.stop - 1, second.samples.stop))
             )
-            shares.append(1 - back / done)
+            if done > 0:
+                shares.append(1 - back / done)
         return float(np.mean(shares)) if shares else None
 
 
@@ -366,13 +373,13 @@ def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Str
         parts = loop.cut(*ends, zeros)
         if found and not all(by_way(parts, 2).get(one.loading) for one in parts):
             break
+        new = loop.zeros(parts)
         slope, curve = slopes(parts, 1, loop.record), slopes(parts, 2, loop.record)
         length = ends[1] - ends[0]
         bent = 2 * length * curve.value / slope.value
         half = quantile(curve.freedom) * float(np.sqrt(curve.variance))
         beyond = max(abs(bent) - abs(2 * length * half / slope.value), 0.0)
-        pairs = zip(zeros, loop.zeros(parts), strict=True)
-        moved = float(np.median([old - new for old, new in pairs if isfinite(new)]))
+        moved = float(np.median([a - b for a, b in zip(zeros, new, strict=True) if isfinite(b)]))
         whole = (ends[0] + moved, ends[1] + moved)
         one = Straight(parts, whole, bent, beyond, (first, last) != CUTS[0])
         if abs(bent) <= BENT or beyond == 0:

@@ -10,7 +10,7 @@ import numpy as np
 from ..least_squares import Parameter, known
 from ..models import friction
 from ..numeric import STEP, Array
-from .doubtful import PARTED, hidden, opened
+from .doubtful import PARTED, hidden, opened, widened
 from .points import Point
 
 STATIC_MOST = 3.0
@@ -19,6 +19,8 @@ SPEEDS, EXPONENTS = (2e-4, 5e-2), (0.5, 2.5)
 """Range of the Stribeck speed [m/s] and of its exponent searched."""
 EXPONENT = 2.0
 """Exponent where the points cannot tell it ([MECE5005], [Huang2017] Table 2)."""
+OTHER = 1.0
+"""Exponent that bounds allow for where the points cannot tell it (Tustin's exponential)."""
 DIFFERENT = 0.05
 """Speeds further apart than this share are different."""
 SPREAD, APART = 0.2, 3.0
@@ -121,9 +123,10 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
     """The Stribeck curve through points of steady sliding, or why there is none.
 
     Asked of the points: F_C and sigma_2; F_S and v_s where there are five speeds or more and they
-    better the fit (corrected Akaike information), with the exponent where there are seven: asked for
-    only where it betters the fit it would be biased, and F_S with it; an offset where the rod runs
-    both ways; an effect of pressure where it varies by a fifth.
+    better the fit (corrected Akaike information), with the exponent where there are seven: asked
+    for only where it betters the fit it would be biased, and F_S with it; an offset where the rod
+    runs both ways; an effect of pressure where it varies by a fifth. Neighbouring points of sweeps
+    share noise by the filter: their scatter about the curve may not say less than their errors.
 
     Parameters
     ----------
@@ -145,7 +148,7 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
         names = [name for level in _LEVELS[:depth] for name in level] + beside
         if len(speeds) < least or len(points) <= len(names) + 1:
             break
-        fits.append(_fit(points, tuple(names)))
+        fits.append(_fit(points, tuple(names), EXPONENT))
     if not fits:
         return (
             f"{len(points)} points for {2 + len(beside)} parameters: give more plateaus or sweeps "
@@ -154,14 +157,15 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
     best = min(fits, key=_information)
     if "static" in best.parameters:
         best = fits[-1]
+        if "exponent" not in best.parameters:
+            best = _unsure(best, points)
     if len(fits) < 2:
         doubts.append(f"{len(speeds)} speeds do not show F_S and v_s: five or more do")
     elif "static" not in best.parameters:
         doubts.append("no rise of friction towards rest: F_S and v_s are not seen")
     elif "exponent" not in best.parameters:
         doubts.append(
-            f"the exponent is held at {EXPONENT:g}, bounds of F_S and v_s hold for it alone: seven "
-            "speeds show it"
+            f"the exponent is held at {EXPONENT:g}, bounds allow for {OTHER:g}: seven speeds tell"
         )
     speeds_sorted = sorted(points, key=lambda one: one.speed)
     falls = abs(speeds_sorted[-1].friction) < abs(speeds_sorted[0].friction)
@@ -179,6 +183,16 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
     else:
         doubts.append("one way only: an error of the sensors' zeros counts as friction")
     return replace(best, doubts=tuple(doubts))
+
+
+def _unsure(fit: StribeckFit, points: Sequence[Point]) -> StribeckFit:
+    """With bounds that allow for another exponent than the one held: an even chance between."""
+    other = _fit(points, tuple(fit.parameters), OTHER)
+    more = {
+        name: abs(other.values[name] - one.value) / np.sqrt(3)
+        for name, one in fit.parameters.items()
+    }
+    return replace(fit, parameters=widened(fit.parameters, more, fit.quantile))
 
 
 def _different(speeds: Sequence[float]) -> list[float]:
@@ -232,27 +246,27 @@ class Steady:
         return sum(_slopes(one, self.change, values, names) for one in both) / 2
 
 
-def _held(names: Sequence[str], coulomb: float) -> dict[str, float]:
+def _held(names: Sequence[str], coulomb: float, exponent: float) -> dict[str, float]:
     """Values of what is not asked for."""
-    held = {"exponent": EXPONENT, "pressure_slope": 0.0, "offset": 0.0}
+    held = {"exponent": exponent, "pressure_slope": 0.0, "offset": 0.0}
     if "static" not in names:
         held |= {"static": coulomb, "stribeck_speed": SPEEDS[0]}
     return {name: value for name, value in held.items() if name not in names}
 
 
-def _fit(points: Sequence[Point], names: tuple[str, ...]) -> StribeckFit:
+def _fit(points: Sequence[Point], names: tuple[str, ...], exponent: float) -> StribeckFit:
     """Least squares for some parameters, from the best of a grid of speeds and exponents."""
     from scipy.optimize import least_squares  # slow to import, rarely needed
 
     data = Steady(points)
-    start = _search(data, names)
+    start = _search(data, names, exponent)
     scale = _scales(data)
 
     def values(x: Array) -> dict[str, float]:
         found = dict(zip(names, x * [scale[name] for name in names], strict=True))
         if "static" in names:  # searched as the rise over F_C, which keeps F_S >= F_C
             found["static"] = found["coulomb"] + found["static"]
-        return _held(names, found["coulomb"]) | found
+        return _held(names, found["coulomb"], exponent) | found
 
     def residuals(x: Array) -> Array:
         return data.residual(values(x))
@@ -286,10 +300,14 @@ def _fit(points: Sequence[Point], names: tuple[str, ...]) -> StribeckFit:
     own = {name: best[name] for name in names}
     jacobian = data.slopes(best, names)
     sizes = np.array([max(abs(own[name]), 1e-3 * scale[name]) for name in names])
-    told = known(own, jacobian / data.error[:, None], data.residual(best), sizes)
+    rest = data.residual(best)
+    chance = float(np.sqrt(np.sum(rest**2) / max(rest.size - len(own), 1)))
+    if any(one.kind == "sweep" for one in points):
+        rest = rest / min(max(chance, 1e-9), 1.0)
+    told = known(own, jacobian / data.error[:, None], rest, sizes)
     return StribeckFit(
         told.parameters,
-        _held(names, best["coulomb"]),
+        _held(names, best["coulomb"], exponent),
         told.covariance,
         told.quantile,
         data.reference,
@@ -314,7 +332,7 @@ def _scales(data: Steady) -> dict[str, float]:
     }
 
 
-def _search(data: Steady, names: Sequence[str]) -> dict[str, float]:
+def _search(data: Steady, names: Sequence[str], held: float) -> dict[str, float]:
     """Start values: over a grid of Stribeck speeds and exponents the rest is linear."""
     way, speed = np.sign(data.velocity), np.abs(data.velocity)
     columns = {"coulomb": way, "viscous": data.velocity}
@@ -322,9 +340,9 @@ def _search(data: Steady, names: Sequence[str]) -> dict[str, float]:
         columns["offset"] = np.ones_like(speed)
     if "pressure_slope" in names:
         columns["pressure_slope"] = way * data.change
-    grid: list[tuple[float, float]] = [(SPEEDS[0], EXPONENT)]
+    grid: list[tuple[float, float]] = [(SPEEDS[0], held)]
     if "static" in names:
-        exponents = np.linspace(*EXPONENTS, 6) if "exponent" in names else [EXPONENT]
+        exponents = np.linspace(*EXPONENTS, 6) if "exponent" in names else [held]
         grid = [(v, d) for v in np.geomspace(*SPEEDS, 30) for d in exponents]
     best, least = {}, np.inf
     from scipy.optimize import lsq_linear  # slow to import, rarely needed

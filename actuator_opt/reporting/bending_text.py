@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from ..identification.bending import BendingResult
 from ..least_squares import Parameter
 from ..quantities import MATERIAL_PROPERTIES, METRICS
@@ -19,7 +17,7 @@ def bending_text(
 ) -> str:
     """What `identify --span` shows: slope, modulus with and without shear, what to doubt."""
     console = Console(colour, unicode, width)
-    name = console.paint(console.say(Path(found.record.name).name), "bold")
+    name = console.paint(console.say(found.record.file_name), "bold")
     rows: list[tuple[str, Parameter]] = [
         ("slope of force over deflection", found.slope),
         ("modulus, nothing taken off", found.as_published),

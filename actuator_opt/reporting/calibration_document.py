@@ -49,7 +49,7 @@ def write_calibration_sheet(
     run = {
         "actuator_opt": VERSION,
         "command": command,
-        "record": record.name,
+        "record": record.file_name,
         "record_sha256": samples_hash(record),
         "source_name": source_name,
         "spec_hash": spec_hash,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import NamedTuple
 
 from ..identification.calibration import Calibration
@@ -98,7 +97,7 @@ def what(found: Calibration) -> str:
     own = found.identification
     ratio = found.coulomb / found.stated
     return (
-        f"Record {Path(own.record.name).name}: Coulomb friction is {100 * ratio:.0f} % of what the "
+        f"Record {own.record.file_name}: Coulomb friction is {100 * ratio:.0f} % of what the "
         f"design states at the record's pressures, {text.number(found.coulomb)} N instead of "
         f"{text.number(found.stated)} N."
     )

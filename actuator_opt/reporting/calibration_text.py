@@ -22,27 +22,31 @@ def calibration_text(
     console = Console(colour, unicode, width)
     name = console.paint(console.say(found.identification.bench.design.name), "bold")
     parts = [f"{name}\n{console.wrap(rows.what(found), 'dim')}"]
-    for heads, lines in (
-        (rows.LEARNED_HEADS, rows.learned(found)),
-        (rows.SHIFT_HEADS, rows.shifts(changes)),
-        (rows.OPTIMUM_HEADS, rows.optimum(changes)),
+    for heads, lines, drops in (
+        (rows.LEARNED_HEADS, rows.learned(found), (0, 1, 0, 3, 2, 4)),
+        (rows.SHIFT_HEADS, rows.shifts(changes), (0, 2, 1, 0, 5, 4, 3)),
+        (rows.OPTIMUM_HEADS, rows.optimum(changes), (0, 1, 0, 2)),
     ):
         if lines:
-            parts.append("\n".join(_table(console, heads, lines)))
+            parts.append("\n".join(_table(console, heads, lines, drops)))
     said = rows.remarks(found, changes)
     parts.append("\n".join(console.wrap(words) for words in said))
     return "\n\n".join(parts) + "\n"
 
 
-def _table(console: Console, heads: Sequence[str], lines: Sequence[rows.Line]) -> list[str]:
+def _table(
+    console: Console, heads: Sequence[str], lines: Sequence[rows.Line], drops: Sequence[int]
+) -> list[str]:
+    """A table whose columns leave a narrow terminal in the order of `drops`, the highest first."""
     last = len(heads) - 1
+    words = ("from", "verdict")
     columns = [
         Column(
             head,
-            "left" if (k in (0, last) and len(heads) > 4) or k == 0 else "right",
+            "left" if k == 0 or head in words else "right",
             flexible=k == 0,
-            drop={last: 3, last - 1: 2, last - 2: 1}.get(k, 0) if len(heads) > 4 else 0,
-            least=24,
+            drop=drops[k],
+            least=20,
         )
         for k, head in enumerate(heads)
     ]

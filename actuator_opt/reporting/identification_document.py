@@ -54,7 +54,7 @@ def write_identification_sheet(
     run = {
         "actuator_opt": VERSION,
         "command": command,
-        "record": identification.record.name,
+        "record": identification.record.file_name,
         "record_sha256": rows.samples_hash(identification.record),
         "source_name": source_name,
         "spec_hash": spec_hash,

@@ -219,7 +219,7 @@ def what(found: Identification) -> str:
     if not isinstance(found.lugre, str):
         windows = "1 window" if found.lugre.count == 1 else f"{found.lugre.count} windows"
         seen += f"; {windows} about reversals"
-    return f"Record {found.record.name}: {seen}."
+    return f"Record {found.record.file_name}: {seen}."
 
 
 # ---- record and how it was conditioned ----
@@ -240,7 +240,7 @@ def record_words(found: Identification) -> str:
     channels = ", ".join(("t", *record.channels))
     span = float(record.time[-1] - record.time[0])
     return (
-        f"{record.name}: {trimmed(record.time.size, 9)} samples, {number(span)} s,"
+        f"{record.file_name}: {trimmed(record.time.size, 9)} samples, {number(span)} s,"
         f" {trimmed(1 / motion.sample_time)} samples per second; channels {channels}; SHA-256 of"
         f" the samples (SI, doubles) {samples_hash(record)}."
     )

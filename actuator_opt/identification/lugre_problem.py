@@ -1,0 +1,323 @@
+"""Least squares for LuGre parameters: residuals of points and windows, search, bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..least_squares import Parameter, known
+from ..numeric import Array
+from .doubtful import PARTED, hidden, opened, widened
+from .lugre_windows import LAG, Windows
+from .points import Point
+from .stribeck_fit import EXPONENT, EXPONENTS, SPEEDS, Steady, StribeckFit
+
+TRAVELS = (1e-6, 3e-3)
+"""Travel F_S/sigma_0 of the bristles searched [m]."""
+DAMPING_TIMES = (1e-6, 0.3)
+"""sigma_1/sigma_0 searched [s]."""
+USUAL = 5e-3
+"""Standard deviation of the lag that pressures commonly have [s] (a choice: sensors and lines of a
+bench, up to 10 ms): what bounds allow for where a record does not show it."""
+STEP = 1e-4
+"""Step of the central differences over the size of a parameter."""
+SYMBOLS = {"bristle_stiffness": "σ₀", "bristle_damping": "σ₁", "lag": "τ"}
+"""Parameters beside those of the Stribeck curve: N/m, N s/m, s."""
+MODEL = 1e-3
+"""Least scatter of the windows over the largest friction (a choice, as of the points): below it the
+filtered motion limits the model, not noise."""
+BENDS = 3.0
+"""Breakaway travels after which 95 % of the force is there: they must take time to be seen."""
+RCOND = 1e-6
+"""Least ratio of singular values by which a lag moves parameters."""
+ROUNDS = 3
+"""Searches, each with the windows weighed by their scatter about the last (a choice: the second
+changes the weights by a few percent)."""
+LOGARITHMIC = ("bristle_stiffness", "bristle_damping", "stribeck_speed")
+"""Parameters searched by their logarithm."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LuGreFit:
+    """A LuGre model, SI.
+
+    Parameters
+    ----------
+    parameters : fitted, by name: those of the Stribeck curve, `bristle_stiffness`,
+        `bristle_damping` and the pressures' `lag`
+    held : values not asked for
+    count : windows looked at
+    misfit : standard deviation of the friction about the model in the windows [N]
+    doubts : what is not known
+    """
+
+    parameters: Mapping[str, Parameter]
+    held: Mapping[str, float]
+    count: int
+    misfit: float
+    doubts: tuple[str, ...]
+
+    @property
+    def values(self) -> dict[str, float]:
+        """All parameters, fitted or held."""
+        return {**self.held, **{name: one.value for name, one in self.parameters.items()}}
+
+
+class Problem:
+    """Residuals of points and windows over the searched parameters."""
+
+    def __init__(
+        self,
+        found: Windows,
+        points: Sequence[Point],
+        stribeck: StribeckFit | None,
+        lag_known: bool,
+        lag_seen: bool,
+        falling: bool = False,
+        held: Mapping[str, float] | None = None,
+    ) -> None:
+        self.windows, self.lag_known = found, lag_known
+        self.steady = None
+        self.largest = found.largest
+        self.spread = 1.0
+        if stribeck is None:
+            self.begin = {"coulomb": self.largest, "offset": 0.0}
+            self.held = {"viscous": 0.0, "exponent": EXPONENT, "pressure_slope": 0.0}
+            self.held["stribeck_speed"] = SPEEDS[0]
+            if falling:
+                del self.held["stribeck_speed"]
+                self.begin |= {
+                    "coulomb": self.largest / 2,
+                    "static": self.largest,
+                    "stribeck_speed": float(np.sqrt(SPEEDS[0] * SPEEDS[1])),
+                }
+        else:
+            least = 1.0 if any(one.kind == "sweep" for one in points) else 1e-3
+            self.steady = Steady(points, stribeck.errors * max(stribeck.scatter, least))
+            self.begin = {name: one.value for name, one in stribeck.parameters.items()}
+            self.held = dict(stribeck.held)
+            self._ask_for_static(stribeck)
+        for name, value in (held or {}).items():
+            self.begin.pop(name, None)
+            self.held[name] = value
+        if lag_known:
+            self.held["lag"] = 0.0
+        else:
+            self.held["bristle_damping"] = 0.0
+            if not lag_seen:
+                self.held["lag"] = 0.0
+        self.names = (*self.begin, *(name for name in SYMBOLS if name not in self.held))
+        self.sizes = self._sizes()
+
+    def _ask_for_static(self, stribeck: StribeckFit) -> None:
+        """F_S and v_s begin at what the windows show, where the points do not know them."""
+        seen = stribeck.parameters.get("static")
+        if self.held.pop("exponent", None) is not None:
+            self.begin["exponent"] = EXPONENT
+        if seen is None or not seen.identifiable:
+            for name in ("static", "stribeck_speed"):
+                self.held.pop(name, None)
+            self.begin |= {
+                "exponent": EXPONENT,
+                "static": max(self.largest, 1.01 * self.begin["coulomb"]),
+                "stribeck_speed": float(np.sqrt(SPEEDS[0] * SPEEDS[1])),
+            }
+
+    def _sizes(self) -> Array:
+        """Size of each searched parameter: 1 of a logarithm."""
+        speed, change = 1e-3, 1e5
+        if self.steady is not None:
+            speed = max(speed, float(np.max(np.abs(self.steady.velocity))))
+            change = max(change, float(np.max(np.abs(self.steady.change))))
+        size = {
+            "coulomb": self.largest,
+            "static": self.largest,
+            "viscous": self.largest / speed,
+            "offset": self.largest,
+            "pressure_slope": self.largest / change,
+            "lag": 1e-2,
+        }
+        return np.array([size.get(name, 1.0) for name in self.names])
+
+    def values(self, rows: Array) -> dict[str, Array]:
+        """Parameters (rows,) of rows of searched ones (rows, searched)."""
+        own = {}
+        for name, column in zip(self.names, rows.T, strict=True):
+            own[name] = np.exp(column) if name in LOGARITHMIC else column
+        held = {name: np.full(rows.shape[0], value) for name, value in self.held.items()}
+        if "static" not in own:
+            held["static"] = own["coulomb"]
+        return held | own
+
+    def residuals(self, rows: Array) -> Array:
+        """Weighted residuals of rows of searched parameters (rows, residuals)."""
+        values = self.values(rows)
+        lanes = (self.windows.misfit(values) / self.spread).reshape(len(rows), -1)
+        if self.steady is None:
+            return lanes
+        steady = {n: v[:, None] for n, v in values.items() if n not in SYMBOLS}
+        return np.concatenate([self.steady.residual(steady), lanes], axis=1)
+
+    def one(self, x: Array) -> Array:
+        """Weighted residuals of one row."""
+        return self.residuals(x[None])[0]
+
+    def slopes(self, x: Array) -> Array:
+        """Derivatives of the residuals by central differences, all at once."""
+        steps = STEP * np.diag(self.sizes)
+        found = self.residuals(np.concatenate([x + steps, x - steps]))
+        return ((found[: x.size] - found[x.size :]) / (2 * STEP * self.sizes[:, None])).T
+
+    def limits(self) -> tuple[Array, Array]:
+        """Ends of the search."""
+        stiffest, softest = (self.largest / one for one in TRAVELS)
+        ends = {
+            "coulomb": (1e-3 * self.largest, np.inf),
+            "static": (1e-3 * self.largest, 3 * self.largest),
+            "viscous": (0.0, np.inf),
+            "exponent": EXPONENTS,
+            "stribeck_speed": tuple(np.log(SPEEDS)),
+            "bristle_stiffness": (np.log(softest), np.log(stiffest)),
+            "bristle_damping": tuple(
+                np.log([softest * DAMPING_TIMES[0], stiffest * DAMPING_TIMES[1]])
+            ),
+            "lag": (-LAG, LAG),
+        }
+        pairs = [ends.get(name, (-np.inf, np.inf)) for name in self.names]
+        return np.array([one[0] for one in pairs]), np.array([one[1] for one in pairs])
+
+    def start(self) -> Array:
+        """The best of a grid of bristle stiffnesses and lags (and Stribeck speeds)."""
+        speeds = [self.begin.get("stribeck_speed", SPEEDS[0])]
+        if "static" in self.begin and "stribeck_speed" not in self.held:
+            speeds = [0.3 * speeds[0], speeds[0], 3 * speeds[0]]
+        rows = []
+        for speed in speeds:
+            for travel in np.geomspace(3 * TRAVELS[0], TRAVELS[1] / 3, 9):
+                for lag in (-4e-3, 0.0, 4e-3, 8e-3) if "lag" in self.names else (0.0,):
+                    stiffness = self.largest / travel
+                    own = self.begin | {
+                        "stribeck_speed": np.log(np.clip(speed, *SPEEDS)),
+                        "bristle_stiffness": np.log(stiffness),
+                        "bristle_damping": np.log(1e-3 * stiffness),
+                        "lag": lag,
+                    }
+                    rows.append([own[name] for name in self.names])
+        table = np.array(rows)
+        best, least = table[0], np.inf
+        for one in self.windows.options[[0, -1]]:
+            self.windows = replace(self.windows, velocity=one)
+            cost = np.sum(self.residuals(table) ** 2, axis=1)
+            k = int(np.argmin(cost))
+            if cost[k] < least:
+                best, least = table[k], cost[k]
+        return best
+
+    def descend(self, x: Array) -> Array:
+        """Least squares within the limits."""
+        from scipy.optimize import least_squares  # slow to import, rarely needed
+
+        low, high = self.limits()
+        span = np.where(np.isfinite(high - low), high - low, self.sizes)
+        found = least_squares(
+            self.one,
+            np.clip(x, low + 1e-6 * span, high - 1e-6 * span),
+            jac=self.slopes,
+            bounds=(low, high),
+            x_scale=self.sizes,
+            ftol=1e-7,
+            xtol=1e-6,
+            max_nfev=40,
+        )
+        return found.x
+
+    def scatter(self, x: Array) -> float:
+        """Standard deviation of the windows' residuals [N]."""
+        judged = self.windows.judged.sum()
+        square = np.sum(self.windows.misfit(self.values(x[None])) ** 2) / max(judged, 1.0)
+        return max(float(np.sqrt(square)), MODEL * self.largest)
+
+    def whitened(self, residuals: Array, slopes: Array) -> Array:
+        """Slopes J' of as many independent unit residuals that know as much: J'^T J' = cov^-1.
+
+        cov = H^-1 J^T R J H^-1, H = J^T J, R the residuals' covariance: points are independent,
+        lanes share one autocovariance c_k = sum r_t r_(t+k)/n [SeberWild1989]. With J = U S V^T,
+        J' = L^-1 S V^T, L L^T = U^T R U [derived].
+        """
+        from scipy.linalg import solve_triangular, toeplitz  # slow to import, rarely needed
+
+        lanes, count = self.windows.judged.shape
+        split = residuals.size - lanes * count
+        left, singular, right = np.linalg.svd(slopes * self.sizes, full_matrices=False)
+        own = residuals[split:].reshape(lanes, count)
+        judged = max(float(self.windows.judged.sum()) - slopes.shape[1], 1.0)
+        lags = [float(np.sum(own[:, : count - k] * own[:, k:])) / judged for k in range(count)]
+        lags[0] = max(lags[0], (MODEL * self.largest / self.spread) ** 2)
+        steep = left[split:].reshape(lanes, count, -1)
+        inner = left[:split].T @ left[:split]
+        inner = inner + np.einsum("lip,ij,ljq->pq", steep, toeplitz(lags), steep, optimize=True)
+        root = np.linalg.cholesky(inner)
+        return solve_triangular(root, singular[:, None] * right, lower=True) / self.sizes
+
+    def travel(self, x: Array) -> float:
+        """Distance over which the bristles bend [m]."""
+        found = {name: float(one[0]) for name, one in self.values(x[None]).items()}
+        level = min(max(found["static"], found["coulomb"]), self.largest)
+        return BENDS * level / found["bristle_stiffness"]
+
+    def hiding(self, x: Array, chain: Array) -> dict[str, float]:
+        """Standard error of each parameter by a lag that is not looked for."""
+        before = self.one(x)
+        values = self.values(x[None]) | {"lag": np.full(1, USUAL)}
+        lanes = (self.windows.misfit(values) / self.spread).reshape(-1)
+        change = np.zeros_like(before)
+        change[-lanes.size :] = lanes - before[-lanes.size :]
+        moved = np.linalg.lstsq(self.slopes(x) * self.sizes, -change, rcond=RCOND)[0]
+        return dict(zip(self.names, np.abs(moved * self.sizes * chain), strict=True))
+
+    def solve(self) -> LuGreFit:
+        """Search, weigh the windows by their own scatter, search again, and bound."""
+        x = self.start()
+        for _ in range(ROUNDS):
+            self.windows = self.windows.chosen(self.values(x[None]))
+            self.windows = self.windows.resolved(self.travel(x))
+            self.spread = self.scatter(x)
+            x = self.descend(x)
+        found = {name: float(one[0]) for name, one in self.values(x[None]).items()}
+        own = {name: found[name] for name in self.names}
+        chain = np.array([own[name] if name in LOGARITHMIC else 1.0 for name in self.names])
+        least = 1e-3 * self.sizes * chain
+        residuals = self.one(x)
+        slopes = self.whitened(residuals, self.slopes(x)) / chain
+        spare = residuals.size - int(np.sum(self.windows.judged == 0)) - len(own)
+        told = known(
+            own,
+            slopes,
+            np.ones(1) * np.sqrt(max(spare, 0)),
+            np.maximum(np.abs(list(own.values())), least),
+            spare=spare,
+        )
+        parameters = told.parameters
+        if "lag" not in self.names and not self.lag_known:
+            parameters = widened(parameters, self.hiding(x, chain), told.quantile)
+        fastest = self.windows.fastest
+        if self.steady is not None:
+            fastest = max(fastest, float(np.max(np.abs(self.steady.velocity))))
+        if self.windows.quick:
+            parameters = opened(parameters, ("bristle_stiffness", "bristle_damping", "lag"))
+        why = hidden(parameters, fastest, falls=False)
+        if why is not None:
+            parameters = opened(parameters, PARTED)
+        doubts = [
+            f"{SYMBOLS[name]} is {one.verdict}"
+            for name, one in parameters.items()
+            if name in LOGARITHMIC[:2] and not one.identifiable
+        ]
+        if self.windows.quick:
+            doubts.append("the rod starts too fast for the filter to show bristles: turn it slowly")
+        if why is not None:
+            doubts.append(why)
+        lanes = self.windows.velocity.shape[0]
+        return LuGreFit(parameters, self.held, lanes, self.spread, tuple(doubts))

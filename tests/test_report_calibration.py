@@ -1,0 +1,142 @@
+"""The page and the text of a calibration: its numbers, its figure, every outcome in words."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from dataclasses import replace
+from functools import cache
+
+import pytest
+from identification_case import DESIGN, identified
+
+import actuator_opt as ao
+from actuator_opt.reporting import calibration_document as document
+from actuator_opt.reporting import calibration_figure as figure
+from actuator_opt.reporting import calibration_rows as rows
+from actuator_opt.reporting import fallback
+from actuator_opt.reporting.blocks import printable
+from actuator_opt.reporting.calibration_text import calibration_text
+
+SHEET = {"source_name": "a.yaml", "command": "calibrate r.csv", "spec_hash": "12ab", "date": None}
+
+
+@cache
+def calibrated(kind="levels", **sets):
+    """A calibration of the knee, searched where it has variables."""
+    actuator = ao.read(DESIGN, set={path.replace("__", "."): v for path, v in sets.items()})
+    return ao.calibrate(identified(kind), design=actuator, search=kind == "levels" and not sets)
+
+
+def page(found):
+    """Its page as data."""
+    return document.calibration_page(found.calibration, found.redesign, **SHEET)
+
+
+def test_the_page_says_the_numbers_of_the_json():
+    """Values and bounds of every seal stand in the table as in the JSON."""
+    found = calibrated()
+    data = found.to_dict()
+    body = rows.learned(found.calibration)
+    named = {path: one for part in data["learned"].values() for path, one in part["values"].items()}
+    assert {line.cells[0] for line in body} == set(named)
+    for line in body:
+        value = named[line.cells[0]]["value"]
+        shown = float(line.cells[2].split(" ")[0].replace("\N{NARROW NO-BREAK SPACE}", ""))
+        scale = 1e3 if line.cells[0].endswith("stribeck_speed") else 1.0
+        assert shown == pytest.approx(scale * value, rel=6e-3)
+
+
+def test_no_page_holds_a_nan():
+    """Neither words nor drawing hold a number that is none."""
+    for kind in ("levels", "plateaus", "one speed"):
+        text = json.dumps(page(calibrated(kind)), allow_nan=False)
+        assert "nan" not in text.lower().replace("name", "").replace("linea", "")
+
+
+def test_a_design_that_cannot_meet_its_limits_says_so():
+    """Twice the friction: infeasible, with the smallest change of limits that would do."""
+    found = calibrated()
+    assert not document.solved(found.redesign.best_after)
+    data = page(found)
+    assert data["verdict"]["state"] == "infeasible"
+    said = rows.remarks(found.calibration, found.redesign)
+    assert any("no design meets every requirement" in words for words in said)
+    assert any("smallest change of limits" in words for words in said)
+    assert not any("at its limit" in words for words in said)
+
+
+def test_without_a_search_there_is_no_optimum():
+    """The page is shorter; nothing is said of a best design."""
+    found = calibrated("plateaus")
+    assert found.redesign.best_after is None
+    titles = [block["title"] for block in page(found)["blocks"]]
+    assert titles == [
+        "Numbers the record gave, 95 % bounds",
+        "Requirements of the actuator as tested that move",
+        "What changed, and what this rests on",
+    ]
+
+
+def test_one_speed_lists_what_was_left():
+    """What the record cannot tell stands with its reason."""
+    found = calibrated("one speed")
+    said = " ".join(rows.remarks(found.calibration, found.redesign))
+    for key in ("breakaway_ratio", "stribeck_speed", "viscous_friction"):
+        assert f"{key.capitalize()} stays as the design says" in said or key in said
+
+
+def test_levels_of_pressure_are_drawn_apart():
+    """Points of like pressure share a curve; at most three curves are drawn."""
+    groups = figure.levels(identified("levels").points)
+    assert len(groups) == 3
+    tops = [max(one.pressure for one in group) for group in groups]
+    assert tops == sorted(tops)
+    assert len(figure.levels(identified("plateaus").points)) <= 3
+
+
+def test_texts_of_the_figure_do_not_meet():
+    """No two upright texts of the drawing overlap."""
+    for kind in ("levels", "plateaus", "one speed"):
+        found = calibrated(kind)
+        stated = found.calibration.identification.bench
+        drawing = figure.calibration_figure(
+            found.calibration.identification.points, stated, stated, found.redesign
+        )
+        for a, b in itertools.combinations(drawing.text_boxes(), 2):
+            apart = a[3] <= b[1] + 0.2 or b[3] <= a[1] + 0.2 or a[4] <= b[2] or b[4] <= a[2]
+            assert apart, (kind, a[0], b[0])
+        for words, left, top, right, bottom in drawing.text_boxes():
+            assert left >= -0.5, words
+            assert right <= drawing.width + 0.5, words
+            assert top >= -0.5, words
+            assert bottom <= drawing.height + 0.5, words
+
+
+@pytest.mark.parametrize("width", [40, 60, 100, 200])
+def test_the_terminal_fits_its_width(width):
+    """No line is wider than the terminal, and ASCII stays ASCII."""
+    found = calibrated()
+    for unicode in (True, False):
+        text = calibration_text(found.calibration, found.redesign, unicode=unicode, width=width)
+        assert max(len(line) for line in text.splitlines()) <= width
+        assert unicode or text.isascii()
+
+
+def test_the_fallback_draws_it():
+    """Without the typesetter the page is still written, in pure Python."""
+    data = printable(page(calibrated()))
+    data |= {"title": "knee", "source": "name: knee", "source_file": "knee.yaml", "run": "{}"}
+    pdf, images = fallback.render(data, 0)
+    assert pdf.startswith(b"%PDF")
+    assert images
+
+
+def test_where_nothing_moves_it_says_so():
+    """No requirement, or none that friction moves: one sentence, no empty drawing of margins."""
+    found = calibrated("plateaus")
+    still = replace(found, redesign=replace(found.redesign, shifts=()))
+    assert still.redesign.moved is None
+    said = rows.remarks(still.calibration, still.redesign)
+    assert said[0] == "No requirement moves."
+    assert "No requirement moved." in json.dumps(page(still), allow_nan=False)
