@@ -89,4 +89,3 @@ def seal(
         say_files(([{"path": write}] if write is not None else []) + shown)
     if not study.converged:
         raise typer.Exit(ExitCode.SOLVER_FAILED)
-

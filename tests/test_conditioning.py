@@ -232,9 +232,9 @@ def test_bursts_of_spikes_are_taken_out(heights):
     assert error_of(motion, "x", record, truth) < 5e-5
 
 
-@pytest.mark.parametrize("lasts", [25, 100])
+@pytest.mark.parametrize("lasts", [15, 25, 100])
 def test_a_burst_of_garbage_is_cut_out(lasts):
-    """Where a channel is noise as high as its range, for 25 or 100 ms, the record is cut."""
+    """Where a channel is noise as high as its range, for 15 to 100 ms, the record is cut."""
     record, truth = made(30)
     rng = np.random.default_rng(4)
     garbage = np.arange(record.time.size) % 3000 < lasts
@@ -292,6 +292,20 @@ def test_outliers_of_a_rod_that_rests_most_of_the_time():
         error = np.interp(time, piece.time, piece["F_L"]) - values
         # of 1000 N one stray in a thousand may stand for 5 ms, of 10 um steps the steps are left
         assert np.std(error[piece.sound]) < max(1e-5, 1e-4 * height)
+
+
+@pytest.mark.parametrize("quantum", [10e-6, 1e-4, 5e-3])
+@pytest.mark.parametrize("strays", [0.0, 0.05])
+def test_the_step_of_a_sensor(quantum, strays):
+    """The step is found at any speed, at rest and among strays."""
+    rng = np.random.default_rng(3)
+    slow = 0.02 * np.sin(0.3 * STEP * np.arange(20_000))
+    for x in (slow, smooth_strokes(0.05, turns=2)[1], smooth_strokes(0.5, rest=2.0, turns=3)[1]):
+        values = quantum * np.round(x / quantum)
+        hit = rng.random(x.size) < strays
+        values = np.where(hit, values + 0.05 * rng.uniform(-1, 1, x.size), values)
+        motion = condition(Record(STEP * np.arange(x.size), {"x": values}, "r.csv"))
+        assert motion.quality["x"].resolution == pytest.approx(quantum, rel=1e-6)
 
 
 # Clipping

@@ -206,7 +206,9 @@ def test_cycles_that_scatter_widen_the_bounds():
 
 def test_noise_beyond_use_is_no_modulus():
     """Noise of a fifth of the force: bounds without use are not called identifiable."""
-    found = bending(a_record(slope_of(6e9), noise=18.0, memory=0.9, cycles=1), Specimen(**TUBE))
+    found = bending(
+        a_record(slope_of(6e9), samples=60, noise=18.0, memory=0.9, cycles=1), Specimen(**TUBE)
+    )
     assert not found.modulus.identifiable
     assert any("identifiable" in one for one in found.doubts)
 

@@ -18,7 +18,7 @@ from ..errors import Diagnostic, InputError
 from ..least_squares import WEAK, Parameter, quantile
 from ..models import bending_test, column, rod
 from .record import Record
-from .straight import BENT, SHARES, Loop, Term, by_way, mean, scatter, slopes, straight
+from .straight import BENT, SHARES, Loop, Straight, Term, by_way, mean, scatter, slopes, straight
 
 STRAINS = (0.0005, 0.0025)
 """Strains between which the slope is taken, ISO 178 and ISO 14125."""
@@ -196,6 +196,10 @@ def _plain(one: Parameter) -> dict[str, Any]:
     }
 
 
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %"
+
+
 def _refuse(message: str, remedy: str) -> None:
     raise InputError(Diagnostic(f"bending specimen: {message}", remedy))
 
@@ -229,10 +233,18 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
     """
     loop = Loop(record)
     zeros, low, high, by_strain = _range(loop, specimen)
-    parts, ends, bent, unsure, cut = straight(loop, zeros, low, high)
-    found = slopes(parts, 1, record)
+    found = straight(loop, zeros, low, high)
+    result = _result(loop, specimen, found)
+    noise = scatter(found.parts)
+    doubts = _doubts_of_record(result, by_strain=by_strain, cut=found.cut, noise=noise)
+    return replace(result, doubts=(*doubts, *_doubts_of_specimen(result)))
+
+
+def _result(loop: Loop, specimen: Specimen, found: Straight) -> BendingResult:
+    """What the straight part says of the specimen, without doubts."""
+    record, parts, ends = loop.record, found.parts, found.ends
+    slope = _parameter(slopes(parts, 1, record), found.unsure)
     ways = {way: mean(one).value for way, one in by_way(parts, 1).items()}
-    slope = _parameter(found, unsure)
     published = _modulus(slope, specimen, published=True)
     modulus = _modulus(slope, specimen)
     if not isfinite(modulus.value):
@@ -240,12 +252,10 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
             f"shear and dents alone give more than the {1e6 / slope.value:.4g} um/N measured",
             "check the shear modulus, the local compliance and the span",
         )
-    shear = specimen.shear
-    share = None
-    if shear is not None:
-        share = 12 * modulus.value * specimen.inertia * shear / specimen.span**2
+    shear, slender = specimen.shear, 12 * specimen.inertia / specimen.span**2
+    share = None if shear is None else slender * modulus.value * shear
     one = specimen.deflection(1.0)
-    result = BendingResult(
+    return BendingResult(
         record=record,
         specimen=specimen,
         slope=slope,
@@ -261,14 +271,12 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
         shear_share=share,
         strains=None if one is None else (ends[0] / one, ends[1] / one),
         deflections=ends,
-        bent=bent,
+        bent=found.bent,
         hysteresis=loop.hysteresis(),
         cycles=max(sum(x.loading for x in loop.branches), 1),
         samples=sum(x.deflection.size for x in parts),
         doubts=(),
     )
-    doubts = _doubts_of_record(result, by_strain=by_strain, cut=cut, noise=scatter(parts))
-    return replace(result, doubts=(*doubts, *_doubts_of_specimen(result)))
 
 
 def _range(loop: Loop, specimen: Specimen) -> tuple[list[float], float, float, bool]:
@@ -331,7 +339,7 @@ def _doubts_of_record(
     if strains is None:
         found.append(
             "the depth of the section is not known: the slope is taken between "
-            f"{SHARES[0]:.0%} and {SHARES[1]:.0%} of the highest force, not between strains"
+            f"{_percent(SHARES[0])} and {_percent(SHARES[1])} of the highest force, not by strain"
         )
     elif not by_strain:
         found.append(
@@ -346,8 +354,8 @@ def _doubts_of_record(
         )
     if abs(result.bent) > BENT:
         found.append(
-            f"the slope changes by {result.bent:.0%} along the part it is taken from: yielding, "
-            "slip, or supports that settle"
+            f"the slope changes by {_percent(result.bent)} along the part it is taken from: "
+            "yielding, slip, or supports that settle"
         )
     if result.unloading is None or result.loading is None:
         found.append(
@@ -355,15 +363,17 @@ def _doubts_of_record(
             "supports and creep count as stiffness"
         )
     elif abs(result.loading - result.unloading) > APART * result.slope.value:
+        ways = ["loading", "unloading"]
         share = (result.loading - result.unloading) / result.slope.value
+        first, second = ways if share > 0 else reversed(ways)
         found.append(
-            f"loading is {share:.0%} steeper than unloading: friction at the supports, creep or "
-            "damage; their mean is taken"
+            f"{first} is {_percent(abs(share))} steeper than {second}: friction at the supports, "
+            "creep or damage; their mean is taken"
         )
     if noise > NOISY:
         found.append(
             f"force and deflection scatter: noise of the deflection alone would make the slope "
-            f"{noise:.0%} too low"
+            f"{_percent(noise)} too low"
         )
     return found
 
@@ -377,7 +387,7 @@ def _doubts_of_specimen(result: BendingResult) -> list[str]:
         found.append("shear is not taken off, no shear modulus is stated: the modulus is low")
     elif share > SHEARED:
         found.append(
-            f"shear gives {share:.0%} of what bending gives: the modulus rests on the shear modulus"
+            f"shear deflects {_percent(share)} of what bending does: the modulus rests on it"
         )
     if height is not None and specimen.span < SLENDER * height:
         found.append(

@@ -38,19 +38,19 @@ from .points import SETTLED, Point
 from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, Steady, StribeckFit
 
 FEWEST = 80
-"""Resamples at least: two lie beyond each bound."""
+"""Resamples at least: the second from each end is the bound then, not the outermost."""
 STARTS = (1.0, 1 / 3, 3.0)
-"""Stribeck speeds over that of the optimum from which a draw is fitted (a choice: the grid of the
-first search is three times finer)."""
+"""Stribeck speeds over that of the optimum from which a draw is fitted (a choice: half a decade
+either way)."""
 STEPS, LUGRE_STEPS = 40, 8
 """Steps of a fit, and of one whose slopes are those of the optimum (a choice: the bounds of the
 synthetic records stand still beyond)."""
 LEAST_WINDOWS = 3
 """Windows that can be drawn (a choice: with two the noise is known from one difference)."""
 ROWS = 256
-"""Draws integrated at once, for the memory they take."""
+"""Draws integrated at once (a choice: some 100 MB)."""
 DIFFERENCE = 1e-4
-"""Step of the central differences over the size of a number, as in `lugre_fit`."""
+"""Step of the central differences over the size of a number, as in `lugre_problem`."""
 RANK = 1e-10
 """Least ratio of singular values of slopes that count for the leverage: rounding lies below."""
 LOGS = ("stribeck_speed", "bristle_stiffness")
@@ -213,7 +213,7 @@ def _bristles(parameters: Mapping[str, Parameter]) -> list[str]:
 
 
 class LuGreResiduals:
-    """Weighted residuals of points and windows over searched numbers, as `lugre_fit` has them."""
+    """Weighted residuals of points and windows over searched numbers, as in `lugre_problem`."""
 
     def __init__(
         self, found: Windows, points: Sequence[Point], stribeck: StribeckFit | None, fit: LuGreFit

@@ -21,9 +21,10 @@ SAMPLED = 100_000
 """Samples of a channel that tell its spread (a choice: to 1 %)."""
 LEVELS = 20_000
 """Samples that tell the step of a sensor (a choice: some per step of a fine one)."""
-CROWD, GARBAGE = 0.2, 0.5
-"""Shares of spikes in two windows from which the rest is doubted, and is garbage (choices: of strays at random 5 % come
-so close once in 1e10 samples, 10 % once in 1e6; noise as high as the range is three quarters)."""
+CROWD, GARBAGE = 0.15, 0.5
+"""Shares of spikes in two windows from which the rest is doubted, and is garbage (choices: of 5 %
+strays at random half come once in 1e10 samples, of 10 % once in 1e6; noise as high as the range is
+three quarters spikes)."""
 HELD = 6
 """Samples for which a channel stands at its end to be clipped, at least."""
 FLICKER = 0.6
@@ -45,7 +46,7 @@ class Quality(NamedTuple):
     spikes: int
     clipped: int
     resolution: float
-    """Least step between samples, SI."""
+    """Step of the sensor, SI; a trifle where it shows none."""
     noise: float
     """Standard deviation of a sample, what the filter takes away, SI."""
 
@@ -68,8 +69,7 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
     absent = ~np.isfinite(values)
     if absent.all():
         return values, Quality(values.size, 0, 0, 0.0, 0.0)
-    whole = not absent.any()
-    kept = values if whole else values[~absent]
+    kept = values[~absent]
     size = 2 * int(np.clip(round(WINDOW / step), 2, 5)) + 1
     middle = median_filter(kept, size=size, mode="nearest")
     quantum = resolution(middle) or resolution(kept)
@@ -87,15 +87,24 @@ def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality
 
 
 def resolution(values: Array) -> float:
-    """Step of a sensor: the lowest hundredth of the gaps between the levels that it shows.
+    """Step of a sensor: the least gap between levels that it shows again and again.
 
     Give the running median: a stray sample makes levels anywhere, the median hardly any. Where
-    that is less, the lowest hundredth of the steps from sample to sample.
+    levels seldom come back there is no step to speak of: the lowest hundredth of the gaps and of
+    the steps from sample to sample, the less.
     """
-    picked = np.random.default_rng(0).integers(values.size, size=min(LEVELS, values.size))
-    levels = np.sort(values[picked])  # at random: an even stride beats with a periodic motion
-    steps = np.abs(np.diff(values[: 50 * LEVELS]))
+    count = min(LEVELS, values.size)  # one of each part at random: an even stride would beat
+    parts = np.arange(count) + np.random.default_rng(0).random(count)
+    picked = values[(parts * (values.size / count)).astype(int)]
+    levels, counts = np.unique(picked, return_counts=True)
     least = 1e-9 * float(levels[-1] - levels[0])  # less is rounding
+    counts = np.minimum(counts, 5)  # a rest counts no more than a passage
+    again = counts > 1
+    gaps = np.diff(levels[again])
+    gaps = gaps[gaps > least]
+    if gaps.size and counts[again].sum() > 0.5 * counts.sum():
+        return float(gaps.min())
+    steps = np.abs(np.diff(values[: 50 * LEVELS]))
     found = [_hundredth(one[one > least]) for one in (np.diff(levels), steps)]
     return min((one for one in found if one > 0), default=0.0)
 
@@ -192,7 +201,8 @@ def _strays(values: Array, spikes: Array, quantum: float, live: Array) -> Array:
 def _garbage(values: Array, spikes: Array, least: float, size: int) -> Array:
     """What else is no good where spikes crowd.
 
-    In a short crowd the samples outside what stands before and behind it; of a long one all.
+    In a short crowd, samples outside what stands before and behind it, if that is calm; of a
+    long one all.
     """
     from scipy.ndimage import maximum_filter1d, uniform_filter1d  # slow to import, rarely needed
 
@@ -200,11 +210,15 @@ def _garbage(values: Array, spikes: Array, least: float, size: int) -> Array:
     dense = uniform_filter1d(spikes.astype(np.float32), wide, mode="constant")
     out = np.zeros(values.shape, dtype=bool)
     for a, b in zip(*runs(dense > CROWD), strict=True):
-        before, behind = slice(max(a - size, 0), a), slice(b, b + size)
+        before, behind = slice(max(a - wide, 0), a), slice(b, b + wide)
         left, right = values[before][~spikes[before]], values[behind][~spikes[behind]]
-        if left.size and right.size and b - a < 4 * wide:
-            low, high = np.sort([np.median(left), np.median(right)])
-            out[a:b] = (values[a:b] < low - least) | (values[a:b] > high + least)
+        if min(left.size, right.size) < size or b - a > 4 * wide:
+            continue
+        ends = sorted((np.sort(left[-size:])[size // 2], np.sort(right[:size])[size // 2]))
+        outside = (values[a:b] < ends[0] - least) | (values[a:b] > ends[1] + least)
+        if np.any(outside & ~spikes[a:b]):
+            rough = max(float(np.max(np.abs(np.diff(one, 2)))) for one in (left, right))
+            out[a:b] = outside & (rough <= 2 * least)  # else the channel itself is lively here
     core = dense > GARBAGE
     return out | maximum_filter1d(core, wide) if core.any() else out
 

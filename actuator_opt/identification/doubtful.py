@@ -32,7 +32,7 @@ def widened(
         one = found[name]
         error = float(np.hypot(one.standard_error, extra))
         half = quantile * error
-        near = one.identifiable and half <= WEAK * abs(one.value)
+        near = one.identifiable and (extra == 0 or half <= WEAK * abs(one.value))
         found[name] = Parameter(one.value, one.value - half, one.value + half, error, bool(near))
     return found
 

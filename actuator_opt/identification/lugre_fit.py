@@ -13,7 +13,7 @@ import numpy as np
 
 from .balance import Sliding
 from .conditioning import Motion
-from .doubtful import opened, widened
+from .doubtful import PARTED, opened, widened
 from .lugre_problem import LOGARITHMIC, SYMBOLS, TRAVELS, USUAL, LuGreFit, Problem
 from .lugre_windows import Windows, windows
 from .points import SETTLED, SETTLING, Point
@@ -34,6 +34,8 @@ SURER = 10.0
 """Akaike information by which a falling level must better one level (a choice: very strong)."""
 SLID = 0.95
 """Share of the level that friction must reach for the level to be seen (a choice)."""
+FAR = 3.0
+"""Stribeck speeds at which no more is left of F_S - F_C than 5 % at exponent 1 (a choice)."""
 NORMAL = 1.96
 """Normal quantile of 95 %."""
 
@@ -108,6 +110,8 @@ def _level(found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
     fastest = 1e3 * found.fastest
     slid = fit.misfit + found.largest > SLID * level.value
     if "static" in fit.parameters:
+        if found.fastest < FAR * fit.values["stribeck_speed"]:
+            fit = replace(fit, parameters=opened(fit.parameters, PARTED))
         doubt = (
             f"F_C is the level at {fastest:.3g} mm/s with what is viscous there: one speed cannot "
             "part them; give plateaus or sweeps of other speeds"

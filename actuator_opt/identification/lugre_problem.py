@@ -30,9 +30,14 @@ MODEL = 1e-3
 filtered motion limits the model, not noise."""
 BENDS = 3.0
 """Breakaway travels after which 95 % of the force is there: they must take time to be seen."""
+GRAIN = 0.5
+"""Share of the position's error by its steps that shifts all turns alike (a choice, by records of
+known friction): over the breakaway travel it is an error of the bristles' stiffness."""
+TOLD = 3
+"""Parameters that the windows tell: stiffness, lag or damping, level."""
 RCOND = 1e-6
 """Least ratio of singular values by which a lag moves parameters."""
-ROUNDS = 3
+ROUNDS = 2
 """Searches, each with the windows weighed by their scatter about the last (a choice: the second
 changes the weights by a few percent)."""
 LOGARITHMIC = ("bristle_stiffness", "bristle_damping", "stribeck_speed")
@@ -261,6 +266,28 @@ class Problem:
         root = np.linalg.cholesky(inner)
         return solve_triangular(root, singular[:, None] * right, lower=True) / self.sizes
 
+    def lanes(self, residuals: Array, slopes: Array) -> Array:
+        """Standard errors by lanes that are independent, whatever happens within them.
+
+        cov = H^-1 sum (J_l^T r_l)(J_l^T r_l)^T H^-1 n/(n - 3) of n lanes [SeberWild1989]: steps of
+        the position sensor shift a whole turn.
+        """
+        lanes, count = self.windows.judged.shape
+        split = residuals.size - lanes * count
+        scaled = slopes * self.sizes
+        inverse = np.linalg.pinv(scaled, rcond=RCOND)
+        parts = np.einsum(
+            "plc,lc->lp",
+            inverse[:, split:].reshape(-1, lanes, count),
+            residuals[split:].reshape(lanes, count),
+        )
+        used = int(np.sum(np.any(self.windows.judged > 0, axis=-1)))
+        if used <= TOLD:
+            return np.full(self.sizes.size, np.inf)
+        variance = np.sum(parts**2, axis=0) * used / (used - TOLD)
+        variance += np.sum(inverse[:, :split] ** 2, axis=1)
+        return np.sqrt(variance) * self.sizes
+
     def travel(self, x: Array) -> float:
         """Distance over which the bristles bend [m]."""
         found = {name: float(one[0]) for name, one in self.values(x[None]).items()}
@@ -290,7 +317,8 @@ class Problem:
         chain = np.array([own[name] if name in LOGARITHMIC else 1.0 for name in self.names])
         least = 1e-3 * self.sizes * chain
         residuals = self.one(x)
-        slopes = self.whitened(residuals, self.slopes(x)) / chain
+        steep = self.slopes(x)
+        slopes = self.whitened(residuals, steep) / chain
         spare = residuals.size - int(np.sum(self.windows.judged == 0)) - len(own)
         told = known(
             own,
@@ -299,7 +327,17 @@ class Problem:
             np.maximum(np.abs(list(own.values())), least),
             spare=spare,
         )
-        parameters = told.parameters
+        by_lanes = self.lanes(residuals, steep) * chain
+        own_error = np.array([one.standard_error for one in told.parameters.values()])
+        with np.errstate(invalid="ignore"):
+            more = np.sqrt(np.maximum(by_lanes**2 - own_error**2, 0.0))
+        more = np.where(np.isfinite(own_error), more, 0.0)
+        place = list(own).index("bristle_stiffness")
+        shift = GRAIN * self.windows.grain * BENDS / self.travel(x) * own["bristle_stiffness"]
+        more[place] = np.hypot(more[place], shift)
+        parameters = widened(
+            told.parameters, dict(zip(own, more.tolist(), strict=True)), told.quantile
+        )
         if "lag" not in self.names and not self.lag_known:
             parameters = widened(parameters, self.hiding(x, chain), told.quantile)
         fastest = self.windows.fastest

@@ -39,7 +39,8 @@ class Windows:
     samples) are velocities by lower cut-offs of the position, `velocity` the ones taken; `turn` is
     the sample at which the rod turns or starts. `steady`
     (lanes, kept) is 0 where points of steady sliding say the same, else 1; `judged` is 0 also in
-    windows that are left out; `quick` says that all should be.
+    windows that are left out, `quick` says that all should be; `grain` is the error of the
+    position by its steps, q/sqrt 12 [m].
     """
 
     velocity: Array
@@ -56,6 +57,7 @@ class Windows:
     steady: Array
     judged: Array
     blur: float
+    grain: float
     quick: bool = False
 
     @property
@@ -242,6 +244,7 @@ def windows(
         kept=kept,
         steady=np.where(told, 0.0, 1.0),
         judged=np.where(told, 0.0, 1.0),
+        grain=motion.quality["x"].resolution / np.sqrt(12),
         blur=float(np.sqrt(2 * motion.quality["x"].resolution / max(sharpest, 1e-12))),
     )
 

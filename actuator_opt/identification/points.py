@@ -24,6 +24,8 @@ PER_DECADE = 8
 SETTLED = 5e-4
 """Distance after a reversal from which sliding is steady [m], ten usual breakaway travels; of a
 record with known bristles `SETTLING` of its own."""
+SLIDES = 2e-4
+"""Least travel of a plateau [m], four usual breakaway travels: less may be bristles that bend."""
 SETTLING = 8.0
 """Breakaway travels F_S/sigma_0 after which sliding is steady: 2 e^-8 is below 0.1 %."""
 LEVELS = 0.1
@@ -137,6 +139,9 @@ def _plateaus(sliding: Sliding, motion: Motion, settling: float) -> Iterator[Poi
             continue
         out = ~usable[i:] | (np.abs(velocity[i:] - velocity[i]) > allowed[i])
         last = i + (int(np.argmax(out)) if out.any() else out.size)
+        if abs(sliding.piece["x"][last - 1] - sliding.piece["x"][i]) < SLIDES:
+            i = last
+            continue
         fifth = (last - i) // 5
         first = i + fifth
         away = i + round(settling / (abs(float(velocity[i])) * step))

@@ -373,8 +373,10 @@ def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Str
         parts = loop.cut(*ends, zeros)
         if found and not all(by_way(parts, 2).get(one.loading) for one in parts):
             break
-        new = loop.zeros(parts)
         slope, curve = slopes(parts, 1, loop.record), slopes(parts, 2, loop.record)
+        if found and slope.value <= 0:
+            break
+        new = loop.zeros(parts)
         length = ends[1] - ends[0]
         bent = 2 * length * curve.value / slope.value
         half = quantile(curve.freedom) * float(np.sqrt(curve.variance))
