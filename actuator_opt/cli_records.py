@@ -173,7 +173,7 @@ def calibrate(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Put a record's friction into its design; show what that changes."""
+    """A record's friction into its design, and what it changes."""
     from . import verbs
 
     check_targets(out if report else None, date, write)

@@ -182,7 +182,10 @@ def test_bore_growth_of_a_composite_barrel():
 
 
 def test_moving_mass():
-    """A free mass of 60 kg driven along a sine, by Radau: inertia is no friction, same bands."""
+    """A free mass of 60 kg driven along a sine, by Radau: inertia is no friction.
+
+    The rod breaks away faster than the filter shows: bristles and F_S are not known, and said so.
+    """
     on = bench()
     turn = 2 * np.pi * 0.5
 
@@ -194,10 +197,13 @@ def test_moving_mass():
     record = oracle.driven(
         oracle.cylinder_of(on), TRUTH, mass=60.0, force=force, duration=12.0, begin=0.02
     )
-    found = identify(record, on, Settings(load_force=0.0, mass=60.0))
+    found = identify(record, on, Settings(load_force=0.0, mass=60.0, pressure_lag=4e-3))
     within(found.lugre, names=("coulomb", "viscous"))
-    light = identify(record, on, Settings(load_force=0.0, mass=0.0))
-    assert light.lugre.misfit > 2 * found.lugre.misfit
+    for name in ("static", "bristle_stiffness"):
+        assert found.lugre.parameters[name].verdict == "not identifiable"
+    assert any("too fast" in one for one in found.lugre.doubts)
+    light = identify(record, on, Settings(load_force=0.0, mass=0.0, pressure_lag=4e-3))
+    assert abs(light.largest - found.largest) > 5.0
 
 
 def test_pre_sliding():

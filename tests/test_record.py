@@ -226,7 +226,7 @@ def test_columns_named_by_the_caller(header, columns):
             'r.csv:1: no column t; columns are "Bench 7"; separate',
         ),
         ("t [s] x [mm]\n1 2\n", {}, "separate columns by commas, semicolons or tabs, begin other"),
-        ("t [s],x\n0,1\n", {}, 'r.csv:1: column "x" states no unit; write e.g. "x [m]"'),
+        ("t [s],x\n0,1\n", {}, 'r.csv:1: column "x" states no unit; write e.g. "x [mm]"'),
         ("t [s],x [bar]\n0,1\n", {}, 'column "x": bar is a pressure, need a length'),
         ("t [s],p1 [baz]\n0,1\n", {}, 'column "p1": unknown unit "baz"; use one of'),
         ("t [s],p1 [bar],p1 [bar]\n0,1,2\n", {}, "are both p1; rename or delete one"),

@@ -1,9 +1,9 @@
 """Bending test to modulus: the slope of force over deflection in its straight part, with bounds.
 
 The straight part lies between the strains 0.0005 and 0.0025 of the outer fibre, as the chord of
-ISO 178 and ISO 14125, counted from where the straight line meets zero force (toe compensation of
-ASTM D790, annex A1). ASTM D7264 takes 0.001 to 0.003; ASTM D790 leaves the chord open and prefers
-the steepest tangent, which noise makes too steep.
+[ISO178] and [ISO14125], counted from where the straight line meets zero force (toe compensation of
+[ASTM-D790], annex A1). [ASTM-D7264] takes 0.001 to 0.003; ASTM D790 leaves the chord open and
+prefers the steepest tangent, which noise makes too steep.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from .record import Record
 from .straight import BENT, SHARES, Loop, Straight, Term, by_way, mean, scatter, slopes, straight
 
 STRAINS = (0.0005, 0.0025)
-"""Strains between which the slope is taken, ISO 178 and ISO 14125."""
+"""Strains between which the slope is taken [ISO178], [ISO14125]."""
 SHORT = 0.5
 """Least share of the strains' range that a test must cover to be read by strain (a choice)."""
 SLENDER = 16.0
-"""Least span over depth, ISO 178 and ASTM D790."""
+"""Least span over depth [ISO178], [ASTM-D790]."""
 SHEARED = 0.1
 """Share of shear in the deflection by bending from which the modulus rests on it (a choice)."""
 APART = 0.05
@@ -116,7 +116,7 @@ class Specimen:
         return float(1 / (kappa * self.shear_modulus * area))
 
     def deflection(self, strain: float) -> float | None:
-        """Deflection of the middle at a strain of the outer fibre, e L^2/(6 D) (ISO 178) [m]."""
+        """Deflection of the middle at a strain of the outer fibre, e L^2/(6 D) [ISO178], [m]."""
         return None if self.height is None else strain * self.span**2 / (6 * self.height)
 
 

@@ -2,7 +2,7 @@
 
 Points of steady sliding are few, and one alone often carries a parameter (the slowest F_S, the
 fastest sigma_2): drawing them with replacement would lose it. Their residuals are drawn instead
-(Wu 1986), each with the variance that it and its own error together say it has: of independent
+[Wu1986], each with the variance that it and its own error together say it has: of independent
 noise of unit weight, E[noise_i^2 | residuals] = r_i^2 + h_i s^2, h_i the leverage, s^2 the sum of
 squares over n - p [derived]. Where the fit bends to a point, its own error counts; else its
 residual. Windows about reversals are blocks, as their samples remember: all residuals of one are

@@ -23,6 +23,9 @@ from .stribeck_fit import StribeckFit, fit_stribeck
 
 LEAST_LAG = 3e-4
 """Least lag that is worth taking off [s]."""
+EARLIEST = 6e-3
+"""Time by which pressures may come before the position [s] (a choice: filters of a position sensor
+are late too, but bristles may look so)."""
 OUTSIDE = 0.02
 """Share of the stroke by which a position may lie beyond its ends."""
 
@@ -113,8 +116,11 @@ def _models(
 
 
 def _unsure(lugre: LuGreFit) -> bool:
-    """Whether the lag ran to the end of its range: something else is fitted by it."""
-    return "lag" in lugre.parameters and abs(lugre.parameters["lag"].value) > 0.99 * LAG
+    """Whether the lag ran out of the usual range: something else is fitted by it."""
+    if "lag" not in lugre.parameters:
+        return False
+    lag = lugre.parameters["lag"].value
+    return lag > 0.99 * LAG or lag < -EARLIEST
 
 
 def _late(lugre: LuGreFit | str) -> float | None:

@@ -102,13 +102,15 @@ def fit_lugre(
 
 def _level(found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
     """The model of windows alone: one level of friction, or one that falls from F_S."""
-    fits = [Problem(found, (), None, lag_known, lag_seen, falling=x).solve() for x in (False, True)]
-    count = float(found.judged.sum())
-    cost = [count * np.log(one.misfit) * 2 + 2 * len(one.parameters) for one in fits]
-    fit = fits[1] if cost[1] + SURER < cost[0] else fits[0]
-    level = fit.parameters["coulomb"]
+    fit = Problem(found, (), None, lag_known, lag_seen).solve()
+    slid = fit.misfit + found.largest > SLID * fit.values["coulomb"]
+    if slid:
+        falling = Problem(found, (), None, lag_known, lag_seen, falling=True).solve()
+        count = 2 * float(found.judged.sum())
+        better = count * np.log(fit.misfit / falling.misfit)
+        more = 2 * (len(falling.parameters) - len(fit.parameters))
+        fit = falling if better > more + SURER else fit
     fastest = 1e3 * found.fastest
-    slid = fit.misfit + found.largest > SLID * level.value
     if "static" in fit.parameters:
         if found.fastest < FAR * fit.values["stribeck_speed"]:
             fit = replace(fit, parameters=opened(fit.parameters, PARTED))

@@ -33,6 +33,9 @@ BENDS = 3.0
 GRAIN = 0.5
 """Share of the position's error by its steps that shifts all turns alike (a choice, by records of
 known friction): over the breakaway travel it is an error of the bristles' stiffness."""
+NOISY, MISSED = 2.0, 0.02
+"""Times its noise and share of its largest value by which the model may miss the friction in the
+windows (a choice, by records of known friction: position steps cost up to 3 times the noise)."""
 TOLD = 3
 """Parameters that the windows tell: stiffness, lag or damping, level."""
 RCOND = 1e-6
@@ -99,6 +102,9 @@ class Problem:
                     "stribeck_speed": float(np.sqrt(SPEEDS[0] * SPEEDS[1])),
                 }
         else:
+            apart = found.step * float(found.kept[1] - found.kept[0])
+            noise = [one.error * np.sqrt(max(one.weight / apart, 1.0)) for one in points]
+            self.noise = float(np.median(noise))
             least = 1.0 if any(one.kind == "sweep" for one in points) else 1e-3
             self.steady = Steady(points, stribeck.errors * max(stribeck.scatter, least))
             self.begin = {name: one.value for name, one in stribeck.parameters.items()}
@@ -121,7 +127,8 @@ class Problem:
         seen = stribeck.parameters.get("static")
         if self.held.pop("exponent", None) is not None:
             self.begin["exponent"] = EXPONENT
-        if seen is None or not seen.identifiable:
+        self.static_known = seen is not None and seen.identifiable
+        if not self.static_known:
             for name in ("static", "stribeck_speed"):
                 self.held.pop(name, None)
             self.begin |= {
@@ -288,6 +295,17 @@ class Problem:
         variance += np.sum(inverse[:, :split] ** 2, axis=1)
         return np.sqrt(variance) * self.sizes
 
+    @property
+    def missed(self) -> str | None:
+        """Why the windows say nothing, where the model misses them by more than their noise."""
+        if self.steady is None or self.spread <= NOISY * self.noise + MISSED * self.largest:
+            return None
+        return (
+            f"the model misses friction at turns by {self.spread:.3g} N, noise is "
+            f"{self.noise:.2g} N: the rod moves too fast there for the filter to show F_S, v_s "
+            "and \u03c3\u2080"
+        )
+
     def travel(self, x: Array) -> float:
         """Distance over which the bristles bend [m]."""
         found = {name: float(one[0]) for name, one in self.values(x[None]).items()}
@@ -343,6 +361,10 @@ class Problem:
         fastest = self.windows.fastest
         if self.steady is not None:
             fastest = max(fastest, float(np.max(np.abs(self.steady.velocity))))
+        missed = self.missed
+        if missed is not None:
+            curve = () if self.static_known else ("static", "stribeck_speed", "exponent")
+            parameters = opened(parameters, (*curve, *SYMBOLS))
         if self.windows.quick:
             parameters = opened(parameters, ("bristle_stiffness", "bristle_damping", "lag"))
         why = hidden(parameters, fastest, falls=False)
@@ -355,7 +377,6 @@ class Problem:
         ]
         if self.windows.quick:
             doubts.append("the rod starts too fast for the filter to show bristles: turn it slowly")
-        if why is not None:
-            doubts.append(why)
+        doubts += [one for one in (why, missed) if one is not None]
         lanes = self.windows.velocity.shape[0]
         return LuGreFit(parameters, self.held, lanes, self.spread, tuple(doubts))

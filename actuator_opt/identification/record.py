@@ -20,32 +20,40 @@ from .csv_table import Sheet, numbers, read_sheet
 
 
 class Channel(NamedTuple):
-    """A quantity that a record can hold: dimension, label, and other names benches give it."""
+    """A quantity that a record can hold: dimension, usual unit, label, other names it goes by."""
 
     dimension: str
+    unit: str
     label: str
     others: tuple[str, ...]
 
 
 CHANNELS = {
-    "t": Channel("time", "time", ("time",)),
+    "t": Channel("time", "s", "time", ("time",)),
     "p1": Channel(
-        "pressure", "pressure of the cap-end chamber", ("pa", "pressure1", "pressurea", "pcap")
+        "pressure",
+        "bar",
+        "pressure of the cap-end chamber",
+        ("pa", "pressure1", "pressurea", "pcap"),
     ),
     "p2": Channel(
-        "pressure", "pressure of the rod-end chamber", ("pb", "pressure2", "pressureb", "prod")
+        "pressure",
+        "bar",
+        "pressure of the rod-end chamber",
+        ("pb", "pressure2", "pressureb", "prod"),
     ),
-    "x": Channel("length", "position, outwards", ("position", "displacement", "stroke")),
-    "v": Channel("speed", "velocity, outwards", ("velocity", "speed")),
+    "x": Channel("length", "mm", "position, outwards", ("position", "displacement", "stroke")),
+    "v": Channel("speed", "mm/s", "velocity, outwards", ("velocity", "speed")),
     "F_L": Channel(
         "force",
+        "N",
         "force of the load on the rod, against extension",
         ("fl", "f", "force", "load", "loadforce", "loadcell"),
     ),
     "T": Channel(
-        "temperature", "temperature of the oil", ("temperature", "temp", "oiltemperature")
+        "temperature", "degC", "temperature of the oil", ("temperature", "temp", "oiltemperature")
     ),
-    "w": Channel("length", "deflection of a bending test", ("deflection",)),
+    "w": Channel("length", "mm", "deflection of a bending test", ("deflection",)),
 }
 """Channels by their name, as a header writes it: ``t [s]``, ``p1 [bar]``. Pressures are gauge."""
 
@@ -284,7 +292,7 @@ def _columns(sheet: Sheet, stated: Mapping[str, str]) -> dict[str, _Column]:
         known, (header, unit) = CHANNELS[channel], own[i]
         header = shown(header)
         if not unit:
-            example = units.units_of(known.dimension)[0]
+            example = known.unit
             fault(
                 f'column "{header}" states no unit',
                 f'write e.g. "{header} [{example}]" into the header, or '

@@ -105,8 +105,8 @@ def term(x: Array, y: Array, degree: int) -> Term:
     """Highest coefficient of a least-squares polynomial, for noise that remembers.
 
     The variance is that of the scores c e (c the column free of lower powers, e the residuals) at
-    frequency zero, as the mean over the first cosines of the samples in order (Mueller 2007;
-    Lazarus, Lewis, Stock and Watson 2018), and Student's t has a degree of freedom for each. What
+    frequency zero, as the mean over the first cosines of the samples in order [Mueller2007],
+    [Lazarus2018], and Student's t has a degree of freedom for each. What
     the fit takes away of each is made up for as of noise with the memory of the residuals
     [derived]; no less than for white noise.
 
@@ -142,7 +142,7 @@ def term(x: Array, y: Array, degree: int) -> Term:
 def _memory(rest: Array, degree: int) -> float:
     """Correlation of neighbouring residuals, with what a polynomial's fit takes of it put back.
 
-    A constant takes (1 + 3 r)/n, a trend (2 + 4 r)/n (Marriott and Pope 1954); so on by degree.
+    A constant takes (1 + 3 r)/n, a trend (2 + 4 r)/n [MarriottPope1954]; so on by degree.
     """
     size, whole = rest.size, float(np.sum(rest**2))
     seen = float(rest[1:] @ rest[:-1]) / whole if whole > 0 else 0.0
