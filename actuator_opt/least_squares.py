@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Literal, NamedTuple
+from math import isfinite
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -40,6 +41,16 @@ class Parameter(NamedTuple):
             return "identifiable"
         signed = self.lower > 0 or self.upper < 0
         return "weakly identifiable" if signed else "not identifiable"
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI; an infinite bound is null."""
+        return {
+            "value": self.value,
+            "lower": self.lower if isfinite(self.lower) else None,
+            "upper": self.upper if isfinite(self.upper) else None,
+            "identifiable": self.identifiable,
+            "verdict": self.verdict,
+        }
 
 
 def rated(value: float, lower: float, upper: float, standard_error: float) -> Parameter:

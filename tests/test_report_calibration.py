@@ -17,8 +17,9 @@ from actuator_opt.reporting import calibration_rows as rows
 from actuator_opt.reporting import fallback
 from actuator_opt.reporting.blocks import printable
 from actuator_opt.reporting.calibration_text import calibration_text
+from actuator_opt.reporting.origin import Origin
 
-SHEET = {"source_name": "a.yaml", "command": "calibrate r.csv", "spec_hash": "12ab", "date": None}
+ORIGIN = Origin("a: 1\n", "a.yaml", "calibrate r.csv", "12ab")
 
 
 @cache
@@ -30,7 +31,7 @@ def calibrated(kind="levels", **sets):
 
 def page(found):
     """Its page as data."""
-    return document.calibration_page(found.calibration, found.redesign, **SHEET)
+    return document.calibration_page(found.calibration, found.redesign, ORIGIN)
 
 
 def test_the_page_says_the_numbers_of_the_json():

@@ -29,15 +29,16 @@ from actuator_opt.reporting import identification_text as terminal
 from actuator_opt.reporting.blocks import printable
 from actuator_opt.reporting.figures import Axes
 from actuator_opt.reporting.ink import Ink
+from actuator_opt.reporting.origin import Origin
 
-SHEET = {"source_name": "a.yaml", "command": "identify r.csv", "spec_hash": "12ab", "date": None}
+ORIGIN = Origin(case.SOURCE, "a.yaml", "identify r.csv", "12ab")
 WITH_CURVE = [kind for kind in case.KINDS if kind not in ("pre-sliding", "one speed", "bare")]
 _RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 
 
 def paged(kind):
     """The page of a kind of record as data."""
-    return document.identification_page(case.identified(kind), **SHEET)
+    return document.identification_page(case.identified(kind), ORIGIN)
 
 
 def printed(words):
@@ -431,9 +432,9 @@ def test_the_map_is_shaded_by_the_measured_damping():
 @pytest.mark.parametrize("kind", case.KINDS)
 def test_a_record_makes_one_sheet(kind, tmp_path):
     """One A4 sheet as PDF and PNG; the design inside, the record not."""
-    given_ = {"stem": "s", "source_text": case.SOURCE, **SHEET}
+    given_ = {"stem": "s"}
     found = case.identified(kind)
-    files = document.write_identification_sheet(found, folder=tmp_path, **given_)
+    files = document.write_identification_sheet(found, ORIGIN, folder=tmp_path, **given_)
     assert [file.path.name for file in files] == ["s.pdf", "s.png"]
     assert files[0].pages == 1
     inside = read_attachment(files[0].path)
@@ -443,11 +444,13 @@ def test_a_record_makes_one_sheet(kind, tmp_path):
 
 def test_equal_records_make_equal_bytes(tmp_path):
     """Identified anew, the same record gives the same PDF and PNG."""
-    given_ = {"stem": "s", "source_text": case.SOURCE, **SHEET}
+    given_ = {"stem": "s"}
     hashes = []
     for k in range(2):
         found = case.identify(case.record_of("gaps"), case.knee())
-        files = document.write_identification_sheet(found, folder=tmp_path / str(k), **given_)
+        files = document.write_identification_sheet(
+            found, ORIGIN, folder=tmp_path / str(k), **given_
+        )
         hashes.append([file.sha256 for file in files])
     assert hashes[0] == hashes[1]
 
@@ -456,8 +459,8 @@ def test_many_notes_go_on_to_a_second_sheet(tmp_path):
     """What has no room on one sheet is not clipped."""
     notes = tuple(f"note {k} about something that a reader has to know of" for k in range(60))
     found = replace(case.identified("sine"), notes=notes)
-    given_ = {"stem": "s", "source_text": case.SOURCE, **SHEET}
-    files = document.write_identification_sheet(found, folder=tmp_path, **given_)
+    given_ = {"stem": "s"}
+    files = document.write_identification_sheet(found, ORIGIN, folder=tmp_path, **given_)
     assert files[0].pages == 2
 
 

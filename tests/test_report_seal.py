@@ -29,9 +29,10 @@ from actuator_opt.reporting import (
     write_report,
 )
 from actuator_opt.reporting.ink import Ink
+from actuator_opt.reporting.origin import Origin
 from actuator_opt.reporting.page import page
 
-SHEET = {"source_name": "a.yaml", "command": "x", "spec_hash": "12ab", "date": None}
+ORIGIN = Origin("a: 1\n", "a.yaml", "x", "12ab")
 RING = """
     type: o_ring
     compound: nbr_90
@@ -393,7 +394,7 @@ def test_a_piston_is_driven_away_from_its_pressure():
     assert [c["head"] for c in by_title(one, "100 mm/s, 40 °C")["columns"]][1:] == [
         "driven", "overrun",
     ]  # fmt: skip
-    data = seal_document.sheet_page(one, **SHEET)
+    data = seal_document.sheet_page(one, ORIGIN)
     labels = [tile["label"] for tile in data["tiles"]]
     assert labels[:2] == ["friction, driven", "secant damping, driven"]
     assert first_number(data["tiles"][0]["value"]) == pytest.approx(one.back.friction, rel=6e-4)
@@ -479,7 +480,7 @@ def test_a_film_that_fails_is_a_sentence_and_no_figure():
     assert friction[1] == "–"
     assert float(one.out.rings[0].touch.line_load) == 0
     assert (one.out.breakaway, one.out.coefficient_friction) == (0.0, 0.0)  # nothing presses
-    data = seal_document.sheet_page(one, **SHEET)
+    data = seal_document.sheet_page(one, ORIGIN)
     assert data["verdict"]["state"] == "missed"
     assert one.out.why.split(":")[0] in plain(data["sentence"])
     assert one.out.why.split()[0] in seal_text.seal_text(one, width=400)
@@ -524,14 +525,14 @@ def test_terminal_text_keeps_its_width(width):
 
 def test_the_sheet_is_a_document_with_equal_bytes(tmp_path):
     """PDF and PNG of one place, the same bytes again; the plain renderer can draw it too."""
-    given = {"stem": "s", "source_text": "a: 1\n", **SHEET}
+    given = {"stem": "s"}
     one = studied("tandem", "rod")
-    first = seal_document.write_sheet(one, folder=tmp_path / "1", **given)
+    first = seal_document.write_sheet(one, ORIGIN, folder=tmp_path / "1", **given)
     again = study(ao.read(TEXTS["tandem"]).subject(), "rod", curves=True, mapped=True)
-    second = seal_document.write_sheet(again, folder=tmp_path / "2", **given)
+    second = seal_document.write_sheet(again, ORIGIN, folder=tmp_path / "2", **given)
     assert [f.sha256 for f in first] == [f.sha256 for f in second]
     assert {f.path.name for f in first} >= {"s.pdf", "s.png"}
-    data = seal_document.sheet_page(one, **SHEET)
+    data = seal_document.sheet_page(one, ORIGIN)
     data |= {"title": "x", "source": "a: 1\n", "source_file": "a.yaml", "run": "{}"}
     assert fallback.render(data, 0)[1]
     assert ao.reporting.read_attachment(tmp_path / "1" / "s.pdf").source == "a: 1\n"

@@ -166,10 +166,10 @@ class BendingResult:
         return {
             "record": self.record.name,
             "slope": {
-                **_plain(self.slope), "loading": self.loading, "unloading": self.unloading
+                **self.slope.to_dict(), "loading": self.loading, "unloading": self.unloading
             },
-            "modulus": _plain(self.modulus),
-            "modulus_as_published": _plain(self.as_published),
+            "modulus": self.modulus.to_dict(),
+            "modulus_as_published": self.as_published.to_dict(),
             "taken_off": list(self.taken_off),
             "shear_share": self.shear_share,
             "span": self.specimen.span,
@@ -184,16 +184,6 @@ class BendingResult:
             "doubts": list(self.doubts),
             "notes": list(self.record.notes),
         }  # fmt: skip
-
-
-def _plain(one: Parameter) -> dict[str, Any]:
-    return {
-        "value": one.value,
-        "lower": one.lower if isfinite(one.lower) else None,
-        "upper": one.upper if isfinite(one.upper) else None,
-        "identifiable": one.identifiable,
-        "verdict": one.verdict,
-    }
 
 
 def _percent(share: float) -> str:

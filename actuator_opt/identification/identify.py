@@ -54,10 +54,7 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
     lag, known = own.pressure_lag or 0.0, own.pressure_lag is not None
     notes: list[str] = []
     motion, slidings = _read(record, bench, own, mass, lag)
-    if any(one.moving.any() for one in slidings):
-        check_signs(slidings, bench, mass=mass, name=record.name)
-    elif np.ptp(record["x"][np.isfinite(record["x"])]) < 3 * motion.quality["x"].resolution:
-        raise record.fault("the rod never moves", "give a record of a moving rod")
+    _moving(record, motion, slidings, bench, mass)
     area = float(bench.areas(np.float64(0.0))[0])
     points, stribeck, lugre = _models(slidings, motion, area, known)
     if isinstance(lugre, LuGreFit) and not known and _unsure(lugre):
@@ -72,13 +69,6 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
         notes.append(f"pressures come {1e3 * lag:.2f} ms late, by the reversals; taken off")
     if late is not None or settling > SETTLED:
         points, stribeck, lugre = _models(slidings, motion, area, known, settling)
-    place = np.concatenate([one.piece["x"] for one in slidings])
-    beyond = OUTSIDE * bench.stroke
-    if place.min() < -beyond or place.max() > bench.stroke + beyond:
-        notes.append(
-            f"x runs from {1e3 * place.min():.1f} to {1e3 * place.max():.1f} mm, the stroke is "
-            f"{1e3 * bench.stroke:.1f} mm: its zero is not the cap end, no stiffness there"
-        )
     mean, largest = _sizes(slidings, motion)
     return Identification(
         record=record,
@@ -97,8 +87,30 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
         stribeck=stribeck,
         lugre=lugre,
         fits=_fits(points),
-        notes=(*motion.notes, *notes),
+        notes=(*motion.notes, *notes, *_outside(slidings, bench)),
     )
+
+
+def _moving(
+    record: Record, motion: Motion, slidings: Sequence[Sliding], bench: Bench, mass: float
+) -> None:
+    """Refuse a record of a rod at rest, or with channels turned round."""
+    if any(one.moving.any() for one in slidings):
+        check_signs(slidings, bench, mass=mass, name=record.name)
+    elif np.ptp(record["x"][np.isfinite(record["x"])]) < 3 * motion.quality["x"].resolution:
+        raise record.fault("the rod never moves", "give a record of a moving rod")
+
+
+def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
+    """A note where the position leaves the stroke."""
+    place = np.concatenate([one.piece["x"] for one in slidings])
+    beyond = OUTSIDE * bench.stroke
+    if place.min() >= -beyond and place.max() <= bench.stroke + beyond:
+        return []
+    return [
+        f"x runs from {1e3 * place.min():.1f} to {1e3 * place.max():.1f} mm, the stroke is "
+        f"{1e3 * bench.stroke:.1f} mm: its zero is not the cap end, no stiffness there"
+    ]
 
 
 def _models(

@@ -12,7 +12,7 @@ from ..numeric import Array
 from .doubtful import PARTED, hidden, opened, widened
 from .lugre_windows import LAG, Windows
 from .points import Point
-from .stribeck_fit import EXPONENT, EXPONENTS, SPEEDS, Steady, StribeckFit
+from .stribeck_fit import EXPONENT, EXPONENTS, SHARED, SPEEDS, Steady, StribeckFit
 
 TRAVELS = (1e-6, 3e-3)
 """Travel F_S/sigma_0 of the bristles searched [m]."""
@@ -30,7 +30,7 @@ MODEL = 1e-3
 filtered motion limits the model, not noise."""
 BENDS = 3.0
 """Breakaway travels after which 95 % of the force is there: they must take time to be seen."""
-GRAIN = 0.5
+GRAIN = 0.35
 """Share of the position's error by its steps that shifts all turns alike (a choice, by records of
 known friction): over the breakaway travel it is an error of the bristles' stiffness."""
 NOISY, MISSED = 2.0, 0.02
@@ -105,7 +105,7 @@ class Problem:
             apart = found.step * float(found.kept[1] - found.kept[0])
             noise = [one.error * np.sqrt(max(one.weight / apart, 1.0)) for one in points]
             self.noise = float(np.median(noise))
-            least = 1.0 if any(one.kind == "sweep" for one in points) else 1e-3
+            least = SHARED if any(one.kind == "sweep" for one in points) else 1e-3
             self.steady = Steady(points, stribeck.errors * max(stribeck.scatter, least))
             self.begin = {name: one.value for name, one in stribeck.parameters.items()}
             self.held = dict(stribeck.held)
@@ -277,7 +277,7 @@ class Problem:
         """Standard errors by lanes that are independent, whatever happens within them.
 
         cov = H^-1 sum (J_l^T r_l)(J_l^T r_l)^T H^-1 n/(n - 3) of n lanes [SeberWild1989]: steps of
-        the position sensor shift a whole turn.
+        the position sensor shift a whole turn. Of few lanes nothing is said: zeros.
         """
         lanes, count = self.windows.judged.shape
         split = residuals.size - lanes * count
@@ -290,7 +290,7 @@ class Problem:
         )
         used = int(np.sum(np.any(self.windows.judged > 0, axis=-1)))
         if used <= TOLD:
-            return np.full(self.sizes.size, np.inf)
+            return np.zeros(self.sizes.size)
         variance = np.sum(parts**2, axis=0) * used / (used - TOLD)
         variance += np.sum(inverse[:, :split] ** 2, axis=1)
         return np.sqrt(variance) * self.sizes
@@ -322,14 +322,8 @@ class Problem:
         moved = np.linalg.lstsq(self.slopes(x) * self.sizes, -change, rcond=RCOND)[0]
         return dict(zip(self.names, np.abs(moved * self.sizes * chain), strict=True))
 
-    def solve(self) -> LuGreFit:
-        """Search, weigh the windows by their own scatter, search again, and bound."""
-        x = self.start()
-        for _ in range(ROUNDS):
-            self.windows = self.windows.chosen(self.values(x[None]))
-            self.windows = self.windows.resolved(self.travel(x))
-            self.spread = self.scatter(x)
-            x = self.descend(x)
+    def bounded(self, x: Array) -> dict[str, Parameter]:
+        """Parameters with bounds: by the residuals, by lanes, by steps of the position sensor."""
         found = {name: float(one[0]) for name, one in self.values(x[None]).items()}
         own = {name: found[name] for name in self.names}
         chain = np.array([own[name] if name in LOGARITHMIC else 1.0 for name in self.names])
@@ -358,6 +352,17 @@ class Problem:
         )
         if "lag" not in self.names and not self.lag_known:
             parameters = widened(parameters, self.hiding(x, chain), told.quantile)
+        return parameters
+
+    def solve(self) -> LuGreFit:
+        """Search, weigh the windows by their own scatter, search again, and bound."""
+        x = self.start()
+        for _ in range(ROUNDS):
+            self.windows = self.windows.chosen(self.values(x[None]))
+            self.windows = self.windows.resolved(self.travel(x))
+            self.spread = self.scatter(x)
+            x = self.descend(x)
+        parameters = self.bounded(x)
         fastest = self.windows.fastest
         if self.steady is not None:
             fastest = max(fastest, float(np.max(np.abs(self.steady.velocity))))

@@ -189,44 +189,28 @@ def windows(
     margin = int(np.ceil(LAG / step)) + 2
     before, after = round(BEFORE / step), round(AFTER / step)
     room = (before + margin) * stride, (after + margin) * stride
-    places = [(one, at) for one in slidings for at in _turns(one, motion) if _fits(one, at, room)]
-    if not places:
-        apart = room[0] + room[1]
-        places = [
-            (one, at)
-            for one in slidings
-            for at in range(room[0], one.piece.time.size, apart)
-            if _fits(one, at, room)
-        ]
-    if not places:
+    lanes = _lanes(slidings, motion, room)
+    if not lanes:
         return None
-    chosen = np.linspace(0, len(places) - 1, min(MOST, len(places))).round().astype(int)
-    lanes = [places[k] for k in np.unique(chosen)]
 
     def cut(values: Sequence[Array], more: int = 0) -> Array:
-        return np.stack(
-            [
-                one[at - (before + more) * stride : at + (after + more) * stride : stride]
-                for one, (_, at) in zip(values, lanes, strict=True)
-            ]
-        )
+        ends = (before + more) * stride, (after + more) * stride
+        own = zip(values, lanes, strict=True)
+        return np.stack([one[at - ends[0] : at + ends[1] : stride] for one, (_, at) in own])
 
     edge = round(1 / (motion.cutoff * step))
     apart = max(1, round(1 / (2 * motion.cutoff * step)))
     kept = np.arange(edge, before + after - edge, apart)
-    told = cut([_settled_above(one, slowest, settling) for one, _ in lanes])[:, kept]
+    told = {id(one): _settled_above(one, slowest, settling) for one, _ in lanes}
+    steady = np.where(cut([told[id(one)] for one, _ in lanes])[:, kept], 0.0, 1.0)
     span = (-before * stride, after * stride)
-    options = np.stack(
-        [
-            velocities(one.piece, motion, at + span[0], at + span[1])[:, ::stride]
-            for one, at in lanes
-        ],
-        1,
-    )
-    velocity = options[0]
-    sharpest = float(np.median(np.max(np.abs(np.gradient(options[-1], step, axis=-1)), axis=-1)))
+    paces = [velocities(one.piece, motion, at + span[0], at + span[1]) for one, at in lanes]
+    options = np.stack([one[:, ::stride] for one in paces], axis=1)
+    slopes = np.abs(np.gradient(options[-1], step, axis=-1))
+    sharpest = max(float(np.median(np.max(slopes, axis=-1))), 1e-12)
+    resolution = motion.quality["x"].resolution
     return Windows(
-        velocity=velocity,
+        velocity=options[0],
         options=options,
         turn=before,
         change=cut([one.pressure for one, _ in lanes]) - reference,
@@ -234,19 +218,39 @@ def windows(
         resisting=cut([one.resisting for one, _ in lanes]),
         step=step,
         margin=margin,
-        sections=low_pass(
-            cutoff=motion.cutoff,
-            order=motion.order,
-            sample_time=step,
-            compensated=motion.compensated,
-        ),
+        sections=_sections(motion, step),
         reach=round(3 / (motion.cutoff * step)),
         kept=kept,
-        steady=np.where(told, 0.0, 1.0),
-        judged=np.where(told, 0.0, 1.0),
-        grain=motion.quality["x"].resolution / np.sqrt(12),
-        blur=float(np.sqrt(2 * motion.quality["x"].resolution / max(sharpest, 1e-12))),
+        steady=steady,
+        judged=steady,
+        grain=resolution / np.sqrt(12),
+        blur=float(np.sqrt(2 * resolution / sharpest)),
     )
+
+
+def _sections(motion: Motion, step: float) -> Array:
+    """The record's filter at the windows' steps."""
+    return low_pass(
+        cutoff=motion.cutoff, order=motion.order, sample_time=step, compensated=motion.compensated
+    )
+
+
+def _lanes(
+    slidings: Sequence[Sliding], motion: Motion, room: tuple[int, int]
+) -> list[tuple[Sliding, int]]:
+    """Pieces and samples of windows: turns and starts, else places spread over the record."""
+    places = [(one, at) for one in slidings for at in _turns(one, motion) if _fits(one, at, room)]
+    if not places:
+        places = [
+            (one, at)
+            for one in slidings
+            for at in range(room[0], one.piece.time.size, room[0] + room[1])
+            if _fits(one, at, room)
+        ]
+    if not places:
+        return []
+    chosen = np.linspace(0, len(places) - 1, min(MOST, len(places))).round().astype(int)
+    return [places[k] for k in np.unique(chosen)]
 
 
 def _settled_above(sliding: Sliding, slowest: float, settling: float) -> Array:

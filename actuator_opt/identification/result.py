@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any
 
 import numpy as np
 
 from ..evaluation.study.bench import Bench
 from ..fits import Fit
-from ..least_squares import Parameter
 from ..numeric import Array
 from ..version import VERSION
 from .balance import Sliding
@@ -168,20 +166,10 @@ class Identification:
             if isinstance(model, str):
                 found[f"{name}_why"] = model
             else:
-                found[name] = {key: _parameter(x) for key, x in model.parameters.items()}
+                found[name] = {key: x.to_dict() for key, x in model.parameters.items()}
                 found[f"{name}_held"] = dict(model.held)
                 found[f"{name}_doubts"] = list(model.doubts)
         return found
-
-
-def _parameter(one: Parameter) -> dict[str, Any]:
-    return {
-        "value": one.value,
-        "lower": one.lower if isfinite(one.lower) else None,
-        "upper": one.upper if isfinite(one.upper) else None,
-        "identifiable": one.identifiable,
-        "verdict": one.verdict,
-    }
 
 
 def _point(one: Point) -> dict[str, Any]:
@@ -201,7 +189,7 @@ def _fit(fit: Fit | str) -> dict[str, Any]:
     if isinstance(fit, str):
         return {"why": fit}
     return {
-        "parameters": {name: _parameter(one) for name, one in fit.parameters.items()},
+        "parameters": {name: one.to_dict() for name, one in fit.parameters.items()},
         "r_squared": fit.r_squared,
         "doubts": list(fit.doubts),
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,6 +19,9 @@ SPEEDS, EXPONENTS = (2e-4, 5e-2), (0.5, 2.5)
 """Range of the Stribeck speed [m/s] and of its exponent searched."""
 EXPONENT = 2.0
 """Exponent where the points cannot tell it ([MECE5005], [Huang2017] Table 2)."""
+SHARED = 0.85
+"""Least scatter of a sweep's points about the curve, over their errors: neighbours share noise by
+the filter, so they lie smoother than they are sure (a choice, by records of known friction)."""
 OTHER = 1.0
 """Exponent that bounds allow for where the points cannot tell it (Tustin's exponential)."""
 DIFFERENT = 0.05
@@ -125,8 +128,7 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
     Asked of the points: F_C and sigma_2; F_S and v_s where there are five speeds or more and they
     better the fit (corrected Akaike information), with the exponent where there are seven: asked
     for only where it betters the fit it would be biased, and F_S with it; an offset where the rod
-    runs both ways; an effect of pressure where it varies by a fifth. Neighbouring points of sweeps
-    share noise by the filter: their scatter about the curve may not say less than their errors.
+    runs both ways; an effect of pressure where it varies by a fifth.
 
     Parameters
     ----------
@@ -157,7 +159,8 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
     best = min(fits, key=_information)
     if "static" in best.parameters:
         best = fits[-1]
-        if "exponent" not in best.parameters:
+        exponent = best.parameters.get("exponent")
+        if exponent is None or not exponent.identifiable:
             best = _unsure(best, points)
     if len(fits) < 2:
         doubts.append(f"{len(speeds)} speeds do not show F_S and v_s: five or more do")
@@ -167,30 +170,32 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
         doubts.append(
             f"the exponent is held at {EXPONENT:g}, bounds allow for {OTHER:g}: seven speeds tell"
         )
-    speeds_sorted = sorted(points, key=lambda one: one.speed)
-    falls = abs(speeds_sorted[-1].friction) < abs(speeds_sorted[0].friction)
-    why = hidden(best.parameters, speeds_sorted[-1].speed, falls)
+    slowest, *_, fastest = sorted(points, key=lambda one: one.speed)
+    falls = abs(fastest.friction) < abs(slowest.friction)
+    why = hidden(best.parameters, fastest.speed, falls)
     if why is not None:
         doubts.append(why)
         best = replace(best, parameters=opened(best.parameters, PARTED))
-    if "offset" in best.parameters:
-        shift = best.parameters["offset"]
-        if shift.lower > 0 or shift.upper < 0:
-            doubts.append(
-                "an offset between both ways: zeros of the sensors, areas, or seals that rub "
-                "unequally; the record cannot tell which"
-            )
-    else:
-        doubts.append("one way only: an error of the sensors' zeros counts as friction")
-    return replace(best, doubts=tuple(doubts))
+    return replace(best, doubts=(*doubts, *_ways(best)))
+
+
+def _ways(fit: StribeckFit) -> Iterator[str]:
+    """What is not known for want of both ways, or by their difference."""
+    if "offset" not in fit.parameters:
+        yield "one way only: an error of the sensors' zeros counts as friction"
+    elif fit.parameters["offset"].lower > 0 or fit.parameters["offset"].upper < 0:
+        yield (
+            "an offset between both ways: zeros of the sensors, areas, or seals that rub "
+            "unequally; the record cannot tell which"
+        )
 
 
 def _unsure(fit: StribeckFit, points: Sequence[Point]) -> StribeckFit:
     """With bounds that allow for another exponent than the one held: an even chance between."""
-    other = _fit(points, tuple(fit.parameters), OTHER)
+    names = tuple(name for name in fit.parameters if name != "exponent")
+    other = _fit(points, names, OTHER)
     more = {
-        name: abs(other.values[name] - one.value) / np.sqrt(3)
-        for name, one in fit.parameters.items()
+        name: abs(other.values[name] - fit.parameters[name].value) / np.sqrt(3) for name in names
     }
     return replace(fit, parameters=widened(fit.parameters, more, fit.quantile))
 
@@ -278,14 +283,7 @@ def _fit(points: Sequence[Point], names: tuple[str, ...], exponent: float) -> St
             columns[:, names.index("coulomb")] += rise
         return columns * [scale[name] for name in names] / data.error[:, None]
 
-    low = {"coulomb": 1e-6, "static": 0.0, "viscous": 0.0}
-    low |= {"stribeck_speed": SPEEDS[0] / scale["stribeck_speed"], "exponent": EXPONENTS[0]}
-    high = {"static": STATIC_MOST, "exponent": EXPONENTS[1]}
-    high |= {"stribeck_speed": SPEEDS[1] / scale["stribeck_speed"]}
-    bounds = (
-        [low.get(name, -np.inf) for name in names],
-        [high.get(name, np.inf) for name in names],
-    )
+    bounds = _limits(names, scale)
     x0 = np.array([start[name] / scale[name] for name in names])
     x0 = np.clip(x0, np.array(bounds[0]) + 1e-9, np.array(bounds[1]) - 1e-9)
     found = least_squares(
@@ -303,7 +301,7 @@ def _fit(points: Sequence[Point], names: tuple[str, ...], exponent: float) -> St
     rest = data.residual(best)
     chance = float(np.sqrt(np.sum(rest**2) / max(rest.size - len(own), 1)))
     if any(one.kind == "sweep" for one in points):
-        rest = rest / min(max(chance, 1e-9), 1.0)
+        rest = rest * max(SHARED / max(chance, 1e-9), 1.0)
     told = known(own, jacobian / data.error[:, None], rest, sizes)
     return StribeckFit(
         told.parameters,
@@ -314,6 +312,18 @@ def _fit(points: Sequence[Point], names: tuple[str, ...], exponent: float) -> St
         -data.residual(best) * data.error,
         data.error,
         (),
+    )
+
+
+def _limits(names: Sequence[str], scale: Mapping[str, float]) -> tuple[list[float], list[float]]:
+    """Ends of the search, over the sizes of the parameters."""
+    low = {"coulomb": 1e-6, "static": 0.0, "viscous": 0.0}
+    low |= {"stribeck_speed": SPEEDS[0] / scale["stribeck_speed"], "exponent": EXPONENTS[0]}
+    high = {"static": STATIC_MOST, "exponent": EXPONENTS[1]}
+    high |= {"stribeck_speed": SPEEDS[1] / scale["stribeck_speed"]}
+    return (
+        [low.get(name, -np.inf) for name in names],
+        [high.get(name, np.inf) for name in names],
     )
 
 

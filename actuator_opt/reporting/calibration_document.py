@@ -9,25 +9,16 @@ from ..evaluation import prepare
 from ..evaluation.study.bench import bench
 from ..identification.calibration import Calibration
 from ..optimisation.redesign import Redesign, solved
-from ..version import VERSION
 from . import calibration_rows as rows
 from . import text, writer
-from .blocks import Block, Cell, clean, column, notes, short, soft, table
+from .blocks import Block, Cell, column, notes, short, soft, table
 from .calibration_figure import calibration_figure
-from .identification_rows import samples_hash
+from .identification_rows import force, samples_hash
+from .origin import Origin, tile
 
 
 def write_calibration_sheet(
-    found: Calibration,
-    changes: Redesign,
-    *,
-    folder: Path,
-    stem: str,
-    source_text: str,
-    source_name: str,
-    command: str,
-    spec_hash: str,
-    date: str | None = None,
+    found: Calibration, changes: Redesign, origin: Origin, *, folder: Path, stem: str
 ) -> list[writer.ReportFile]:
     """Write the page of a calibration as ``STEM.pdf`` and ``STEM.png``.
 
@@ -35,55 +26,31 @@ def write_calibration_sheet(
     ----------
     found : what the record told
     changes : what that changes
+    origin : of the page; its source is the design with the measured values
     folder, stem : where to
-    source_text, source_name : the design with the measured values: attached to the PDF
-    command : the command line that made the page, printed and attached
-    spec_hash : of that design
-    date : ISO date to print, or None for none
     """
-    data = calibration_page(
-        found, changes, source_name=source_name, command=command, spec_hash=spec_hash, date=date
-    )
     record = found.identification.record
-    data |= {"title": changes.stands.name, "source": source_text}
-    run = {
-        "actuator_opt": VERSION,
-        "command": command,
-        "record": record.file_name,
-        "record_sha256": samples_hash(record),
-        "source_name": source_name,
-        "spec_hash": spec_hash,
-    }
-    return writer.write_page(data, run, folder=folder, stem=stem, date=date)
+    return writer.write_page(
+        calibration_page(found, changes, origin),
+        origin,
+        title=changes.stands.name,
+        folder=folder,
+        stem=stem,
+        record=record.file_name,
+        record_sha256=samples_hash(record),
+    )
 
 
-def calibration_page(
-    found: Calibration,
-    changes: Redesign,
-    *,
-    source_name: str,
-    command: str,
-    spec_hash: str,
-    date: str | None,
-) -> dict[str, Any]:
+def calibration_page(found: Calibration, changes: Redesign, origin: Origin) -> dict[str, Any]:
     """The page as plain data for the renderers."""
-    name = changes.stands.name
     measured = bench(prepare(changes.stands.design))
-    points = found.identification.points
-    return {
-        "name": soft(name),
-        "title": clean(name),
-        "short": short(name, 32),
-        "kind": "From test record to redesign",
-        "version": VERSION,
-        "hash": clean(spec_hash[:16]),
-        "date": "" if date is None else clean(date),
-        "source_name": soft(source_name),
-        "command": soft(short(command, 260), 30),
+    own = found.identification
+    heading = origin.heading(name=changes.stands.name, kind="From test record to redesign")
+    return heading | {
         "verdict": verdict(changes),
         "sentence": soft(rows.what(found)),
         "tiles": _tiles(found, changes),
-        "section": calibration_figure(points, found.identification.bench, measured, changes).data(),
+        "section": calibration_figure(own.points, own.bench, measured, changes).data(),
         "scale": "",
         "items": [],
         "blocks": blocks(found, changes),
@@ -112,37 +79,27 @@ def _tiles(found: Calibration, changes: Redesign) -> list[dict[str, Any]]:
     ratio = found.coulomb / found.stated
     own = found.identification
     tiles = [
-        _tile("Coulomb friction measured", found.coulomb, "N", f"stated {found.stated:.4g} N"),
-        _tile("measured over stated", ratio, "", "one factor for all seals"),
-        _tile("largest friction recorded", own.largest, "N", "of the filtered record"),
+        tile("Coulomb friction measured", force(found.coulomb), f"stated {force(found.stated)}"),
+        tile("measured over stated", text.number(ratio), "one factor for all seals"),
+        tile("largest friction recorded", force(own.largest), "of the filtered record"),
     ]
     moved = changes.moved
     if moved is not None and moved.after.value is not None:
         quantity = text.metric(moved.after.metric)
-        value = text.display(quantity, moved.after.value)
+        value = text.value_text(quantity, moved.after.value)
         limit = text.limit_text(quantity, moved.after.sense, moved.after.limit)
         words = moved.after.name.replace("_", " ")
-        unit = text.unit_text(quantity.unit)
         note = f"was {text.value_text(quantity, moved.before.value)}, {limit}"
-        tiles.append(
-            _tile(short(words, 28), value, unit, note, "met" if moved.after.met else "missed")
-        )
+        state = "met" if moved.after.met else "missed"
+        tiles.append(tile(short(words, 28), value, note, state))
     before, after = changes.best_before, changes.best_after
     if before is not None and after is not None and solved(after):
         quantity = text.metric(after.objective_metric)
-        value = text.display(quantity, after.objective_value)
+        value = text.value_text(quantity, after.objective_value)
         was = text.value_text(quantity, before.objective_value if solved(before) else None)
-        unit = text.unit_text(quantity.unit)
         label = f"best {after.objective_metric.replace('_', ' ')}"
-        tiles.append(_tile(short(label, 28), value, unit, f"was {was}"))
+        tiles.append(tile(short(label, 28), value, f"was {was}"))
     return tiles
-
-
-def _tile(
-    label: str, value: float | None, unit: str, note: str, state: str = "none"
-) -> dict[str, Any]:
-    return {"label": label, "symbol": "", "value": text.number(value), "unit": unit, "note": note,
-            "state": state}  # fmt: skip
 
 
 def blocks(found: Calibration, changes: Redesign) -> list[Block]:

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from ..identification.result import Identification
-from ..version import VERSION
 from . import identification_rows as rows
 from . import writer
-from .blocks import Block, Cell, clean, column, notes, short, soft, table
+from .blocks import Block, Cell, column, notes, soft, table
 from .fallback import joined, wrap
 from .identification_figures import LEAST, MOST, identification_figure
 from .ink import text_width
+from .origin import Origin, tile
 from .text import DASH, number
 
 _SHEET, _TILES, _FOOT, _HEAD = 265.0, 23.0, 24.5, 8.2
@@ -25,59 +25,36 @@ _HALF, _FULL = 86.0, 172.0
 
 
 def write_identification_sheet(
-    identification: Identification,
-    *,
-    folder: Path,
-    stem: str,
-    source_text: str,
-    source_name: str,
-    command: str,
-    spec_hash: str,
-    date: str | None = None,
+    identification: Identification, origin: Origin, *, folder: Path, stem: str
 ) -> list[writer.ReportFile]:
     """Write the page of an identification as ``STEM.pdf`` and ``STEM.png``.
+
+    The record is not attached: its name, size and the hash of its samples are printed.
 
     Parameters
     ----------
     identification : what a record told
+    origin : of the page
     folder, stem : where to
-    source_text, source_name : the design file as read: attached to the PDF; the record is not, its
-        name, size and the hash of its samples are printed
-    command : the command line that made the page, printed and attached
-    spec_hash : of the design
-    date : ISO date to print, or None for none
     """
-    data = identification_page(
-        identification, source_name=source_name, command=command, spec_hash=spec_hash, date=date
+    record = identification.record
+    return writer.write_page(
+        identification_page(identification, origin),
+        origin,
+        title=identification.bench.design.name,
+        folder=folder,
+        stem=stem,
+        record=record.file_name,
+        record_sha256=rows.samples_hash(record),
     )
-    data |= {"title": identification.bench.design.name, "source": source_text}
-    run = {
-        "actuator_opt": VERSION,
-        "command": command,
-        "record": identification.record.file_name,
-        "record_sha256": rows.samples_hash(identification.record),
-        "source_name": source_name,
-        "spec_hash": spec_hash,
-    }
-    return writer.write_page(data, run, folder=folder, stem=stem, date=date)
 
 
-def identification_page(
-    found: Identification, *, source_name: str, command: str, spec_hash: str, date: str | None
-) -> dict[str, Any]:
+def identification_page(found: Identification, origin: Origin) -> dict[str, Any]:
     """The page as plain data for the renderers."""
     below = blocks(found)
     name = found.bench.design.name
-    return {
-        "name": soft(name),
-        "title": clean(name),
-        "short": short(name, 32),
-        "kind": "Friction and damping by a test record",
-        "version": VERSION,
-        "hash": clean(spec_hash[:16]),
-        "date": "" if date is None else clean(date),
-        "source_name": soft(source_name),
-        "command": soft(short(command, 260), 30),
+    heading = origin.heading(name=name, kind="Friction and damping by a test record")
+    return heading | {
         "verdict": verdict(found),
         "sentence": soft(rows.what(found)),
         "tiles": _tiles(found),
@@ -130,13 +107,7 @@ def _tiles(found: Identification) -> list[dict[str, Any]]:
     else:
         said = f"contact pressure {number(mu.contact_pressure / 1e6, 3)} MPa"
         tiles.append(("friction coefficient", number(mu.value, 3), said))
-    return [_tile(label, words, note) for label, words, note in tiles]
-
-
-def _tile(label: str, words: str, note: str) -> dict[str, Any]:
-    value, _, unit = words.partition(" ")
-    return {"label": label, "symbol": "", "value": value, "unit": unit, "note": note,
-            "state": "none"}  # fmt: skip
+    return [tile(label, words, note) for label, words, note in tiles]
 
 
 # ---- blocks ----

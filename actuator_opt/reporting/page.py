@@ -21,6 +21,7 @@ from . import (
 )
 from .blocks import Block, ExtraTable, clean, listing, notes, short, soft
 from .drawing import section
+from .origin import Origin
 
 KEY_FIGURES = (
     "mass",
@@ -162,16 +163,9 @@ def page(
     blocks.append(listing(f"Input: {source_name}", source_text))
     sentence = "" if optimisation is None else optimisation.sentence
     remedy = "" if optimisation is None else optimisation.remedy
-    return {
-        "name": soft(evaluation.name),
-        "title": clean(evaluation.name),
-        "short": short(evaluation.name, 32),
-        "kind": kind,
+    origin = Origin(source_text, source_name, command, evaluation.spec_hash, date)
+    return origin.heading(name=evaluation.name, kind=kind) | {
         "version": clean(evaluation.version),
-        "hash": clean(evaluation.spec_hash[:16]),
-        "date": "" if date is None else clean(date),
-        "source_name": soft(source_name),
-        "command": soft(short(command, 260), 30),
         "verdict": verdict(subject),
         "sentence": soft(" ".join(optimum.sentence(part) for part in (sentence, remedy) if part)),
         "tiles": key_figures(subject),

@@ -8,10 +8,10 @@ from typing import Any
 
 from ..evaluation.study.seal import FilmMap, SealStudy
 from ..store import write_text
-from ..version import VERSION
 from . import seal_rows as rows
 from . import text, writer
-from .blocks import clean, short, soft
+from .blocks import soft
+from .origin import Origin, tile
 from .seal_figures import bars, stroke_names
 from .seal_gland_figure import gland_drawing
 from .seal_sheet import blocks
@@ -19,55 +19,28 @@ from .seal_sheet import blocks
 
 def write_sheet(
     study: SealStudy,
+    origin: Origin,
     *,
     folder: Path,
     stem: str,
-    source_text: str,
-    source_name: str,
-    command: str,
-    spec_hash: str,
-    date: str | None = None,
 ) -> list[writer.ReportFile]:
     """Write the sheet of one place as ``STEM.pdf`` and ``STEM.png`` (first sheet, then more).
 
     Parameters
     ----------
     study : of piston or rod
+    origin : of the page
     folder, stem : where to
-    source_text, source_name : the design file as read: attached to the PDF
-    command : the command line that made the sheet, printed and attached
-    spec_hash : of the design
-    date : ISO date to print, or None for none
     """
-    data = sheet_page(
-        study, source_name=source_name, command=command, spec_hash=spec_hash, date=date
-    )
-    data |= {"title": study.design.name, "source": source_text}
-    run = {
-        "actuator_opt": VERSION,
-        "command": command,
-        "source_name": source_name,
-        "spec_hash": spec_hash,
-    }
-    return writer.write_page(data, run, folder=folder, stem=stem, date=date)
+    data = sheet_page(study, origin)
+    return writer.write_page(data, origin, title=study.design.name, folder=folder, stem=stem)
 
 
-def sheet_page(
-    study: SealStudy, *, source_name: str, command: str, spec_hash: str, date: str | None
-) -> dict[str, Any]:
+def sheet_page(study: SealStudy, origin: Origin) -> dict[str, Any]:
     """The sheet of one place as plain data for the renderers."""
     gland = gland_drawing(study)
-    name = study.design.name
-    return {
-        "name": soft(name),
-        "title": clean(name),
-        "short": short(name, 32),
-        "kind": f"Seal sheet: {study.place}",
-        "version": VERSION,
-        "hash": clean(spec_hash[:16]),
-        "date": "" if date is None else clean(date),
-        "source_name": soft(source_name),
-        "command": soft(short(command, 260), 30),
+    heading = origin.heading(name=study.design.name, kind=f"Seal sheet: {study.place}")
+    return heading | {
         "verdict": _verdict(study),
         "sentence": soft(_sentence(study)),
         "tiles": _tiles(study),
@@ -110,20 +83,7 @@ def _tiles(study: SealStudy) -> list[dict[str, Any]]:
         )
         thinnest = min(float(ring.film.min()) for ring in point.rings)
         found.append((f"thinnest film, {driven}", _microns(thinnest), "between the mean planes"))
-    tiles = []
-    for label, words, note in found:
-        value, _, unit = words.partition(" ")
-        tiles.append(
-            {
-                "label": label,
-                "symbol": "",
-                "value": value,
-                "unit": unit,
-                "note": note,
-                "state": "none",
-            }
-        )
-    return tiles
+    return [tile(label, words, note) for label, words, note in found]
 
 
 def _microns(value: float) -> str:

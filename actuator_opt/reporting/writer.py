@@ -25,6 +25,7 @@ from ..evaluation.study.seal import SealStudy
 from ..optimisation.result import Optimisation
 from .blocks import ExtraTable, printable
 from .embed import extract
+from .origin import Origin
 from .page import page, parts_of
 
 PIXELS_PER_INCH = 150.0
@@ -94,35 +95,37 @@ def write_report(
         extra_tables=extra_tables,
         seals=seals,
     )
-    run = {
-        "actuator_opt": evaluation.version,
-        "command": command,
-        "source_name": source_name,
-        "spec_hash": evaluation.spec_hash,
-    }
-    data |= {"title": evaluation.name, "source": source_text}
-    return write_page(data, run, folder=folder, stem=stem, date=date)
+    origin = Origin(source_text, source_name, command, evaluation.spec_hash, date)
+    return write_page(
+        data,
+        origin,
+        title=evaluation.name,
+        folder=folder,
+        stem=stem,
+        actuator_opt=evaluation.version,
+    )
 
 
 def write_page(
-    data: Mapping[str, Any],
-    run: Mapping[str, str],
-    *,
-    folder: Path,
-    stem: str,
-    date: str | None = None,
+    data: Mapping[str, Any], origin: Origin, *, title: str, folder: Path, stem: str, **run: str
 ) -> list[ReportFile]:
-    """Write a page of data, its ``title`` and ``source`` as they are, to PDF and PNG.
+    """Write a page of data to PDF and PNG.
 
-    `run` tells how it was made and the name of its source; it is attached to the PDF.
+    Parameters
+    ----------
+    data : of the page
+    origin : its source, as it is, and how it was made: both are attached to the PDF
+    title : of the PDF, as it is
+    folder, stem : where to
+    run : more of how it was made
     """
     data = printable(dict(data)) | {
-        "title": data["title"],
-        "source": data["source"],
-        "source_file": _attachment_name(run["source_name"]),
-        "run": json.dumps(run, ensure_ascii=False, sort_keys=True),
+        "title": title,
+        "source": origin.source_text,
+        "source_file": _attachment_name(origin.source_name),
+        "run": json.dumps(origin.run() | run, ensure_ascii=False, sort_keys=True),
     }
-    pdf, images = _render(data, _timestamp(date))
+    pdf, images = _render(data, _timestamp(origin.date))
     contents = {f"{stem}.pdf": pdf, f"{stem}.png": images[0]}
     for index, image in enumerate(images[1:], 2):
         contents[f"{stem}-page-{index}.png"] = image

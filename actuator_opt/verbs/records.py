@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -11,9 +11,8 @@ import numpy as np
 
 from ..design import Design
 from ..errors import Diagnostic, InputError
-from ..evaluation import prepare
 from .actuator import Actuator, as_actuator
-from .reports import date_from_environment, file_name
+from .reports import origin
 
 if TYPE_CHECKING:
     from ..identification import BendingResult, Calibration, Identification, Record, Specimen
@@ -261,21 +260,15 @@ def write_identification(
     date: str | None = None,
 ) -> list[ReportFile]:
     """Write the page of an identification (PDF and PNG); parameters as `report`."""
-    from ..design.writer import to_yaml
-    from ..evaluation.build import spec_hash
     from ..reporting.identification_document import write_identification_sheet
 
     design = identification.bench.design
     source = None if actuator is None else actuator.source
     return write_identification_sheet(
         identification,
+        origin(design, source, command=command, date=date),
         folder=Path(folder),
         stem=f"{Path(identification.record.name).stem}_identification",
-        source_text=source.text if source is not None else to_yaml(design),
-        source_name=file_name(design, source),
-        command=command,
-        spec_hash=spec_hash(prepare(design)),
-        date=date or date_from_environment(),
     )
 
 
@@ -302,19 +295,14 @@ def write_calibration(
     command, date : as `report`
     """
     from ..design.writer import to_yaml
-    from ..evaluation.build import spec_hash
     from ..reporting.calibration_document import write_calibration_sheet
 
     actuator = calibrated.actuator
-    record = calibrated.calibration.identification.record
+    page = origin(actuator.design, actuator.source, command=command, date=date)
     return write_calibration_sheet(
         calibrated.calibration,
         calibrated.redesign,
+        replace(page, source_text=to_yaml(actuator.design, actuator.source)),
         folder=Path(folder),
-        stem=f"{Path(record.name).stem}_calibration",
-        source_text=to_yaml(actuator.design, actuator.source),
-        source_name=file_name(actuator.design, actuator.source),
-        command=command,
-        spec_hash=spec_hash(prepare(actuator.design)),
-        date=date or date_from_environment(),
+        stem=f"{Path(calibrated.calibration.identification.record.name).stem}_calibration",
     )

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ..evaluation.study.seal import SealStudy
     from ..optimisation.result import Optimisation
     from ..reporting import ExtraTable, ReportFile
+    from ..reporting.origin import Origin
 
 _LAST_SECOND = 253_402_300_799
 """End of the year 9999, the last a date can hold."""
@@ -80,6 +81,23 @@ def file_name(design: Design, source: Source | None) -> str:
         return Path(source.file).name
     name = re.sub(r"[^\w-]+", "_", design.name).strip("_")
     return f"{name or 'design'}.yaml"
+
+
+def origin(
+    design: Design, source: Source | None, *, command: str = "", date: str | None = None
+) -> Origin:
+    """Where a page about a design comes from: the file as read, else its text as written."""
+    from ..design.writer import to_yaml
+    from ..evaluation.build import spec_hash
+    from ..reporting.origin import Origin
+
+    return Origin(
+        source_text=source.text if source is not None else to_yaml(design),
+        source_name=file_name(design, source),
+        command=command,
+        spec_hash=spec_hash(prepare(design)),
+        date=date or date_from_environment(),
+    )
 
 
 def date_from_environment() -> str | None:

@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..design import Design
-from ..evaluation import prepare
 from .actuator import Actuator, as_actuator
-from .reports import date_from_environment, file_name
+from .reports import file_name, origin
 
 if TYPE_CHECKING:
     from ..evaluation.rings import Place
@@ -95,25 +94,14 @@ def write_seal(
     command, date : as `report`
     sheet : whether to write the sheet, or the map alone
     """
-    from ..design.writer import to_yaml
-    from ..evaluation.build import spec_hash
     from ..reporting.seal_document import write_map, write_sheet
 
     source = None if actuator is None else actuator.source
-    name = file_name(study.design, source)
-    stem = f"{Path(name).stem}_{study.place}_seal"
+    stem = f"{Path(file_name(study.design, source)).stem}_{study.place}_seal"
     files = []
     if sheet:
-        files += write_sheet(
-            study,
-            folder=Path(folder),
-            stem=stem,
-            source_text=source.text if source is not None else to_yaml(study.design),
-            source_name=name,
-            command=command,
-            spec_hash=spec_hash(prepare(study.design)),
-            date=date or date_from_environment(),
-        )
+        page = origin(study.design, source, command=command, date=date)
+        files += write_sheet(study, page, folder=Path(folder), stem=stem)
     if study.map is not None:
         files.append(write_map(study.map, Path(folder) / f"{stem}_map.csv"))
     return files
