@@ -122,6 +122,7 @@ class Identification:
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI; what has no value is null with its reason beside it."""
+        series = self.series()
         found: dict[str, Any] = {
             "record": self.record.name,
             "design": self.bench.design.name,
@@ -138,6 +139,8 @@ class Identification:
             "stribeck": None,
             "lugre": None,
             "damping": [_point(one) for one in self.points],
+            "stiffness": _range(series["stiffness"]),
+            "bore_growth": _range(series["growth"]),
             "fits": {name: _fit(one) for name, one in self.fits.items()},
             "mass": self.mass,
             "pressure_lag": self.pressure_lag,
@@ -193,3 +196,9 @@ def _fit(fit: Fit | str) -> dict[str, Any]:
         "r_squared": fit.r_squared,
         "doubts": list(fit.doubts),
     }
+
+
+def _range(values: Array) -> dict[str, float] | None:
+    """Least and largest value of a quantity over time; None where it has none."""
+    known = values[np.isfinite(values)]
+    return {"min": float(known.min()), "max": float(known.max())} if known.size else None
