@@ -653,3 +653,87 @@ def test_the_rod_bends_with_its_shear():
     assert found.shear_share == pytest.approx(factor - 1, rel=1e-2)
     slope = found.slope.value
     assert found.as_published.value == pytest.approx(slope * span**3 / (48 * inertia), rel=1e-9)
+
+
+# Calibration
+
+
+@cache
+def two_loads(mu=0.13):
+    """Friction mu N(p)[1 + e^(-(v/v_s)^2)] + 60 v at two loads, by bristles, with noise."""
+    course = stairs((1e-3, 2e-3, 3e-3, 5e-3, 0.01, 0.03, 0.1), travel=0.04, longest=1.0, repeats=2)
+    t, _, v, _ = course
+    load = np.where(t < t[-1] / 2, 500.0, 5000.0)
+    load = signal.convolve(np.pad(load, 50, mode="edge"), np.full(101, 1 / 101), mode="valid")
+    friction = np.zeros_like(t)
+    for _ in range(8):
+        level = mu * normal_force(cap_pressure(friction + load, 1e6), 1e6)
+        friction = bristles(v, coulomb=level, ratio=2.0, speed=3e-3, stiffness=5e6, viscous=60.0)
+    return read(recorded(course, friction, load=load, noise=2e4, name="two.csv"), mass=0.0)
+
+
+@cache
+def calibrated():
+    """The steel knee with the friction of that record."""
+    return ao.calibrate(two_loads(), design=steel(), search=False)
+
+
+def test_the_friction_put_in_is_learned():
+    """0.13 where the design said 0.10, F_S/F_C of 2, 3 mm/s, 60 N s/m by circumference."""
+    found = calibrated().calibration.values()
+    for place, share in (("piston", BORE / (BORE + ROD)), ("rod", ROD / (BORE + ROD))):
+        at = f"seals.{place}."
+        assert found[f"{at}friction_coefficient"] == pytest.approx(0.13, rel=0.01)
+        assert found[f"{at}breakaway_ratio"] == pytest.approx(2.0, rel=0.02)
+        assert found[f"{at}stribeck_speed"] == pytest.approx(3e-3, rel=0.03)
+        assert found[f"{at}viscous_friction"] == pytest.approx(60.0 * share, rel=0.25)
+
+
+def test_the_factor_is_that_of_least_squares():
+    """sum F_C(p) mu N/sum (mu N)^2 over the points of both pressures, N by hand."""
+    found = two_loads()
+    p1, p2, p = (
+        np.array([getattr(one, n) for one in found.points])
+        for n in ("pressure_1", "pressure_2", "pressure")
+    )
+    stated = 0.1 * normal_force(p1, p2)
+    factors = []
+    for model in (found.stribeck, found.lugre):
+        known = {**model.held, **{n: one.value for n, one in model.parameters.items()}}
+        change = p - found.stribeck.reference_pressure
+        level = known["coulomb"] + known["pressure_slope"] * change
+        factors.append(level @ stated / (stated @ stated))
+    learned = {one.name: one for one in calibrated().calibration.learned}["friction_coefficient"]
+    assert min(factors) * 0.998 <= learned.known.value <= max(factors) * 1.002
+    assert learned.known.value == pytest.approx(1.3, rel=0.01)
+
+
+def test_bounds_of_a_requirement_by_finite_differences():
+    """Half width: |dM/dq| times that of q by number learned, added as squares; forces too."""
+    found = calibrated()
+    base = {one.after.name: one.after.value for one in found.redesign.shifts}
+    squares = dict.fromkeys(base, 0.0)
+    for one in found.calibration.learned:
+        values = one.values()
+        step = 1e-3
+        moved = found.actuator.changed({path: v * (1 + step) for path, v in values.items()})
+        half = (one.known.upper - one.known.lower) / 2 / one.known.value
+        for row in ao.evaluate(moved).requirements:
+            squares[row.name] += ((row.value - base[row.name]) / step * half) ** 2
+    checked = 0
+    for shift in found.redesign.shifts:
+        half = sqrt(squares[shift.after.name])
+        if half > 1e-6 * abs(base[shift.after.name]):
+            assert (shift.upper - shift.lower) / 2 == pytest.approx(half, rel=0.03)
+            checked += 1
+    assert checked >= 3
+
+
+def test_the_friction_requirement_scales_with_the_coefficient():
+    """Running friction is mu N and the viscous part: 1.3 times what stood, plus 60 v."""
+    shift = {one.after.name: one for one in calibrated().redesign.shifts}["friction_running"]
+    numbers_ = calibrated().calibration.values()
+    viscous = sum(v for path, v in numbers_.items() if path.endswith("viscous_friction"))
+    more = shift.after.value - 1.3 * shift.before.value
+    assert more == pytest.approx(0.4 * viscous, abs=0.01 * shift.after.value)
+    assert calibrated().redesign.moved.after.name == "friction_running"

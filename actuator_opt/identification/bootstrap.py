@@ -31,7 +31,7 @@ from ..least_squares import CONFIDENCE, WEAK, Parameter, quantile
 from ..numeric import STEP, Array
 from .balance import Sliding
 from .conditioning import Motion
-from .lugre_problem import LOGARITHMIC, SYMBOLS, TRAVELS, LuGreFit
+from .lugre_problem import BENDS, LOGARITHMIC, SYMBOLS, TRAVELS, LuGreFit
 from .lugre_windows import LAG, Windows, windows
 from .many_fits import Search, relaxed
 from .points import SETTLED, Point
@@ -194,7 +194,8 @@ def _lugre(
             relaxed(misfit, lambda _: jacobian[None], begin, problem.search, LUGRE_STEPS)[0]
         )
     unseen = {"lag", "bristle_damping"} <= set(fit.held)
-    wider = unseen or not np.isfinite(fit.parameters["coulomb"].upper)
+    open_level = not np.isfinite(fit.parameters["coulomb"].upper)
+    wider = tuple(fit.parameters) if unseen or open_level else tuple(SYMBOLS)
     parameters = _bounded(
         fit.parameters, problem.search, np.concatenate(rows), fit.values, blocks - 1, wider
     )
@@ -220,7 +221,10 @@ class LuGreResiduals:
     ) -> None:
         self.names, self.values = tuple(fit.parameters), fit.values
         best = searched(self.names, self.values)
-        self.windows = found.chosen(natural(self.names, best[None], self.values))
+        level = min(max(self.values["static"], self.values["coulomb"]), found.largest)
+        travel = BENDS * level / self.values["bristle_stiffness"]
+        chosen = found.chosen(natural(self.names, best[None], self.values))
+        self.windows = chosen.resolved(travel)
         self.spread, self.largest, self.steady = fit.misfit, found.largest, None
         if stribeck is not None:
             self.steady = Steady(points, stribeck.errors * stribeck.scatter)
@@ -323,11 +327,11 @@ def _bounded(
     found: Array,
     values: Mapping[str, float],
     spare: int,
-    wider: bool = False,
+    wider: Sequence[str] = (),
 ) -> dict[str, Parameter]:
     """Parameters with percentiles for bounds; draws at an open end of the search have none.
 
-    `wider` keeps the wider of both bounds for all.
+    Those named in `wider` keep the wider of both bounds.
     """
     count = found.shape[0]
     own = natural(search.names, found, values)
@@ -349,7 +353,7 @@ def _bounded(
             draws[unseen] = np.resize([-np.inf, np.inf], int(unseen.sum()))
         draws.sort()
         low, high = min(draws[tail - 1], value), max(draws[count - tail], value)
-        if wider or (name not in SIGNED and was.verdict == "not identifiable"):
+        if name in wider or (name not in SIGNED and was.verdict == "not identifiable"):
             low, high = min(low, was.lower), max(high, was.upper)
         with np.errstate(invalid="ignore"):
             error = (high - low) / (2 * quantile(spare))

@@ -11,6 +11,7 @@ from ..evaluation.study.bench import Bench
 from ..fits import Fit, fit_double_exponential, fit_power_law
 from ..least_squares import quantile
 from .balance import Sliding, check_signs, slide
+from .bootstrap import resampled
 from .coefficient import coefficient
 from .conditioning import Motion, condition
 from .lugre_fit import LuGreFit, fit_lugre, settling_distance
@@ -69,6 +70,17 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
         notes.append(f"pressures come {1e3 * lag:.2f} ms late, by the reversals; taken off")
     if late is not None or settling > SETTLED:
         points, stribeck, lugre = _models(slidings, motion, area, known, settling)
+    if own.bootstrap:
+        stribeck, lugre = resampled(
+            slidings,
+            motion,
+            points,
+            stribeck,
+            lugre,
+            count=own.bootstrap,
+            seed=own.seed,
+            settling=settling,
+        )
     mean, largest = _sizes(slidings, motion)
     return Identification(
         record=record,
