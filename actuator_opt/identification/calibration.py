@@ -148,6 +148,7 @@ def calibration(identification: Identification) -> Calibration:
     doubts: list[str] = []
     if isinstance(identification.stribeck, StribeckFit):
         learned, left, level = _from_fits(identification, identification.stribeck, coulomb)
+        doubts += identification.stribeck.doubts
         doubts += _doubts(points, identification.stribeck, level, coulomb)
     else:
         learned, level = _from_level(bench, points)

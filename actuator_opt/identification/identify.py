@@ -20,13 +20,17 @@ from .points import SETTLED, Point, independent, steady_points
 from .record import Record
 from .result import Identification, Mean, Settings
 from .spectrum import spectrum
-from .stribeck_fit import StribeckFit, fit_stribeck
+from .stribeck_fit import StribeckFit, different, fit_stribeck
 
 LEAST_LAG = 3e-4
 """Least lag that is worth taking off [s]."""
 EARLIEST = 6e-3
 """Time by which pressures may come before the position [s] (a choice: filters of a position sensor
 are late too, but bristles may look so)."""
+LAWS = {"power_law": fit_power_law, "double_exponential": fit_double_exponential}
+"""Laws of the secant damping over speed."""
+LEAST_SPEEDS = 3
+"""Different speeds that a law of two parameters is asked of, one to spare."""
 OUTSIDE = 0.02
 """Share of the stroke by which a position may lie beyond its ends."""
 
@@ -214,13 +218,14 @@ def _sizes(slidings: Sequence[Sliding], motion: Motion) -> tuple[Mean, float]:
 
 def _fits(points: Sequence[Point]) -> dict[str, Fit | str]:
     """Fits of the secant damping over speed, weighted by relative errors."""
+    speeds = different([one.speed for one in points])
+    if len(speeds) < LEAST_SPEEDS:
+        why = f"{len(speeds)} different speeds: a law of damping over speed needs {LEAST_SPEEDS}"
+        return dict.fromkeys(LAWS, why)
     speed = np.array([one.speed for one in points])
     damping = np.array([one.damping for one in points])
     found: dict[str, Fit | str] = {}
-    for name, fit in (
-        ("power_law", fit_power_law),
-        ("double_exponential", fit_double_exponential),
-    ):
+    for name, fit in LAWS.items():
         positive = damping > 0
         try:
             found[name] = fit(speed[positive], damping[positive], 1 / damping[positive] ** 2)

@@ -139,7 +139,7 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
     -------
     the fit, or one line that says what is missing
     """
-    speeds = _different([one.speed for one in points])
+    speeds = different([one.speed for one in points])
     if len(speeds) < 2:
         at = f"one speed, {1e3 * speeds[0]:.3g} mm/s" if speeds else "no steady sliding"
         return f"{at}: a Stribeck curve needs plateaus or sweeps of 2 speeds, 5 for F_S and v_s"
@@ -200,7 +200,7 @@ def _unsure(fit: StribeckFit, points: Sequence[Point]) -> StribeckFit:
     return replace(fit, parameters=widened(fit.parameters, more, fit.quantile))
 
 
-def _different(speeds: Sequence[float]) -> list[float]:
+def different(speeds: Sequence[float]) -> list[float]:
     """Speeds that differ by more than `DIFFERENT`."""
     found: list[float] = []
     for one in sorted(speeds):
