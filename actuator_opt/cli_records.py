@@ -12,12 +12,15 @@ from .cli_shared import check_targets, command_line, given, read_actuator, say_f
 from .errors import Diagnostic, ExitCode, UsageError
 from .options import REPORTS, Date, Json, Out, PluginFile, Quiet, Report, Seed, Set
 from .quantities import RECORDS
+from .store import require_apart
 
 if TYPE_CHECKING:
     from .verbs import Actuator
     from .verbs.records import Part
 
-RecordFile = Annotated[str, typer.Argument(metavar="RECORD", help="CSV file of the test record.")]
+RecordFile = Annotated[
+    str, typer.Argument(metavar="RECORD", help="CSV file of the test record, or - for stdin.")
+]
 Tested = Annotated[
     str, typer.Option("--design", metavar="DESIGN", help="Design file of the actuator tested.")
 ]
@@ -70,7 +73,7 @@ Bootstrap = Annotated[
         min=0,
         max=10000,
         metavar="N",
-        help="Bounds from N resampled records (200 or more) instead of the linearised model.",
+        help="Bounds from N resampled records (80 or more) instead of the linearised model.",
     ),
 ]
 
@@ -114,11 +117,17 @@ def identify(
     from . import verbs
 
     check_targets(out if report else None, date, csv)
+    if csv is not None:
+        require_apart(csv, record, design)
+    _check_bootstrap(bootstrap)
     named = _columns(columns)
     length = given("--span", span, RECORDS["span"])
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
     actuator = read_actuator(design, sets, plugin)
     if length is not None:
+        _only_bending(report=report, csv=csv is not None, bootstrap=bootstrap > 0,
+                      mass=mass is not None, load_force=load_force is not None,
+                      pressure_lag=pressure_lag is not None)  # fmt: skip
         _bend(record, actuator, length, part, named, as_json=as_json, quiet=quiet)
         return
     found = verbs.identify(
@@ -177,6 +186,9 @@ def calibrate(
     from . import verbs
 
     check_targets(out if report else None, date, write)
+    if write is not None:
+        require_apart(write, record)
+    _check_bootstrap(bootstrap)
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
     actuator = read_actuator(design, sets, plugin)
     found = verbs.calibrate(
@@ -232,6 +244,22 @@ def _bend(
         from .reporting.bending_text import bending_text
 
         streams.out(bending_text(found, **streams.style()), end="")
+
+
+def _only_bending(**asked: bool) -> None:
+    """Refuse options that a bending test has no use for."""
+    options = [f"--{name.replace('_', '-')}" for name, one in asked.items() if one]
+    if options:
+        message = f"{', '.join(options)}: not with --span, a bending test gives a modulus alone"
+        raise UsageError(Diagnostic(message, "leave one of them out"))
+
+
+def _check_bootstrap(count: int) -> None:
+    from .identification.bootstrap import FEWEST
+
+    if 0 < count < FEWEST:
+        message = f"--bootstrap {count}: too few to have a tail of 2.5 %"
+        raise UsageError(Diagnostic(message, f"take {FEWEST} or more, 200 as a rule"))
 
 
 def _columns(texts: list[str] | None) -> dict[str, str]:

@@ -11,6 +11,11 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from enum import IntEnum
 
+from .suggest import shown
+
+_LONGEST = 400
+"""Letters of a file's name that a line repeats."""
+
 
 class ExitCode(IntEnum):
     """Exit statuses of every command (CONTRACT: stable)."""
@@ -51,7 +56,8 @@ class Diagnostic:
         return fields
 
     def __str__(self) -> str:
-        place = ":".join(str(p) for p in (self.file, self.line, self.column) if p is not None)
+        file = None if self.file is None else shown(self.file, _LONGEST)
+        place = ":".join(str(p) for p in (file, self.line, self.column) if p is not None)
         head = ": ".join(p for p in (place, self.path or "", self.message) if p)
         lines = [f"{head}; {self.remedy}" if self.remedy else head]
         if self.source is not None and self.column is not None:

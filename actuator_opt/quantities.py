@@ -299,7 +299,7 @@ RECORDS = _table("""
  cutoff               | f_c    | frequency   | Hz     | 0.01  | 100000 | cut-off frequency of the filter
  moving_mass          | m      | mass        | kg     | 0     | 1e6    | mass moving inside the force sensor
  load_force           | F_L    | force       | N      | -2e7  | 2e7    | force of the load, against extension
- pressure_lag         | tau    | time        | ms     | -1000 | 1000   | time by which the pressures come late
+ pressure_lag         | tau    | time        | ms     | -100  | 100    | time by which the pressures come late
  span                 | L      | length      | mm     | 1     | 20000  | span between the supports
 """)
 """What a command states about a test record; magnitudes but for a force and a time."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import sys
 from pathlib import Path
 
 from .errors import Diagnostic, InputError
@@ -46,7 +47,7 @@ def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: s
 
     Parameters
     ----------
-    source : of the file, as the person wrote it
+    source : of the file, as the person wrote it; ``"-"`` for standard input
     most : bytes to read
     kinds : endings of such files, to suggest one of a near name
     what : such a file is, in words
@@ -56,6 +57,8 @@ def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: s
     InputError : it is not there, a folder, or not to be read
     """
     path, name = Path(source), str(source)
+    if name == "-":
+        return sys.stdin.buffer.read(most)
     try:
         with path.open("rb") as stream:
             return stream.read(most)
@@ -115,6 +118,20 @@ def require_folder(folder: Path) -> None:
     else:
         return
     raise InputError(Diagnostic(reason, "choose a folder with --out", str(folder)))
+
+
+def require_apart(target: Path, *sources: str) -> None:
+    """Refuse to write over a file that is read.
+
+    Raises
+    ------
+    InputError : the target is one of the sources, or a link to it
+    """
+    for source in sources:
+        with contextlib.suppress(OSError, ValueError):
+            if target.samefile(source):
+                message = "would be written over what is read"
+                raise InputError(Diagnostic(message, "choose another file", str(target)))
 
 
 def write_text(path: Path, text: str) -> Path:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -200,10 +199,9 @@ def _bare_is_si(value: str, quantity: Quantity | None) -> str:
 def _open(source: str | Path) -> tuple[str, str]:
     if isinstance(source, str) and ("\n" in source or "\r" in source):
         return source, TEXT
-    if source == "-":
-        return decode(sys.stdin.buffer.read(MAX_BYTES + 1), STDIN), STDIN
+    name = STDIN if source == "-" else str(source)
     data = read_bytes(source, most=MAX_BYTES + 1, kinds=(".yaml", ".yml"), what="design file")
-    return decode(data, str(source)), str(source)
+    return decode(data, name), name
 
 
 def library() -> Materials:

@@ -130,7 +130,8 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
     Raises
     ------
     InputError
-        naming what would put it right, where one change does
+        naming what would put it right, where one change does: the one of least friction, x last, as
+        its sign does not change how large friction is
     """
     share = opposed(slidings)
     slid = any(_slides(one) for one in slidings)
@@ -142,7 +143,7 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
         if changed != 1:
             continue
         turned = [_turned(one, bench, mass, pressures, force, way) for one in slidings]
-        if opposed(turned) > SURE and _size(turned) < _size(slidings):
+        if opposed(turned) > SURE and (way or _size(turned) < _size(slidings)):
             found.append((_size(turned), pressures, force))
     about = (
         f"the friction found drives the rod instead of opposing it ({100 * share:.0f} % of its "
@@ -153,7 +154,7 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
         raise InputError(Diagnostic(about, remedy, file=name))
     _, pressures, force = min(found)
     if pressures:
-        what, remedy = "p1 and p2 look reversed", "swap them, e.g. with --column p1=... p2=..."
+        what, remedy = "p1 and p2 look reversed", "swap them, e.g. with --column p1=... --column p2=..."
     elif force:
         what, remedy = "F_L looks reversed", "F_L is positive against extension: turn its sign"
     else:

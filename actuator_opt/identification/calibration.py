@@ -24,6 +24,8 @@ KEYS = ("friction_coefficient", "breakaway_ratio", "stribeck_speed", "viscous_fr
 """Keys of a seal that a record can give."""
 _ASKED = ("coulomb", "static", "stribeck_speed", "viscous")
 """Parameters of the fits behind them."""
+RISEN = 0.05
+"""Share of the friction at one speed that may be its rise towards rest before that is said."""
 MISFIT = 0.1
 """Share of F_C by which the contact law may miss the friction measured at other pressures before
 it is said (a choice: a third of what makes a parameter weakly identifiable)."""
@@ -145,26 +147,56 @@ def calibration(identification: Identification) -> Calibration:
             "record plateaus of constant speed, or slow sweeps, in both directions",
         )
     coulomb = np.asarray(bench.coulomb(*_pressures(points)))
-    doubts: list[str] = []
     if isinstance(identification.stribeck, StribeckFit):
         learned, left, level = _from_fits(identification, identification.stribeck, coulomb)
-        doubts += identification.stribeck.doubts
+        doubts = [*identification.stribeck.doubts]
         doubts += _doubts(points, identification.stribeck, level, coulomb)
     else:
-        learned, level = _from_level(bench, points)
+        learned, level, doubts = _from_level(bench, points)
         left = dict.fromkeys(KEYS[1:], identification.stribeck)
+    kept = []
+    for one in learned:
+        why = _beyond_range(one)
+        if why is None:
+            kept.append(one)
+        else:
+            left[one.name] = why
+    if not kept:
+        raise identification.record.fault(
+            f"it tells nothing of the seals: {'; '.join(dict.fromkeys(left.values()))}",
+            "record plateaus of several constant speeds, in both directions",
+        )
+    doubts += _weak(kept)
     doubts += _beyond(bench, points)
-    doubts.append(
-        "one factor for all rings and wipers: a record of the cylinder cannot tell piston from rod"
-    )
+    if len(bench.rings) + len(bench.wipers) > 1:
+        doubts.append(
+            "one factor for all rings and wipers: a record of the cylinder cannot tell piston "
+            "from rod"
+        )
     return Calibration(
         identification,
-        learned,
+        tuple(kept),
         left,
         float(np.mean(level)),
         float(np.mean(coulomb)),
-        tuple(doubts),
+        tuple(dict.fromkeys(doubts)),
     )
+
+
+def _beyond_range(one: Learned) -> str | None:
+    """Why a number cannot stand in a design; None where it can."""
+    quantity = INPUTS[one.name]
+    out = [v for v in one.values().values() if not quantity.lower <= v <= quantity.upper]
+    if not out:
+        return None
+    return f"measured {quantity.text(out[0])}, a design takes {quantity.range_text()}"
+
+
+def _weak(learned: Sequence[Learned]) -> Iterator[str]:
+    """Numbers that the record hardly shows."""
+    names = [one.name for one in learned if not one.known.identifiable]
+    if names:
+        yield f"only weakly known (bounds beyond 30 %): {', '.join(names)}"
 
 
 def _refuse_film(bench: Bench) -> None:
@@ -186,47 +218,69 @@ def _pressures(points: Sequence[Point]) -> tuple[Array, Array]:
 
 def _from_fits(
     identification: Identification, stribeck: StribeckFit, stated: Array
-) -> tuple[tuple[Learned, ...], dict[str, str], Array]:
-    """What the Stribeck curve and the bristles told, and the Coulomb level by point."""
+) -> tuple[list[Learned], dict[str, str], Array]:
+    """What the Stribeck curve and the bristles told, and the Coulomb level by point.
+
+    The factor is the mean level over the mean that the design states; its bounds hold the ratio at
+    every point too, so that a contact law that rises otherwise with pressure widens them.
+    """
     bench = identification.bench
     known = {name: _best(identification, name) for name in _ASKED}
-    coulomb, source = known["coulomb"] or (stribeck.parameters["coulomb"], "Stribeck fit")
     pressure = np.array([one.pressure for one in identification.points])
+    coulomb = known["coulomb"]
+    middle = (stribeck.parameters["coulomb"] if coulomb is None else coulomb[0]).value
     slope = stribeck.values["pressure_slope"]
-    level = coulomb.value + slope * (pressure - stribeck.reference_pressure)
-    factor = float(level @ stated / (stated @ stated))
-    learned = [_coefficient(_times(coulomb, factor / coulomb.value), bench, source)]
+    level = middle + slope * (pressure - stribeck.reference_pressure)
+    learned: list[Learned] = []
     left: dict[str, str] = {}
+    if coulomb is None:
+        left["friction_coefficient"] = "the record does not part Coulomb from viscous friction"
+    else:
+        factor = float(np.mean(level) / np.mean(stated))
+        found = _times(coulomb[0], factor / middle)
+        low, high = float(np.min(level / stated)), float(np.max(level / stated))
+        found = rated(factor, min(found.lower, low), max(found.upper, high), found.standard_error)
+        learned.append(_coefficient(found, bench, coulomb[1]))
     static, speed, viscous = (known[name] for name in _ASKED[1:])
-    if static is None or speed is None:
+    if static is None or speed is None or coulomb is None:
         why = "the record does not show how friction rises towards rest"
         left |= {"breakaway_ratio": why, "stribeck_speed": why}
     else:
-        learned.append(_alike("breakaway_ratio", _ratio(static[0], coulomb), bench, static[1]))
+        ratio = _ratio(static[0], coulomb[0])
+        learned.append(_alike("breakaway_ratio", ratio, bench, static[1]))
         learned.append(_alike("stribeck_speed", speed[0], bench, speed[1]))
     if viscous is None:
         left["viscous_friction"] = "the record does not show how friction rises with speed"
     else:
         learned.append(_viscous(viscous[0], bench, viscous[1]))
-    return tuple(learned), left, level
+    return learned, left, level
 
 
-def _from_level(bench: Bench, points: Sequence[Point]) -> tuple[tuple[Learned, ...], Array]:
-    """The factor alone, from friction at one speed; its rise at other speeds as the design says."""
+def _from_level(bench: Bench, points: Sequence[Point]) -> tuple[list[Learned], Array, list[str]]:
+    """The factor alone, from friction at one speed; its rise at other speeds as the design says.
+
+    Where the design says that the speed is within that rise, the upper bound allows for none.
+    """
     speed = np.array([one.speed for one in points])
     measured = np.array([one.friction * np.sign(one.velocity) for one in points])
     level, viscous = bench.sliding(speed, *_pressures(points))
+    coulomb = np.asarray(bench.coulomb(*_pressures(points)))
     factors = (measured - viscous) / level
     value = float(np.mean(factors))
     errors = np.array([one.error for one in points]) / level
     scatter = float(np.std(factors, ddof=1)) if factors.size > 1 else 0.0
     error = max(scatter, float(np.mean(errors))) / sqrt(factors.size)
     half = quantile(max(factors.size - 1, 1)) * error
-    known = rated(value, value - half, value + half, error)
-    source = f"friction at {1e3 * float(np.mean(speed)):.3g} mm/s"
-    return (_coefficient(known, bench, source),), value * np.asarray(
-        bench.coulomb(*_pressures(points))
-    )
+    rise = float(np.mean(level / coulomb))
+    known = rated(value, value - half, rise * value + half, error)
+    at = f"{1e3 * float(np.mean(speed)):.3g} mm/s"
+    doubts = [f"friction at {at} alone: its viscous part at other speeds is the design's"]
+    if rise > 1 + RISEN:
+        doubts.append(
+            f"by the design's breakaway ratio and Stribeck speed friction at {at} is {rise:.2f} "
+            "times its Coulomb part: the factor rests on them"
+        )
+    return [_coefficient(known, bench, f"friction at {at}")], value * coulomb, doubts
 
 
 def _best(identification: Identification, name: str) -> tuple[Parameter, str] | None:
@@ -293,14 +347,14 @@ def _doubts(
             f"the offset of {offset.value:.3g} N between both ways is not in the design's "
             "friction, which is their mean"
         )
-    apart = level - float(level @ stated / (stated @ stated)) * stated
+    apart = level - float(np.mean(level) / np.mean(stated)) * stated
     worst = int(np.argmax(np.abs(apart)))
     share = float(apart[worst] / np.mean(level))
     if abs(share) > MISFIT:
         yield (
             f"the friction measured parts from the contact law by {100 * share:+.0f} % of F_C at "
-            f"{points[worst].pressure / 1e5:.3g} bar: the factor is their mean over the record's "
-            "pressures and does not hold beyond them"
+            f"{points[worst].pressure / 1e5:.3g} bar: the factor is that of the means over the "
+            "record's pressures, and its bounds hold every ratio"
         )
 
 

@@ -36,8 +36,8 @@ CROWDED = 3.0
 """Mean step of time over the usual one (a choice: even steps then hold three times the samples)."""
 SAMPLED = 100_000
 """Samples of a piece that tell its noise (a choice: to 0.3 %)."""
-LATEST = 0.5
-"""Largest lag that is taken off [s] (a choice: a hundred times that of a pressure sensor)."""
+LATEST = 0.1
+"""Largest lag that is taken off [s] (a choice: twenty times that of a pressure sensor)."""
 NEEDED = ("p1", "p2", "x", "F_L")
 """Channels whose missing samples break a record."""
 
@@ -73,6 +73,8 @@ class Motion:
     compensated: bool
     quality: dict[str, Quality]
     notes: tuple[str, ...]
+    cleaned: dict[str, Array]
+    """Channels without spikes and clipped samples, before the filter (samples of the record)."""
 
     @property
     def duration(self) -> float:
@@ -135,6 +137,7 @@ def condition(
     order: int = ORDER,
     compensated: bool = True,
     pressure_lag: float = 0.0,
+    before: Motion | None = None,
 ) -> Motion:
     """Evenly sampled, cleaned and filtered pieces of a record.
 
@@ -144,6 +147,7 @@ def condition(
     cutoff, order : of the zero-phase Butterworth filter [Hz], of each of its two passes
     compensated : whether both passes together are -3 dB at the cut-off, else -6 dB
     pressure_lag : time by which pressures come late, taken off [s]
+    before : the same record with other choices, cleaned already
 
     Returns
     -------
@@ -162,7 +166,12 @@ def condition(
     step = float(np.median(steps))
     _sampling(record, time, step, cutoff)
     notes = list(record.notes)
-    cleaned, quality = _cleaned(record, step, notes)
+    if before is None:
+        cleaned, quality = _cleaned(record, step)
+    else:
+        cleaned, quality = before.cleaned, before.quality
+    lost = [name for name in CHANNELS if name in record and name not in cleaned]
+    notes += [f"{name} has no sample: left out" for name in lost]
     sections = low_pass(cutoff=cutoff, order=order, sample_time=step, compensated=compensated)
     pieces, dropped = [], []
     for first, last in _breaks(time, cleaned, step, cutoff):
@@ -197,12 +206,10 @@ def condition(
         for name, one in quality.items()
     }
     notes += _told(quality, time.size)
-    return Motion(tuple(pieces), step, cutoff, order, compensated, quality, tuple(notes))
+    return Motion(tuple(pieces), step, cutoff, order, compensated, quality, tuple(notes), cleaned)
 
 
-def _cleaned(
-    record: Record, step: float, notes: list[str]
-) -> tuple[dict[str, Array], dict[str, Quality]]:
+def _cleaned(record: Record, step: float) -> tuple[dict[str, Array], dict[str, Quality]]:
     """Every channel without spikes and clipped samples, and what it is worth."""
     cleaned: dict[str, Array] = {}
     quality: dict[str, Quality] = {}
@@ -214,8 +221,6 @@ def _cleaned(
             cleaned[name], quality[name] = clean(record[name], step, pressure=pressure)
         elif name in NEEDED:
             raise record.fault(f"{name} has no sample", "mend the sensor, or leave the column out")
-        else:
-            notes.append(f"{name} has no sample: left out")
     return cleaned, quality
 
 

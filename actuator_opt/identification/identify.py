@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..evaluation.study.bench import Bench
 from ..fits import Fit, fit_double_exponential, fit_power_law
 from ..least_squares import quantile
-from .balance import Sliding, check_signs, slide
+from .balance import Sliding, check_signs, slide, velocity_noise
 from .bootstrap import resampled
 from .coefficient import coefficient
 from .conditioning import Motion, condition
@@ -33,6 +33,11 @@ LEAST_SPEEDS = 3
 """Different speeds that a law of two parameters is asked of, one to spare."""
 OUTSIDE = 0.02
 """Share of the stroke by which a position may lie beyond its ends."""
+STEPS, NOISES = 2.0, 10.0
+"""Steps of the position sensor, and standard deviations of the filtered position, by which a rod at
+rest may seem to move (a choice: the range of 10 000 normal samples is 8 deviations)."""
+PACE = 0.05
+"""Share by which a channel v may differ from the slope of x (a choice)."""
 
 
 def identify(record: Record, bench: Bench, settings: Settings | None = None) -> Identification:
@@ -58,7 +63,7 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
     mass = _mass(record, bench, own)
     lag, known = own.pressure_lag or 0.0, own.pressure_lag is not None
     notes: list[str] = []
-    motion, slidings = _read(record, bench, own, mass, lag)
+    motion, slidings = _read(record, bench, own, mass, lag, None)
     _moving(record, motion, slidings, bench, mass)
     area = float(bench.areas(np.float64(0.0))[0])
     points, stribeck, lugre = _models(slidings, motion, area, known)
@@ -70,7 +75,7 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
     settling = settling_distance(lugre)
     if late is not None:
         lag = late
-        motion, slidings = _read(record, bench, own, mass, lag)
+        motion, slidings = _read(record, bench, own, mass, lag, motion)
         notes.append(f"pressures come {1e3 * lag:.2f} ms late, by the reversals; taken off")
     if late is not None or settling > SETTLED:
         points, stribeck, lugre = _models(slidings, motion, area, known, settling)
@@ -103,18 +108,29 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
         stribeck=stribeck,
         lugre=lugre,
         fits=_fits(points),
-        notes=(*motion.notes, *notes, *_outside(slidings, bench)),
+        notes=(*motion.notes, *notes, *_outside(slidings, bench), *_pace(motion)),
     )
 
 
 def _moving(
     record: Record, motion: Motion, slidings: Sequence[Sliding], bench: Bench, mass: float
 ) -> None:
-    """Refuse a record of a rod at rest, or with channels turned round."""
+    """Refuse a record of a rod at rest, beyond its stroke, or with channels turned round."""
+    travel = max(float(np.ptp(one["x"][one.sound])) for one in motion.pieces)
+    quality = motion.quality["x"]
+    band = min(2 * motion.cutoff * motion.sample_time, 1.0)
+    if travel <= max(STEPS * quality.resolution, NOISES * quality.noise * np.sqrt(band)):
+        raise record.fault(
+            f"the rod never moves: x changes by {1e6 * travel:.2g} um, which its steps and noise do",
+            "give a record of a moving rod, and x with more digits",
+        )
+    if travel > (1 + OUTSIDE) * bench.stroke:
+        raise record.fault(
+            f"x travels {1e3 * travel:.4g} mm, more than the stroke of {1e3 * bench.stroke:.4g} mm",
+            "check the unit of x, and geometry.stroke of the design",
+        )
     if any(one.moving.any() for one in slidings):
         check_signs(slidings, bench, mass=mass, name=record.name)
-    elif np.ptp(record["x"][np.isfinite(record["x"])]) < 3 * motion.quality["x"].resolution:
-        raise record.fault("the rod never moves", "give a record of a moving rod")
 
 
 def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
@@ -127,6 +143,24 @@ def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
         f"x runs from {1e3 * place.min():.1f} to {1e3 * place.max():.1f} mm, the stroke is "
         f"{1e3 * bench.stroke:.1f} mm: its zero is not the cap end, no stiffness there"
     ]
+
+
+def _pace(motion: Motion) -> list[str]:
+    """A note where a channel v is not the slope of x: least squares over what moves.
+
+    v = k dx/dt, k = sum v x'/sum x'^2 with the noise of x' taken off.
+    """
+    both = [(one["v"][one.sound], one.velocity[one.sound]) for one in motion.pieces if "v" in one]
+    if not both:
+        return []
+    stated, found = (np.concatenate(one) for one in zip(*both, strict=True))
+    power = float(np.mean(found**2)) - velocity_noise(motion) ** 2
+    if power <= 0.5 * float(np.mean(found**2)):  # hardly more than noise says nothing
+        return []
+    slope = float(np.mean(stated * found)) / power
+    if abs(slope - 1) <= PACE:
+        return []
+    return [f"v is {slope:.2f} times the slope of x: check its unit and sign; v is not used"]
 
 
 def _models(
@@ -182,20 +216,32 @@ def _channels(record: Record, bench: Bench, settings: Settings) -> None:
 
 
 def _mass(record: Record, bench: Bench, settings: Settings) -> float:
+    """What moves inside the force sensor [kg]; forces and masses that are none are refused."""
+    if settings.mass is not None and not (np.isfinite(settings.mass) and settings.mass >= 0):
+        raise record.fault(f"a moving mass of {settings.mass:g} kg", "give 0 kg or more")
+    if settings.load_force is not None and not np.isfinite(settings.load_force):
+        raise record.fault(f"a load of {settings.load_force:g} N", "give a number")
     if settings.mass is not None:
         return settings.mass
     return bench.mass + (0.0 if "F_L" in record else bench.load_mass)
 
 
 def _read(
-    record: Record, bench: Bench, settings: Settings, mass: float, lag: float
+    record: Record,
+    bench: Bench,
+    settings: Settings,
+    mass: float,
+    lag: float,
+    before: Motion | None,
 ) -> tuple[Motion, list[Sliding]]:
+    """The conditioned record with friction along it; `before` with another lag."""
     motion = condition(
         record,
         cutoff=settings.cutoff,
         order=settings.order,
         compensated=settings.compensated,
         pressure_lag=lag,
+        before=before,
     )
     return motion, slide(motion, bench, mass=mass, load_force=settings.load_force)
 

@@ -15,7 +15,7 @@ from .balance import Sliding
 from .conditioning import Motion
 from .doubtful import PARTED, opened, widened
 from .lugre_problem import LOGARITHMIC, SYMBOLS, TRAVELS, USUAL, LuGreFit, Problem
-from .lugre_windows import Windows, windows
+from .lugre_windows import Windows, no_windows, windows
 from .points import SETTLED, SETTLING, Point
 from .stribeck_fit import EXPONENT, StribeckFit
 
@@ -81,7 +81,7 @@ def fit_lugre(
     slowest = np.inf if curve_known is None else min(one.speed for one in points)
     found = windows(slidings, motion, reference, slowest, settling)
     if found is None:
-        return "no half second of an unbroken record about a reversal: bristles show only there"
+        return no_windows(motion)
     seen = found.blur < BLUR
     if curve_known is None:
         fit = _level(found, lag_known, seen)

@@ -25,6 +25,8 @@ PER_PERIOD = 12
 SAMPLES, LEFT = 2.0, 0.05
 """Independent samples that a rod must take for a few breakaway travels, and their share that may
 still count as rest (a choice)."""
+LEAST = 4
+"""Independent samples of a window, at least (a choice: one more than stiffness, lag and level)."""
 LASTING = 0.05
 """Time for which a way must last to be one [s]."""
 
@@ -190,7 +192,10 @@ def windows(
     before, after = round(BEFORE / step), round(AFTER / step)
     room = (before + margin) * stride, (after + margin) * stride
     lanes = _lanes(slidings, motion, room)
-    if not lanes:
+    edge = round(1 / (motion.cutoff * step))
+    apart = max(1, round(1 / (2 * motion.cutoff * step)))
+    kept = np.arange(edge, before + after - edge, apart)
+    if not lanes or kept.size < LEAST:
         return None
 
     def cut(values: Sequence[Array], more: int = 0) -> Array:
@@ -198,9 +203,6 @@ def windows(
         own = zip(values, lanes, strict=True)
         return np.stack([one[at - ends[0] : at + ends[1] : stride] for one, (_, at) in own])
 
-    edge = round(1 / (motion.cutoff * step))
-    apart = max(1, round(1 / (2 * motion.cutoff * step)))
-    kept = np.arange(edge, before + after - edge, apart)
     told = {id(one): _settled_above(one, slowest, settling) for one, _ in lanes}
     steady = np.where(cut([told[id(one)] for one, _ in lanes])[:, kept], 0.0, 1.0)
     span = (-before * stride, after * stride)
@@ -226,6 +228,20 @@ def windows(
         grain=resolution / np.sqrt(12),
         blur=float(np.sqrt(2 * resolution / sharpest)),
     )
+
+
+def no_windows(motion: Motion) -> str:
+    """Why a record has no window: one holds `LEAST` samples for (T - 2/f) 2 f = n, f = (n + 4)/2T.
+
+    The ends of a window, 1/f each, are the filter's; 2 f samples per second are independent.
+    """
+    lowest = (LEAST + 4) / (2 * (BEFORE + AFTER))
+    if motion.cutoff <= lowest:
+        return (
+            f"no windows at this cut-off: {motion.cutoff:.3g} Hz blur the half second about a "
+            f"reversal in which bristles show; filter above {lowest:.2g} Hz (--cutoff)"
+        )
+    return "no half second of an unbroken record about a reversal: bristles show only there"
 
 
 def _sections(motion: Motion, step: float) -> Array:

@@ -102,8 +102,8 @@ class Record:
 
     @property
     def file_name(self) -> str:
-        """Name of its file without the folders: what a page prints."""
-        return Path(self.name).name
+        """Name of its file without the folders, fit for a page and a design file."""
+        return shown(Path(self.name).name.strip(), 100) or "record"
 
     def line(self, sample: int) -> int | None:
         """Line of a sample in its file."""

@@ -95,7 +95,8 @@ class Identification:
     def series(self) -> dict[str, Array]:
         """Quantities over time, one array each: what a CSV of the result holds, SI.
 
-        `stiffness` is NaN where the position lies beyond the stroke.
+        `stiffness` with ports closed at the record's pressures, NaN where the position lies beyond
+        the stroke; `growth` of the bore's radius at the piston seal.
         """
         pieces = [one.piece for one in self.slidings]
 
@@ -105,16 +106,18 @@ class Identification:
         position = joined([one["x"] for one in pieces])
         highest = joined([one.pressure for one in self.slidings])
         inside = (position >= 0) & (position <= self.bench.stroke)
-        stiffness = np.where(inside, self.bench.stiffness(position), np.nan)
+        first = joined([one["p1"] for one in pieces])
+        second = joined([one["p2"] for one in pieces]) if "p2" in pieces[0] else 0.0 * first
+        stiffness = np.where(inside, self.bench.stiffness(position, first, second), np.nan)
         found = {
             "time": joined([one.time for one in pieces]),
             "position": position,
             "velocity": joined([one.velocity for one in pieces]),
             "acceleration": joined([one.acceleration for one in pieces]),
-            "pressure_1": joined([one["p1"] for one in pieces]),
+            "pressure_1": first,
         }
         if "p2" in pieces[0]:
-            found["pressure_2"] = joined([one["p2"] for one in pieces])
+            found["pressure_2"] = second
         found["friction"] = joined([one.friction for one in self.slidings])
         found["stiffness"] = stiffness
         found["growth"] = self.bench.growth * highest
@@ -140,7 +143,7 @@ class Identification:
             "lugre": None,
             "damping": [_point(one) for one in self.points],
             "stiffness": _range(series["stiffness"]),
-            "bore_growth": _range(series["growth"]),
+            "growth_at_seal": _range(series["growth"]),
             "fits": {name: _fit(one) for name, one in self.fits.items()},
             "mass": self.mass,
             "pressure_lag": self.pressure_lag,

@@ -167,9 +167,12 @@ def pressures(
 ) -> tuple[Array, Array]:
     """Chamber pressures that drive a mass against a force [Pa], the lower one at `back_pressure`.
 
-    The higher pressure and the bore it grows are found together.
+    The higher pressure and the bore it grows are found together. A plunger is pushed by p1 alone:
+    what draws it back is the load.
     """
     needed = force + mass * course.acceleration
+    if bench.plunger:
+        return needed / bench.areas(np.float64(0.0))[0], 0.0 * needed
     highest: Array = back_pressure
     for _ in range(4):
         area_1, area_2 = bench.areas(highest)
@@ -210,11 +213,13 @@ def record(
 
     Returns
     -------
-    the record, with channels p1, p2, x, F_L
+    the record, with channels p1, p2, x, F_L; of a plunger without p2
     """
     load = np.broadcast_to(load, course.time.shape).astype(float)
     p1, p2 = pressures(bench, course, friction_force + load, back_pressure=back_pressure, mass=mass)
     channels = {"p1": p1, "p2": p2, "x": course.position, "F_L": load}
+    if bench.plunger:
+        del channels["p2"]
     if sensors is not None:
         channels = _sensed(channels, course.time, sensors, rng or np.random.default_rng(0))
     return Record(course.time, channels, name)
@@ -231,10 +236,12 @@ def _sensed(
         "F_L": sensors.force_noise,
     }
     for name in ("p1", "p2"):
-        found[name] = np.interp(time - sensors.pressure_lag, time, found[name])
+        if name in found:
+            found[name] = np.interp(time - sensors.pressure_lag, time, found[name])
     found["p1"] = found["p1"] + sensors.pressure_offset
     for name, sigma in scatter.items():
-        found[name] = found[name] + sigma * rng.standard_normal(time.size)
+        if name in found:
+            found[name] = found[name] + sigma * rng.standard_normal(time.size)
     if sensors.position_step:
         found["x"] = sensors.position_step * np.round(found["x"] / sensors.position_step)
     for name, values in found.items():

@@ -118,6 +118,7 @@ class Redesign:
         }
         before, after = self.best_before, self.best_after
         if before is not None and after is not None:
+            was = {one.path: one.value for one in before.variables}
             found["optimum"] = {
                 "objective": {
                     "metric": after.objective_metric,
@@ -126,8 +127,8 @@ class Redesign:
                 },
                 "status": {"before": before.status, "after": after.status},
                 "variables": {
-                    new.path: {"before": old.value, "after": new.value}
-                    for old, new in zip(before.variables, after.variables, strict=True)
+                    one.path: {"before": was.get(one.path), "after": one.value}
+                    for one in after.variables
                 },
                 "active": {"before": active(before), "after": active(after)},
             }

@@ -71,15 +71,17 @@ def optimum(found: Redesign) -> list[Line]:
     ]
     if old is None or new is None:
         return lines
-    for a, b in zip(before.variables, after.variables, strict=True):
-        quantity = INPUTS[b.quantity]
+    was = {one.path: one.value for one in before.variables}
+    for one in after.variables:
+        quantity = INPUTS[one.quantity]
+        start = was.get(one.path)
         lines.append(
             Line(
                 (
-                    b.path,
-                    text.value_text(quantity, a.value),
-                    text.value_text(quantity, b.value),
-                    _change(a.value, b.value),
+                    one.path,
+                    text.value_text(quantity, start),
+                    text.value_text(quantity, one.value),
+                    _change(start, one.value),
                 )
             )
         )

@@ -98,17 +98,21 @@ def _rows(found: Identification) -> list[tuple[str, list[Curve], bool]]:
         (f"Position, {unit_text(LENGTH.unit)}", [(LINE, _parts(slidings, place))], False),
         (f"Pressures, {unit_text(PRESSURE.unit)}", pressures, False),
         (f"Friction, {unit_text(FORCE.unit)}", [(LINE, _parts(slidings, friction))], True),
-        (f"Radial bore growth, {unit_text(GROWTH.unit)}", [(LINE, _parts(slidings, growth))], True),
+        (
+            f"Bore growth at the seal, {unit_text(GROWTH.unit)}",
+            [(LINE, _parts(slidings, growth))],
+            True,
+        ),
         (f"k_eq, {unit_text(STIFFNESS.unit)}", [(LINE, _parts(slidings, stiffness))], True),
     ]
 
 
 def _stiffness(found: Identification, one: Sliding) -> Array:
-    """Stiffness at the positions of a piece in its display unit; NaN outside the stroke."""
-    place, stroke = one.piece["x"], found.bench.stroke
-    grid = np.linspace(0.0, stroke, 401)
-    values = np.interp(place, grid, np.asarray(found.bench.stiffness(grid)))
-    inside = (place >= 0) & (place <= stroke)
+    """Stiffness along a piece in its display unit; NaN outside the stroke."""
+    piece = one.piece
+    second = piece["p2"] if "p2" in piece else 0.0 * piece["p1"]
+    values = found.bench.stiffness(piece["x"], piece["p1"], second)
+    inside = (piece["x"] >= 0) & (piece["x"] <= found.bench.stroke)
     return STIFFNESS.to_display(1.0) * np.where(inside, values, np.nan)
 
 

@@ -120,10 +120,10 @@ def write_page(
     run : more of how it was made
     """
     data = printable(dict(data)) | {
-        "title": title,
-        "source": origin.source_text,
-        "source_file": _attachment_name(origin.source_name),
-        "run": json.dumps(origin.run() | run, ensure_ascii=False, sort_keys=True),
+        "title": _encodable(title),
+        "source": _encodable(origin.source_text),
+        "source_file": _attachment_name(_encodable(origin.source_name)),
+        "run": _encodable(json.dumps(origin.run() | run, ensure_ascii=False, sort_keys=True)),
     }
     pdf, images = _render(data, _timestamp(origin.date))
     contents = {f"{stem}.pdf": pdf, f"{stem}.png": images[0]}
@@ -155,6 +155,11 @@ def read_attachment(path: Path) -> Attachment:
         remedy = "give a PDF that actuator-opt wrote"
         fault = Diagnostic("carries no input to run again", remedy, file=str(path))
         raise InputError(fault) from None
+
+
+def _encodable(text: str) -> str:
+    """Text that UTF-8 can hold: bytes of a file name in another encoding are spelt out."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def _attachment_name(source_name: str) -> str:

@@ -30,7 +30,7 @@ def read_record(source: str | Path, *, columns: Mapping[str, str] | None = None)
 
     Parameters
     ----------
-    source : path
+    source : path, ``"-"`` for standard input
     columns : header by channel where it is none of the known names, with a unit where the file
         states none: ``{"p1": "Channel 3 [bar]"}``
 
@@ -47,9 +47,9 @@ def read_record(source: str | Path, *, columns: Mapping[str, str] | None = None)
     from ..store import read_bytes
 
     kinds = (".csv", ".txt", ".tsv")
+    name = "<stdin>" if str(source) == "-" else str(source)
     data = read_bytes(source, most=MOST_BYTES + 1, kinds=kinds, what="CSV file")
-    text = decode_record(data, str(source), most=MOST_BYTES)
-    return parse_record(text, name=str(source), columns=columns)
+    return parse_record(decode_record(data, name, most=MOST_BYTES), name=name, columns=columns)
 
 
 def identify(
@@ -109,6 +109,9 @@ def identify(
     )
     own = as_actuator(design).subject()
     found = read_record(record, columns=columns) if isinstance(record, (str, Path)) else record
+    if load_force is not None and "F_L" in found:
+        message = "a load is stated, and the record measures it in column F_L"
+        raise found.fault(message, "leave out --load-force (load_force), or the column")
     return run(found, bench(own), settings)
 
 
@@ -139,6 +142,8 @@ def bending(
     """
     from ..identification import bending as run
 
+    if part not in ("rod", "barrel"):
+        raise InputError(Diagnostic(f'part "{part}"', "write rod or barrel"))
     if specimen is None:
         if span is None or design is None:
             message = "the section of the bending test is not known"
@@ -241,11 +246,16 @@ def calibrate(
         else identify(record, design=before, columns=columns, **settings)
     )
     found = learn(identified)
-    after = before.changed(found.values())
-    known = {**after.design.measured, **found.measured()}
-    after = Actuator(
-        after.design.model_copy(update={"measured": known}), before.source, before.plugins
-    )
+    held = [path for path in found.values() if path in before.design.variables]
+    free = {p: one for p, one in before.design.variables.items() if p not in held}
+    known = {**before.design.measured, **found.measured()}
+    base = before.design.model_copy(update={"variables": free, "measured": {}})
+    after = Actuator(base, before.source, before.plugins).changed(found.values())
+    design_after = after.design.model_copy(update={"measured": known})
+    after = Actuator(design_after, before.source, before.plugins)
+    if held:
+        doubt = f"no longer variables, held as measured: {', '.join(held)}"
+        found = replace(found, doubts=(*found.doubts, doubt))
     groups = [one.measured(identified.record.name) for one in found.learned]
     changes = redesign(before.subject(), after.subject(), groups, search=search)
     return Calibrated(after, found, changes)
@@ -268,7 +278,7 @@ def write_identification(
         identification,
         origin(design, source, command=command, date=date),
         folder=Path(folder),
-        stem=f"{Path(identification.record.name).stem}_identification",
+        stem=f"{Path(identification.record.file_name).stem}_identification",
     )
 
 
@@ -304,5 +314,5 @@ def write_calibration(
         calibrated.redesign,
         replace(page, source_text=to_yaml(actuator.design, actuator.source)),
         folder=Path(folder),
-        stem=f"{Path(calibrated.calibration.identification.record.name).stem}_calibration",
+        stem=f"{Path(calibrated.calibration.identification.record.file_name).stem}_calibration",
     )

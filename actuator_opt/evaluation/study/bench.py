@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -10,6 +11,8 @@ import numpy as np
 from ...design.model import Design
 from ...models import forces, friction
 from ...numeric import Array
+from .. import oil
+from ..allow import Stock
 from ..barrel import SEAL_STEP
 from ..film_tables import floats
 from ..kernel import Subject, compute
@@ -30,6 +33,8 @@ class Bench:
     mass : of what moves inside the force sensor: rod, piston, fastening [kg]
     rings, wipers : of the first load case
     springs : stiffness budget
+    oil_pressures : of chambers A and B in its first load case [Pa]
+    bulk_modulus : of the oil with air over gauge pressure, at the first case's temperature [Pa]
     """
 
     design: Design
@@ -43,6 +48,8 @@ class Bench:
     rings: tuple[Ring, ...]
     wipers: tuple[WiperFriction, ...]
     springs: Springs
+    oil_pressures: tuple[float, float]
+    bulk_modulus: Callable[[Array], Array]
 
     @property
     def plunger(self) -> bool:
@@ -151,10 +158,29 @@ class Bench:
             )
         return found
 
-    def stiffness(self, position: Array) -> Array:
-        """Stiffness with closed ports at positions of the piston from the cap end [N/m]."""
-        place = np.clip(position, 0.0, self.stroke)
-        parts = self.springs.compliances(place[None, :])
+    def stiffness(self, position: Array, pressure_1: Array, pressure_2: Array) -> Array:
+        """Stiffness with the ports closed at a moment of a record [N/m]; NaN of a plunger.
+
+        Position of the piston from the cap end [m], gauge pressures [Pa], all (samples). The oil of
+        each chamber has its bulk modulus with air at the pressure there.
+        """
+        place = np.clip(position, 0.0, self.stroke)[None, :]
+        if self.plunger:
+            return np.full(place.shape[1], np.nan)
+        state = self.oil_pressures
+        soft_a, soft_b = (
+            self.bulk_modulus(held) / self.bulk_modulus(np.maximum(here, 0.0))[None, :]
+            for held, here in zip(state, (pressure_1, pressure_2), strict=True)
+        )
+        chambers = {
+            cause: give._replace(
+                a0=give.a0 * soft_a, a1=give.a1 * soft_a, b0=give.b0 * soft_b, b1=give.b1 * soft_b
+            )
+            if cause in self.springs.oil
+            else give
+            for cause, give in self.springs.chambers.items()
+        }
+        parts = replace(self.springs, chambers=chambers).compliances(place)
         whole = np.sum([np.broadcast_to(one, (1, place.size)) for one in _first(parts)], axis=0)
         return 1 / whole[0]
 
@@ -174,6 +200,13 @@ def bench(subject: Subject) -> Bench:
     v = subject.values()
     done = compute(subject, v)
     g = done.geometry
+    stock = Stock(v, subject.materials, subject.factors, subject.constants)
+    temperature = _first_of(done.state.temperature)
+
+    def bulk_modulus(pressure: Array) -> Array:
+        found = oil.bulk_modulus(v, subject.design.fluid, stock, temperature, pressure)
+        return np.real(found) + 0.0 * pressure
+
     driven = np.broadcast_to(_cases(done.state.driven_pressure), (len(v.cases),))
     grown = np.max(np.real(np.atleast_2d(SEAL_STEP * done.wall.case_growth)), axis=-1)
     grown = np.broadcast_to(grown, driven.shape)
@@ -194,6 +227,8 @@ def bench(subject: Subject) -> Bench:
             for one in wipers(v, subject.design, g, done.state)
         ),
         springs=done.springs,
+        oil_pressures=(_first_of(done.state.holding_a), _first_of(done.state.holding_b)),
+        bulk_modulus=bulk_modulus,
     )
 
 
