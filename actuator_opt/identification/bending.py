@@ -32,6 +32,9 @@ APART = 0.05
 """Difference of loading and unloading slope from which friction or creep is named (a choice)."""
 NOISY = 0.02
 """Scatter 1 - r^2 that lets noise of the deflection lower the slope by as much (a choice)."""
+STATED = 0.2
+"""Difference from the material's modulus from which part, span and units are doubted (a choice: an
+error of the span counts three times, one of the diameter four)."""
 POISSON = 0.3
 """Poisson's ratio of the shear coefficient where none is stated (a choice: from 0 to 0.5 the
 coefficient of a round section changes by 9 %)."""
@@ -52,6 +55,7 @@ class Specimen:
     poissons_ratio : of its shear coefficient [-]
     shear_compliance : 1/(kappa G A), in place of `shear_modulus` [1/N]
     local_compliance : C of dents, supports and frame, deflection per force [m/N]
+    expected_modulus : what the material states, to compare with [Pa]
     """
 
     span: float
@@ -63,10 +67,12 @@ class Specimen:
     poissons_ratio: float = POISSON
     shear_compliance: float | None = None
     local_compliance: float | None = None
+    expected_modulus: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse what is no specimen."""
-        for name in ("span", "outer_diameter", "second_moment", "depth", "shear_modulus"):
+        above = ("span", "outer_diameter", "second_moment", "depth", "shear_modulus")
+        for name in (*above, "expected_modulus"):
             one = getattr(self, name)
             if one is not None and not (isfinite(one) and one > 0):
                 _refuse(f"{name} is {one:g}, it must be above 0", f"state the {name} measured")
@@ -263,7 +269,8 @@ def _result(loop: Loop, specimen: Specimen, found: Straight) -> BendingResult:
         deflections=ends,
         bent=found.bent,
         hysteresis=loop.hysteresis(),
-        cycles=max(sum(x.loading for x in loop.branches), 1),
+        cycles=max(len(one) for one in by_way(parts, 1).values()),
+        both_ways=loop.both,
         samples=sum(x.deflection.size for x in parts),
         doubts=(),
     )

@@ -55,30 +55,29 @@ class Learned:
         """By PATH, SI."""
         return {path: self.known.value * share for path, share in self.shares.items()}
 
-    def measured(self, record: str) -> dict[str, Measured]:
+    def bounds(self) -> dict[str, tuple[float, float]]:
         """Bounds by PATH, within what the design can state."""
-        least = INPUTS[self.name].lower
-        most = INPUTS[self.name].upper
+        least, most = INPUTS[self.name].lower, INPUTS[self.name].upper
+
+        def within(value: float) -> float:
+            return min(max(value, least), most)
+
         return {
-            path: Measured(
-                lower=min(max(self.known.lower * share, least), most),
-                upper=min(max(self.known.upper * share, least), most),
-                record=record,
-            )
+            path: (within(self.known.lower * share), within(self.known.upper * share))
             for path, share in self.shares.items()
         }
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
-        found = self.measured("record")
+        bounds = self.bounds()
         return {
             "source": self.source,
             "verdict": self.known.verdict,
             "values": {
                 path: {
                     "value": value,
-                    "lower": found[path].lower,
-                    "upper": found[path].upper,
+                    "lower": bounds[path][0],
+                    "upper": bounds[path][1],
                     "before": self.before[path],
                 }
                 for path, value in self.values().items()
@@ -114,7 +113,11 @@ class Calibration:
     def measured(self) -> dict[str, Measured]:
         """Their bounds by PATH."""
         name = self.identification.record.file_name
-        return {p: m for one in self.learned for p, m in one.measured(name).items()}
+        return {
+            path: Measured(lower=low, upper=high, record=name)
+            for one in self.learned
+            for path, (low, high) in one.bounds().items()
+        }
 
 
 def calibration(identification: Identification) -> Calibration:

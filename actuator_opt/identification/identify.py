@@ -121,13 +121,13 @@ def _moving(
     band = min(2 * motion.cutoff * motion.sample_time, 1.0)
     if travel <= max(STEPS * quality.resolution, NOISES * quality.noise * np.sqrt(band)):
         raise record.fault(
-            f"the rod never moves: x changes by {1e6 * travel:.2g} um, which its steps and noise do",
+            f"the rod never moves: x changes by {1e3 * travel:.2g} mm, as its steps and noise do",
             "give a record of a moving rod, and x with more digits",
         )
     if travel > (1 + OUTSIDE) * bench.stroke:
         raise record.fault(
             f"x travels {1e3 * travel:.4g} mm, more than the stroke of {1e3 * bench.stroke:.4g} mm",
-            "check the unit of x, and geometry.stroke of the design",
+            "check the unit of x, and cylinder.stroke of the design",
         )
     if any(one.moving.any() for one in slidings):
         check_signs(slidings, bench, mass=mass, name=record.name)

@@ -203,7 +203,8 @@ def windows(
         own = zip(values, lanes, strict=True)
         return np.stack([one[at - ends[0] : at + ends[1] : stride] for one, (_, at) in own])
 
-    told = {id(one): _settled_above(one, slowest, settling) for one, _ in lanes}
+    own = {id(one): one for one, _ in lanes}
+    told = {key: _settled_above(one, slowest, settling) for key, one in own.items()}
     steady = np.where(cut([told[id(one)] for one, _ in lanes])[:, kept], 0.0, 1.0)
     span = (-before * stride, after * stride)
     paces = [velocities(one.piece, motion, at + span[0], at + span[1]) for one, at in lanes]

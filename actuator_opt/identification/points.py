@@ -84,8 +84,12 @@ def steady_points(
     -------
     points in order of direction, pressure and speed
     """
-    plateaus = [one for sliding in slidings for one in _plateaus(sliding, motion, settling)]
-    plateaus = _moderated(plateaus, motion)
+    found = [one for sliding in slidings for one in _plateaus(sliding, motion, settling)]
+    moderated = _moderated([one for one, _ in found], motion)
+    plateaus = [
+        one._replace(error=float(np.hypot(one.error, left)))
+        for one, (_, left) in zip(moderated, found, strict=True)
+    ]
     merged = _merged(plateaus)
     moving = sum(float(one.moving.sum()) for one in slidings) * motion.sample_time
     held = sum(one.weight for one in plateaus)
@@ -118,8 +122,10 @@ def _moderated(points: Sequence[Point], motion: Motion) -> list[Point]:
     return [one._replace(error=float(error)) for one, error in zip(points, errors, strict=True)]
 
 
-def _plateaus(sliding: Sliding, motion: Motion, settling: float) -> Iterator[Point]:
-    """Stretches of constant velocity in one piece."""
+def _plateaus(
+    sliding: Sliding, motion: Motion, settling: float
+) -> Iterator[tuple[Point, float]]:
+    """Stretches of constant velocity in one piece, with what is left of the bristles' settling."""
     from scipy.signal import savgol_filter
 
     step = motion.sample_time
@@ -146,14 +152,25 @@ def _plateaus(sliding: Sliding, motion: Motion, settling: float) -> Iterator[Poi
         first = i + fifth
         away = i + round(settling / (abs(float(velocity[i])) * step))
         first = max(first, min(away, last - fifth - least // 2))
-        yield _point(sliding, motion, np.arange(first, last - fifth), "plateau")
+        at = np.arange(first, last - fifth)
+        found = _point(sliding, motion, at, "plateau")
+        yield found, _unsettled(found.friction, sliding.piece["x"][at] - sliding.piece["x"][i], settling)
         i = last
+
+
+def _unsettled(friction: float, gone: Array, settling: float) -> float:
+    """What may be left of bristles turned over in a mean friction, 2 F mean e^(-8 d/settling) [N].
+
+    After a turn friction is F (1 - 2 e^(-d sigma_0/F)) [derived from dz/dt = v (1 - sigma_0 z/F)],
+    `SETTLING` of F/sigma_0 are the distance of settling; d is counted from the plateau's begin.
+    """
+    return float(2 * abs(friction) * np.mean(np.exp(-SETTLING * np.abs(gone) / settling)))
 
 
 def _point(sliding: Sliding, motion: Motion, at: Array, kind: Kind) -> Point:
     """The mean over samples, with the standard error of filtered ones."""
     piece = sliding.piece
-    friction = sliding.friction[at]
+    friction = sliding.hydraulic[at] - sliding.resisting[at]
     if kind == "plateau":
         velocity = float(np.polyfit(piece.time[at] - piece.time[at[0]], piece["x"][at], 1)[0])
     else:

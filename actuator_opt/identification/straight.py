@@ -39,7 +39,13 @@ TOP, BEGUN = 0.9, 0.05
 """Shares of the highest force: what follows the last of the first is slip or failure, and where
 the search for zero begins (a choice: both beyond usual noise)."""
 BACK = 0.25
-"""Share of the deflection's range that a way back takes to be an unloading (a choice)."""
+"""Share of a range that a way back takes to be an unloading, and that lies on either side of zero
+where a specimen is bent both ways (a choice: both far from noise and from offsets)."""
+WON = 0.02
+"""Share of its work that a loop may win by noise and coarse samples (a choice as `BENT`)."""
+USUAL = (1e-12, 1e12)
+"""Ranges of force [N] and deflection [m] beyond which a unit is wrong (a choice: finer than any
+sensor, more than any machine)."""
 CUTS = ((0.0, 1.0), (0.25, 1.0), (0.0, 0.75), (0.5, 1.0), (0.25, 0.75), (0.0, 0.5))
 """Parts of the range that are tried in turn until one is straight (a choice: the longest first, a
 toe sooner than a top)."""
@@ -102,22 +108,12 @@ def branches(deflection: Array, least: float) -> list[Branch]:
 
 
 def term(x: Array, y: Array, degree: int) -> Term:
-    """Highest coefficient of a least-squares polynomial, for noise that remembers.
+    """Coefficient of x^degree of a least-squares polynomial, for noise that remembers.
 
     The variance is that of the scores c e (c the column free of lower powers, e the residuals) at
     frequency zero, as the mean over the first cosines of the samples in order [Mueller2007],
-    [Lazarus2018], and Student's t has a degree of freedom for each. What
-    the fit takes away of each is made up for as of noise with the memory of the residuals
-    [derived]; no less than for white noise.
-
-    Parameters
-    ----------
-    x, y : of the samples in order
-    degree : of the polynomial
-
-    Returns
-    -------
-    the coefficient of x^degree
+    [Lazarus2018], and Student's t has a degree of freedom for each. What the fit takes away of each
+    is made up for as of noise with the memory of the residuals [derived]; no less than for white.
     """
     scale = float(np.ptp(x)) / 2
     size = (x - np.mean(x)) / scale
@@ -200,15 +196,8 @@ class Part(NamedTuple):
 
 
 class Straight(NamedTuple):
-    """The straight part.
-
-    Parameters
-    ----------
-    parts : its samples
-    ends : deflections from zero force [m]
-    bent : change of slope from end to end over the slope
-    unsure : what of that is more than noise
-    cut : whether a part of the range was left out
+    """The straight part: samples, ends as deflections from zero force [m], change of slope along it
+    over the slope, what of that is more than noise, and whether a part of the range was left out.
     """
 
     parts: list[Part]
@@ -223,9 +212,8 @@ class Loop:
 
     def __init__(self, record: Record) -> None:
         self.record = record
-        self.deflection, self.force = _channels(record)
+        self.deflection, self.force, self.floor, self.both = _turned(*_channels(record))
         self.least = BACK * float(np.ptp(self.deflection))
-        self.floor = float(np.percentile(self.force, 1))
         self.branches = [self._kept(one) for one in branches(self.deflection, self.least)]
 
     def _kept(self, branch: Branch) -> Branch:
@@ -280,18 +268,24 @@ class Loop:
         return float(np.median(tops))
 
     def hysteresis(self) -> float | None:
-        """Work lost over work done, of unloadings after loadings."""
-        shares = []
-        for first, second in pairwise(self.branches):
-            if not first.loading or second.loading:
-                continue
-            done, back = (
-                abs(float(np.trapezoid(self.force[x] - self.floor, self.deflection[x])))
-                for x in (first.samples, slice(first.samples.stop - 1, second.samples.stop))
-            )
+        """Work lost over work done on loading, mean of the loops; None where none is told.
+
+        Of an unloading after a loading, or of a reloading, over the deflections that both pass: the
+        integral of F dw around over those of F dw above zero.
+        """
+        pairs, shares = list(pairwise(self.branches)), []
+        for both in [one for one in pairs if one[0].loading] or pairs:
+            passes = [self.deflection[one.samples] for one in both]
+            ends = max(np.min(w) for w in passes), min(np.max(w) for w in passes)
+            lost = done = 0.0
+            for w, (samples, loading) in zip(passes, both, strict=True):
+                force, way = self.force[samples] - self.floor, 1.0 if loading else -1.0
+                lost += float(np.trapezoid(force, np.clip(w, *ends)))
+                done += float(np.trapezoid(np.maximum(way * force, 0), way * np.clip(w, *ends)))
             if done > 0:
-                shares.append(1 - back / done)
-        return float(np.mean(shares)) if shares else None
+                shares.append(lost / done)
+        share = float(np.mean(shares)) if shares else -inf
+        return max(share, 0.0) if share >= -WON else None
 
 
 def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
@@ -329,14 +323,15 @@ def scatter(parts: Sequence[Part]) -> float:
 
 
 def _channels(record: Record) -> tuple[Array, Array]:
-    """Deflection and force of the samples that have both, loading upwards."""
+    """Deflection and force of the samples that have both, in one sense."""
     for name in ("F_L", "w"):
         if name not in record:
             raise record.fault(
                 f"no column {name}, the {'force' if name == 'F_L' else CHANNELS[name].label}",
                 f'name it with --column "{name}=..."',
             )
-    w, force = despiked(record["w"]), despiked(record["F_L"])
+    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused below
+        w, force = despiked(record["w"]), despiked(record["F_L"])
     both = np.isfinite(w) & np.isfinite(force)
     if both.sum() < 2 * FEWEST:
         raise record.fault(
@@ -345,11 +340,16 @@ def _channels(record: Record) -> tuple[Array, Array]:
         )
     w, force = w[both], force[both]
     for values, name, what in ((w, "w", "deflection"), (force, "F_L", "force")):
-        if np.ptp(values) == 0:
+        with np.errstate(over="ignore"):
+            reach = float(np.ptp(values))
+        if reach == 0:
             raise record.fault(
                 f"{name} stands still, single samples apart: no {what}",
                 "give a record of a loaded specimen",
             )
+        if not USUAL[0] <= reach <= USUAL[1]:
+            unit = CHANNELS[name].unit
+            raise record.fault(f"{name} spans {reach:.3g} {unit}: no {what}", "check its unit")
     most = int(np.argmax(np.abs(force - force[0]))) + 1  # before a failure
     most = most if most >= 2 * FEWEST else w.size
     follows = float(np.corrcoef(w[:most], force[:most])[0, 1]) if np.ptp(w[:most]) else 0.0
@@ -361,8 +361,34 @@ def _channels(record: Record) -> tuple[Array, Array]:
         raise record.fault(
             f"F_L does not follow w (correlation {follows:.2f})", "check both columns"
         )
-    down = w[0] - np.min(w) > np.max(w) - w[0]
-    return (-w, -force) if down else (w, force)
+    return w, force
+
+
+def _turned(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
+    """Deflection and force growing as the specimen is bent, its force at rest; if bent both ways.
+
+    It rests at first, whatever the offsets, but on a single pass towards zero force (unloading).
+    Bent both ways it rests at first where that lies between, else at both channels' zero.
+    """
+
+    def inside(values: Array, one: float) -> bool:
+        room = min(np.max(values) - one, one - np.min(values))
+        return bool(room > BACK * np.ptp(values))
+
+    first, last = float(force[0]), float(force[np.argmax(np.abs(force - force[0]))])
+    at_zero = float(np.interp(0.0, *(one[np.argsort(w)] for one in (w, force))))
+    between = inside(w, 0.0) and abs(at_zero) <= BENT * np.ptp(force)
+    both = inside(force, 0.0) and (inside(force, first) or between)
+    single = len(branches(w, BACK * float(np.ptp(w)))) == 1
+    eased = single and not both and abs(last) < abs(first)
+    if (w[0] - np.min(w) > np.max(w) - w[0]) is not eased:
+        w, force, first = -w, -force, -first
+    rest = float(np.percentile(force, 1))
+    if both:
+        rest = first if inside(force, first) else 0.0
+    elif eased and rest > BEGUN * np.max(force):
+        rest = 0.0  # never unloaded
+    return w, force, rest, both
 
 
 def straight(loop: Loop, zeros: Sequence[float], low: float, high: float) -> Straight:

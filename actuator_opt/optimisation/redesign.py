@@ -8,7 +8,6 @@ from math import hypot
 from typing import Any
 
 from ..design.build import with_values
-from ..design.model import Measured
 from ..errors import InputError
 from ..evaluation import Evaluation, Subject, evaluate, prepare
 from ..evaluation.result import Requirement
@@ -148,7 +147,7 @@ def active(one: Optimisation) -> list[str]:
 def redesign(
     before: Subject,
     after: Subject,
-    learned: Sequence[Mapping[str, Measured]],
+    learned: Sequence[Mapping[str, tuple[float, float]]],
     *,
     seed: int = 0,
     search: bool = True,
@@ -161,7 +160,7 @@ def redesign(
     Parameters
     ----------
     before, after : the design with the old and the new values
-    learned : groups of measured values that move together, by PATH
+    learned : lower and upper bounds by PATH, of groups of values that move together
     seed : of the searches
     search : whether to optimise
     """
@@ -178,15 +177,15 @@ def redesign(
 
 
 def _bounds(
-    subject: Subject, middle: Evaluation, learned: Sequence[Mapping[str, Measured]]
+    subject: Subject, middle: Evaluation, learned: Sequence[Mapping[str, tuple[float, float]]]
 ) -> dict[str, tuple[float | None, float | None]]:
     """Values of the requirements between the bounds of what was measured."""
     values = {row.name: row.value for row in middle.requirements}
     squares = dict.fromkeys(values, 0.0)
     for group in learned:
         ends = []
-        for end in ("lower", "upper"):
-            moved = {path: getattr(known, end) for path, known in group.items()}
+        for end in (0, 1):
+            moved = {path: bounds[end] for path, bounds in group.items()}
             try:
                 design = with_values(subject.design, moved)
             except InputError:

@@ -27,9 +27,9 @@ def learned(found: Calibration) -> list[Line]:
     lines = []
     for one in found.learned:
         quantity = INPUTS[one.name]
-        bounds = one.measured("record")
+        bounds = one.bounds()
         for path, value in one.values().items():
-            numbers = (one.before[path], value, bounds[path].lower, bounds[path].upper)
+            numbers = (one.before[path], value, *bounds[path])
             cells = [text.value_text(quantity, number, 3) for number in numbers]
             lines.append(Line((path, *cells, one.source)))
     return lines

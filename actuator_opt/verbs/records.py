@@ -256,7 +256,7 @@ def calibrate(
     if held:
         doubt = f"no longer variables, held as measured: {', '.join(held)}"
         found = replace(found, doubts=(*found.doubts, doubt))
-    groups = [one.measured(identified.record.name) for one in found.learned]
+    groups = [one.bounds() for one in found.learned]
     changes = redesign(before.subject(), after.subject(), groups, search=search)
     return Calibrated(after, found, changes)
 
