@@ -65,14 +65,14 @@ def _friction(found: Identification, console: Console) -> str:
 def _parameters(found: Identification, console: Console) -> str:
     """Parameters of every model with bounds and verdict."""
     columns = [
-        Column("model", drop=3),
+        Column("model"),
         Column("parameter", flexible=True),
         Column("symbol", drop=4),
         Column("value", "right"),
         Column("lower", "right", drop=1),
-        Column("upper", "right", drop=1),
+        Column("upper", "right", drop=2),
         Column(""),
-        Column("identifiable", drop=2),
+        Column("identifiable", drop=3),
     ]
     groups = []
     for label, model in (("Stribeck", found.stribeck), ("LuGre", found.lugre)):
