@@ -182,7 +182,7 @@ def calibrate(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """A record's friction into its design, and what it changes."""
+    """Put a record's friction into its design; say what changes."""
     from . import verbs
 
     check_targets(out if report else None, date, write)

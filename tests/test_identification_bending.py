@@ -194,6 +194,96 @@ def test_loading_alone_is_said():
     assert any(one.startswith("loading only") for one in found.doubts)
 
 
+def test_unloading_alone_is_said():
+    """From 2 mm to none: unloading, strains from zero force, w = e L^2/(6 D); signs do not matter.
+
+    Half of it, to 1 mm, still counts from zero force: the least strain is that of 1 mm.
+    """
+    w = np.linspace(2e-3, 0.0, 300)
+    for way, size in ((1.0, 300), (-1.0, 300), (1.0, 150)):
+        channels = {"w": way * w[:size], "F_L": way * 4e5 * w[:size]}
+        found = bending(Record(0.01 * np.arange(size), channels, "down.csv"), Specimen(**TUBE))
+        assert found.loading is None
+        assert found.unloading == pytest.approx(4e5, rel=1e-9)
+        assert found.hysteresis is None
+        assert any(one.startswith("unloading only") for one in found.doubts)
+        # the percentile of the force that is taken for zero lies 1 % of the range above it
+        top = 2e-3 / STRAIN
+        assert found.strains == pytest.approx((0.0005, 0.8 * top), rel=0.02)
+
+
+def waves(*, phase=0.0, cycles=3, count=200):
+    """Deflection of 1 mm both ways."""
+    return 1e-3 * np.sin(2 * np.pi * np.linspace(0, cycles, cycles * count + 1) + phase)
+
+
+@given(
+    st.floats(0.0, 2 * pi), st.integers(1, 4), st.integers(100, 400), st.floats(1e4, 1e7),
+    st.floats(0.0, 0.2),
+)  # fmt: skip
+@settings(max_examples=25, deadline=None)
+def test_bending_both_ways_loses_what_friction_takes(phase, cycles, count, slope, friction):
+    """An elastic bar loses nothing from wherever it begins; friction f F loses 2 f/(1 + f)."""
+    w = waves(phase=phase, cycles=cycles, count=count)
+    outward = np.sign(np.gradient(w) * w)
+    record = Record(
+        np.arange(w.size) / 200, {"w": w, "F_L": slope * w * (1 + friction * outward)}, "sine.csv"
+    )
+    found = bending(record, Specimen(**TUBE))
+    assert 0 <= found.hysteresis == pytest.approx(2 * friction / (1 + friction), abs=0.02)
+    assert found.slope.value == pytest.approx(slope, rel=0.02)
+    assert found.deflections[1] <= 1e-3
+    assert any(one.startswith("bent both ways") for one in found.doubts)
+
+
+def test_a_loop_that_wins_work_has_no_hysteresis():
+    """A force that lags by 0.05 rad wins pi sin(0.05) of 4 (1/2): no share, and the reason."""
+    w, force = waves(), 4e5 * waves(phase=-0.05)
+    found = bending(Record(np.arange(w.size) / 200, {"w": w, "F_L": force}), Specimen(**TUBE))
+    assert found.hysteresis is None
+    assert found.to_dict()["hysteresis"] is None
+    assert any("work lost cannot be told" in one for one in found.doubts)
+
+
+def test_a_part_of_a_cycle_counts_over_what_both_pass():
+    """Down to 0.3, up again and down to zero: an elastic bar still loses nothing."""
+    turns = [(0.0, 1.0), (1.0, 0.3), (0.3, 1.0), (1.0, 0.0)]
+    w = 2e-3 * np.concatenate([np.linspace(*one, 90) for one in turns])
+    found = bending(Record(np.arange(360.0), {"w": w, "F_L": 4e5 * w}), Specimen(**TUBE))
+    assert found.hysteresis == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("share", "words"),
+    [(0.07, "7 %"), (0.79, "79 %"), (1.21, "121 %"), (1e-9, "less than 1 %"), (1e3, "1000 %")],
+)
+def test_a_modulus_far_from_what_the_material_states_is_said(share, words):
+    """More than 20 % off 205 GPa: both are named, and part, span and units doubted."""
+    specimen = Specimen(**TUBE, expected_modulus=205e9)
+    found = bending(a_record(slope_of(share * 205e9), toe=1e-6, force_zero=0.0), specimen)
+    (said,) = [one for one in found.doubts if "part, span or units?" in one]
+    assert f"{words} of what the material states, 205 GPa" in said
+
+
+@pytest.mark.parametrize("share", [0.81, 1.0, 1.19, None])
+def test_a_modulus_near_what_the_material_states_is_no_doubt(share):
+    """Within 20 %, or nothing stated: no word of it."""
+    stated = None if share is None else 6e10 / share
+    found = bending(a_record(slope_of(6e10)), Specimen(**TUBE, expected_modulus=stated))
+    assert not any("material states" in one for one in found.doubts)
+
+
+@pytest.mark.parametrize("channel", ["F_L", "w"])
+@pytest.mark.parametrize("size", [1e200, 1e150, 1e302, 1e-200, 1e-300])
+def test_sizes_of_no_test_are_refused(channel, size):
+    """Forces and deflections beyond any machine or sensor: one line, no warning."""
+    channels = {
+        name: size * CLEAN[name] if name == channel else CLEAN[name] for name in ("w", "F_L")
+    }
+    with pytest.raises(InputError, match=rf"{channel} spans .*check its unit"):
+        bending(Record(CLEAN.time, channels, "huge.csv"), Specimen(**TUBE))
+
+
 def test_cycles_that_scatter_widen_the_bounds():
     """Three cycles of slopes 4 % apart: Student's t of the cycles, not of their noise."""
     parts = [a_record(slope_of(one), cycles=1, noise=0.5) for one in (5.8e10, 6e10, 6.2e10)]
@@ -284,6 +374,7 @@ def test_give_beyond_what_is_measured_is_refused():
     [
         ({"span": 0.0}, "span is 0"),
         ({"span": float("nan")}, "span is nan"),
+        ({"expected_modulus": -2e11}, "expected_modulus is -2e"),
         ({"inner_diameter": OUTER}, "leaves no material"),
         ({"outer_diameter": None}, "section is not known"),
         ({"second_moment": 1e-9}, "stated twice"),

@@ -143,8 +143,8 @@ class BendingResult:
     strains : of the outer fibre between which the slope was taken; None: depth not known
     deflections : the same as deflections from zero force [m]
     bent : change of slope along the straight part over the slope
-    hysteresis : work lost over work done, mean of the cycles; None without unloading
-    cycles : of loading and unloading
+    hysteresis : work lost over work done on loading, mean of the cycles; None where not told
+    cycles : of loading, of unloading or of both
     samples : in the straight part
     doubts : what the modulus rests on
     """
@@ -171,9 +171,7 @@ class BendingResult:
         height = self.specimen.height
         return {
             "record": self.record.name,
-            "slope": {
-                **self.slope.to_dict(), "loading": self.loading, "unloading": self.unloading
-            },
+            "slope": {**self.slope.to_dict(), "loading": self.loading, "unloading": self.unloading},
             "modulus": self.modulus.to_dict(),
             "modulus_as_published": self.as_published.to_dict(),
             "taken_off": list(self.taken_off),
@@ -189,7 +187,7 @@ class BendingResult:
             "samples": self.samples,
             "doubts": list(self.doubts),
             "notes": list(self.record.notes),
-        }  # fmt: skip
+        }
 
 
 def _percent(share: float) -> str:
@@ -233,7 +231,10 @@ def bending(record: Record, specimen: Specimen) -> BendingResult:
     result = _result(loop, specimen, found)
     noise = scatter(found.parts)
     doubts = _doubts_of_record(result, by_strain=by_strain, cut=found.cut, noise=noise)
-    return replace(result, doubts=(*doubts, *_doubts_of_specimen(result)))
+    if loop.both:
+        way = "bent both ways: the slope is that of the side bent further, from where"
+        doubts.append(f"{way} the force is zero")
+    return replace(result, doubts=(*_doubts_of_specimen(result), *doubts))
 
 
 def _result(loop: Loop, specimen: Specimen, found: Straight) -> BendingResult:
@@ -250,7 +251,7 @@ def _result(loop: Loop, specimen: Specimen, found: Straight) -> BendingResult:
         )
     shear, slender = specimen.shear, 12 * specimen.inertia / specimen.span**2
     share = None if shear is None else slender * modulus.value * shear
-    one = specimen.deflection(1.0)
+    known, one = {"shear": shear, "dents": specimen.local_compliance}, specimen.deflection(1.0)
     return BendingResult(
         record=record,
         specimen=specimen,
@@ -259,18 +260,13 @@ def _result(loop: Loop, specimen: Specimen, found: Straight) -> BendingResult:
         unloading=ways.get(False),
         as_published=published,
         modulus=modulus,
-        taken_off=tuple(
-            name
-            for name, x in (("shear", shear), ("dents", specimen.local_compliance))
-            if x is not None
-        ),
+        taken_off=tuple(name for name, x in known.items() if x is not None),
         shear_share=share,
         strains=None if one is None else (ends[0] / one, ends[1] / one),
         deflections=ends,
         bent=found.bent,
         hysteresis=loop.hysteresis(),
         cycles=max(len(one) for one in by_way(parts, 1).values()),
-        both_ways=loop.both,
         samples=sum(x.deflection.size for x in parts),
         doubts=(),
     )
@@ -340,25 +336,21 @@ def _doubts_of_record(
         )
     elif not by_strain:
         found.append(
-            f"the test is too short for the strains {STRAINS[0]:g} to {STRAINS[1]:g}: the slope "
-            f"is taken between {strains[0]:.2g} and {strains[1]:.2g}"
+            f"the test is too short for the strains {100 * STRAINS[0]:g} to {100 * STRAINS[1]:g} %:"
+            f" the slope is taken between {100 * strains[0]:.2g} and {100 * strains[1]:.2g} %"
         )
     if cut:
         low, high = (1e3 * one for one in result.deflections)
-        found.append(
-            f"force over deflection is bent: the slope is taken where it is straight, from "
-            f"{low:.3g} to {high:.3g} mm"
-        )
+        words = "force over deflection is bent: the slope is taken where it is straight"
+        found.append(f"{words}, from {low:.3g} to {high:.3g} mm")
     if abs(result.bent) > BENT:
         found.append(
             f"the slope changes by {_percent(result.bent)} along the part it is taken from: "
             "yielding, slip, or supports that settle"
         )
     if result.unloading is None or result.loading is None:
-        found.append(
-            f"{'loading' if result.unloading is None else 'unloading'} only: friction at the "
-            "supports and creep count as stiffness"
-        )
+        way = "loading" if result.unloading is None else "unloading"
+        found.append(f"{way} only: friction at the supports and creep change the slope")
     elif abs(result.loading - result.unloading) > APART * result.slope.value:
         ways = ["loading", "unloading"]
         share = (result.loading - result.unloading) / result.slope.value
@@ -367,11 +359,12 @@ def _doubts_of_record(
             f"{first} is {_percent(abs(share))} steeper than {second}: friction at the supports, "
             "creep or damage; their mean is taken"
         )
+    if result.hysteresis is None and result.unloading is not None and result.loading is not None:
+        words = "the work lost cannot be told, unloading gives back more than loading took"
+        found.append(f"{words}: F_L lags w, or one drifts")
     if noise > NOISY:
-        found.append(
-            f"force and deflection scatter: noise of the deflection alone would make the slope "
-            f"{_percent(noise)} too low"
-        )
+        words = "force and deflection scatter: noise of the deflection alone would make the slope"
+        found.append(f"{words} {_percent(noise)} too low")
     return found
 
 
@@ -379,13 +372,18 @@ def _doubts_of_specimen(result: BendingResult) -> list[str]:
     """What shear and dents leave open."""
     found = []
     specimen, share = result.specimen, result.shear_share
-    height = specimen.height
+    height, stated = specimen.height, specimen.expected_modulus
+    ratio = 1.0 if stated is None else result.modulus.value / stated
+    if stated is not None and abs(ratio - 1) > STATED:
+        part = _percent(ratio) if ratio <= 10 else "more than 1000 %"
+        part = "less than 1 %" if ratio < 0.01 else part
+        words = f"the modulus is {part} of what the material states, {1e-9 * stated:.4g} GPa"
+        found.append(f"{words}: part, span or units?")
     if share is None:
         found.append("shear is not taken off, no shear modulus is stated: the modulus is low")
     elif share > SHEARED:
-        found.append(
-            f"shear deflects {_percent(share)} of what bending does: the modulus rests on it"
-        )
+        words = f"shear deflects {_percent(share)} of what bending does"
+        found.append(f"{words}: the modulus rests on it")
     if height is not None and specimen.span < SLENDER * height:
         found.append(
             f"the span is {specimen.span / height:.1f} depths, less than {SLENDER:g}: shear and "

@@ -30,9 +30,6 @@ MODEL = 1e-3
 filtered motion limits the model, not noise."""
 BENDS = 3.0
 """Breakaway travels after which 95 % of the force is there: they must take time to be seen."""
-GRAIN = 0.35
-"""Share of the position's error by its steps that shifts all turns alike (a choice, by records of
-known friction): over the breakaway travel it is an error of the bristles' stiffness."""
 NOISY, MISSED = 2.0, 0.02
 """Times its noise and share of its largest value by which the model may miss the friction in the
 windows (a choice, by records of known friction: position steps cost up to 3 times the noise)."""
@@ -312,11 +309,10 @@ class Problem:
         level = min(max(found["static"], found["coulomb"]), self.largest)
         return BENDS * level / found["bristle_stiffness"]
 
-    def hiding(self, x: Array, chain: Array) -> dict[str, float]:
-        """Standard error of each parameter by a lag that is not looked for."""
+    def moved(self, x: Array, chain: Array, misfit: Array) -> dict[str, float]:
+        """Size by which parameters move when windows miss by another friction [N]."""
         before = self.one(x)
-        values = self.values(x[None]) | {"lag": np.full(1, USUAL)}
-        lanes = (self.windows.misfit(values) / self.spread).reshape(-1)
+        lanes = (misfit / self.spread).reshape(-1)
         change = np.zeros_like(before)
         change[-lanes.size :] = lanes - before[-lanes.size :]
         moved = np.linalg.lstsq(self.slopes(x) * self.sizes, -change, rcond=RCOND)[0]
@@ -345,13 +341,18 @@ class Problem:
             more = np.sqrt(np.maximum(by_lanes**2 - own_error**2, 0.0))
         more = np.where(np.isfinite(own_error), more, 0.0)
         place = list(own).index("bristle_stiffness")
-        shift = GRAIN * self.windows.grain * BENDS / self.travel(x) * own["bristle_stiffness"]
+        shift = self.windows.grain * BENDS / self.travel(x) * own["bristle_stiffness"]
         more[place] = np.hypot(more[place], shift)
+        if "lag" in own:
+            short = self.windows.short(self.windows.grain).misfit(self.values(x[None]))
+            place = list(own).index("lag")
+            more[place] = np.hypot(more[place], self.moved(x, chain, short)["lag"])
         parameters = widened(
             told.parameters, dict(zip(own, more.tolist(), strict=True)), told.quantile
         )
         if "lag" not in self.names and not self.lag_known:
-            parameters = widened(parameters, self.hiding(x, chain), told.quantile)
+            late = self.windows.misfit(self.values(x[None]) | {"lag": np.full(1, USUAL)})
+            parameters = widened(parameters, self.moved(x, chain, late), told.quantile)
         return parameters
 
     def solve(self) -> LuGreFit:

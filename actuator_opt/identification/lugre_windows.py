@@ -27,6 +27,10 @@ SAMPLES, LEFT = 2.0, 0.05
 still count as rest (a choice)."""
 LEAST = 4
 """Independent samples of a window, at least (a choice: one more than stiffness, lag and level)."""
+GRAIN = 0.35
+"""Least share of the position's error by its steps that shifts all turns alike (a choice, by
+records of known friction): over the breakaway travel it is an error of the bristles' stiffness,
+over the speed there one of the lag."""
 LASTING = 0.05
 """Time for which a way must last to be one [s]."""
 
@@ -42,7 +46,7 @@ class Windows:
     the sample at which the rod turns or starts. `steady`
     (lanes, kept) is 0 where points of steady sliding say the same, else 1; `judged` is 0 also in
     windows that are left out, `quick` says that all should be; `grain` is the error of the
-    position by its steps, q/sqrt 12 [m].
+    position by its steps that shifts all turns alike [m].
     """
 
     velocity: Array
@@ -84,6 +88,13 @@ class Windows:
         slow = taken >= SAMPLES * (self.kept[1] - self.kept[0])
         judged = self.steady * slow[:, None]
         return replace(self, judged=judged if slow.any() else self.steady, quick=not slow.any())
+
+    def short(self, distance: float) -> Windows:
+        """With a turn or start that lacks a distance [m], as a position sensor's step hides it."""
+        velocity = self.velocity.copy()
+        way = np.sign(np.sum(velocity[:, self.turn :], axis=-1))
+        velocity[:, self.turn] -= way * distance / self.step
+        return replace(self, velocity=velocity)
 
     def measured(self, lag: Array) -> Array:
         """Friction with the hydraulic force taken `lag` later (rows,) -> (rows, lanes, samples).
@@ -226,7 +237,7 @@ def windows(
         kept=kept,
         steady=steady,
         judged=steady,
-        grain=resolution / np.sqrt(12),
+        grain=_grain([one.piece["x"][at] for one, at in lanes], resolution),
         blur=float(np.sqrt(2 * resolution / sharpest)),
     )
 
@@ -243,6 +254,19 @@ def no_windows(motion: Motion) -> str:
             f"reversal in which bristles show; filter above {lowest:.2g} Hz (--cutoff)"
         )
     return "no half second of an unbroken record about a reversal: bristles show only there"
+
+
+def _grain(places: Sequence[float], step: float) -> float:
+    """Error of the position by its steps that shifts all turns alike [m].
+
+    q/sqrt 12 sqrt(sum n_i^2)/n of n turns, n_i on one step: turns on other steps are as many
+    independent errors [derived].
+    """
+    if step == 0:
+        return 0.0
+    counts = np.unique(np.round(np.array(places) / step), return_counts=True)[1]
+    share = float(np.sqrt(np.sum(counts**2)) / len(places))
+    return float(step / np.sqrt(12) * max(share, GRAIN))
 
 
 def _sections(motion: Motion, step: float) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..least_squares import quantile
 from ..numeric import Array
-from .record import CHANNELS, Record
+from .record import Record
 
 TERMS = 8
 """Cosines of a long-run variance (a choice: few enough for noise that remembers an eighth of a
@@ -44,8 +44,7 @@ where a specimen is bent both ways (a choice: both far from noise and from offse
 WON = 0.02
 """Share of its work that a loop may win by noise and coarse samples (a choice as `BENT`)."""
 USUAL = (1e-12, 1e12)
-"""Ranges of force [N] and deflection [m] beyond which a unit is wrong (a choice: finer than any
-sensor, more than any machine)."""
+"""Ranges of force [N] and deflection [m] of any sensor and machine (a choice: far beyond)."""
 CUTS = ((0.0, 1.0), (0.25, 1.0), (0.0, 0.75), (0.5, 1.0), (0.25, 0.75), (0.0, 0.5))
 """Parts of the range that are tried in turn until one is straight (a choice: the longest first, a
 toe sooner than a top)."""
@@ -176,10 +175,8 @@ def pooled(groups: Sequence[Sequence[Term]]) -> Term:
     spare = sum(len(one) - 1 for one in groups)
     if spare == 0 or found.variance == 0:
         return found
-    apart = sum(
-        (one.value - mean(group).value) ** 2 / one.variance for group in groups for one in group
-    )
-    ratio = apart / spare
+    middles = [(one, mean(group).value) for group in groups for one in group]
+    ratio = sum((one.value - middle) ** 2 / one.variance for one, middle in middles) / spare
     if ratio <= fdtri(spare, sum(one.freedom for group in groups for one in group), 0.95):
         return found
     several = [[one.value for one in group] for group in groups if len(group) > 1]
@@ -196,8 +193,10 @@ class Part(NamedTuple):
 
 
 class Straight(NamedTuple):
-    """The straight part: samples, ends as deflections from zero force [m], change of slope along it
-    over the slope, what of that is more than noise, and whether a part of the range was left out.
+    """The straight part.
+
+    Its samples, its ends as deflections from zero force [m], the change of slope along it over the
+    slope, what of that is more than noise, and whether a part of the range was left out.
     """
 
     parts: list[Part]
@@ -247,10 +246,8 @@ class Loop:
         """Deflection at which the straight line of every branch meets zero force."""
         slope = slopes(parts, 1, self.record).value
         if slope <= 0:
-            raise self.record.fault(
-                "F_L does not grow with w in the straight part",
-                "check both columns, and their noise",
-            )
+            message = "F_L does not grow with w in the straight part"
+            raise self.record.fault(message, "check both columns, and their noise")
         return [
             float(np.mean(one.deflection) - (np.mean(one.force) - self.floor) / slope)
             if one.deflection.size
@@ -260,12 +257,8 @@ class Loop:
 
     def top(self, zeros: Sequence[float]) -> float:
         """Largest deflection from zero, median of the branches."""
-        tops = [
-            float(np.max(self.deflection[one.samples])) - zero
-            for zero, one in zip(zeros, self.branches, strict=True)
-            if isfinite(zero)
-        ]
-        return float(np.median(tops))
+        tops = [float(np.max(self.deflection[one.samples])) for one in self.branches]
+        return float(np.median([a - b for a, b in zip(tops, zeros, strict=True) if isfinite(b)]))
 
     def hysteresis(self) -> float | None:
         """Work lost over work done on loading, mean of the loops; None where none is told.
@@ -293,10 +286,9 @@ def slopes(parts: Sequence[Part], degree: int, record: Record) -> Term:
     groups = by_way(parts, degree)
     if not groups:
         most = max((one.deflection.size for one in parts), default=0)
-        raise record.fault(
-            f"{most} samples in the straight part of the longest loading, {FEWEST} are needed",
-            "sample faster, load slower, or look after noise of the channels",
-        )
+        message = f"{most} samples in the straight part of the longest loading"
+        remedy = "sample faster, load slower, or look after noise and units of the channels"
+        raise record.fault(f"{message}, {FEWEST} are needed", remedy)
     return pooled(list(groups.values()))
 
 
@@ -322,45 +314,36 @@ def scatter(parts: Sequence[Part]) -> float:
     return min(found, default=0.0)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what overflows is refused as no usual range
 def _channels(record: Record) -> tuple[Array, Array]:
     """Deflection and force of the samples that have both, in one sense."""
     for name in ("F_L", "w"):
         if name not in record:
-            raise record.fault(
-                f"no column {name}, the {'force' if name == 'F_L' else CHANNELS[name].label}",
-                f'name it with --column "{name}=..."',
-            )
-    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused below
-        w, force = despiked(record["w"]), despiked(record["F_L"])
+            message = f"no column {name}, the {'deflection' if name == 'w' else 'force'}"
+            raise record.fault(message, f'name it with --column "{name}=..."')
+    w, force = despiked(record["w"]), despiked(record["F_L"])
     both = np.isfinite(w) & np.isfinite(force)
     if both.sum() < 2 * FEWEST:
-        raise record.fault(
-            f"{both.sum()} samples with force and deflection, {2 * FEWEST} are needed",
-            "give a record of the whole loading",
-        )
+        message = f"{both.sum()} samples with force and deflection, {2 * FEWEST} are needed"
+        raise record.fault(message, "give a record of the whole loading")
     w, force = w[both], force[both]
-    for values, name, what in ((w, "w", "deflection"), (force, "F_L", "force")):
-        with np.errstate(over="ignore"):
-            reach = float(np.ptp(values))
+    for values, name in ((w, "w"), (force, "F_L")):
+        reach = float(np.ptp(values))
         if reach == 0:
-            raise record.fault(
-                f"{name} stands still, single samples apart: no {what}",
-                "give a record of a loaded specimen",
-            )
+            message = f"{name} stands still, single samples apart"
+            raise record.fault(message, "give a record of a loaded specimen")
         if not USUAL[0] <= reach <= USUAL[1]:
-            unit = CHANNELS[name].unit
-            raise record.fault(f"{name} spans {reach:.3g} {unit}: no {what}", "check its unit")
+            message = f"{name} spans {reach:.3g} {'m' if name == 'w' else 'N'}"
+            raise record.fault(f"{message}: no bending test does", "check its unit")
     most = int(np.argmax(np.abs(force - force[0]))) + 1  # before a failure
     most = most if most >= 2 * FEWEST else w.size
     follows = float(np.corrcoef(w[:most], force[:most])[0, 1]) if np.ptp(w[:most]) else 0.0
     if follows <= -FOLLOWS:
-        raise record.fault(
-            "F_L falls as w grows", "turn the sign of F_L or w: both grow as the specimen is bent"
-        )
+        remedy = "turn the sign of F_L or w: both grow as the specimen is bent"
+        raise record.fault("F_L falls as w grows", remedy)
     if follows < FOLLOWS:
-        raise record.fault(
-            f"F_L does not follow w (correlation {follows:.2f})", "check both columns"
-        )
+        message = f"F_L does not follow w (correlation {follows:.2f})"
+        raise record.fault(message, "check both columns")
     return w, force
 
 
@@ -368,7 +351,7 @@ def _turned(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
     """Deflection and force growing as the specimen is bent, its force at rest; if bent both ways.
 
     It rests at first, whatever the offsets, but on a single pass towards zero force (unloading).
-    Bent both ways it rests at first where that lies between, else at both channels' zero.
+    Bent both ways it rests where both channels are zero at once, else at first.
     """
 
     def inside(values: Array, one: float) -> bool:
@@ -381,11 +364,11 @@ def _turned(w: Array, force: Array) -> tuple[Array, Array, float, bool]:
     both = inside(force, 0.0) and (inside(force, first) or between)
     single = len(branches(w, BACK * float(np.ptp(w)))) == 1
     eased = single and not both and abs(last) < abs(first)
-    if (w[0] - np.min(w) > np.max(w) - w[0]) is not eased:
+    if bool(w[0] - np.min(w) > np.max(w) - w[0]) != eased:
         w, force, first = -w, -force, -first
     rest = float(np.percentile(force, 1))
     if both:
-        rest = first if inside(force, first) else 0.0
+        rest = 0.0 if between else first
     elif eased and rest > BEGUN * np.max(force):
         rest = 0.0  # never unloaded
     return w, force, rest, both

@@ -178,6 +178,7 @@ def _specimen(actuator: Actuator, part: Part, span: float) -> Specimen:
         outer_diameter=float(np.squeeze(outer)),
         inner_diameter=float(np.squeeze(inner)),
         shear_modulus=shear,
+        expected_modulus=None if shear is None or modulus is None else modulus.value,
     )
 
 
