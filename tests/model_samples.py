@@ -21,6 +21,8 @@ import samples_fluid
 import samples_gland
 import samples_liner
 import samples_lines
+import samples_machines
+import samples_motion
 import samples_rods
 import samples_tube
 
@@ -438,6 +440,8 @@ for _group in (
     samples_gland,
     samples_liner,
     samples_lines,
+    samples_machines,
+    samples_motion,
     samples_rods,
     samples_tube,
 ):

@@ -154,7 +154,10 @@ def check_signs(slidings: Sequence[Sliding], bench: Bench, *, mass: float, name:
         raise InputError(Diagnostic(about, remedy, file=name))
     _, pressures, force = min(found)
     if pressures:
-        what, remedy = "p1 and p2 look reversed", "swap them, e.g. with --column p1=... --column p2=..."
+        what, remedy = (
+            "p1 and p2 look reversed",
+            "swap them, e.g. with --column p1=... --column p2=...",
+        )
     elif force:
         what, remedy = "F_L looks reversed", "F_L is positive against extension: turn its sign"
     else:

@@ -194,19 +194,25 @@ def condition(
     if gaps:
         short = f", {sum(dropped):.3g} s too short to use" if dropped else ""
         notes.append(f"{gaps} gaps; {len(pieces)} pieces used{short}")
-    skipped = float(
-        np.sum(np.round(steps[steps < (_bridged(step, cutoff) + 1.5) * step] / step) - 1)
-    )
-    if skipped > 0:
-        notes.append(f"time leaves out {skipped:.0f} samples: bridged")
-    if np.abs(steps[steps < 1.5 * step] - step).max() > 0.01 * step:
-        notes.append(f"sample times are uneven: drawn to even steps of {1e3 * step:.4g} ms")
+    notes += _timing(steps, step, cutoff)
     quality = {
         name: one._replace(noise=_noise(time, record[name], name, pieces))
         for name, one in quality.items()
     }
     notes += _told(quality, time.size)
     return Motion(tuple(pieces), step, cutoff, order, compensated, quality, tuple(notes), cleaned)
+
+
+def _timing(steps: Array, step: float, cutoff: float) -> list[str]:
+    """Notes on sample times that are left out or uneven."""
+    notes = []
+    bridged = steps[steps < (_bridged(step, cutoff) + 1.5) * step]
+    skipped = float(np.sum(np.round(bridged / step) - 1))
+    if skipped > 0:
+        notes.append(f"time leaves out {skipped:.0f} samples: bridged")
+    if np.abs(steps[steps < 1.5 * step] - step).max() > 0.01 * step:
+        notes.append(f"sample times are uneven: drawn to even steps of {1e3 * step:.4g} ms")
+    return notes
 
 
 def _cleaned(record: Record, step: float) -> tuple[dict[str, Array], dict[str, Quality]]:

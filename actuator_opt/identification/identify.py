@@ -56,7 +56,8 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
     Raises
     ------
     InputError
-        a channel missing, a record too short or too slow, channels turned round, no motion
+        a channel missing, a record too short or too slow, channels turned round, no motion, travel
+        beyond the stroke, a mass or a lag that is none
     """
     own = settings or Settings()
     _channels(record, bench, own)
@@ -160,6 +161,7 @@ def _pace(motion: Motion) -> list[str]:
     slope = float(np.mean(stated * found)) / power
     if abs(slope - 1) <= PACE:
         return []
+    slope = round(slope, 2) + 0.0  # never -0.00
     return [f"v is {slope:.2f} times the slope of x: check its unit and sign; v is not used"]
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from .balance import Sliding
 from .conditioning import Motion
-from .doubtful import PARTED, opened, widened
+from .doubtful import PARTED, agreed, opened, widened
 from .lugre_problem import LOGARITHMIC, SYMBOLS, TRAVELS, USUAL, LuGreFit, Problem
 from .lugre_windows import Windows, no_windows, windows
 from .points import SETTLED, SETTLING, Point
@@ -90,6 +90,7 @@ def fit_lugre(
         fit = problem.solve()
         if "stribeck_speed" in fit.parameters and not np.isfinite(fit.parameters["coulomb"].upper):
             fit = _parted(fit, points, curve_known, found, lag_known, seen)
+        fit = _as_the_points(fit, curve_known, points)
     if lag_known or seen:
         return fit
     doubt = (
@@ -127,6 +128,26 @@ def _level(found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
         doubt = "the rod hardly slides: bristles alone are seen, no level of friction"
         fit = replace(fit, parameters=opened(fit.parameters, ("coulomb",)))
     return replace(fit, doubts=(*fit.doubts, doubt))
+
+
+def _as_the_points(fit: LuGreFit, stribeck: StribeckFit, points: Sequence[Point]) -> LuGreFit:
+    """The model without what the points of steady sliding deny it."""
+    level, speed = stribeck.parameters["coulomb"], fit.parameters.get("stribeck_speed")
+    doubts = list(fit.doubts)
+    parameters = dict(fit.parameters)
+    if stribeck.doubted:
+        told = agreed(parameters, stribeck.parameters)
+        parameters = opened(parameters, set(parameters) - set(told))
+        doubts.append("areas or sensors are wrong, by the points of steady sliding")
+    elif not np.isfinite(level.upper) and not (speed is not None and speed.identifiable):
+        if np.isfinite(parameters["coulomb"].upper):
+            fastest = 1e3 * max(one.speed for one in points)
+            doubts.append(
+                f"F_C is the level of friction up to {fastest:.3g} mm/s: steady sliding there does "
+                "not part it from F_S and σ₂; give more speeds, and faster ones"
+            )
+        parameters = opened(parameters, PARTED)
+    return replace(fit, parameters=parameters, doubts=tuple(doubts))
 
 
 def _parted(

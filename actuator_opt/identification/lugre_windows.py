@@ -10,7 +10,7 @@ import numpy as np
 from ..models import friction
 from ..numeric import Array
 from .balance import Sliding
-from .conditioning import Motion, low_pass, zero_phase
+from .conditioning import SLOWEST, Motion, low_pass, zero_phase
 from .pace import velocities
 from .points import SETTLED, settled
 
@@ -46,7 +46,7 @@ class Windows:
     the sample at which the rod turns or starts. `steady`
     (lanes, kept) is 0 where points of steady sliding say the same, else 1; `judged` is 0 also in
     windows that are left out, `quick` says that all should be; `grain` is the error of the
-    position by its steps that shifts all turns alike [m].
+    position by its steps that shifts all turns alike [m], `sample_time` that of the record [s].
     """
 
     velocity: Array
@@ -64,6 +64,7 @@ class Windows:
     judged: Array
     blur: float
     grain: float
+    sample_time: float
     quick: bool = False
 
     @property
@@ -203,9 +204,7 @@ def windows(
     before, after = round(BEFORE / step), round(AFTER / step)
     room = (before + margin) * stride, (after + margin) * stride
     lanes = _lanes(slidings, motion, room)
-    edge = round(1 / (motion.cutoff * step))
-    apart = max(1, round(1 / (2 * motion.cutoff * step)))
-    kept = np.arange(edge, before + after - edge, apart)
+    kept = _kept(motion, step, before + after)
     if not lanes or kept.size < LEAST:
         return None
 
@@ -214,8 +213,8 @@ def windows(
         own = zip(values, lanes, strict=True)
         return np.stack([one[at - ends[0] : at + ends[1] : stride] for one, (_, at) in own])
 
-    own = {id(one): one for one, _ in lanes}
-    told = {key: _settled_above(one, slowest, settling) for key, one in own.items()}
+    used = {id(one): one for one, _ in lanes}
+    told = {key: _settled_above(one, slowest, settling) for key, one in used.items()}
     steady = np.where(cut([told[id(one)] for one, _ in lanes])[:, kept], 0.0, 1.0)
     span = (-before * stride, after * stride)
     paces = [velocities(one.piece, motion, at + span[0], at + span[1]) for one, at in lanes]
@@ -238,8 +237,16 @@ def windows(
         steady=steady,
         judged=steady,
         grain=_grain([one.piece["x"][at] for one, at in lanes], resolution),
+        sample_time=motion.sample_time,
         blur=float(np.sqrt(2 * resolution / sharpest)),
     )
+
+
+def _kept(motion: Motion, step: float, count: int) -> Array:
+    """Independent samples of a window, away from its ends."""
+    edge = round(1 / (motion.cutoff * step))
+    apart = max(1, round(1 / (2 * motion.cutoff * step)))
+    return np.arange(edge, count - edge, apart)
 
 
 def no_windows(motion: Motion) -> str:
@@ -249,9 +256,12 @@ def no_windows(motion: Motion) -> str:
     """
     lowest = (LEAST + 4) / (2 * (BEFORE + AFTER))
     if motion.cutoff <= lowest:
+        remedy = f"filter above {lowest:.2g} Hz (--cutoff)"
+        if motion.sample_time * lowest * SLOWEST > 1:
+            remedy = f"sample at {SLOWEST * lowest:.3g} Hz or faster, and {remedy}"
         return (
             f"no windows at this cut-off: {motion.cutoff:.3g} Hz blur the half second about a "
-            f"reversal in which bristles show; filter above {lowest:.2g} Hz (--cutoff)"
+            f"reversal in which bristles show; {remedy}"
         )
     return "no half second of an unbroken record about a reversal: bristles show only there"
 

@@ -122,9 +122,7 @@ def _moderated(points: Sequence[Point], motion: Motion) -> list[Point]:
     return [one._replace(error=float(error)) for one, error in zip(points, errors, strict=True)]
 
 
-def _plateaus(
-    sliding: Sliding, motion: Motion, settling: float
-) -> Iterator[tuple[Point, float]]:
+def _plateaus(sliding: Sliding, motion: Motion, settling: float) -> Iterator[tuple[Point, float]]:
     """Stretches of constant velocity in one piece, with what is left of the bristles' settling."""
     from scipy.signal import savgol_filter
 
@@ -154,7 +152,10 @@ def _plateaus(
         first = max(first, min(away, last - fifth - least // 2))
         at = np.arange(first, last - fifth)
         found = _point(sliding, motion, at, "plateau")
-        yield found, _unsettled(found.friction, sliding.piece["x"][at] - sliding.piece["x"][i], settling)
+        yield (
+            found,
+            _unsettled(found.friction, sliding.piece["x"][at] - sliding.piece["x"][i], settling),
+        )
         i = last
 
 

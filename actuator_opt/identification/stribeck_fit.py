@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from ..least_squares import Parameter, known
 from ..models import friction
 from ..numeric import STEP, Array
-from .doubtful import PARTED, hidden, opened, widened
+from .doubtful import PARTED, hidden, misled, opened, spread, unequal, ways, widened
 from .points import Point
 
 STATIC_MOST = 3.0
@@ -26,9 +26,6 @@ OTHER = 1.0
 """Exponent that bounds allow for where the points cannot tell it (Tustin's exponential)."""
 DIFFERENT = 0.05
 """Speeds further apart than this share are different."""
-SPREAD, APART = 0.2, 3.0
-"""Least range of the pressure that can show an effect: of its highest value, and of the pressure
-that friction itself takes (without a load, friction makes the pressure)."""
 SYMBOLS = {
     "coulomb": "F_C",
     "static": "F_S",
@@ -58,6 +55,7 @@ class StribeckFit:
     residuals : measured less fitted [N], by point
     errors : standard error of each point as weighted [N]
     doubts : why something was not asked for, or is not known
+    doubted : whether it doubts the friction itself: areas or sensors are wrong
     """
 
     parameters: Mapping[str, Parameter]
@@ -68,6 +66,7 @@ class StribeckFit:
     residuals: Array
     errors: Array
     doubts: tuple[str, ...]
+    doubted: bool = False
 
     @property
     def values(self) -> dict[str, float]:
@@ -176,18 +175,20 @@ def fit_stribeck(points: Sequence[Point], area: float) -> StribeckFit | str:
     if why is not None:
         doubts.append(why)
         best = replace(best, parameters=opened(best.parameters, PARTED))
-    return replace(best, doubts=(*doubts, *_ways(best)))
+    return _doubted(replace(best, doubts=tuple(doubts)), points, area)
 
 
-def _ways(fit: StribeckFit) -> Iterator[str]:
-    """What is not known for want of both ways, or by their difference."""
-    if "offset" not in fit.parameters:
-        yield "one way only: an error of the sensors' zeros counts as friction"
-    elif fit.parameters["offset"].lower > 0 or fit.parameters["offset"].upper < 0:
-        yield (
-            "an offset between both ways: zeros of the sensors, areas, or seals that rub "
-            "unequally; the record cannot tell which"
-        )
+def _doubted(fit: StribeckFit, points: Sequence[Point], area: float) -> StribeckFit:
+    """With what is wrong with the friction itself: areas, sensors, more than speed and pressure."""
+    even = unequal(points, area)
+    plunger = all(one.pressure_2 == 0 for one in points)
+    wrong = [] if even is None or not even.sure else [even.says(area, plunger)]
+    measured = np.array([one.friction for one in points])
+    impossible = list(misled(fit.parameters, measured, fit.residuals, fit.errors))
+    parameters = opened(fit.parameters, fit.parameters if impossible else ())
+    doubts = (*fit.doubts, *wrong, *impossible, *ways(parameters, even))
+    doubted = bool(wrong or impossible)
+    return replace(fit, parameters=parameters, doubts=doubts, doubted=doubted)
 
 
 def _unsure(fit: StribeckFit, points: Sequence[Point]) -> StribeckFit:
@@ -213,11 +214,9 @@ def _beside(points: Sequence[Point], area: float) -> list[str]:
     """Offset and effect of pressure, where the points can show them."""
     ways = {one.velocity > 0 for one in points}
     found = ["offset"] if len(ways) == 2 else []
-    own = APART * max(abs(one.friction) for one in points) / area
     for way in ways:
         pressures = [one.pressure for one in points if (one.velocity > 0) == way]
-        spread = max(pressures) - min(pressures)
-        if spread > max(SPREAD * max(pressures), own) and len(points) > 4:
+        if len(points) > 4 and spread(points, pressures, area) > 1:
             return [*found, "pressure_slope"]
     return found
 

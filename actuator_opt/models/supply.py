@@ -1,0 +1,127 @@
+"""Pressure supply: relief valve and pressure-controlled pump.
+
+Pressures are gauge, or the tank's taken off. A supply line of volume V_S and bulk modulus K closes
+the loop: (V_S/K) dp_S/dt = delivery - relief flow - demand. Accumulators are in `accumulator`.
+"""
+
+from __future__ import annotations
+
+from ..numeric import Array, clip, maximum, positive, sqrt
+
+
+def relief_flow(
+    *,
+    pressure_difference: Array,
+    cracking_pressure: Array,
+    override: Array,
+    rated_flow: Array,
+) -> Array:
+    """Flow of a relief valve, q = q_r min(x, 1) sqrt(dp/(p_c + dp_o)), x = (dp - p_c)/dp_o.
+
+    The area opens in proportion to the pressure above cracking and is fully open at the rated flow
+    (a choice: the data sheet's last point); above it the valve is a plain orifice.
+
+    Parameters
+    ----------
+    pressure_difference : dp, pressure line less tank [Pa], either sign
+    cracking_pressure : p_c, where it begins to open [Pa], >= 0
+    override : dp_o, pressure above cracking at the rated flow [Pa], > 0
+    rated_flow : q_r [m^3/s]
+
+    Returns
+    -------
+    flow to the tank [m^3/s]; 0 below cracking; NaN where the override is not positive
+
+    Notes
+    -----
+    Valid: steady state, turbulent seat, no hysteresis; slower than the poppet.
+
+    References
+    ----------
+    [Merritt1967] orifice law; [derived] opening in proportion to the pressure above cracking
+
+    Examples
+    --------
+    >>> for pressure in (140e5, 145e5, 150e5):
+    ...     q = relief_flow(pressure_difference=pressure, cracking_pressure=140e5, override=10e5,
+    ...                     rated_flow=40 / 60000)
+    ...     print(f"{q * 60000:.2f} l/min")
+    0.00 l/min
+    19.66 l/min
+    40.00 l/min
+    """
+    span = positive(override)
+    opened = clip((pressure_difference - cracking_pressure) / span, 0.0, 1.0)
+    root = sqrt(maximum(pressure_difference, 0.0) / (cracking_pressure + span))
+    return rated_flow * opened * root
+
+
+def controlled_pump_rate(
+    *, flow: Array, pressure: Array, set_pressure: Array, gain: Array, time_constant: Array
+) -> Array:
+    """Rate of the flow of a pressure-controlled pump, dq/dt = (K_p (p_set - p_S) - q)/tau.
+
+    At rest it delivers q at the pressure p_set - q/K_p. The flow here has no limits: it may run
+    past what `controlled_pump_delivery` lets through and takes some tau to come back.
+
+    Parameters
+    ----------
+    flow : q, state of the pump [m^3/s]
+    pressure : p_S of the supply line [Pa]
+    set_pressure : p_set, where it delivers nothing [Pa]
+    gain : K_p, flow per pressure [m^3/s/Pa]
+    time_constant : tau [s], > 0
+
+    Returns
+    -------
+    rate of the flow [m^3/s^2]; NaN where the time constant is not positive
+
+    Notes
+    -----
+    Valid: one lag stands for controller and swash plate; constant shaft speed.
+
+    References
+    ----------
+    [MECE5005] pressure controlled pump
+
+    Examples
+    --------
+    >>> rate = controlled_pump_rate(flow=20 / 60000, pressure=138e5, set_pressure=140e5,
+    ...     gain=40 / 60000 / 2e5, time_constant=0.02)
+    >>> print(f"{rate * 60000:.0f} l/min/s")
+    1000 l/min/s
+    """
+    return (gain * (set_pressure - pressure) - flow) / positive(time_constant)
+
+
+def controlled_pump_delivery(*, flow: Array, largest_flow: Array) -> Array:
+    """Flow a pressure-controlled pump delivers, its state between the ends of its swash plate.
+
+    q_P = min(max(q, 0), q_max).
+
+    Parameters
+    ----------
+    flow : q, state of the pump [m^3/s]
+    largest_flow : q_max, full displacement at its speed [m^3/s]
+
+    Returns
+    -------
+    flow into the supply line [m^3/s]
+
+    Notes
+    -----
+    Valid: no leakage; the pump does not take oil back.
+
+    References
+    ----------
+    [MECE5005] pressure controlled pump; [derived] ends of the displacement
+
+    Examples
+    --------
+    >>> for flow in (-1e-4, 2e-4, 9e-4):
+    ...     print(controlled_pump_delivery(flow=flow, largest_flow=5e-4))
+    0.0
+    0.0002
+    0.0005
+    """
+    return clip(flow, 0.0, largest_flow)
