@@ -49,6 +49,17 @@ def test_pure_oil_is_the_compressed_liquid(pressure, slope):
     assert stiff == pytest.approx(K + slope * pressure, rel=1e-12)
 
 
+@pytest.mark.parametrize("pressure", [1.0, 1e3, 1.2e3, 2e3])
+def test_small_pressures_keep_their_digits(pressure):
+    """(1 + m p/K)^(1/m) - 1 to rounding on both sides of the series, and back."""
+    law = oil(slope=10.8)
+    found = chamber.density_ratio(pressure=pressure, **law)
+    rise = math.expm1(math.log1p(10.8 * pressure / K) / 10.8)
+    assert found - 1 == pytest.approx(rise, abs=3e-16)
+    back = chamber.chamber_pressure(density_ratio=1 + rise, **law)
+    assert back == pytest.approx(pressure, abs=2e-16 * K)
+
+
 @given(PRESSURE, AIR, SLOPE, INDEX)
 def test_reference_volume_and_bulk_modulus_are_consistent(pressure, air, slope, index):
     """dV_ref/dp = V_ref/K_eff, by complex step."""
@@ -137,8 +148,9 @@ def test_emptied_chamber_tends_to_vacuum():
     assert pressure[-1] == -ATMOSPHERIC_PRESSURE
     gas = ATMOSPHERIC_PRESSURE * (0.01 / (1.01 / ratios)) ** 1.4
     np.testing.assert_allclose(pressure[2:4] + ATMOSPHERIC_PRESSURE, gas[2:4], rtol=0.02)
-    empty = chamber.chamber_pressure(density_ratio=np.array([0.0, -1.0]), **oil(0.01))
-    assert np.isnan(empty).all()
+    empty = chamber.chamber_pressure(density_ratio=np.array([0.0, 1e-300, -1.0]), **oil(0.01))
+    np.testing.assert_array_equal(empty, [-ATMOSPHERIC_PRESSURE] * 2 + [np.nan])
+    assert np.isnan(chamber.chamber_pressure(density_ratio=0.0, **oil()))
 
 
 def test_little_air_is_pure_oil_under_pressure():

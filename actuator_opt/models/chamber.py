@@ -15,6 +15,8 @@ from .fluid import ATMOSPHERIC_PRESSURE
 _STEPS = 100
 _TOLERANCE = 1e-11
 _LEAST_PRESSURE = 1e-200
+_EMPTY = 1e-60
+"""Density ratio below which a chamber with air is at -p_a (a choice: it is so to rounding)."""
 
 
 def density_ratio(
@@ -189,7 +191,7 @@ def chamber_pressure(
 
     Returns
     -------
-    gauge pressure [Pa], not below -p_a with air; K ln(V_ref/V) of pure oil; NaN at a ratio <= 0
+    gauge pressure [Pa], not below -p_a with air; K ln(V_ref/V) of pure oil; NaN at a ratio < 0
 
     Notes
     -----
@@ -209,7 +211,7 @@ def chamber_pressure(
     -0.9828 bar
     -1.0132 bar
     """
-    filled = real(density_ratio) > 0
+    filled = real(density_ratio) > _EMPTY
     wanted = (1 + air_content) / where(filled, density_ratio, 1.0)
     law = (bulk_modulus, slope, air_content, polytropic_index, atmospheric_pressure)
     plain = (
@@ -219,7 +221,9 @@ def chamber_pressure(
     total = _solved(real(wanted), plain)
     start = total - plain[-1]
     change, gas, falling = _shares(total + (atmospheric_pressure - plain[-1]), law, start)
-    return where(filled, start + (change + gas - (wanted - 1)) / falling, math.nan)
+    drained = (real(density_ratio) >= 0) & (real(air_content) > 0)
+    empty = where(drained, 0 * wanted - atmospheric_pressure, math.nan)
+    return where(filled, start + (change + gas - (wanted - 1)) / falling, empty)
 
 
 def pressure_rate(
