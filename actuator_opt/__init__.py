@@ -5,7 +5,8 @@
 '0.5.0'
 
 The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `seal`, `identify`, `calibrate`,
-`report`, `save`) are the same as in the terminal. Heavy modules load when a verb needs them.
+`report`, `save`) are the same as in the terminal; `bending` is `identify --span` there. Heavy
+modules load when a verb needs them.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from .design.materials import load_library
     from .errors import ActuatorError, Diagnostic, InputError
     from .evaluation.plugin import constraint, metric
-    from .identification import Identification
+    from .identification import BendingResult, Identification, Record, Specimen
     from .verbs import (
         Actuator,
         Calibrated,
@@ -46,10 +47,13 @@ __version__ = version.VERSION
 _HOMES = {
     "Actuator": "verbs",
     "ActuatorError": "errors",
+    "BendingResult": "identification",
     "Calibrated": "verbs",
     "Diagnostic": "errors",
     "Identification": "identification",
     "InputError": "errors",
+    "Record": "identification",
+    "Specimen": "identification",
     "bending": "verbs",
     "calibrate": "verbs",
     "check": "verbs",
@@ -74,10 +78,13 @@ _HOMES = {
 __all__ = [
     "Actuator",
     "ActuatorError",
+    "BendingResult",
     "Calibrated",
     "Diagnostic",
     "Identification",
     "InputError",
+    "Record",
+    "Specimen",
     "__version__",
     "bending",
     "calibrate",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -15,8 +16,8 @@ from .quantities import RECORDS
 from .store import require_apart
 
 if TYPE_CHECKING:
+    from .identification.specimen import Part
     from .verbs import Actuator
-    from .verbs.records import Part
 
 RecordFile = Annotated[
     str, typer.Argument(metavar="RECORD", help="CSV file of the test record, or - for stdin.")
@@ -34,11 +35,16 @@ Columns = Annotated[
     ),
 ]
 Cutoff = Annotated[
-    str, typer.Option("--cutoff", metavar="F", help='Cut-off of the zero-phase filter, "30 Hz".')
+    str | None,
+    typer.Option(
+        "--cutoff", metavar="F", help='Cut-off of the zero-phase filter; default: "30 Hz".'
+    ),
 ]
 Order = Annotated[
-    int,
-    typer.Option("--order", min=1, max=10, metavar="N", help="Order of each of its two passes."),
+    int | None,
+    typer.Option(
+        "--order", min=1, max=10, metavar="N", help="Order of each of its two passes; default: 4."
+    ),
 ]
 Uncompensated = Annotated[
     bool,
@@ -82,8 +88,8 @@ def identify(
     record: RecordFile,
     design: Tested,
     columns: Columns = None,
-    cutoff: Cutoff = "30 Hz",
-    order: Order = 4,
+    cutoff: Cutoff = None,
+    order: Order = None,
     uncompensated: Uncompensated = False,
     mass: Mass = None,
     load_force: LoadForce = None,
@@ -102,8 +108,9 @@ def identify(
         ),
     ] = None,
     part: Annotated[
-        str, typer.Option("--part", metavar="rod|barrel", help="What was bent.")
-    ] = "rod",
+        str | None,
+        typer.Option("--part", metavar="rod|barrel", help="What was bent; default: rod."),
+    ] = None,
     sets: Set = None,
     plugin: PluginFile = None,
     report: Report = False,
@@ -124,11 +131,12 @@ def identify(
     length = given("--span", span, RECORDS["span"])
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
     actuator = read_actuator(design, sets, plugin)
+    if length is None and part is not None:
+        raise UsageError(Diagnostic("--part: only with --span", "add --span, or leave it out"))
     if length is not None:
-        _only_bending(report=report, csv=csv is not None, bootstrap=bootstrap > 0,
-                      mass=mass is not None, load_force=load_force is not None,
-                      pressure_lag=pressure_lag is not None)  # fmt: skip
-        _bend(record, actuator, length, part, named, as_json=as_json, quiet=quiet)
+        others = {"--report": report or None, "--csv": csv, "--bootstrap": bootstrap or None}
+        _only_bending(others | {_OPTIONS[name]: one for name, one in settings.items()})
+        _bend(record, actuator, length, part or "rod", named, as_json=as_json, quiet=quiet)
         return
     found = verbs.identify(
         record, design=actuator, columns=named, bootstrap=bootstrap, seed=seed, **settings
@@ -160,8 +168,8 @@ def calibrate(
         typer.Option("--write", metavar="FILE", help="Save the design with the measured values."),
     ] = None,
     columns: Columns = None,
-    cutoff: Cutoff = "30 Hz",
-    order: Order = 4,
+    cutoff: Cutoff = None,
+    order: Order = None,
     uncompensated: Uncompensated = False,
     mass: Mass = None,
     load_force: LoadForce = None,
@@ -217,7 +225,7 @@ def calibrate(
 
         streams.out(calibration_text(found.calibration, found.redesign, **streams.style()), end="")
         say_files(files)
-    if not found.redesign.stands.met:
+    if not found.redesign.evaluation.met:
         raise typer.Exit(ExitCode.MISSED)
 
 
@@ -246,12 +254,14 @@ def _bend(
         streams.out(bending_text(found, **streams.style()), end="")
 
 
-def _only_bending(**asked: bool) -> None:
+def _only_bending(asked: Mapping[str, object]) -> None:
     """Refuse options that a bending test has no use for."""
-    options = [f"--{name.replace('_', '-')}" for name, one in asked.items() if one]
+    options = [
+        name for name, one in asked.items() if (one is not None and one != 0) or one is False
+    ]
     if options:
         message = f"{', '.join(options)}: not with --span, a bending test gives a modulus alone"
-        raise UsageError(Diagnostic(message, "leave one of them out"))
+        raise UsageError(Diagnostic(message, "leave out --span, or these"))
 
 
 def _check_bootstrap(count: int) -> None:
@@ -274,20 +284,32 @@ def _columns(texts: list[str] | None) -> dict[str, str]:
     return found
 
 
+_OPTIONS = {
+    "cutoff": "--cutoff",
+    "order": "--order",
+    "compensated": "--uncompensated",
+    "mass": "--mass",
+    "load_force": "--load-force",
+    "pressure_lag": "--pressure-lag",
+}
+"""Options of the settings by their name."""
+
+
 def _settings(
-    cutoff: str,
-    order: int,
+    cutoff: str | None,
+    order: int | None,
     uncompensated: bool,
     mass: str | None,
     load_force: str | None,
     pressure_lag: str | None,
 ) -> dict[str, Any]:
-    """How a record is read, SI."""
-    return {
+    """How a record is read, SI: what was stated."""
+    found = {
         "cutoff": given("--cutoff", cutoff, RECORDS["cutoff"]),
         "order": order,
-        "compensated": not uncompensated,
+        "compensated": False if uncompensated else None,
         "mass": given("--mass", mass, RECORDS["moving_mass"]),
         "load_force": given("--load-force", load_force, RECORDS["load_force"]),
         "pressure_lag": given("--pressure-lag", pressure_lag, RECORDS["pressure_lag"]),
     }
+    return {name: one for name, one in found.items() if one is not None}

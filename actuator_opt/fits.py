@@ -29,8 +29,7 @@ LARGEST_POWER = 300.0
 class Fit:
     """A fitted law B(v), SI.
 
-    `r_squared` is 1 - sum w (B - B_fit)^2/sum w (B - mean)^2, `r_squared_log` the same of ln B with
-    equal weights; None where it has no value (all points equal; a B or its fit not positive).
+    `r_squared` is 1 - sum w (B - B_fit)^2/sum w (B - mean)^2; None where all points are equal.
     """
 
     name: str
@@ -43,7 +42,6 @@ class Fit:
     residuals: Array
     """Measured less fitted [N s/m]."""
     r_squared: float | None
-    r_squared_log: float | None
     quantile: float
     """Student's t of the bounds; infinite without spare points."""
     doubts: tuple[str, ...]
@@ -206,7 +204,6 @@ def assess(
         damping=damping,
         residuals=residuals,
         r_squared=_r_squared(damping, fitted, weights),
-        r_squared_log=_r_squared_log(damping, fitted),
         quantile=found.quantile,
         doubts=tuple(reasons),
     )
@@ -228,12 +225,6 @@ def _r_squared(damping: Array, fitted: Array, weights: Array) -> float | None:
     if spread <= (1e-14 * float(np.max(np.abs(damping)))) ** 2 * float(np.sum(weights)):
         return None
     return 1 - float(np.sum(weights * (damping - fitted) ** 2)) / spread
-
-
-def _r_squared_log(damping: Array, fitted: Array) -> float | None:
-    if np.any(damping <= 0) or np.any(fitted <= 0):
-        return None
-    return _r_squared(np.log(damping), np.log(fitted), np.ones(damping.size))
 
 
 def _reference(rate: float, abscissa: Array) -> float:

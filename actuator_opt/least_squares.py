@@ -12,6 +12,8 @@ from .numeric import Array
 
 CONFIDENCE = 0.95
 """Share of repeated tests whose bounds would hold the true value."""
+NORMAL = 1.959964
+"""Standard errors of bounds of `CONFIDENCE` of a normal distribution, its quantile of 0.975."""
 WEAK = 0.3
 """A parameter is known when its bounds lie within this share of its value."""
 ROUNDING = 1e-6

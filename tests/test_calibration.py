@@ -70,7 +70,7 @@ def changed(factor, ratio, speed, viscous):
     viscous=st.floats(50.0, 400.0),
 )
 def test_friction_put_in_comes_back(factor, ratio, speed, viscous):
-    """Points of the design's own friction law give its own numbers, within 1 %.
+    """Points of the design's own friction law give its numbers within 1 %, viscous within 5 %.
 
     Two pressures, so that the linear rise with pressure of the fit is the contact law's.
     """
@@ -104,7 +104,7 @@ def test_the_offset_is_left_out_and_said():
 
 
 def test_another_rise_with_pressure_is_said():
-    """Friction that does not rise with pressure parts from the contact law, which is said."""
+    """Friction that does not rise with pressure deviates from the contact law, which is said."""
     points = rubbed(changed(1.0, 2.0, 3e-3, 100.0), pressures=PRESSURES[:1]).points
     flat = [
         one._replace(pressure_1=first, pressure=first) for first, _ in PRESSURES for one in points
@@ -112,7 +112,7 @@ def test_another_rise_with_pressure_is_said():
     whole = identified("plateaus")
     area = float(whole.bench.areas(np.float64(0.0))[0])
     found = calibration(replace(whole, points=tuple(flat), stribeck=fit_stribeck(flat, area)))
-    assert any("parts from the contact law" in words for words in found.doubts)
+    assert any("deviates from the contact law" in words for words in found.doubts)
 
 
 def test_duties_beyond_the_record_are_said():

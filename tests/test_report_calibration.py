@@ -11,6 +11,7 @@ import pytest
 from identification_case import DESIGN, identified
 
 import actuator_opt as ao
+from actuator_opt.evaluation.study.bench import bench
 from actuator_opt.reporting import calibration_document as document
 from actuator_opt.reporting import calibration_figure as figure
 from actuator_opt.reporting import calibration_rows as rows
@@ -31,7 +32,8 @@ def calibrated(kind="levels", **sets):
 
 def page(found):
     """Its page as data."""
-    return document.calibration_page(found.calibration, found.redesign, ORIGIN)
+    measured = bench(found.actuator.subject())
+    return document.calibration_page(found.calibration, found.redesign, measured, ORIGIN)
 
 
 def test_the_page_says_the_numbers_of_the_json():
@@ -89,11 +91,11 @@ def test_one_speed_lists_what_was_left():
 
 def test_levels_of_pressure_are_drawn_apart():
     """Points of like pressure share a curve; at most three curves are drawn."""
-    groups = figure.levels(identified("levels").points)
+    groups = figure.shown_levels(identified("levels").points)
     assert len(groups) == 3
     tops = [max(one.pressure for one in group) for group in groups]
     assert tops == sorted(tops)
-    assert len(figure.levels(identified("plateaus").points)) <= 3
+    assert len(figure.shown_levels(identified("plateaus").points)) <= 3
 
 
 def test_texts_of_the_figure_do_not_meet():

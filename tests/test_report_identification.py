@@ -230,7 +230,7 @@ def test_the_verdict_counts_what_is_identifiable():
     found = case.identified("plateaus")
     known = [*found.stribeck.parameters.values(), *found.lugre.parameters.values()]
     sure = sum(one.identifiable for one in known)
-    seen = document.verdict(found)
+    seen = rows.verdict(found)
     assert (seen["state"], seen["text"]) == ("checks", "FOUND IN PART")
     assert seen["lines"][1] == f"{sure} of {len(known)} parameters identifiable"
 
@@ -240,7 +240,7 @@ def test_the_verdict_counts_what_is_identifiable():
 
     for told, state in ((True, "met"), (False, "missed")):
         models = {"stribeck": turned(found.stribeck, told), "lugre": turned(found.lugre, told)}
-        assert document.verdict(replace(found, **models))["state"] == state
+        assert rows.verdict(replace(found, **models))["state"] == state
 
 
 def test_held_values_are_named():

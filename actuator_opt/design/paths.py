@@ -90,14 +90,7 @@ def resolve(path: str, tree: Any, metrics: Mapping[str, Quantity] | None = None)
     head, _, rest = path.partition(".")
     if rest and head == "choices":
         raise ValueFault(f"{path}: is a list, not a value", "change the list in the file")
-    if rest and head in (
-        "variables",
-        "requirements",
-        "materials",
-        "waivers",
-        "objective",
-        "measured",
-    ):
+    if rest and head in _TABLES:
         return _resolve_table(head, rest, tree, quantities.METRICS if metrics is None else metrics)
     tokens = [_Token(m[1] or m[2], m[1] is not None) for m in _TOKEN.finditer(path)]
     return _resolve_section(path, tokens, tree, tree, Design, ())

@@ -1,11 +1,12 @@
 """Identification: friction, damping and modulus from the records of a test bench."""
 
-from .bending import BendingResult, Specimen, bending
+from .bending import BendingResult, bending
 from .calibration import Calibration, calibration
 from .csv_table import decode_record
 from .identify import identify
 from .record import CHANNELS, Record, parse_record
 from .result import Identification, Settings
+from .specimen import Specimen
 
 __all__ = [
     "CHANNELS",

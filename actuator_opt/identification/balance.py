@@ -13,15 +13,19 @@ from ..evaluation.study.bench import Bench
 from ..numeric import Array
 from .conditioning import Motion, Piece
 
-RESTING = 3.0
-"""Standard deviations of the velocity's noise below which the rod may be at rest."""
+RESTING, CREEP = 3.0, 2e-5
+"""Standard deviations of the velocity's noise below which the rod may be at rest (a choice: 0.3 % of
+the samples at rest are faster), and the least such speed [m/s] (a choice: two steps of 10 um in a
+second)."""
 OPPOSED = 0.5
-"""Least share of the friction's power that must oppose motion; less, and a sign is wrong."""
+"""Least share of the friction's power that must oppose motion; less, and a sign is wrong (a choice:
+a quarter of the power drives the rod then, more than noise and offsets do)."""
 SLIDES = 5e-4
-"""Travel of a piece that is sliding [m], ten usual breakaway travels: below it bristles give back
-much of what they take."""
+"""Travel of a piece that is sliding [m] (a choice: ten breakaway travels of 50 um; below it bristles
+give back much of what they take)."""
 SURE = 0.8
-"""Share from which another order of the channels is named as the remedy."""
+"""Share from which another order of the channels is named as the remedy (a choice: a tenth of the
+power drives the rod then: plain, where the record as it stands fails `OPPOSED`)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +86,7 @@ def slide(motion: Motion, bench: Bench, *, mass: float, load_force: float | None
     -------
     friction by piece
     """
-    resting = max(RESTING * velocity_noise(motion), 2e-5)
+    resting = max(RESTING * velocity_noise(motion), CREEP)
     return [_one(piece, bench, mass, load_force or 0.0, resting) for piece in motion.pieces]
 
 

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, hypot, log, sqrt
 from typing import Any
 
 import numpy as np
 
-from ..design.model import Measured
+from ..design.model import Design, Measured
 from ..errors import Diagnostic, InputError
 from ..evaluation.study.bench import Bench
 from ..least_squares import Parameter, quantile, rated
 from ..numeric import Array
 from ..quantities import INPUTS
+from .calibration_doubts import extrapolated, of_curve, weak
 from .lugre_fit import LuGreFit
 from .points import Point
 from .result import Identification
@@ -25,10 +26,8 @@ KEYS = ("friction_coefficient", "breakaway_ratio", "stribeck_speed", "viscous_fr
 _ASKED = ("coulomb", "static", "stribeck_speed", "viscous")
 """Parameters of the fits behind them."""
 RISEN = 0.05
-"""Share of the friction at one speed that may be its rise towards rest before that is said."""
-MISFIT = 0.1
-"""Share of F_C by which the contact law may miss the friction measured at other pressures before
-it is said (a choice: a third of what makes a parameter weakly identifiable)."""
+"""Share of the friction at one speed that may be its rise towards rest before that is said (a
+choice: as much as a good record errs)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +142,7 @@ def calibration(identification: Identification) -> Calibration:
         no steady sliding, or friction that the design takes from an oil film
     """
     bench, points = identification.bench, identification.points
-    _refuse_film(bench)
+    refuse_films(bench.design)
     if not points:
         raise identification.record.fault(
             "no steady sliding: nothing to calibrate the seals with",
@@ -153,7 +152,7 @@ def calibration(identification: Identification) -> Calibration:
     if isinstance(identification.stribeck, StribeckFit):
         learned, left, level = _from_fits(identification, identification.stribeck, coulomb)
         doubts = [*identification.stribeck.doubts]
-        doubts += _doubts(points, identification.stribeck, level, coulomb)
+        doubts += of_curve(points, identification.stribeck, level, coulomb)
     else:
         learned, level, doubts = _from_level(bench, points)
         left = dict.fromkeys(KEYS[1:], identification.stribeck)
@@ -169,8 +168,8 @@ def calibration(identification: Identification) -> Calibration:
             f"it tells nothing of the seals: {'; '.join(dict.fromkeys(left.values()))}",
             "record plateaus of several constant speeds, in both directions",
         )
-    doubts += _weak(kept)
-    doubts += _beyond(bench, points)
+    doubts += weak({one.name: one.known for one in kept})
+    doubts += extrapolated(bench, points)
     if len(bench.rings) + len(bench.wipers) > 1:
         doubts.append(
             "one factor for all rings and wipers: a record of the cylinder cannot tell piston "
@@ -195,20 +194,22 @@ def _beyond_range(one: Learned) -> str | None:
     return f"measured {quantity.text(out[0])}, a design takes {quantity.range_text()}"
 
 
-def _weak(learned: Sequence[Learned]) -> Iterator[str]:
-    """Numbers that the record hardly shows."""
-    names = [one.name for one in learned if not one.known.identifiable]
-    if names:
-        yield f"only weakly known (bounds beyond 30 %): {', '.join(names)}"
+def refuse_films(design: Design) -> None:
+    """Refuse a design whose seals take their friction from an oil film.
 
-
-def _refuse_film(bench: Bench) -> None:
-    for ring in bench.rings:
-        if ring.element.friction == "film":
-            message = "the friction of this seal comes from an oil film: records give coefficients"
-            remedy = 'write "friction: coefficient" to calibrate it'
-            path = f"{ring.groove.path}friction"
-            raise InputError(Diagnostic(message, remedy, path=path))
+    Raises
+    ------
+    InputError
+        at the seal's PATH
+    """
+    for place in ("piston", "rod"):
+        for tail, element in getattr(design.seals, place).elements().items():
+            if element.friction == "film":
+                message = (
+                    "the friction of this seal comes from an oil film: records give coefficients"
+                )
+                remedy = 'write "friction: coefficient" to calibrate it'
+                raise InputError(Diagnostic(message, remedy, path=f"seals.{place}.{tail}friction"))
 
 
 def _pressures(points: Sequence[Point]) -> tuple[Array, Array]:
@@ -338,36 +339,3 @@ def _viscous(known: Parameter, bench: Bench, source: str) -> Learned:
         {path: float(r["viscous_friction"]) for path, r in zip(paths, bench.rings, strict=True)},
         source,
     )
-
-
-def _doubts(
-    points: Sequence[Point], stribeck: StribeckFit, level: Array, stated: Array
-) -> Iterator[str]:
-    """What the design's friction cannot follow: an offset, another rise with pressure."""
-    offset = stribeck.parameters.get("offset")
-    if offset is not None and (offset.lower > 0 or offset.upper < 0):
-        yield (
-            f"the offset of {offset.value:.3g} N between both ways is not in the design's "
-            "friction, which is their mean"
-        )
-    apart = level - float(np.mean(level) / np.mean(stated)) * stated
-    worst = int(np.argmax(np.abs(apart)))
-    share = float(apart[worst] / np.mean(level))
-    if abs(share) > MISFIT:
-        yield (
-            f"the friction measured parts from the contact law by {100 * share:+.0f} % of F_C at "
-            f"{points[worst].pressure / 1e5:.3g} bar: the factor is that of the means over the "
-            "record's pressures, and its bounds hold every ratio"
-        )
-
-
-def _beyond(bench: Bench, points: Sequence[Point]) -> Iterator[str]:
-    """Duties of the design that the record does not reach."""
-    fastest = max(case.speed for case in bench.design.load_cases)
-    speed, pressure = max(one.speed for one in points), max(one.pressure for one in points)
-    if fastest > 1.05 * speed or bench.supply_pressure > 1.05 * pressure:
-        yield (
-            f"the record reaches {1e3 * speed:.3g} mm/s and {pressure / 1e5:.3g} bar, the design "
-            f"{1e3 * fastest:.3g} mm/s and {bench.supply_pressure / 1e5:.3g} bar: beyond it "
-            "friction is extrapolated by contact law and Stribeck curve"
-        )

@@ -16,7 +16,7 @@ REACH = 1.5
 e^(-1.5^2) = 0.1 of its height at exponent 2 (a choice)."""
 SPREAD, APART = 0.2, 3.0
 """Least range of the pressure that can show an effect: of its highest value, and of the pressure
-that friction itself takes (without a load, friction makes the pressure)."""
+that friction itself takes, without a load (choices: effects of pressure stand out of scatter)."""
 UNEQUAL = 2e-3
 """Share of the area from which an error of it is named (a choice: below it, seals that rub
 unequally both ways by a fifth of their rise with pressure look alike)."""

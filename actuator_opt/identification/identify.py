@@ -31,6 +31,8 @@ LAWS = {"power_law": fit_power_law, "double_exponential": fit_double_exponential
 """Laws of the secant damping over speed."""
 LEAST_SPEEDS = 3
 """Different speeds that a law of two parameters is asked of, one to spare."""
+WARMER = 10.0
+"""Difference of temperature that is said [K] (a choice: rubber softens by some percent)."""
 OUTSIDE = 0.02
 """Share of the stroke by which a position may lie beyond its ends."""
 STEPS, NOISES = 2.0, 10.0
@@ -109,7 +111,13 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
         stribeck=stribeck,
         lugre=lugre,
         fits=_fits(points),
-        notes=(*motion.notes, *notes, *_outside(slidings, bench), *_pace(motion)),
+        notes=(
+            *motion.notes,
+            *notes,
+            *_outside(slidings, bench),
+            *_warmth(record, bench),
+            *_pace(motion),
+        ),
     )
 
 
@@ -143,6 +151,20 @@ def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
     return [
         f"x runs from {1e3 * place.min():.1f} to {1e3 * place.max():.1f} mm, the stroke is "
         f"{1e3 * bench.stroke:.1f} mm: its zero is not the cap end, no stiffness there"
+    ]
+
+
+def _warmth(record: Record, bench: Bench) -> list[str]:
+    """A note where the oil was warmer or colder than the design's first load case takes it."""
+    if "T" not in record:
+        return []
+    mean = float(np.nanmean(record["T"]))
+    if abs(mean - bench.temperature) <= WARMER:
+        return []
+    kelvin = 273.15
+    return [
+        f"T is {mean - kelvin:.0f} degC, the design's first load case "
+        f"{bench.temperature - kelvin:.0f} degC: contact forces and stiffness are of the latter"
     ]
 
 
@@ -199,17 +221,21 @@ def _late(lugre: LuGreFit | str) -> float | None:
 
 
 def _channels(record: Record, bench: Bench, settings: Settings) -> None:
-    """Refuse a record that lacks what the balance asks."""
+    """Refuse a record that lacks what the balance asks, or says it twice."""
+    bent = ", or --span for a bending test" if "w" in record else ""
     for name, what in (("p1", "pressure of the cap end"), ("x", "position")):
         if name not in record:
             raise record.fault(
-                f"no column {name}, the {what}", f'name it with --column "{name}=..."'
+                f"no column {name}, the {what}", f'name it with --column "{name}=..."{bent}'
             )
     if "p2" not in record and not bench.plunger:
         raise record.fault(
             "no column p2, the pressure of the rod end",
             'name it with --column "p2=...", or write "count: 0" in seals.piston for a plunger',
         )
+    if "F_L" in record and settings.load_force is not None:
+        message = "a load is stated, and the record measures it in column F_L"
+        raise record.fault(message, "leave out --load-force (load_force), or the column")
     if "F_L" not in record and settings.load_force is None:
         raise record.fault(
             "no column F_L, the force of the load",
@@ -259,7 +285,7 @@ def _sizes(slidings: Sequence[Sliding], motion: Motion) -> tuple[Mean, float]:
     )
     batches = int(np.clip(independent(friction.size, motion) / 5, 2, 20))
     means = np.array([np.mean(one) for one in np.array_split(friction, batches)])
-    half = quantile(batches - 1) * float(np.std(means, ddof=1)) / np.sqrt(batches)
+    half = quantile(batches - 1) * float(np.std(means, ddof=1)) / float(np.sqrt(batches))
     middle = float(np.mean(friction))
     return Mean(middle, middle - half, middle + half), float(np.max(friction))
 

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..least_squares import NORMAL
 from .balance import Sliding
 from .conditioning import Motion
 from .doubtful import PARTED, agreed, opened, widened
@@ -29,15 +30,13 @@ __all__ = [
 ]
 
 BLUR = 40e-3
-"""Time by which a turn may be hidden for a lag to be looked for [s]: ten times a usual lag."""
+"""Time by which a turn may be hidden for a lag to be looked for [s] (a choice: ten usual lags)."""
 SURER = 10.0
 """Akaike information by which a falling level must better one level (a choice: very strong)."""
 SLID = 0.95
 """Share of the level that friction must reach for the level to be seen (a choice)."""
 FAR = 3.0
 """Stribeck speeds at which no more is left of F_S - F_C than 5 % at exponent 1 (a choice)."""
-NORMAL = 1.96
-"""Normal quantile of 95 %."""
 
 
 def settling_distance(lugre: LuGreFit | str) -> float:

@@ -15,21 +15,21 @@ from .points import Point
 from .stribeck_fit import EXPONENT, EXPONENTS, SHARED, SPEEDS, Steady, StribeckFit
 
 TRAVELS = (1e-6, 3e-3)
-"""Travel F_S/sigma_0 of the bristles searched [m]."""
+"""Travel F_S/sigma_0 of the bristles searched [m] (a choice: nearly two decades about 50 um)."""
 DAMPING_TIMES = (1e-6, 0.3)
-"""sigma_1/sigma_0 searched [s]."""
+"""sigma_1/sigma_0 searched [s] (a choice: from none to all of a window's time)."""
 USUAL = 5e-3
 """Standard deviation of the lag that pressures commonly have [s] (a choice: sensors and lines of a
 bench, up to 10 ms): what bounds allow for where a record does not show it."""
 STEP = 1e-4
-"""Step of the central differences over the size of a parameter."""
+"""Step of the central differences over the size of a parameter (a choice: they err by 1e-8)."""
 SYMBOLS = {"bristle_stiffness": "σ₀", "bristle_damping": "σ₁", "lag": "τ"}
 """Parameters beside those of the Stribeck curve: N/m, N s/m, s."""
 MODEL = 1e-3
 """Least scatter of the windows over the largest friction (a choice, as of the points): below it the
 filtered motion limits the model, not noise."""
 BENDS = 3.0
-"""Breakaway travels after which 95 % of the force is there: they must take time to be seen."""
+"""Breakaway travels after which 95 % of the force is there, 1 - e^-3: they must take time."""
 LATE = 1.5
 """Times its standard error by which a lag is known (a choice, by records of known friction: with
 25 kPa of noise and steps of 10 um z of the lag found scatters by 1.3 to 1.9); a sample's time
@@ -40,7 +40,7 @@ windows (a choice, by records of known friction: position steps cost up to 3 tim
 TOLD = 3
 """Parameters that the windows tell: stiffness, lag or damping, level."""
 RCOND = 1e-6
-"""Least ratio of singular values by which a lag moves parameters."""
+"""Least ratio of singular values by which a lag moves parameters (a choice: far above rounding)."""
 ROUNDS = 2
 """Searches, each with the windows weighed by their scatter about the last (a choice: the second
 changes the weights by a few percent)."""

@@ -15,13 +15,16 @@ from .pace import velocities
 from .points import SETTLED, settled
 
 BEFORE, AFTER = 0.1, 0.4
-"""Time of a window before and after the rod turns or starts [s]."""
+"""Time of a window before and after the rod turns or starts [s] (a choice: at 30 Hz 26 independent
+samples, most of them after the turn)."""
 MOST = 24
-"""Windows looked at, spread over the record."""
+"""Windows looked at, spread over the record (a choice: twice as many cost twice the time for bounds
+30 % narrower)."""
 LAG = 20e-3
-"""Largest lag of the pressures looked for [s]."""
+"""Largest lag of the pressures looked for [s] (a choice: five times that of a usual sensor)."""
 PER_PERIOD = 12
-"""Steps of the integration per period of the cut-off, at least."""
+"""Steps of the integration per period of the cut-off, at least (a choice: a second-order step errs
+by (2 pi/12)^2/12 = 2 % at the cut-off itself)."""
 SAMPLES, LEFT = 2.0, 0.05
 """Independent samples that a rod must take for a few breakaway travels, and their share that may
 still count as rest (a choice)."""
@@ -32,7 +35,7 @@ GRAIN = 0.35
 records of known friction): over the breakaway travel it is an error of the bristles' stiffness,
 over the speed there one of the lag."""
 LASTING = 0.05
-"""Time for which a way must last to be one [s]."""
+"""Time for which a way must last to be one [s] (a choice: three independent samples at 30 Hz)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

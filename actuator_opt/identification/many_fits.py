@@ -10,11 +10,13 @@ import numpy as np
 from ..numeric import Array
 
 SETTLED = 1e-6
-"""Share of its cost that a step must win to go on."""
+"""Share of its cost that a step must win to go on (a choice: with 100 residuals what is left is a
+hundredth of a standard error)."""
 FIRM, LIGHT, HEAVY = 1e-4, 1e-12, 1e8
 """First, least and greatest damping of a step over the curvature (a choice, as in Marquardt's)."""
 LOST = 1e3
-"""Damping at which no step has bettered a problem and it is left."""
+"""Damping at which no step has bettered a problem and it is left (a choice: steps are then a
+thousandth of the undamped one)."""
 
 
 class Search(NamedTuple):

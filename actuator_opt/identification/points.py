@@ -13,24 +13,32 @@ from .conditioning import Motion
 from .pace import velocities
 
 STEADY, FLOOR = 0.04, 2e-5
-"""A plateau keeps its speed within this share, or this speed [m/s]."""
+"""A plateau keeps its speed within this share, or this speed [m/s] (choices: viscous friction then
+changes by no more than that share; two steps of 10 um in a second)."""
 LASTING = 0.15
 """Least time of a plateau [s]; its first and last fifth are left out, and what has not slid
-`SETTLED` where enough is left."""
+`SETTLED` where enough is left (choices: five independent samples are left at 30 Hz; the ramps
+beside reach into the fifths)."""
 ALIKE = 0.06
-"""Plateaus within this share of speed are one point."""
+"""Plateaus within this share of speed are one point (a choice: more than `STEADY`, less than the
+steps between speeds of a test)."""
 PER_DECADE = 8
-"""Speeds per decade of a sweep's points."""
+"""Speeds per decade of a sweep's points (a choice: a third apart, so that a Stribeck part that falls
+within a decade shows in several)."""
+BLURRED = 1.0
+"""Periods of the cut-off at both ends of a plateau, at least, that the filter mixes with the ramps
+beside it (a choice: there a step has settled within 2 %)."""
 SETTLED = 5e-4
-"""Distance after a reversal from which sliding is steady [m], ten usual breakaway travels; of a
-record with known bristles `SETTLING` of its own."""
+"""Distance after a reversal from which sliding is steady [m] (a choice: ten breakaway travels of
+50 um); of a record with known bristles `SETTLING` of its own."""
 SLIDES = 2e-4
-"""Least travel of a plateau [m], four usual breakaway travels: less may be bristles that bend."""
+"""Least travel of a plateau [m] (a choice: four breakaway travels of 50 um; less may be bristles that
+bend)."""
 SETTLING = 8.0
-"""Breakaway travels F_S/sigma_0 after which sliding is steady: 2 e^-8 is below 0.1 %."""
+"""Breakaway travels F_S/sigma_0 after which sliding is steady (a choice: 2 e^-8 is below 0.1 %)."""
 LEVELS = 0.1
-"""Pressures within this share of the highest are one level."""
-
+"""Pressures within this share of the highest are one level (a choice: less than the steps between
+loads of a test, more than friction itself changes them by)."""
 PRIOR = 8
 """Independent samples that the scatter usual in the record counts for in a point's own (a choice:
 some points have four)."""
@@ -146,11 +154,13 @@ def _plateaus(sliding: Sliding, motion: Motion, settling: float) -> Iterator[tup
         if abs(sliding.piece["x"][last - 1] - sliding.piece["x"][i]) < SLIDES:
             i = last
             continue
-        fifth = (last - i) // 5
-        first = i + fifth
+        edge = max((last - i) // 5, int(np.ceil(BLURRED / (motion.cutoff * step))))
+        end = last - edge
+        if end - i - edge < least // 2:
+            i = last
+            continue
         away = i + round(settling / (abs(float(velocity[i])) * step))
-        first = max(first, min(away, last - fifth - least // 2))
-        at = np.arange(first, last - fifth)
+        at = np.arange(max(i + edge, min(away, end - least // 2)), end)
         found = _point(sliding, motion, at, "plateau")
         yield (
             found,
@@ -315,3 +325,20 @@ def settled(sliding: Sliding, settling: float = SETTLED) -> Array:
     start = np.maximum.accumulate(start)
     gone = np.abs(piece["x"] - piece["x"][start])
     return np.flatnonzero(moving & (gone > settling))
+
+
+def by_pressure(points: Sequence[Point]) -> list[list[Point]]:
+    """Points by level of pressure, the lowest first: each within `LEVELS` of the highest pressure.
+
+    Parameters
+    ----------
+    points : of steady sliding
+    """
+    highest = max((one.pressure for one in points), default=0.0)
+    groups: list[list[Point]] = []
+    for one in sorted(points, key=lambda point: point.pressure):
+        if groups and one.pressure - groups[-1][0].pressure <= LEVELS * highest:
+            groups[-1].append(one)
+        else:
+            groups.append([one])
+    return groups

@@ -14,7 +14,7 @@ from ..numeric import Array
 from ..version import VERSION
 from .balance import Sliding
 from .coefficient import Coefficient
-from .conditioning import Motion
+from .conditioning import CUTOFF, ORDER, Motion
 from .lugre_fit import LuGreFit
 from .points import Point
 from .record import Record
@@ -37,8 +37,8 @@ class Settings:
     seed : of the resampling
     """
 
-    cutoff: float = 30.0
-    order: int = 4
+    cutoff: float = CUTOFF
+    order: int = ORDER
     compensated: bool = True
     mass: float | None = None
     load_force: float | None = None
@@ -92,6 +92,17 @@ class Identification:
     fits: Mapping[str, Fit | str]
     notes: tuple[str, ...]
 
+    def stiffness_along(self, sliding: Sliding) -> Array:
+        """Stiffness with ports closed at the pressures along a piece; NaN beyond the stroke."""
+        piece, bench = sliding.piece, self.bench
+        second = piece["p2"] if "p2" in piece else 0.0 * piece["p1"]
+        inside = (piece["x"] >= 0) & (piece["x"] <= bench.stroke)
+        return np.where(inside, bench.stiffness(piece["x"], piece["p1"], second), np.nan)
+
+    def growth_along(self, sliding: Sliding) -> Array:
+        """Growth of the bore's radius at the piston seal along a piece."""
+        return self.bench.growth * sliding.pressure
+
     def series(self) -> dict[str, Array]:
         """Quantities over time, one array each: what a CSV of the result holds, SI.
 
@@ -103,24 +114,19 @@ class Identification:
         def joined(parts: list[Array]) -> Array:
             return np.concatenate(parts)
 
-        position = joined([one["x"] for one in pieces])
-        highest = joined([one.pressure for one in self.slidings])
-        inside = (position >= 0) & (position <= self.bench.stroke)
         first = joined([one["p1"] for one in pieces])
-        second = joined([one["p2"] for one in pieces]) if "p2" in pieces[0] else 0.0 * first
-        stiffness = np.where(inside, self.bench.stiffness(position, first, second), np.nan)
         found = {
             "time": joined([one.time for one in pieces]),
-            "position": position,
+            "position": joined([one["x"] for one in pieces]),
             "velocity": joined([one.velocity for one in pieces]),
             "acceleration": joined([one.acceleration for one in pieces]),
             "pressure_1": first,
         }
         if "p2" in pieces[0]:
-            found["pressure_2"] = second
+            found["pressure_2"] = joined([one["p2"] for one in pieces])
         found["friction"] = joined([one.friction for one in self.slidings])
-        found["stiffness"] = stiffness
-        found["growth"] = self.bench.growth * highest
+        found["stiffness"] = joined([self.stiffness_along(one) for one in self.slidings])
+        found["growth"] = joined([self.growth_along(one) for one in self.slidings])
         return found
 
     def to_dict(self) -> dict[str, Any]:
@@ -146,7 +152,13 @@ class Identification:
             "growth_at_seal": _range(series["growth"]),
             "fits": {name: _fit(one) for name, one in self.fits.items()},
             "mass": self.mass,
+            "load_force": self.settings.load_force,
             "pressure_lag": self.pressure_lag,
+            "bounds": {
+                "method": "bootstrap" if self.settings.bootstrap else "linearised",
+                "resamples": self.settings.bootstrap,
+                "seed": self.settings.seed,
+            },
             "filter": {
                 "cutoff": self.motion.cutoff,
                 "order": self.motion.order,

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..least_squares import quantile
 from ..numeric import Array
+from .cleaning import ROBUST
 from .record import Record
 
 TERMS = 8
@@ -76,7 +77,7 @@ def despiked(values: Array) -> Array:
     middle = median_filter(kept, size=5, mode="mirror")
     apart = np.abs(kept - middle)
     low, high = np.percentile(middle, (1, 99))
-    least = max(OUTSTANDING * 1.4826 * float(np.median(apart)), PART * float(high - low))
+    least = max(OUTSTANDING * ROBUST * float(np.median(apart)), PART * float(high - low))
     # the median lags where the channel turns or ends
     passing = 2 * maximum_filter1d(np.abs(np.gradient(middle)), 5)
     out = np.array(values, dtype=float)

@@ -14,9 +14,10 @@ from .doubtful import PARTED, hidden, misled, opened, spread, unequal, ways, wid
 from .points import Point
 
 STATIC_MOST = 3.0
-"""Largest F_S over the largest friction measured."""
+"""Largest F_S over the largest friction measured (a choice: one further above it is a guess)."""
 SPEEDS, EXPONENTS = (2e-4, 5e-2), (0.5, 2.5)
-"""Range of the Stribeck speed [m/s] and of its exponent searched."""
+"""Range of the Stribeck speed [m/s] and of its exponent searched (choices: a decade and more about
+the few mm/s of seals; half a unit beyond the 1 and 2 of the usual laws)."""
 EXPONENT = 2.0
 """Exponent where the points cannot tell it ([MECE5005], [Huang2017] Table 2)."""
 SHARED = 0.85
@@ -25,7 +26,7 @@ the filter, so they lie smoother than they are sure (a choice, by records of kno
 OTHER = 1.0
 """Exponent that bounds allow for where the points cannot tell it (Tustin's exponential)."""
 DIFFERENT = 0.05
-"""Speeds further apart than this share are different."""
+"""Speeds further apart than this share are different (a choice: more than `points.STEADY`)."""
 SYMBOLS = {
     "coulomb": "F_C",
     "static": "F_S",

@@ -62,11 +62,14 @@ class Shift:
 class Redesign:
     """A design before and after new values, as it stands and at its optimum.
 
-    `best_before` and `best_after` are None for a design without variables.
+    Parameters
+    ----------
+    evaluation : with the new values
+    shifts : every requirement before and after
+    best_before, best_after : None for a design without variables
     """
 
-    stood: Evaluation
-    stands: Evaluation
+    evaluation: Evaluation
     shifts: tuple[Shift, ...]
     best_before: Optimisation | None
     best_after: Optimisation | None
@@ -92,7 +95,7 @@ class Redesign:
         most = self.moved
         if most is None:
             return "no requirement moves"
-        quantity = self.stands.metrics[most.after.metric].quantity
+        quantity = self.evaluation.metrics[most.after.metric].quantity
         low, high = most.lower, most.upper
         bounds = (
             ""
@@ -171,9 +174,9 @@ def redesign(
         for old, new in zip(stood.requirements, stands.requirements, strict=True)
     )
     if not (search and after.design.variables and after.design.requirements):
-        return Redesign(stood, stands, shifts, None, None)
+        return Redesign(stands, shifts, None, None)
     best = [optimise(one, seed=seed, prices=False) for one in (before, after)]
-    return Redesign(stood, stands, shifts, *best)
+    return Redesign(stands, shifts, *best)
 
 
 def _bounds(

@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from ..evaluation import prepare
-from ..evaluation.study.bench import bench
+from ..evaluation.study.bench import Bench
 from ..identification.calibration import Calibration
 from ..optimisation.redesign import Redesign, solved
 from . import calibration_rows as rows
@@ -18,7 +17,13 @@ from .origin import Origin, tile
 
 
 def write_calibration_sheet(
-    found: Calibration, changes: Redesign, origin: Origin, *, folder: Path, stem: str
+    found: Calibration,
+    changes: Redesign,
+    measured: Bench,
+    origin: Origin,
+    *,
+    folder: Path,
+    stem: str,
 ) -> list[writer.ReportFile]:
     """Write the page of a calibration as ``STEM.pdf`` and ``STEM.png``.
 
@@ -26,14 +31,15 @@ def write_calibration_sheet(
     ----------
     found : what the record told
     changes : what that changes
+    measured : the design with the measured values
     origin : of the page; its source is the design with the measured values
     folder, stem : where to
     """
     record = found.identification.record
     return writer.write_page(
-        calibration_page(found, changes, origin),
+        calibration_page(found, changes, measured, origin),
         origin,
-        title=changes.stands.name,
+        title=changes.evaluation.name,
         folder=folder,
         stem=stem,
         record=record.file_name,
@@ -41,11 +47,12 @@ def write_calibration_sheet(
     )
 
 
-def calibration_page(found: Calibration, changes: Redesign, origin: Origin) -> dict[str, Any]:
+def calibration_page(
+    found: Calibration, changes: Redesign, measured: Bench, origin: Origin
+) -> dict[str, Any]:
     """The page as plain data for the renderers."""
-    measured = bench(prepare(changes.stands.design))
     own = found.identification
-    heading = origin.heading(name=changes.stands.name, kind="From test record to redesign")
+    heading = origin.heading(name=changes.evaluation.name, kind="From test record to redesign")
     return heading | {
         "verdict": verdict(changes),
         "sentence": soft(rows.what(found)),
@@ -59,12 +66,13 @@ def calibration_page(found: Calibration, changes: Redesign, origin: Origin) -> d
 
 def verdict(changes: Redesign) -> dict[str, Any]:
     """Whether a design with the measured values meets its requirements."""
-    total = len(changes.stands.requirements)
-    met = sum(row.met for row in changes.stands.requirements)
+    total = len(changes.evaluation.requirements)
+    met = sum(row.met for row in changes.evaluation.requirements)
     lines = [f"as tested: {met} of {total} requirements met"]
     best = changes.best_after
     if best is None:
-        state, words = ("met", "REQUIREMENTS MET") if changes.stands.met else ("missed", "MISSED")
+        met = changes.evaluation.met
+        state, words = ("met", "REQUIREMENTS MET") if met else ("missed", "REQUIREMENTS MISSED")
     elif solved(best):
         state, words = "met", "REDESIGN MEETS ALL"
         lines.append("the best design meets every one")

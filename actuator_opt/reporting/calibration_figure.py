@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..evaluation.study.bench import Bench
-from ..identification.points import LEVELS, Point
+from ..identification.points import Point, by_pressure
 from ..optimisation.redesign import Redesign, Shift
 from .bode import dot, level_ticks
 from .figures import Axes, fitted, legend, ticks
@@ -33,6 +33,7 @@ WIDTH, HEIGHT = 180.0, 64.0
 _STATED: dict[str, Any] = {"stroke": OCHRE, "pen": 0.35, "dash": (1.6, 0.8)}
 _MEASURED: dict[str, Any] = {"stroke": BLUE, "pen": 0.45}
 MOST_LEVELS, MOST_ROWS = 3, 9
+"""Levels of pressure and requirements that are drawn (a choice: what the eye parts)."""
 
 
 def calibration_figure(
@@ -45,16 +46,9 @@ def calibration_figure(
     return ink
 
 
-def levels(points: Sequence[Point]) -> list[list[Point]]:
+def shown_levels(points: Sequence[Point]) -> list[list[Point]]:
     """Points of like pressure, the lowest first; of many levels the ends and the middle."""
-    highest = max(one.pressure for one in points)
-    groups: list[list[Point]] = []
-    for one in sorted(points, key=lambda p: p.pressure):
-        near = groups and one.pressure - groups[-1][0].pressure <= LEVELS * highest
-        if near:
-            groups[-1].append(one)
-        else:
-            groups.append([one])
+    groups = by_pressure(points)
     if len(groups) <= MOST_LEVELS:
         return groups
     return [groups[0], groups[len(groups) // 2], groups[-1]]
@@ -62,7 +56,7 @@ def levels(points: Sequence[Point]) -> list[list[Point]]:
 
 def _friction(ink: Ink, box: Box, points: Sequence[Point], stated: Bench, measured: Bench) -> None:
     """Points with their bars; curves of the design before and after at each pressure."""
-    groups = levels(points)
+    groups = shown_levels(points)
     drawn = []
     for group in groups:
         speeds = np.geomspace(

@@ -10,7 +10,7 @@ from ..quantities import INPUTS
 from . import text
 from .optimum import sentence
 
-LEARNED_HEADS = ("number of the seal", "stated", "measured", "lower", "upper", "from")
+LEARNED_HEADS = ("value", "stated", "measured", "lower", "upper", "from")
 SHIFT_HEADS = ("requirement", "limit", "as stated", "as measured", "lower", "upper", "verdict")
 OPTIMUM_HEADS = ("best design", "as stated", "as measured", "change")
 

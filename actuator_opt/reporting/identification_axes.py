@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..identification.points import Point
+from ..least_squares import NORMAL
 from ..numeric import Array
 from .bode import level_ticks
 from .fallback import wrap
@@ -23,8 +24,8 @@ CORE = 0.35
 there is not measured)."""
 DECADE = 8.0
 """Ratio of speeds from which on their axis is logarithmic (a choice: nearly a decade)."""
-SURE = 1.959964
-"""Standard errors of 95 % bounds of a normal distribution."""
+SURE = NORMAL
+"""Standard errors of the bounds of a mark."""
 OUT: dict[str, Any] = {"color": BLUE, "fill": WHITE}
 IN: dict[str, Any] = {"color": BLACK, "fill": "#9ec3da"}
 

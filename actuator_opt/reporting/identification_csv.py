@@ -20,8 +20,8 @@ COLUMNS = {
     "pressure_1": ("p1 [bar]", 1e-5, "%.5f"),
     "pressure_2": ("p2 [bar]", 1e-5, "%.5f"),
     "friction": ("friction [N]", 1.0, "%.5g"),
-    "stiffness": ("stiffness [kN/mm]", 1e-6, "%.5g"),
-    "growth": ("bore growth at seal [um]", 1e6, "%.5g"),
+    "stiffness": ("k_eq [kN/mm]", 1e-6, "%.5g"),
+    "growth": ("growth at seal [um]", 1e6, "%.5g"),
 }
 """Heading with unit, display value over SI value, and digits."""
 

@@ -55,7 +55,7 @@ def identification_page(found: Identification, origin: Origin) -> dict[str, Any]
     name = found.bench.design.name
     heading = origin.heading(name=name, kind="Friction and damping by a test record")
     return heading | {
-        "verdict": verdict(found),
+        "verdict": rows.verdict(found),
         "sentence": soft(rows.what(found)),
         "tiles": _tiles(found),
         "section": identification_figure(found, _room(found, below)).data(),
@@ -63,23 +63,6 @@ def identification_page(found: Identification, origin: Origin) -> dict[str, Any]
         "items": [],
         "blocks": below,
     }
-
-
-def verdict(found: Identification) -> dict[str, Any]:
-    """Whether friction models were found and how many of their parameters are identifiable."""
-    models = {"Stribeck curve": found.stribeck, "LuGre model": found.lugre}
-    names = [name for name, one in models.items() if not isinstance(one, str)]
-    known = rows.every_parameter(found)
-    sure = sum(one.identifiable for one in known)
-    if not names:
-        return {"state": "missed", "text": "NO MODEL", "lines": ["friction over time alone"]}
-    state, words = "checks", "FOUND IN PART"
-    if not sure:
-        state, words = "missed", "NOT IDENTIFIABLE"
-    elif len(names) == len(models) and sure == len(known):
-        state, words = "met", "MODELS FOUND"
-    lines = [" and ".join(names), f"{sure} of {len(known)} parameters identifiable"]
-    return {"state": state, "text": words, "lines": lines}
 
 
 def _tiles(found: Identification) -> list[dict[str, Any]]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..identification.points import LEVELS, Point
+from ..identification.points import Point, by_pressure
 from ..identification.stribeck_fit import StribeckFit
 from .figures import Axes
 from .identification_axes import Box, even_range, even_ticks, log_range, log_ticks, spaced
@@ -26,16 +26,9 @@ def pressure_levels(points: Sequence[Point]) -> list[list[Point]]:
 
     Both ways differ in pressure without a load already: that alone makes no map.
     """
-    highest = max((one.pressure for one in points), default=0.0)
     for way in (True, False):
-        groups: list[list[Point]] = []
         here = [one for one in points if (one.velocity > 0) == way]
-        for one in sorted(here, key=lambda point: point.pressure):
-            if groups and one.pressure - groups[-1][-1].pressure <= LEVELS * highest:
-                groups[-1].append(one)
-            else:
-                groups.append([one])
-        full = [group for group in groups if _speeds(group) >= LEAST_SPEEDS]
+        full = [group for group in by_pressure(here) if _speeds(group) >= LEAST_SPEEDS]
         if len(full) > 1 and _overlap(full):
             return full
     return []

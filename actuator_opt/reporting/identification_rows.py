@@ -57,7 +57,7 @@ PARAMETERS = {
     "offset": _by(FORCE, "offset", "F_0"),
     "bristle_stiffness": _by(STIFFNESS, "bristle stiffness", "σ₀"),
     "bristle_damping": _by(_VISCOUS, "bristle damping", "σ₁"),
-    "lag": Shown("pressure lag", "τ", "ms", 1e3),
+    "lag": Shown("lag left", "τ", "ms", 1e3),
 }
 """Parameters of the Stribeck curve and the LuGre model."""
 _NOTHING = {
@@ -198,7 +198,8 @@ def coefficient_words(one: Coefficient | str) -> str:
         f"Friction coefficient {number(one.value, 3)} (95 %: {number(one.lower, 3)} to"
         f" {number(one.upper, 3)}), median of {one.windows} windows of sliding at {low} to"
         f" {high} mm/s; contact pressure {number(one.contact_pressure / 1e6, 3)} MPa, contact"
-        f" force {force(one.contact_force)}, by {one.law}."
+        f" force {force(one.contact_force)}, by {one.law}; rise towards rest and viscous part are"
+        " in it."
     )
 
 
@@ -353,3 +354,20 @@ def fit_note(fits: Mapping[str, Fit | str]) -> str:
     if not parts:
         return ""
     return sentence("; ".join(parts) + "; relative errors weighted, v in m/s")
+
+
+def verdict(found: Identification) -> dict[str, Any]:
+    """Whether friction models were found and how many of their parameters are identifiable."""
+    models = {"Stribeck curve": found.stribeck, "LuGre model": found.lugre}
+    names = [name for name, one in models.items() if not isinstance(one, str)]
+    known = every_parameter(found)
+    sure = sum(one.identifiable for one in known)
+    if not names:
+        return {"state": "missed", "text": "NO MODEL", "lines": ["friction over time alone"]}
+    state, words = "checks", "FOUND IN PART"
+    if not sure:
+        state, words = "missed", "NOT IDENTIFIABLE"
+    elif len(names) == len(models) and sure == len(known):
+        state, words = "met", "MODELS FOUND"
+    lines = [" and ".join(names), f"{sure} of {len(known)} parameters identifiable"]
+    return {"state": state, "text": words, "lines": lines}

@@ -90,9 +90,8 @@ def _rows(found: Identification) -> list[tuple[str, list[Curve], bool]]:
         for name, style in pair
     ]
     friction = [np.where(one.piece.sound, one.friction, np.nan) for one in slidings]
-    factor = found.bench.growth * GROWTH.to_display(1.0)
-    growth = [factor * one.pressure for one in slidings]
-    stiffness = [_stiffness(found, one) for one in slidings]
+    growth = [GROWTH.to_display(1.0) * found.growth_along(one) for one in slidings]
+    stiffness = [STIFFNESS.to_display(1.0) * found.stiffness_along(one) for one in slidings]
     place = [length * one.piece["x"] for one in slidings]
     return [
         (f"Position, {unit_text(LENGTH.unit)}", [(LINE, _parts(slidings, place))], False),
@@ -105,15 +104,6 @@ def _rows(found: Identification) -> list[tuple[str, list[Curve], bool]]:
         ),
         (f"k_eq, {unit_text(STIFFNESS.unit)}", [(LINE, _parts(slidings, stiffness))], True),
     ]
-
-
-def _stiffness(found: Identification, one: Sliding) -> Array:
-    """Stiffness along a piece in its display unit; NaN outside the stroke."""
-    piece = one.piece
-    second = piece["p2"] if "p2" in piece else 0.0 * piece["p1"]
-    values = found.bench.stiffness(piece["x"], piece["p1"], second)
-    inside = (piece["x"] >= 0) & (piece["x"] <= found.bench.stroke)
-    return STIFFNESS.to_display(1.0) * np.where(inside, values, np.nan)
 
 
 def _parts(slidings: Sequence[Sliding], values: Sequence[Array]) -> list[tuple[Array, Array]]:

@@ -9,7 +9,6 @@ from ..identification.stribeck_fit import StribeckFit
 from . import identification_rows as rows
 from . import plot
 from .console import Column, Console
-from .identification_document import verdict
 from .text import DASH, number
 
 _PAINTS = {"met": "green", "checks": "yellow bold", "missed": "red bold"}
@@ -33,7 +32,7 @@ def identification_text(
 
 
 def _head(found: Identification, console: Console) -> str:
-    seen = verdict(found)
+    seen = rows.verdict(found)
     name = console.paint(console.say(found.bench.design.name), "bold")
     state = console.paint(console.say(seen["text"].lower()), *_PAINTS[seen["state"]].split())
     lines = [f"{name}  {state}", console.wrap(", ".join(seen["lines"]), "dim")]
@@ -51,7 +50,7 @@ def _friction(found: Identification, console: Console) -> str:
         ["mean while it moves", rows.force(mean.value), low, high],
         ["maximum", rows.force(found.largest), "", ""],
         ["equivalent pressure loss", rows.pressure(mean.value / area), *loss],
-        ["the same of the maximum", rows.pressure(found.largest / area), "", ""],
+        ["pressure loss at maximum", rows.pressure(found.largest / area), "", ""],
     ]
     if isinstance(mu, str):
         body.append(["friction coefficient", DASH, "", ""])

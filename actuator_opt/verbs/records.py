@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from ..design import Design
 from ..errors import Diagnostic, InputError
@@ -16,13 +14,14 @@ from .reports import origin
 
 if TYPE_CHECKING:
     from ..identification import BendingResult, Calibration, Identification, Record, Specimen
+    from ..identification.specimen import Part
     from ..optimisation.redesign import Redesign
     from ..reporting import ReportFile
 
-Part = Literal["rod", "barrel"]
-
 MOST_BYTES = 1_000_000_000
-"""Largest file of a record."""
+"""Largest file of a record (a choice: what memory holds several times)."""
+_WISHES = ("variables", "choices", "requirements", "waivers", "objective", "measured")
+"""Keys of a design that say nothing of the actuator tested."""
 
 
 def read_record(source: str | Path, *, columns: Mapping[str, str] | None = None) -> Record:
@@ -108,11 +107,17 @@ def identify(
         seed=seed,
     )
     own = as_actuator(design).subject()
-    found = read_record(record, columns=columns) if isinstance(record, (str, Path)) else record
-    if load_force is not None and "F_L" in found:
-        message = "a load is stated, and the record measures it in column F_L"
-        raise found.fault(message, "leave out --load-force (load_force), or the column")
-    return run(found, bench(own), settings)
+    return run(_record(record, columns), bench(own), settings)
+
+
+def _record(record: Record | str | Path, columns: Mapping[str, str] | None) -> Record:
+    """A record as read."""
+    if isinstance(record, (str, Path)):
+        return read_record(record, columns=columns)
+    if columns:
+        message = "columns are named, and the record is read already"
+        raise InputError(Diagnostic(message, "name them in read_record"))
+    return record
 
 
 def bending(
@@ -141,45 +146,14 @@ def bending(
         a channel missing, no straight part, no section
     """
     from ..identification import bending as run
+    from ..identification.specimen import specimen_of
 
-    if part not in ("rod", "barrel"):
-        raise InputError(Diagnostic(f'part "{part}"', "write rod or barrel"))
     if specimen is None:
         if span is None or design is None:
             message = "the section of the bending test is not known"
             raise InputError(Diagnostic(message, "give span and design, or a specimen"))
-        specimen = _specimen(as_actuator(design), part, span)
-    found = read_record(record, columns=columns) if isinstance(record, (str, Path)) else record
-    return run(found, specimen)
-
-
-def _specimen(actuator: Actuator, part: Part, span: float) -> Specimen:
-    """A part of a design as a bar on two supports."""
-    from ..evaluation import compute
-    from ..identification import Specimen
-
-    subject = actuator.subject()
-    g = compute(subject, subject.values()).geometry
-    outer, inner = (
-        (g.rod_diameter, g.rod_inner_diameter)
-        if part == "rod"
-        else (2 * g.outer_radius, 2 * g.inner_radius)
-    )
-    layers = subject.design.barrel.layup if part == "barrel" else subject.design.rod.layup
-    names = {ply.material for ply in layers} if layers else {subject.design.rod.material}
-    metal = subject.materials[names.pop()] if len(names) == 1 else None
-    modulus = None if metal is None else metal.properties.get("youngs_modulus")
-    poisson = None if metal is None else metal.properties.get("poissons_ratio")
-    shear = None
-    if modulus is not None and poisson is not None:
-        shear = modulus.value / (2 * (1 + poisson.value))
-    return Specimen(
-        span=span,
-        outer_diameter=float(np.squeeze(outer)),
-        inner_diameter=float(np.squeeze(inner)),
-        shear_modulus=shear,
-        expected_modulus=None if shear is None or modulus is None else modulus.value,
-    )
+        specimen = specimen_of(as_actuator(design).subject(), part, span)
+    return run(_record(record, columns), specimen)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -217,6 +191,7 @@ def calibrate(
     design: Actuator | Design | str | Path,
     columns: Mapping[str, str] | None = None,
     search: bool = True,
+    seed: int = 0,
     **settings: Any,
 ) -> Calibrated:
     """The design with the seal friction that its record measured.
@@ -228,24 +203,28 @@ def calibrate(
     ----------
     record : as read or identified, or its path
     design : the actuator as tested
-    columns, settings : as `identify`
+    columns, settings : as `identify`, for a record that is not identified yet
     search : whether to optimise before and after
+    seed : of the searches and the resampling
 
     Raises
     ------
     InputError
-        as `identify`; no steady sliding; friction that the design takes from an oil film
+        as `identify`; no steady sliding; friction that the design takes from an oil film; a record
+        identified with another actuator
     """
     from ..identification import Identification
     from ..identification import calibration as learn
+    from ..identification.calibration import refuse_films
     from ..optimisation.redesign import redesign
 
     before = as_actuator(design)
-    identified = (
-        record
-        if isinstance(record, Identification)
-        else identify(record, design=before, columns=columns, **settings)
-    )
+    refuse_films(before.design)
+    if isinstance(record, Identification):
+        _require_use(record, before.design, columns, settings)
+        identified = record
+    else:
+        identified = identify(record, design=before, columns=columns, seed=seed, **settings)
     found = learn(identified)
     held = [path for path in found.values() if path in before.design.variables]
     free = {p: one for p, one in before.design.variables.items() if p not in held}
@@ -258,8 +237,27 @@ def calibrate(
         doubt = f"no longer variables, held as measured: {', '.join(held)}"
         found = replace(found, doubts=(*found.doubts, doubt))
     groups = [one.bounds() for one in found.learned]
-    changes = redesign(before.subject(), after.subject(), groups, search=search)
+    changes = redesign(before.subject(), after.subject(), groups, seed=seed, search=search)
     return Calibrated(after, found, changes)
+
+
+def _require_use(
+    identified: Identification,
+    design: Design,
+    columns: Mapping[str, str] | None,
+    settings: Mapping[str, Any],
+) -> None:
+    """Refuse what an identified record has no use for, and another actuator's record."""
+    unused = [*(["columns"] if columns else []), *settings]
+    if unused:
+        message = f"{', '.join(unused)}: of no use, the record is identified already"
+        raise InputError(Diagnostic(message, "give them to identify"))
+    own, other = (
+        one.model_copy(update=dict.fromkeys(_WISHES)) for one in (design, identified.bench.design)
+    )
+    if own != other:
+        message = "the record was identified with another design"
+        raise InputError(Diagnostic(message, "identify it with this one"))
 
 
 def write_identification(
@@ -306,6 +304,7 @@ def write_calibration(
     command, date : as `report`
     """
     from ..design.writer import to_yaml
+    from ..evaluation.study.bench import bench
     from ..reporting.calibration_document import write_calibration_sheet
 
     actuator = calibrated.actuator
@@ -313,6 +312,7 @@ def write_calibration(
     return write_calibration_sheet(
         calibrated.calibration,
         calibrated.redesign,
+        bench(actuator.subject()),
         replace(page, source_text=to_yaml(actuator.design, actuator.source)),
         folder=Path(folder),
         stem=f"{Path(calibrated.calibration.identification.record.file_name).stem}_calibration",

@@ -21,6 +21,14 @@ from ..sealing import STRIBECK_EXPONENT, WiperFriction, wipers
 from ..springs import Springs
 from ..touch import touch
 
+_TYPES = {
+    "o_ring": "O-ring",
+    "step_ring": "step ring",
+    "u_cup": "U-cup",
+    "compact": "compact seal",
+}
+"""Types of rings in words."""
+
 
 @dataclass(frozen=True, slots=True)
 class Bench:
@@ -34,6 +42,7 @@ class Bench:
     rings, wipers : of the first load case
     springs : stiffness budget
     oil_pressures : of chambers A and B in its first load case [Pa]
+    temperature : of its oil [K]
     bulk_modulus : of the oil with air over gauge pressure, at the first case's temperature [Pa]
     """
 
@@ -49,6 +58,7 @@ class Bench:
     wipers: tuple[WiperFriction, ...]
     springs: Springs
     oil_pressures: tuple[float, float]
+    temperature: float
     bulk_modulus: Callable[[Array], Array]
 
     @property
@@ -135,8 +145,12 @@ class Bench:
         """Contact law of the rings that hold the pressure, in words."""
         return "; ".join(
             f"{ring.label}: "
-            + ("stated profile" if ring.element.contact else ring.element.type.replace("_", " "))
-            + (f", {ring.element.law}" if ring.element.type in ("o_ring", "step_ring") else "")
+            + ("stated profile" if ring.element.contact else _TYPES[ring.element.type])
+            + (
+                f", {ring.element.law.replace('_', ' ')}"
+                if ring.element.type in ("o_ring", "step_ring")
+                else ""
+            )
             for ring in self.rings
             if _leads(ring)
         )
@@ -228,6 +242,7 @@ def bench(subject: Subject) -> Bench:
         ),
         springs=done.springs,
         oil_pressures=(_first_of(done.state.holding_a), _first_of(done.state.holding_b)),
+        temperature=temperature,
         bulk_modulus=bulk_modulus,
     )
 

@@ -1,0 +1,79 @@
+"""What the friction numbers of a calibrated design leave out or extrapolate, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from ..evaluation.sealing import STRIBECK_EXPONENT
+from ..evaluation.study.bench import Bench
+from ..least_squares import Parameter
+from ..models import friction
+from ..numeric import Array
+from .points import Point
+from .stribeck_fit import StribeckFit
+
+MISFIT = 0.1
+"""Share of F_C by which the contact law may miss the friction measured at other pressures before
+it is said (a choice: a third of what makes a parameter weakly identifiable)."""
+
+
+def of_curve(
+    points: Sequence[Point], stribeck: StribeckFit, level: Array, stated: Array
+) -> Iterator[str]:
+    """What the design's friction cannot follow: an offset, another rise with pressure."""
+    offset = stribeck.parameters.get("offset")
+    if offset is not None and (offset.lower > 0 or offset.upper < 0):
+        yield (
+            f"the offset of {offset.value:.3g} N between both ways is not in the design's "
+            "friction, which is their mean"
+        )
+    yield from _shape(points, stribeck)
+    apart = level - float(np.mean(level) / np.mean(stated)) * stated
+    worst = int(np.argmax(np.abs(apart)))
+    share = float(apart[worst] / np.mean(level))
+    if abs(share) > MISFIT:
+        yield (
+            f"the friction measured deviates from the contact law by {100 * share:+.0f} % of F_C "
+            f"at {points[worst].pressure / 1e5:.3g} bar: the factor is that of the means over the "
+            "record's pressures, and its bounds hold every ratio"
+        )
+
+
+def _shape(points: Sequence[Point], stribeck: StribeckFit) -> Iterator[str]:
+    """An exponent that is not the design's, and how far friction is off for it."""
+    found = stribeck.parameters.get("exponent")
+    if found is None or found.lower <= STRIBECK_EXPONENT <= found.upper:
+        return
+    values = {name: stribeck.values[name] for name in ("coulomb", "static", "stribeck_speed")}
+    speed = np.array([one.speed for one in points])
+    own, other = (
+        friction.stribeck_level(speed=speed, exponent=one, **values)
+        for one in (found.value, STRIBECK_EXPONENT)
+    )
+    worst = float(np.max(np.abs(other / own - 1)))
+    yield (
+        f"the exponent of the Stribeck curve is {found.value:.2f} ({found.lower:.2f} to "
+        f"{found.upper:.2f}), the design's friction has {STRIBECK_EXPONENT:g}: off by up to "
+        f"{100 * worst:.0f} % at the record's speeds"
+    )
+
+
+def extrapolated(bench: Bench, points: Sequence[Point]) -> Iterator[str]:
+    """Duties of the design that the record does not reach."""
+    fastest = max(case.speed for case in bench.design.load_cases)
+    speed, pressure = max(one.speed for one in points), max(one.pressure for one in points)
+    if fastest > 1.05 * speed or bench.supply_pressure > 1.05 * pressure:
+        yield (
+            f"the record reaches {1e3 * speed:.3g} mm/s and {pressure / 1e5:.3g} bar, the design "
+            f"{1e3 * fastest:.3g} mm/s and {bench.supply_pressure / 1e5:.3g} bar: beyond it "
+            "friction is extrapolated by contact law and Stribeck curve"
+        )
+
+
+def weak(known: Mapping[str, Parameter]) -> Iterator[str]:
+    """Numbers that the record hardly shows."""
+    names = [name for name, one in known.items() if not one.identifiable]
+    if names:
+        yield f"only weakly known (bounds beyond 30 %): {', '.join(names)}"
