@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -320,8 +319,3 @@ def test_a_bending_record_gives_a_modulus(tmp_path):
     assert data["modulus"]["value"] > data["modulus_as_published"]["value"]
     shown = identify("--span", "300 mm", record=file)
     assert "GPa" in shown.out
-
-
-def test_the_record_says_that_it_is_synthetic():
-    """Its first line: nobody takes it for a measurement."""
-    assert TEXT.startswith("# SYNTHETIC")

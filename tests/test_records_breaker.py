@@ -195,6 +195,7 @@ def test_stiffness_is_at_the_pressures_of_the_record():
 
 
 def test_the_shipped_record_is_where_the_readme_says():
-    """Both commands of the README name it."""
+    """Both commands of the README name it; its first line says that it is synthetic."""
+    assert RECORD.read_text(encoding="utf-8").startswith("# SYNTHETIC")
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert text.count(str(Path("designs/records/knee_bench.csv"))) >= 2

@@ -40,6 +40,7 @@ def test_every_script_of_the_folder_is_tested() -> None:
     assert {p.name for p in SCRIPTS.glob("*.py")} == {
         "composite_saving.py",
         "custom_metric.py",
+        "knee_calibration.py",
         "knee_dynamics.py",
         "knee_seals.py",
         "knee_materials.py",

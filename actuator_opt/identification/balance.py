@@ -14,15 +14,14 @@ from ..numeric import Array
 from .conditioning import Motion, Piece
 
 RESTING, CREEP = 3.0, 2e-5
-"""Standard deviations of the velocity's noise below which the rod may be at rest (a choice: 0.3 % of
-the samples at rest are faster), and the least such speed [m/s] (a choice: two steps of 10 um in a
-second)."""
+"""Standard deviations of the velocity's noise below which the rod may be at rest, and the least such
+speed [m/s] (choices: 0.3 % of the samples at rest are faster; two steps of 10 um in a second)."""
 OPPOSED = 0.5
 """Least share of the friction's power that must oppose motion; less, and a sign is wrong (a choice:
 a quarter of the power drives the rod then, more than noise and offsets do)."""
 SLIDES = 5e-4
-"""Travel of a piece that is sliding [m] (a choice: ten breakaway travels of 50 um; below it bristles
-give back much of what they take)."""
+"""Travel of a piece that is sliding [m] (a choice: ten breakaway travels of 50 um; below it
+bristles give back much of what they take)."""
 SURE = 0.8
 """Share from which another order of the channels is named as the remedy (a choice: a tenth of the
 power drives the rod then: plain, where the record as it stands fails `OPPOSED`)."""

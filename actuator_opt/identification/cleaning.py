@@ -36,7 +36,7 @@ LIVE = 0.2
 """Share of a channel that must not stand at its ends to be judged by the rest (a choice: four
 times as many as strays)."""
 TURNS = 0.3
-"""Share of its steps after which a noisy channel turns (a choice: half of the 2/3 of white noise)."""
+"""Share of its steps after which a noisy channel turns (a choice: half the 2/3 of white noise)."""
 ROBUST = 1.4826
 """Standard deviation of a normal variable over its median deviation, 1/0.67449 [derived]."""
 

@@ -17,7 +17,7 @@ WINDOW = 0.1
 """Time over which friction and contact force are averaged [s] (a choice: six independent samples at
 30 Hz; one alone is ill-posed)."""
 LEAST_SPEED = 1e-3
-"""Least mean speed of a window [m/s] (a choice: ten steps of 10 um in it, so that its way is sure)."""
+"""Least mean speed of a window [m/s] (a choice: ten steps of 10 um in it show its way)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,8 +23,8 @@ ALIKE = 0.06
 """Plateaus within this share of speed are one point (a choice: more than `STEADY`, less than the
 steps between speeds of a test)."""
 PER_DECADE = 8
-"""Speeds per decade of a sweep's points (a choice: a third apart, so that a Stribeck part that falls
-within a decade shows in several)."""
+"""Speeds per decade of a sweep's points (a choice: a third apart, so that a Stribeck part that
+falls within a decade shows in several)."""
 BLURRED = 1.0
 """Periods of the cut-off at both ends of a plateau, at least, that the filter mixes with the ramps
 beside it (a choice: there a step has settled within 2 %)."""
@@ -32,8 +32,8 @@ SETTLED = 5e-4
 """Distance after a reversal from which sliding is steady [m] (a choice: ten breakaway travels of
 50 um); of a record with known bristles `SETTLING` of its own."""
 SLIDES = 2e-4
-"""Least travel of a plateau [m] (a choice: four breakaway travels of 50 um; less may be bristles that
-bend)."""
+"""Least travel of a plateau [m] (a choice: four breakaway travels of 50 um; less may be bristles
+that bend)."""
 SETTLING = 8.0
 """Breakaway travels F_S/sigma_0 after which sliding is steady (a choice: 2 e^-8 is below 0.1 %)."""
 LEVELS = 0.1
