@@ -14,7 +14,7 @@ from ..numeric import Array
 from .conditioning import Motion, Piece
 
 RESTING, CREEP = 3.0, 2e-5
-"""Standard deviations of the velocity's noise below which the rod may be at rest, and the least such
+"""Standard deviations of the velocity's noise below which the rod may be at rest, and least such
 speed [m/s] (choices: 0.3 % of the samples at rest are faster; two steps of 10 um in a second)."""
 OPPOSED = 0.5
 """Least share of the friction's power that must oppose motion; less, and a sign is wrong (a choice:

@@ -26,8 +26,8 @@ SLOWEST = 3.0
 SHORTEST = 6.0
 """Periods of the cut-off that a piece lasts at least (a choice: `EDGE` each leave a third)."""
 EDGE = 2.0
-"""Periods of the cut-off at both ends of a piece where the filter knows too little (a choice: there a
-step has settled within 0.2 %)."""
+"""Periods of the cut-off at both ends of a piece where the filter knows too little (a choice:
+there a step has settled within 0.2 %)."""
 BRIDGE = 5
 """Missing samples that a straight line bridges; more where they last less than a quarter of a
 period of the cut-off (choices: 5 ms at 1 kHz; a chord so long misses a sine at a tenth of the

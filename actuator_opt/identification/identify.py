@@ -16,7 +16,7 @@ from .coefficient import coefficient
 from .conditioning import Motion, condition
 from .lugre_fit import LuGreFit, fit_lugre, settling_distance
 from .lugre_windows import LAG
-from .points import SETTLED, Point, independent, steady_points
+from .points import BLURRED, LASTING, SETTLED, Point, independent, steady_points
 from .record import Record
 from .result import Identification, Mean, Settings
 from .spectrum import spectrum
@@ -116,6 +116,7 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
             *notes,
             *_outside(slidings, bench),
             *_warmth(record, bench),
+            *_blurred(points, motion),
             *_pace(motion),
         ),
     )
@@ -151,6 +152,16 @@ def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:
     return [
         f"x runs from {1e3 * place.min():.1f} to {1e3 * place.max():.1f} mm, the stroke is "
         f"{1e3 * bench.stroke:.1f} mm: its zero is not the cap end, no stiffness there"
+    ]
+
+
+def _blurred(points: Sequence[Point], motion: Motion) -> list[str]:
+    """A note where no point is left at a low cut-off."""
+    shortest = 2 * BLURRED / motion.cutoff + LASTING / 2
+    if points or shortest <= 2 * LASTING:
+        return []
+    return [
+        f"a cut-off of {motion.cutoff:.3g} Hz blurs plateaus shorter than {shortest:.2g} s: no points"
     ]
 
 

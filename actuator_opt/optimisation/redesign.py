@@ -158,7 +158,7 @@ def redesign(
     """Both designs evaluated and, where they have variables, optimised.
 
     The bounds of a requirement's value: each group of measured values at its bounds, all others as
-    they are, half the changes added as squares.
+    they are, the changes up and down added as squares.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def _bounds(
 ) -> dict[str, tuple[float | None, float | None]]:
     """Values of the requirements between the bounds of what was measured."""
     values = {row.name: row.value for row in middle.requirements}
-    squares = dict.fromkeys(values, 0.0)
+    reach = {name: (0.0, 0.0) for name in values}
     for group in learned:
         ends = []
         for end in (0, 1):
@@ -194,11 +194,17 @@ def _bounds(
             except InputError:
                 return {}
             ends.append(evaluate(prepare(design, plugins=subject.plugins)).requirements)
-        for low, high in zip(*ends, strict=True):
-            if low.value is not None and high.value is not None:
-                squares[low.name] = hypot(squares[low.name], (high.value - low.value) / 2)
+        for one, other in zip(*ends, strict=True):
+            middle_value = values[one.name]
+            if one.value is None or other.value is None or middle_value is None:
+                continue
+            down, up = reach[one.name]
+            reach[one.name] = (
+                hypot(down, max(middle_value - min(one.value, other.value), 0.0)),
+                hypot(up, max(max(one.value, other.value) - middle_value, 0.0)),
+            )
     return {
-        name: (None, None) if value is None else (value - squares[name], value + squares[name])
+        name: (None, None) if value is None else (value - reach[name][0], value + reach[name][1])
         for name, value in values.items()
     }
 
