@@ -161,7 +161,8 @@ def _blurred(points: Sequence[Point], motion: Motion) -> list[str]:
     if points or shortest <= 2 * LASTING:
         return []
     return [
-        f"a cut-off of {motion.cutoff:.3g} Hz blurs plateaus shorter than {shortest:.2g} s: no points"
+        f"a cut-off of {motion.cutoff:.3g} Hz blurs plateaus shorter than {shortest:.2g} s: no "
+        "points of steady sliding"
     ]
 
 

@@ -184,7 +184,7 @@ def _bounds(
 ) -> dict[str, tuple[float | None, float | None]]:
     """Values of the requirements between the bounds of what was measured."""
     values = {row.name: row.value for row in middle.requirements}
-    reach = {name: (0.0, 0.0) for name in values}
+    reach = dict.fromkeys(values, (0.0, 0.0))
     for group in learned:
         ends = []
         for end in (0, 1):
