@@ -52,6 +52,11 @@ class Quality(NamedTuple):
     noise: float
     """Standard deviation of a sample, what the filter takes away, SI."""
 
+    def told(self, name: str, samples: int) -> list[str]:
+        """What was taken out of the channel of a name, as notes."""
+        counts = ((self.missing, "missing"), (self.spikes, "spikes"), (self.clipped, "clipped"))
+        return [f"{name}: {n} of {samples} samples are {what}" for n, what in counts if n]
+
 
 def clean(values: Array, step: float, *, pressure: bool) -> tuple[Array, Quality]:
     """A channel without spikes and clipped samples, and how many there were.

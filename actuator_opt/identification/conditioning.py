@@ -196,7 +196,7 @@ def condition(
         name: one._replace(noise=_noise(time, record[name], name, pieces))
         for name, one in quality.items()
     }
-    notes += _told(quality, time.size)
+    notes += [note for name, one in quality.items() for note in one.told(name, time.size)]
     return Motion(tuple(pieces), step, cutoff, order, compensated, quality, tuple(notes), cleaned)
 
 
@@ -225,20 +225,6 @@ def _cleaned(record: Record, step: float) -> tuple[dict[str, Array], dict[str, Q
         elif name in NEEDED:
             raise record.fault(f"{name} has no sample", "mend the sensor, or leave the column out")
     return cleaned, quality
-
-
-def _told(quality: dict[str, Quality], samples: int) -> list[str]:
-    """What was taken out of the channels, as notes."""
-    return [
-        f"{name}: {count} samples {what} of {samples}"
-        for name, one in quality.items()
-        for count, what in (
-            (one.missing, "missing"),
-            (one.spikes, "spikes"),
-            (one.clipped, "clipped"),
-        )
-        if count
-    ]
 
 
 def _choices(record: Record, cutoff: float, order: int, lag: float) -> None:

@@ -332,15 +332,8 @@ def _note(words: str) -> str:
 def _counted(found: Identification) -> set[str]:
     """Notes that the table of channels holds."""
     total = found.record.time.size
-    return {
-        f"{name}: {count} samples {kind} of {total}"
-        for name, one in found.motion.quality.items()
-        for kind, count in (
-            ("missing", one.missing),
-            ("spikes", one.spikes),
-            ("clipped", one.clipped),
-        )
-    }
+    quality = found.motion.quality.items()
+    return {note for name, one in quality for note in one.told(name, total)}
 
 
 def fit_note(fits: Mapping[str, Fit | str]) -> str:
