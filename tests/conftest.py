@@ -6,6 +6,10 @@ import os
 
 from hypothesis import settings
 
+# Each core runs a worker; linear algebra on all of them at once would only make them wait.
+for library in ("OPENBLAS", "OMP", "MKL"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
 # A loaded machine is no failure; continuous integration tries the same examples every time.
 settings.register_profile("house", deadline=None, derandomize="CI" in os.environ)
 settings.load_profile("house")
