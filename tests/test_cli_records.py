@@ -257,19 +257,16 @@ def test_the_written_design_evaluates_to_the_values_said(calibrated):
 
 
 def test_the_bounds_of_a_requirement_are_those_of_its_causes(calibrated):
-    """Half the width of the friction's bounds: factor and viscous part as squares, by hand."""
+    """Changes of friction at the bounds of factor and viscous part, added as squares, by hand."""
     data, file = calibrated
     row = next(r for r in data["requirements"] if r["name"] == "friction_running")
-    halves = []
-    for name in ("friction_coefficient", "viscous_friction"):
-        values = data["learned"][name]["values"]
-        ends = [
-            ao.evaluate(ao.read(file, set={p: one[end] for p, one in values.items()}))
-            .metrics["friction_running"].value
-            for end in ("lower", "upper")
-        ]  # fmt: skip
-        halves.append((ends[1] - ends[0]) / 2)
-    assert (row["upper"] - row["lower"]) / 2 == pytest.approx(np.hypot(*halves), rel=1e-3)
+    for end in ("lower", "upper"):
+        changes = []
+        for name in ("friction_coefficient", "viscous_friction"):
+            values = data["learned"][name]["values"]
+            moved = ao.read(file, set={path: one[end] for path, one in values.items()})
+            changes.append(ao.evaluate(moved).metrics["friction_running"].value - row["after"])
+        assert abs(row[end] - row["after"]) == pytest.approx(np.hypot(*changes), rel=1e-3)
 
 
 def test_calibrate_without_search_and_its_page(tmp_path):

@@ -228,7 +228,7 @@ def test_the_coefficient_is_friction_over_normal_force():
     least, most = normal_force(np.percentile(p1, [1, 99]), 1e6)
     assert least < found["contact_force"] < most
     assert 5e6 < found["contact_pressure"] < 20e6
-    assert "plane_strain" in found["contact_law"]
+    assert "plane strain" in found["contact_law"]
 
 
 def stiffness_by_hand(x, modulus=1.6e9):
