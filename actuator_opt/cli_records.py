@@ -256,9 +256,7 @@ def _bend(
 
 def _only_bending(asked: Mapping[str, object]) -> None:
     """Refuse options that a bending test has no use for."""
-    options = [
-        name for name, one in asked.items() if (one is not None and one != 0) or one is False
-    ]
+    options = [name for name, one in asked.items() if one is not None]
     if options:
         message = f"{', '.join(options)}: not with --span, a bending test gives a modulus alone"
         raise UsageError(Diagnostic(message, "leave out --span, or these"))

@@ -237,7 +237,7 @@ def test_calibrate_says_what_moved(calibrated):
     for one in values.values():
         assert one["lower"] < one["value"] < one["upper"] < one["before"]
     best = data["optimum"]
-    assert best["objective"]["after"] < best["objective"]["before"]
+    assert best["objective"]["mass"]["after"] < best["objective"]["mass"]["before"]
     assert any("friction_running" in one for one in best["active"]["before"])
     assert not any("friction_running" in one for one in best["active"]["after"])
     json.dumps(data, allow_nan=False)

@@ -199,3 +199,33 @@ def test_the_shipped_record_is_where_the_readme_says():
     assert RECORD.read_text(encoding="utf-8").startswith("# SYNTHETIC")
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert text.count(str(Path("designs/records/knee_bench.csv"))) >= 2
+
+
+def test_weighted_objectives_are_compared_term_by_term():
+    """A weighted sum has other divisors before and after: each metric is shown by itself."""
+    text = KNEE.read_text(encoding="utf-8").replace(
+        "minimise: mass", "minimise:\n    mass: 1\n    friction_running: 0.2"
+    )
+    design = ao.read(text)
+    found = ao.calibrate(ao.identify(RECORD, design=design), design=design)
+    goals = {one.metric: one for one in found.redesign.goals}
+    assert set(goals) == {"mass", "friction_running"}
+    best = found.redesign.best_after.evaluation.metrics
+    assert all(goals[name].after == best[name].value for name in goals)
+    (words,) = [one for one in found.redesign.sentences if one.startswith("the best design")]
+    assert "mass 261" in words
+    assert "friction_running 290 N to" in words
+    assert set(found.to_dict()["optimum"]["objective"]) == set(goals)
+
+
+def test_other_compounds_take_the_measured_friction_over_and_it_is_said():
+    """Choices of compound keep the coefficient measured with one; a chosen coefficient is held."""
+    text = KNEE.read_text(encoding="utf-8") + (
+        "\nchoices:\n  seals.rod.compound: [nbr_70, nbr_90]\n"
+        "  seals.rod.friction_coefficient: [0.1, 0.2]\n"
+    )
+    found = ao.calibrate(identified("plateaus"), design=ao.read(text), search=False)
+    assert set(found.actuator.design.choices) == {"seals.rod.compound"}
+    said = " ".join(found.calibration.doubts)
+    assert "choices of seals.rod.compound take it over" in said
+    assert "held as measured: seals.rod.friction_coefficient" in said

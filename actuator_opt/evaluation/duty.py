@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..design.model import Design
-from ..models import density, endurance, retention, rod
+from ..models import density, end_stop, endurance, retention, rod
 from ..numeric import Array, maximum, where
 from . import rod_strength
 from .allow import Stock
@@ -120,7 +120,9 @@ def _end_stop(
         for name in ("end_stop_energy", "end_stop_pressure", "end_stop_factor"):
             out.skip(name, "the end stop is outside the actuator")
         return
-    stiffness = supply * g.area_a / v["cylinder.stop_travel"]
+    stiffness = end_stop.stop_stiffness(
+        area=g.area_a, pressure=supply, travel=v["cylinder.stop_travel"]
+    )
     run = {
         "driving_force": maximum(net - state.force, 0.0),
         "mass": moving,

@@ -28,10 +28,11 @@ import numpy as np
 
 from ..errors import Diagnostic, InputError
 from ..least_squares import CONFIDENCE, WEAK, Parameter, quantile
-from ..numeric import STEP, Array
+from ..numeric import STEP as COMPLEX_STEP
+from ..numeric import Array
 from .balance import Sliding
 from .conditioning import Motion
-from .lugre_problem import BENDS, LOGARITHMIC, SYMBOLS, TRAVELS, LuGreFit
+from .lugre_problem import BENDS, LOGARITHMIC, STEP, SYMBOLS, TRAVELS, LuGreFit, sizes
 from .lugre_windows import LAG, Windows, windows
 from .many_fits import Search, relaxed
 from .points import SETTLED, Point
@@ -49,8 +50,6 @@ LEAST_WINDOWS = 3
 """Windows that can be drawn (a choice: with two the noise is known from one difference)."""
 ROWS = 256
 """Draws integrated at once (a choice: some 100 MB)."""
-DIFFERENCE = 1e-4
-"""Step of the central differences over the size of a number, as in `lugre_problem`."""
 RANK = 1e-10
 """Least ratio of singular values of slopes that count for the leverage: rounding lies below."""
 LOGS = ("stribeck_speed", "bristle_stiffness")
@@ -133,8 +132,8 @@ def resampled_stribeck(
         return steady.predict(own) / errors
 
     def slopes(rows: Array) -> Array:
-        steps = 1j * STEP * np.eye(rows.shape[1])
-        return np.stack([np.imag(model(rows + one)) / STEP for one in steps], axis=-1)
+        steps = 1j * COMPLEX_STEP * np.eye(rows.shape[1])
+        return np.stack([np.imag(model(rows + one)) / COMPLEX_STEP for one in steps], axis=-1)
 
     best = searched(names, values)[None]
     rest = fit.residuals / errors
@@ -247,20 +246,9 @@ class LuGreResiduals:
 
     def slopes(self, best: Array) -> Array:
         """Derivatives at the optimum by central differences (residuals, searched)."""
-        speed, change = 1e-3, 1e5
-        if self.steady is not None:
-            speed = max(speed, float(np.max(np.abs(self.steady.velocity))))
-            change = max(change, float(np.max(np.abs(self.steady.change))))
-        size = {
-            "coulomb": self.largest,
-            "static": self.largest,
-            "viscous": self.largest / speed,
-            "offset": self.largest,
-            "pressure_slope": self.largest / change,
-            "bristle_damping": 1e-2 * self.values["bristle_stiffness"],
-            "lag": 1e-2,
-        }
-        steps = DIFFERENCE * np.array([size.get(name, 1.0) for name in self.names])
+        steps = STEP * sizes(self.names, self.largest, self.steady)
+        if "bristle_damping" in self.names:
+            steps[self.names.index("bristle_damping")] *= 1e-2 * self.values["bristle_stiffness"]
         moved = self.misfit(np.concatenate([best + np.diag(steps), best - np.diag(steps)]))
         return ((moved[: best.size] - moved[best.size :]) / (2 * steps[:, None])).T
 

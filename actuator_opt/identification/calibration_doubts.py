@@ -14,6 +14,8 @@ from ..numeric import Array
 from .points import Point
 from .stribeck_fit import StribeckFit
 
+FARTHER = 1.05
+"""Duties over the record's speed or pressure that are said (a choice: less is no extrapolation)."""
 MISFIT = 0.1
 """Share of F_C by which the contact law may miss the friction measured at other pressures before
 it is said (a choice: a third of what makes a parameter weakly identifiable)."""
@@ -64,7 +66,7 @@ def extrapolated(bench: Bench, points: Sequence[Point]) -> Iterator[str]:
     """Duties of the design that the record does not reach."""
     fastest = max(case.speed for case in bench.design.load_cases)
     speed, pressure = max(one.speed for one in points), max(one.pressure for one in points)
-    if fastest > 1.05 * speed or bench.supply_pressure > 1.05 * pressure:
+    if fastest > FARTHER * speed or bench.supply_pressure > FARTHER * pressure:
         yield (
             f"the record reaches {1e3 * speed:.3g} mm/s and {pressure / 1e5:.3g} bar, the design "
             f"{1e3 * fastest:.3g} mm/s and {bench.supply_pressure / 1e5:.3g} bar: beyond it "

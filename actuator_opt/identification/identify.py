@@ -83,16 +83,11 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
     if late is not None or settling > SETTLED:
         points, stribeck, lugre = _models(slidings, motion, area, known, settling)
     if own.bootstrap:
-        stribeck, lugre = resampled(
-            slidings,
-            motion,
-            points,
-            stribeck,
-            lugre,
-            count=own.bootstrap,
-            seed=own.seed,
-            settling=settling,
+        count, seed = own.bootstrap, own.seed
+        fits = resampled(
+            slidings, motion, points, stribeck, lugre, count=count, seed=seed, settling=settling
         )
+        stribeck, lugre = fits
     mean, largest = _sizes(slidings, motion)
     return Identification(
         record=record,
@@ -111,14 +106,7 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
         stribeck=stribeck,
         lugre=lugre,
         fits=_fits(points),
-        notes=(
-            *motion.notes,
-            *notes,
-            *_outside(slidings, bench),
-            *_warmth(record, bench),
-            *_blurred(points, motion),
-            *_pace(motion),
-        ),
+        notes=(*motion.notes, *notes, *_remarks(record, bench, motion, slidings, points)),
     )
 
 
@@ -141,6 +129,22 @@ def _moving(
         )
     if any(one.moving.any() for one in slidings):
         check_signs(slidings, bench, mass=mass, name=record.name)
+
+
+def _remarks(
+    record: Record,
+    bench: Bench,
+    motion: Motion,
+    slidings: Sequence[Sliding],
+    points: Sequence[Point],
+) -> list[str]:
+    """What a reader of the record should know beside its quality."""
+    return [
+        *_outside(slidings, bench),
+        *_warmth(record, bench),
+        *_blurred(points, motion),
+        *_pace(motion),
+    ]
 
 
 def _outside(slidings: Sequence[Sliding], bench: Bench) -> list[str]:

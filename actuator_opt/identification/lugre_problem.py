@@ -74,6 +74,17 @@ class LuGreFit:
         return {**self.held, **{name: one.value for name, one in self.parameters.items()}}
 
 
+def sizes(names: Sequence[str], largest: float, steady: Steady | None) -> Array:
+    """Size of each searched parameter: 1 of a logarithm."""
+    speed, change = 1e-3, 1e5
+    if steady is not None:
+        speed = max(speed, float(np.max(np.abs(steady.velocity))))
+        change = max(change, float(np.max(np.abs(steady.change))))
+    size = dict.fromkeys(("coulomb", "static", "offset"), largest)
+    size |= {"viscous": largest / speed, "pressure_slope": largest / change, "lag": 1e-2}
+    return np.array([size.get(name, 1.0) for name in names])
+
+
 class Problem:
     """Residuals of points and windows over the searched parameters."""
 
@@ -122,7 +133,7 @@ class Problem:
             if not lag_seen:
                 self.held["lag"] = 0.0
         self.names = (*self.begin, *(name for name in SYMBOLS if name not in self.held))
-        self.sizes = self._sizes()
+        self.sizes = sizes(self.names, self.largest, self.steady)
 
     def _ask_for_static(self, stribeck: StribeckFit) -> None:
         """F_S and v_s begin at what the windows show, where the points do not know them."""
@@ -138,22 +149,6 @@ class Problem:
                 "static": max(self.largest, 1.01 * self.begin["coulomb"]),
                 "stribeck_speed": float(np.sqrt(SPEEDS[0] * SPEEDS[1])),
             }
-
-    def _sizes(self) -> Array:
-        """Size of each searched parameter: 1 of a logarithm."""
-        speed, change = 1e-3, 1e5
-        if self.steady is not None:
-            speed = max(speed, float(np.max(np.abs(self.steady.velocity))))
-            change = max(change, float(np.max(np.abs(self.steady.change))))
-        size = {
-            "coulomb": self.largest,
-            "static": self.largest,
-            "viscous": self.largest / speed,
-            "offset": self.largest,
-            "pressure_slope": self.largest / change,
-            "lag": 1e-2,
-        }
-        return np.array([size.get(name, 1.0) for name in self.names])
 
     def values(self, rows: Array) -> dict[str, Array]:
         """Parameters (rows,) of rows of searched ones (rows, searched)."""

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..design.build import with_values
 from ..errors import InputError
 from ..evaluation import Evaluation, Subject, evaluate, prepare
 from ..evaluation.result import Requirement
+from ..quantities import Quantity
 from .result import Optimisation
 from .run import optimise
 
@@ -58,6 +59,15 @@ class Shift:
         }
 
 
+class Goal(NamedTuple):
+    """A metric that the objective asks for, at both optima [SI]; None where there is none."""
+
+    metric: str
+    quantity: Quantity
+    before: float | None
+    after: float | None
+
+
 @dataclass(frozen=True, slots=True)
 class Redesign:
     """A design before and after new values, as it stands and at its optimum.
@@ -66,7 +76,7 @@ class Redesign:
     ----------
     evaluation : with the new values
     shifts : every requirement before and after
-    best_before, best_after : None for a design without variables
+    best_before, best_after : None for a design without variables and choices
     """
 
     evaluation: Evaluation
@@ -88,8 +98,26 @@ class Redesign:
         found = [self._moved_words()]
         before, after = self.best_before, self.best_after
         if before is not None and after is not None:
-            found += _optimum_words(before, after)
+            found += _optimum_words(before, after, self.goals)
         return tuple(found)
+
+    @property
+    def goals(self) -> tuple[Goal, ...]:
+        """What the objective asks for at both optima: of weighted terms each by itself.
+
+        A weighted sum divides each term by its value in the file's design, which new values change:
+        the sums before and after are not alike.
+        """
+        before, after = self.best_before, self.best_after
+        if before is None or after is None:
+            return ()
+        wish = after.design.objective
+        terms = wish.minimise if wish.maximise is None else wish.maximise
+        names = [terms] if isinstance(terms, str) else list(terms or ())
+        return tuple(
+            Goal(name, after.evaluation.metrics[name].quantity, *_values(name, before, after))
+            for name in names
+        )
 
     def _moved_words(self) -> str:
         most = self.moved
@@ -123,9 +151,7 @@ class Redesign:
             was = {one.path: one.value for one in before.variables}
             found["optimum"] = {
                 "objective": {
-                    "metric": after.objective_metric,
-                    "before": before.objective_value if solved(before) else None,
-                    "after": after.objective_value if solved(after) else None,
+                    one.metric: {"before": one.before, "after": one.after} for one in self.goals
                 },
                 "status": {"before": before.status, "after": after.status},
                 "variables": {
@@ -140,6 +166,11 @@ class Redesign:
 def solved(one: Optimisation) -> bool:
     """Whether an optimisation found a design that meets its requirements."""
     return one.evaluation.met and one.infeasibility is None
+
+
+def _values(name: str, *optima: Optimisation) -> list[float | None]:
+    """A metric at designs that meet their requirements."""
+    return [one.evaluation.metrics[name].value if solved(one) else None for one in optima]
 
 
 def active(one: Optimisation) -> list[str]:
@@ -173,7 +204,8 @@ def redesign(
         Shift(old, new, *bounds.get(new.name, (None, None)))
         for old, new in zip(stood.requirements, stands.requirements, strict=True)
     )
-    if not (search and after.design.variables and after.design.requirements):
+    free = after.design.variables or after.design.choices
+    if not (search and free and after.design.requirements):
         return Redesign(stands, shifts, None, None)
     best = [optimise(one, seed=seed, prices=False) for one in (before, after)]
     return Redesign(stands, shifts, *best)
@@ -209,9 +241,8 @@ def _bounds(
     }
 
 
-def _optimum_words(before: Optimisation, after: Optimisation) -> list[str]:
+def _optimum_words(before: Optimisation, after: Optimisation, goals: Sequence[Goal]) -> list[str]:
     """How the optimum changes, and what it stands on."""
-    metric = after.evaluation.metrics[after.objective_metric]
     if not (solved(before) and solved(after)):
         states = [
             "there is a design that meets every requirement"
@@ -220,13 +251,17 @@ def _optimum_words(before: Optimisation, after: Optimisation) -> list[str]:
             for one in (before, after)
         ]
         return [f"before, {states[0]}; now, {states[1]}", *_repairs(after)]
-    old, new = before.objective_value, after.objective_value
-    text = metric.quantity.text
-    first = (
-        f"the best design: {after.objective_metric} {text(old, 5)} to {text(new, 5)} "
-        f"({100 * (new / old - 1):+.1f} %)"
-    )
-    return [first, *_active_words(active(before), active(after))]
+    parts = [_goal_words(one) for one in goals]
+    return [f"the best design: {', '.join(parts)}", *_active_words(active(before), active(after))]
+
+
+def _goal_words(one: Goal) -> str:
+    """A metric of the objective before and after."""
+    old, new = one.before, one.after
+    if old is None or new is None:
+        return f"{one.metric} has no value"
+    change = f" ({100 * (new / old - 1):+.1f} %)" if old else ""
+    return f"{one.metric} {one.quantity.text(old, 5)} to {one.quantity.text(new, 5)}{change}"
 
 
 def _repairs(one: Optimisation) -> list[str]:

@@ -100,13 +100,11 @@ def _tiles(found: Calibration, changes: Redesign) -> list[dict[str, Any]]:
         note = f"was {text.value_text(quantity, moved.before.value)}, {limit}"
         state = "met" if moved.after.met else "missed"
         tiles.append(tile(short(words, 28), value, note, state))
-    before, after = changes.best_before, changes.best_after
-    if before is not None and after is not None and solved(after):
-        quantity = text.metric(after.objective_metric)
-        value = text.value_text(quantity, after.objective_value)
-        was = text.value_text(quantity, before.objective_value if solved(before) else None)
-        label = f"best {after.objective_metric.replace('_', ' ')}"
-        tiles.append(tile(short(label, 28), value, f"was {was}"))
+    for one in changes.goals[:1]:
+        if one.after is not None:
+            value, was = (text.value_text(one.quantity, v) for v in (one.after, one.before))
+            label = f"best {one.metric.replace('_', ' ')}"
+            tiles.append(tile(short(label, 28), value, f"was {was}"))
     return tiles
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from ..identification.calibration import Calibration
 from ..optimisation.redesign import Redesign, Shift, solved
-from ..quantities import INPUTS
+from ..quantities import INPUTS, Quantity
 from . import text
 from .optimum import sentence
 
@@ -53,39 +53,29 @@ def _shift(one: Shift) -> Line:
 
 
 def optimum(found: Redesign) -> list[Line]:
-    """Objective and variables of the best designs before and after."""
+    """Objective, choices and variables of the best designs before and after."""
     before, after = found.best_before, found.best_after
     if before is None or after is None:
         return []
-    metric = text.metric(after.objective_metric)
-    old, new = (one.objective_value if solved(one) else None for one in (before, after))
-    lines = [
-        Line(
-            (
-                after.objective_metric,
-                text.value_text(metric, old, 5),
-                text.value_text(metric, new, 5),
-                _change(old, new),
-            )
-        )
-    ]
-    if old is None or new is None:
+    lines = [_line(one.metric, one.quantity, one.before, one.after, 5) for one in found.goals]
+    if not (solved(before) and solved(after)):
         return lines
+    if after.choices is not None:
+        chosen = {} if before.choices is None else before.choices.best
+        lines += [
+            Line((path, str(chosen.get(path, text.DASH)), str(value), ""))
+            for path, value in after.choices.best.items()
+        ]
     was = {one.path: one.value for one in before.variables}
-    for one in after.variables:
-        quantity = INPUTS[one.quantity]
-        start = was.get(one.path)
-        lines.append(
-            Line(
-                (
-                    one.path,
-                    text.value_text(quantity, start),
-                    text.value_text(quantity, one.value),
-                    _change(start, one.value),
-                )
-            )
-        )
-    return lines
+    return lines + [
+        _line(one.path, INPUTS[one.quantity], was.get(one.path), one.value, 4)
+        for one in after.variables
+    ]
+
+
+def _line(name: str, quantity: Quantity, old: float | None, new: float | None, digits: int) -> Line:
+    values = [text.value_text(quantity, value, digits) for value in (old, new)]
+    return Line((name, *values, _change(old, new)))
 
 
 def _change(old: float | None, new: float | None) -> str:

@@ -20,7 +20,16 @@ if TYPE_CHECKING:
 
 MOST_BYTES = 1_000_000_000
 """Largest file of a record (a choice: what memory holds several times)."""
-_WISHES = ("variables", "choices", "requirements", "waivers", "objective", "measured")
+_WISHES = (
+    "name",
+    "notes",
+    "variables",
+    "choices",
+    "requirements",
+    "waivers",
+    "objective",
+    "measured",
+)
 """Keys of a design that say nothing of the actuator tested."""
 
 
@@ -226,19 +235,37 @@ def calibrate(
     else:
         identified = identify(record, design=before, columns=columns, seed=seed, **settings)
     found = learn(identified)
-    held = [path for path in found.values() if path in before.design.variables]
-    free = {p: one for p, one in before.design.variables.items() if p not in held}
-    known = {**before.design.measured, **found.measured()}
-    base = before.design.model_copy(update={"variables": free, "measured": {}})
-    after = Actuator(base, before.source, before.plugins).changed(found.values())
-    design_after = after.design.model_copy(update={"measured": known})
-    after = Actuator(design_after, before.source, before.plugins)
-    if held:
-        doubt = f"no longer variables, held as measured: {', '.join(held)}"
-        found = replace(found, doubts=(*found.doubts, doubt))
+    after, doubts = _with_values(before, found)
+    found = replace(found, doubts=(*found.doubts, *doubts))
     groups = [one.bounds() for one in found.learned]
     changes = redesign(before.subject(), after.subject(), groups, seed=seed, search=search)
     return Calibrated(after, found, changes)
+
+
+def _with_values(before: Actuator, found: Calibration) -> tuple[Actuator, list[str]]:
+    """The actuator with the values a record gave, held where they were free; what to doubt."""
+    design, new = before.design, found.values()
+    held = [path for path in new if path in design.variables or path in design.choices]
+    free = {path: one for path, one in design.variables.items() if path not in held}
+    choices = {path: one for path, one in design.choices.items() if path not in held}
+    update = {"variables": free, "choices": choices, "measured": {}}
+    base = Actuator(design.model_copy(update=update), before.source, before.plugins)
+    known = {**design.measured, **found.measured()}
+    after = base.changed(new).design.model_copy(update={"measured": known})
+    doubts = []
+    if held:
+        doubts.append(f"no longer free, held as measured: {', '.join(held)}")
+    other = [
+        path
+        for path in choices
+        if path.startswith("seals.") and path.endswith((".compound", ".type"))
+    ]
+    if other:
+        doubts.append(
+            f"the friction measured is that of the seals tested: choices of {', '.join(other)} "
+            "take it over"
+        )
+    return Actuator(after, before.source, before.plugins), doubts
 
 
 def _require_use(
