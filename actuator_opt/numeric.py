@@ -102,6 +102,16 @@ def expm1_quotient(value: Array) -> Array:
     return where(small, 1 + value / 2 + value * value / 6, xp.expm1(safe) / safe)
 
 
+def log1p_quotient(value: Array) -> Array:
+    """log1p(value)/value, 1 at 0, smooth and complex-step safe; NaN from -1 down."""
+    xp = namespace(value)
+    torn = real(value) <= -1
+    small = (real(value) < 1e-5) & (real(value) > -1e-5)
+    safe = where(small | torn, 0 * value + 1, value)
+    mean = where(small, 1 - value / 2 + value * value / 3, xp.log1p(safe) / safe)
+    return where(torn, np.nan, mean)
+
+
 def together(values: Sequence[Array], axis: int = 0) -> Array:
     """Arrays of one namespace on a new axis, broadcast to one shape where they differ."""
     xp = namespace(*values)

@@ -89,6 +89,10 @@ INPUTS = _table("""
  force                | F      | force       | kN   | 0     | 20000 | force
  torque               | M      | torque      | N*m  | 0     | 1e7   | joint torque
  lever_arm            | a      | length      | mm   | 1     | 10000 | lever arm
+ pivot_radius         | r      | length      | mm   | 1     | 10000 | distance of a pivot from the joint axis
+ joint_angle          | theta  | angle       | deg  | -360  | 360   | joint angle
+ joint_speed          | omega  | angular_speed | rad/s | 0   | 1000  | joint speed
+ load_inertia         | J      | inertia     | kg*m^2 | 0   | 1e6   | moment of inertia about the joint
  speed                | v      | speed       | m/s  | 0     | 20    | piston speed
  load_mass            | m      | mass        | kg   | 0     | 1e6   | load mass reflected to the rod
  position             | x      | length      | mm   | 0     | 10000 | piston position from the cap end
@@ -113,7 +117,9 @@ INPUTS = _table("""
  leakage_flow         | q_l    | flow        | l/min| 0     | 1000  | leakage flow
  pressure_drop        | dp     | pressure    | bar  | 0.01  | 1500  | pressure drop
  signal               | U      | voltage     | V    | 0.001 | 1000  | full signal
+ signal_offset        | U_0    | voltage     | V    | -1000 | 1000  | signal offset
  gain                 | K_p    | signal_gain | V/m  | 0.001 | 1e9   | gain
+ oil_viscosity        | nu     | kinematic_viscosity | mm^2/s | 0.2 | 100000 | kinematic viscosity of the oil
  damping_ratio        | zeta   | ratio       | -    | 0.001 | 10    | damping ratio
  orifice_area         | A_o    | area        | cm^2 | 0     | 1000  | orifice area
  opening              | y      | ratio       | %    | 0     | 100   | opening
@@ -286,6 +292,8 @@ METRICS = _table("""
  leakage              | q_l    | flow        | ml/min | | | leakage across the piston
  barrel_length        | L_b    | length      | mm   | | | barrel length
  closed_length        | L_0    | length      | mm   | | | length pin to pin, retracted
+ joint_torque_min     | M_min  | torque      | N*m  | | | least joint torque the actuator delivers over its stroke
+ joint_range          | d_theta| angle       | deg  | | | angle the joint turns over the stroke
  geometry_rod_in_bore | -      | length      | mm   | | | radial room between rod and bore
  geometry_rod_wall    | -      | length      | mm   | | | rod wall thickness
  geometry_rod_bore    | -      | length      | mm   | | | bore left inside the layers of the rod
@@ -293,6 +301,8 @@ METRICS = _table("""
  geometry_piston_core | -      | length      | mm   | | | wall left under the piston groove
  geometry_head_groove | -      | length      | mm   | | | wall left beside the grooves of the head
  geometry_head_wall   | -      | length      | mm   | | | wall left over the rod seal groove
+ geometry_dead_point  | -      | length      | mm   | | | actuator length left to the dead points of the linkage
+ geometry_joint_angle | -      | ratio       | %    | | | stroke left beyond the joint angle of a load case
 """)
 
 RECORDS = _table("""
@@ -303,3 +313,64 @@ RECORDS = _table("""
  span                 | L      | length      | mm     | 1     | 20000  | span between the supports
 """)
 """What a command states about a test record; magnitudes but for a force and a time."""
+
+SCENARIOS = _table("""
+ duration             | T      | time        | s      | 1e-5  | 100000 | simulated time
+ sample_time          | dt     | time        | ms     | 1e-6  | 1e6    | time between two samples
+ instant              | t      | time        | s      | 0     | 100000 | instant
+ time_constant        | tau    | time        | ms     | 1e-3  | 1e6    | time constant
+ signal_value         | U      | voltage     | V      | -1000 | 1000   | signal of the valve
+ position_value       | x      | length      | mm     | -10000| 10000  | position
+ speed_value          | v      | speed       | m/s    | -20   | 20     | speed
+ force_value          | F_L    | force       | N      | -2e7  | 2e7    | force of the load, against extension
+ torque_value         | M_L    | torque      | N*m    | -1e7  | 1e7    | torque of the load, against the motion counted positive
+ flow_value           | q      | flow        | l/min  | -1e6  | 1e6    | flow
+ shaft_speed_value    | n      | angular_speed | rpm  | -20000| 20000  | speed of the shaft
+ shaft_angle_value    | phi    | angle       | deg    | -1e6  | 1e6    | angle of the shaft
+ phase                | phi    | angle       | deg    | -360  | 360    | phase
+ factor               | k      | ratio       | -      | -1e6  | 1e6    | factor
+ signal_rate          | dU/dt  | signal_rate | V/s    | 0.001 | 1e9    | largest rate of the signal
+ position_gain        | K_p    | signal_gain | V/m    | 0     | 1e9    | gain on the position
+ speed_gain           | K_v    | speed_gain  | V*s/m  | 0     | 1e9    | gain on the speed
+ shaft_angle_gain     | K_p    | angle_gain  | V/rad  | 0     | 1e9    | gain on the angle of the shaft
+ shaft_speed_gain     | K_p    | angular_speed_gain | V*s/rad | 0 | 1e9 | gain on the speed of the shaft
+ pressure_gain        | K_d    | pressure_gain | V/bar | 0    | 1e6    | gain on the load pressure
+ margin               | A_m    | ratio       | -      | 1.01  | 100    | gain margin
+ inertia              | I      | inertia     | kg*m^2 | 0     | 1e8    | moment of inertia
+ load_damping         | b      | damping     | N*s/m  | 0     | 1e9    | damping of the load
+ load_stiffness       | k      | stiffness   | N/mm   | 0     | 1e9    | stiffness of the load
+ shaft_damping        | b      | angular_damping | N*m*s/rad | 0 | 1e6 | damping of the shaft's load
+ displacement         | V_g    | volume      | ml     | 0.01  | 100000 | displacement per revolution
+ displacement_setting | eps    | ratio       | -      | 0.01  | 1      | setting of the displacement
+ slip_coefficient     | C_s    | ratio       | -      | 0     | 1e-3   | laminar slip of the Wilson model
+ coulomb_coefficient  | C_f    | ratio       | -      | 0     | 1      | Coulomb friction of the Wilson model
+ viscous_coefficient  | C_v    | ratio       | -      | 0     | 1e9    | viscous friction of the Wilson model
+ constant_torque      | T_c    | torque      | N*m    | 0     | 1e6    | constant torque loss of the Wilson model
+ drive_speed          | n      | angular_speed | rpm  | 0.1   | 50000  | speed of the pump's shaft
+ pump_gain            | K_p    | conductance | l/min/bar | 1e-6 | 1e6  | flow per pressure of the pump's controller
+ coulomb_force        | F_C    | force       | N      | 0     | 1e7    | Coulomb friction
+ static_force         | F_S    | force       | N      | 0     | 1e7    | breakaway friction
+ stribeck_exponent    | delta  | ratio       | -      | 0.3   | 4      | exponent of the Stribeck curve
+ bristle_damping      | sigma_1| damping     | N*s/m  | 0     | 1e8    | bristle damping
+ damping_factor       | -      | ratio       | -      | 0     | 10     | damping of a stop over sqrt(K m)
+ cycles_per_window    | n      | count       | -      | 1     | 1000   | cycles in a window
+""")
+"""What a scenario states beside a design: coordinates of signals are signed, all else is not."""
+
+RESULTS = _table("""
+ rise_time            | t_r    | time        | ms     | | | time from 10 to 90 % of the step
+ settling_time        | t_s    | time        | ms     | | | time until the response stays within 2 % of the step
+ overshoot            | M_p    | ratio       | %      | | | overshoot over the step
+ steady_state_ratio   | e_ss   | ratio       | %      | | | steady-state error over the step
+ following_error      | e      | length      | mm     | | | largest position error after the first period
+ hold_drift           | v_d    | speed       | mm/s   | | | creep in the last tenth of the time
+ peak_pressure        | p_max  | pressure    | bar    | | | highest chamber pressure
+ lowest_pressure      | p_min  | pressure    | bar    | | | lowest chamber pressure, gauge
+ cavitation_margin    | p-p_v  | pressure    | bar    | | | lowest absolute chamber pressure less the vapour pressure of the oil
+ stop_speed           | v_e    | speed       | m/s    | | | highest speed at which the piston meets a stop
+ efficiency           | eta    | ratio       | %      | | | work at the load over work of the supply
+ supply_energy        | W_P    | energy      | J      | | | work of the supply
+ dynamic_stiffness    | k_dyn  | stiffness   | kN/mm  | | | dynamic stiffness at the frequency of the load
+ dynamic_phase        | phi    | angle       | deg    | -180 | 180 | phase by which the force leads
+""")
+"""What a simulation tells; a scenario's requirements name them."""

@@ -44,6 +44,14 @@ BASE = {
     "voltage": "V",
     "signal_gain": "V/m",
     "conductance": "m^3/(s*Pa)",
+    "signal_rate": "V/s",
+    "speed_gain": "V*s/m",
+    "angle_gain": "V/rad",
+    "angular_speed_gain": "V*s/rad",
+    "pressure_gain": "V/Pa",
+    "angular_speed": "rad/s",
+    "angular_damping": "N*m*s/rad",
+    "inertia": "kg*m^2",
 }
 """Every dimension with its SI unit."""
 
@@ -160,6 +168,19 @@ _SCALES: dict[str, dict[str, float]] = {
         "ml/s/bar": 1e-11,
         "mm^3/s/bar": 1e-14,
     },
+    "signal_rate": {"V/s": 1.0, "V/ms": 1e3},
+    "speed_gain": {"V*s/m": 1.0, "V*s/mm": 1e3},
+    "angle_gain": {"V/rad": 1.0, "V/deg": 180 / math.pi},
+    "angular_speed_gain": {"V*s/rad": 1.0, "V/rpm": 30 / math.pi},
+    "pressure_gain": {"V/Pa": 1.0, "V/bar": 1e-5, "V/MPa": 1e-6},
+    "angular_speed": {
+        "rad/s": 1.0,
+        "rpm": math.pi / 30,
+        "1/min": math.pi / 30,
+        "deg/s": math.pi / 180,
+    },
+    "angular_damping": {"N*m*s/rad": 1.0, "N*m/rpm": 30 / math.pi},
+    "inertia": {"kg*m^2": 1.0, "kg*cm^2": 1e-4, "kg*mm^2": 1e-6, "g*cm^2": 1e-7},
 }
 _OFFSETS = {"degC": 273.15, "°C": 273.15, "degF": 459.67 * 5 / 9, "°F": 459.67 * 5 / 9}
 

@@ -24,6 +24,7 @@ import samples_lines
 import samples_machines
 import samples_motion
 import samples_rods
+import samples_servo
 import samples_tube
 
 import actuator_opt.models
@@ -443,6 +444,7 @@ for _group in (
     samples_machines,
     samples_motion,
     samples_rods,
+    samples_servo,
     samples_tube,
 ):
     SAMPLES |= _group.SAMPLES

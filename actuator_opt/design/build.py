@@ -1,10 +1,10 @@
-"""A tree of texts or numbers to a `Design`, or to all of its faults."""
+"""A tree of texts or numbers to a `Design` or another root section, or to all of its faults."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from pydantic import ValidationError
 
@@ -24,13 +24,17 @@ MOST_FAULTS = 100
 
 _TABLE_KEYS = {
     "variables": "PATHs such as cylinder.bore, each with lower and upper",
-    "requirements": "metrics such as stiffness_min, each with min or max",
+    "requirements": "metrics, each with min or max",
     "choices": "PATHs such as seals.rod.compound, each with a list of allowed values",
     "waivers": "metrics such as seal_section, each with a reason",
     "measured": "PATHs such as seals.rod.friction_coefficient, each with lower, upper and record",
     "materials": "names of materials, each with its changed properties",
+    "set": "PATHs of the design such as cylinder.bore, each with its value",
 }
 """What the keys of the tables of free names are."""
+
+
+Root = TypeVar("Root", bound=Section)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +42,15 @@ class Built:
     """What became of a tree: a design, or faults."""
 
     design: Design | None
+    faults: tuple[Fault, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Checked(Generic[Root]):
+    """A tree in SI, as far as its values are good, the section it makes, and its faults."""
+
+    tree: dict[str, Any]
+    section: Root | None
     faults: tuple[Fault, ...]
 
 
@@ -58,22 +71,43 @@ def build(
     contradictions : whether values that contradict each other are faults
     """
     metrics = quantities.METRICS if metrics is None else metrics
+    checked = check(tree, Design, metrics, cross_field if contradictions else None)
+    faults = list(checked.faults)
+    if materials is not None:
+        faults += material_faults(checked.tree, materials)
+        faults += choice_list.material_faults(checked.tree, materials)
+    return Built(None if faults else checked.section, tuple(faults))
+
+
+def check(
+    tree: Mapping[str, Any],
+    root: type[Root],
+    metrics: Mapping[str, Quantity],
+    cross: Callable[[Any], Iterable[Fault]] | None = None,
+) -> Checked[Root]:
+    """The section of the type `root` a tree describes, or every fault it has.
+
+    Parameters
+    ----------
+    tree : dicts, lists, texts with units and SI numbers, in the shape of the file
+    root : the section a whole file of this kind makes
+    metrics : metrics that requirements may name
+    cross : finds the faults between values of a tree in SI
+    """
     copy: dict[str, Any] = copy_tree(tree)
     faults = list(_nothing(copy, ()))
-    _to_si(copy)
-    faults += wishes.recheck(copy, metrics)
-    faults += choice_list.recheck(copy)
-    design = None
+    _to_si(copy, root)
+    faults += wishes.recheck(copy, metrics, root)
+    if "choices" in entries(root):
+        faults += choice_list.recheck(copy)
+    section = None
     try:
-        design = Design.model_validate(copy)
+        section = root.model_validate(copy)
     except ValidationError as error:
-        faults += _unless_known(_translate(error, copy), faults)
-    if contradictions:
-        faults += _unless_known(cross_field(copy), list(_nothing(copy, ())))
-    if materials is not None:
-        faults += material_faults(copy, materials)
-        faults += choice_list.material_faults(copy, materials)
-    return Built(None if faults else design, tuple(faults))
+        faults += _unless_known(_translate(error, root), faults)
+    if cross is not None:
+        faults += _unless_known(cross(copy), list(_nothing(copy, ())))
+    return Checked(copy, None if faults else section, tuple(faults))
 
 
 def copy_tree(node: Any) -> Any:
@@ -93,9 +127,9 @@ def _nothing(node: Any, loc: Loc) -> Iterator[Fault]:
             yield from _nothing(value, (*loc, key))
 
 
-def _to_si(tree: dict[str, Any]) -> None:
+def _to_si(tree: dict[str, Any], root: type[Section]) -> None:
     """Turn every good value of a known key into SI; faulty ones stay as they are written."""
-    for loc, entry, value in list(leaves(tree)):
+    for loc, entry, value in list(leaves(tree, root)):
         if entry.kind is None or not isinstance(value, str):
             continue
         try:
@@ -116,9 +150,9 @@ def _unless_known(faults: Iterable[Fault], known: Sequence[Fault]) -> list[Fault
     return new
 
 
-def _section_at(tree: Any, loc: Loc) -> tuple[type[Section] | None, Entry | None]:
+def _section_at(root: type[Section], loc: Loc) -> tuple[type[Section] | None, Entry | None]:
     """The section and the entry of the model at a place (None inside tables)."""
-    section: type[Section] | None = Design
+    section: type[Section] | None = root
     entry: Entry | None = None
     for key in loc:
         if isinstance(key, int):
@@ -130,20 +164,20 @@ def _section_at(tree: Any, loc: Loc) -> tuple[type[Section] | None, Entry | None
     return section, entry
 
 
-def _translate(error: ValidationError, tree: Any) -> Iterator[Fault]:
-    """Faults of the model's shape in the words of the design file."""
+def _translate(error: ValidationError, root: type[Section]) -> Iterator[Fault]:
+    """Faults of the model's shape in the words of the file."""
     for item in error.errors(include_url=False):
         loc: Loc = tuple(item["loc"])
         kind, value = item["type"], item["input"]
         if kind == "default_factory_not_called":  # only echoes another fault
             continue
-        section, entry = _section_at(tree, loc)
+        section, entry = _section_at(root, loc)
         if kind == "value":
             yield Fault(loc, item["ctx"]["message"], item["ctx"]["remedy"])
         elif kind == "missing":
-            yield Fault(loc, "missing", _how_to_add(str(loc[-1]), entry))
+            yield Fault(loc, "missing", how_to_add(str(loc[-1]), entry))
         elif kind == "extra_forbidden":
-            yield _unknown_key(loc, tree)
+            yield _unknown_key(loc, root)
         elif kind == "literal_error" and entry is not None:
             word = value if isinstance(value, str) else ""
             message = f'"{suggest.shown(word)}" is not a choice' if word else "need one word"
@@ -173,9 +207,9 @@ def _word(value: object) -> str:
     return f'"{suggest.shown(value)}"' if isinstance(value, str) else what(value)
 
 
-def _unknown_key(loc: Loc, tree: Any) -> Fault:
-    section, _ = _section_at(tree, loc[:-1])
-    table = entries(Design).get(str(loc[0]))
+def _unknown_key(loc: Loc, root: type[Section]) -> Fault:
+    section, _ = _section_at(root, loc[:-1])
+    table = entries(root).get(str(loc[0]))
     if table is not None and table.shape == "table" and table.section and len(loc) == 3:
         names = list(entries(table.section))
     else:
@@ -184,7 +218,7 @@ def _unknown_key(loc: Loc, tree: Any) -> Fault:
     return Fault(loc, "unknown key", suggest.remedy(str(loc[-1]), names), at_key=True)
 
 
-def _how_to_add(name: str, entry: Entry | None) -> str:
+def how_to_add(name: str, entry: Entry | None) -> str:
     """A line that adds a missing key."""
     if entry is None:
         return f'add "{name}: …"'

@@ -25,7 +25,7 @@ class Line(Section):
 
 
 class Valve(Section):
-    """A proportional or servo valve of four alike edges, linear in the signal."""
+    """A proportional or servo valve of four edges, linear in the signal."""
 
     rated_flow: Annotated[float, Of("rated_flow", "flow through one edge at full signal")]
     rated_drop: Annotated[
@@ -37,6 +37,15 @@ class Valve(Section):
     leakage_drop: Annotated[
         float, Of("pressure_drop", "pressure drop over that edge at the leakage flow")
     ] = 50e5
+    tank_leakage_drop: Annotated[
+        float | None,
+        Of("pressure_drop", "the same over an edge to the tank; default: leakage_drop"),
+    ] = None
+    rated_viscosity: Annotated[
+        float | None,
+        Of("oil_viscosity", "oil viscosity at the rated flow; default: none, flow as rated"),
+    ] = None
+    offset: Annotated[float, Of("signal_offset", "signal that centres the spool")] = 0.0
     signal: Annotated[float, Of("signal", "signal of the fully open spool")] = 10.0
     natural_frequency: Annotated[float, Of("frequency", "natural frequency of the spool")]
     damping_ratio: Annotated[float, Of("damping_ratio", "damping ratio of the spool")] = 0.7

@@ -2,7 +2,8 @@
 
 Every check is a small function of a `View`; it yields nothing where a value it needs is missing
 or already faulty, so the checks also run on a file with other faults. Those of the walls of
-barrel and rod are in `wall_faults`, of the seals in `seal_faults`.
+barrel and rod are in `wall_faults`, of the seals in `seal_faults`, of a joint in
+`linkage_faults`.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from .. import quantities, suggest
-from . import circuit_faults, material_laws, seal_faults, wall_faults
+from . import circuit_faults, linkage_faults, material_laws, seal_faults, wall_faults
 from .kinds import MaterialName
 from .material import ROLES
 from .structure import Loc, child, leaves
@@ -154,7 +155,7 @@ def _case_pressure(view: View, index: int) -> Iterator[Fault]:
 
 
 def load_cases(view: View) -> Iterator[Fault]:
-    """Unique names; force or torque on a lever arm; pressures and positions in range."""
+    """Unique names; force, or torque on a lever arm or linkage; pressures, positions in range."""
     seen: dict[str, int] = {}
     stroke = view.number("cylinder", "stroke")
     for index, case in enumerate(view.items("load_cases")):
@@ -166,7 +167,7 @@ def load_cases(view: View) -> Iterator[Fault]:
                 yield Fault((*loc, "name"), message, "give each load case its own name")
             seen.setdefault(name, index)
         if isinstance(case, dict):
-            yield from _case_force(loc, case)
+            yield from _case_force(loc, case, linked=view.has("linkage"))
             yield from _case_pressure(view, index)
         position = child(case, "position")
         if isinstance(position, float) and stroke is not None and position > stroke:
@@ -177,7 +178,7 @@ def load_cases(view: View) -> Iterator[Fault]:
             )
 
 
-def _case_force(loc: Loc, case: dict[str, Any]) -> Iterator[Fault]:
+def _case_force(loc: Loc, case: dict[str, Any], *, linked: bool) -> Iterator[Fault]:
     force, torque, arm = (key in case for key in ("force", "joint_torque", "lever_arm"))
     if force and (torque or arm):
         other = "joint_torque" if torque else "lever_arm"
@@ -187,15 +188,14 @@ def _case_force(loc: Loc, case: dict[str, Any]) -> Iterator[Fault]:
             "keep one of them",
             at_key=True,
         )
-    elif torque and not arm:
-        yield Fault(
-            (*loc, "lever_arm"), "missing: joint_torque needs it", 'add e.g. "lever_arm: 40 mm"'
-        )
+    elif torque and not arm and not linked:
+        remedy = 'add e.g. "lever_arm: 40 mm", or a block "linkage:"'
+        yield Fault((*loc, "lever_arm"), "missing: joint_torque needs it, or a linkage", remedy)
     elif arm and not torque:
         remedy = 'add e.g. "joint_torque: 120 N*m"'
         yield Fault((*loc, "joint_torque"), "missing: lever_arm needs it", remedy)
     elif not force and not torque:
-        remedy = 'add e.g. "force: 3 kN", or joint_torque with lever_arm'
+        remedy = 'add e.g. "force: 3 kN", or joint_torque with lever_arm or linkage'
         yield Fault((*loc, "force"), "missing", remedy)
 
 
@@ -208,6 +208,7 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     load_cases,
     *seal_faults.CHECKS,
     *circuit_faults.CHECKS,
+    *linkage_faults.CHECKS,
     *wall_faults.CHECKS,
 )
 

@@ -35,16 +35,24 @@ EXAMPLES = {
     "diameter": "6 mm", "volume": "2 ml", "pressure": "2 bar", "working_pressure": "100 bar",
     "temperature": "40 degC",
     "temperature_rise": "10 K", "air_content": "0.5 %", "force": "3 kN", "torque": "120 N*m",
-    "lever_arm": "40 mm", "speed": "0.1 m/s", "load_mass": "20 kg", "position": "55 mm",
+    "lever_arm": "40 mm", "pivot_radius": "60 mm", "joint_angle": "30 deg",
+    "joint_speed": "3 rad/s", "load_inertia": "0.5 kg*m^2",
+    "speed": "0.1 m/s", "load_mass": "20 kg", "position": "55 mm",
     "fraction": "50 %", "friction_coefficient": "0.3", "breakaway_ratio": "1.5",
     "stribeck_speed": "5 mm/s", "breakaway_travel": "0.1 mm", "viscous_friction": "100 N*s/m",
     "safety_factor": "1.5", "cycles": "20000", "stiffness": "50 kN/mm", "coefficient": "1",
     "surface_roughness": "0.2 um", "rms_roughness": "0.2 um", "taper": "6 deg",
     "frequency": "20 Hz", "rated_flow": "10 l/min",
-    "leakage_flow": "0.1 l/min", "pressure_drop": "35 bar", "signal": "10 V", "gain": "500 V/m",
+    "leakage_flow": "0.1 l/min", "pressure_drop": "35 bar", "signal": "10 V",
+    "signal_offset": "0.1 V", "gain": "500 V/m", "oil_viscosity": "32 mm^2/s",
     "damping_ratio": "0.7", "orifice_area": "0.2 cm^2", "opening": "50 %",
     "conductance": "20 ml/min/bar", "gas_volume": "50 ml", "precharge": "30 bar",
     "polytropic_index": "1.4",
+    "duration": "2 s", "sample_time": "1 ms", "time_constant": "20 ms", "signal_rate": "500 V/s",
+    "displacement": "13.3 ml", "displacement_setting": "1", "slip_coefficient": "1.5e-7",
+    "coulomb_coefficient": "0.16", "viscous_coefficient": "1e5", "drive_speed": "1500 rpm",
+    "pump_gain": "2 l/min/bar", "coulomb_force": "80 N", "static_force": "120 N",
+    "stribeck_exponent": "2", "margin": "2", "cycles_per_window": "5",
 }  # fmt: skip
 """One good value of every input quantity, for messages, the schema and the start file."""
 
@@ -183,7 +191,7 @@ class Of(Kind):
     """A float: the quantity it is. Text must carry its unit, a Python number is SI."""
 
     def __init__(self, quantity: str, help: str = "") -> None:
-        self.quantity = quantities.INPUTS[quantity]
+        self.quantity = (quantities.INPUTS | quantities.SCENARIOS)[quantity]
         self.help = help
         self.example = example(self.quantity)
 

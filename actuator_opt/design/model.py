@@ -14,6 +14,7 @@ from . import choices
 from .choices import Paper
 from .circuit import Control, Line, Ports, Valve
 from .kinds import CaseName, Flag, Fraction, Goal, MaterialName, Of, Position, PositionKind, Text
+from .linkage import Linkage, Load
 from .seals import Seals
 from .section import Section
 
@@ -228,12 +229,6 @@ class Clevis(Section):
     pin_diameter: Annotated[float, Of("diameter", "diameter of the pins")]
 
 
-class Load(Section):
-    """What the rod moves."""
-
-    mass: Annotated[float, Of("load_mass", "moved mass, reflected to the rod")] = 0.0
-
-
 class Stiffness(Section):
     """What counts in the axial stiffness, and how it combines."""
 
@@ -248,14 +243,25 @@ class Stiffness(Section):
 
 
 class LoadCase(Section):
-    """One duty: a force (or a joint torque on a lever arm), a direction, a speed, a place."""
+    """One duty: a force (or a joint torque), a direction, a speed, a place.
+
+    A joint torque works on its own lever arm, or through the linkage.
+    """
 
     name: Annotated[str, CaseName("how reports and PATHs call the case")]
     direction: choices.Direction
     force: Annotated[float | None, Of("force", "axial force to deliver")] = None
     joint_torque: Annotated[float | None, Of("torque", "joint torque, instead of a force")] = None
-    lever_arm: Annotated[float | None, Of("lever_arm", "lever arm of the joint torque")] = None
+    lever_arm: Annotated[
+        float | None, Of("lever_arm", "lever arm of the joint torque; default: of the linkage")
+    ] = None
+    angle: Annotated[
+        float | None, Of("joint_angle", "joint angle of the linkage, instead of a position")
+    ] = None
     speed: Annotated[float, Of("speed", "piston speed")] = 0.0
+    joint_speed: Annotated[
+        float | None, Of("joint_speed", "speed of the joint of the linkage, instead of speed")
+    ] = None
     position: Annotated[Position, PositionKind()] = "worst"
     pressure: Annotated[
         float | None, Of("pressure", "gauge pressure at the driven port; default: supply.pressure")
@@ -283,6 +289,16 @@ class LoadCase(Section):
             "default: as a critical-centre valve holds the force",
         ),
     ] = None
+
+    @property
+    def through_linkage(self) -> bool:
+        """Whether a joint torque is asked that works through the linkage."""
+        return self.joint_torque is not None and self.lever_arm is None
+
+    @property
+    def moves(self) -> bool:
+        """Whether the piston or the joint has a speed."""
+        return self.speed > 0 or (self.joint_speed or 0.0) > 0
 
 
 class Variable(Section):
@@ -362,6 +378,7 @@ class Design(Section):
     ports: Ports = Ports()
     control: Control | None = None
     load: Load = Load()
+    linkage: Linkage | None = None
     load_cases: Annotated[tuple[LoadCase, ...], Field(min_length=1, max_length=100)]
     variables: dict[str, Variable] = {}  # noqa: RUF012 (pydantic copies it)
     choices: dict[str, tuple[float | bool | str | Fraction, ...]] = {}  # noqa: RUF012 (pydantic copies it)

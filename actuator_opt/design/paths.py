@@ -3,7 +3,8 @@
 ``cylinder.bore`` · ``barrel.layup[1].thickness`` · ``load_cases[stance].force`` ·
 ``requirements.stiffness_min.min`` · ``variables.cylinder.bore.upper`` ·
 ``materials.NAME.PROPERTY``. A load case may be named or counted from 0; its canonical PATH names
-it. Everything here takes a `Design` or the tree of dicts and lists it is built from.
+it. Everything here takes a `Design` or the tree of dicts and lists it is built from; `resolve`
+also takes those of another root.
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ _PATH = re.compile(r"[^.\[\]=]+(\[[^\[\]=]+\])?(\.[^.\[\]=]+(\[[^\[\]=]+\])?)*")
 _TOKEN = re.compile(r"\[([^\[\]]+)\]|([^.\[\]]+)")
 _ENDS = {"variables": ("lower", "upper", "start"), "measured": ("lower", "upper", "record")}
 _LIMITS = ("min", "max")
-_TABLES = (*_ENDS, "requirements", "materials", "waivers", "objective")
+_TEXTS = ("waivers", "set")
+_TABLES = (*_ENDS, *_TEXTS, "requirements", "materials", "objective")
 
 
 class _Token(NamedTuple):
@@ -73,8 +75,13 @@ def _case_names(tree: Any) -> list[Any]:
     return [child(case, "name") for case in cases] if isinstance(cases, (list, tuple)) else []
 
 
-def resolve(path: str, tree: Any, metrics: Mapping[str, Quantity] | None = None) -> Target:
-    """What `path` names in a design or a tree.
+def resolve(
+    path: str,
+    tree: Any,
+    metrics: Mapping[str, Quantity] | None = None,
+    root: type[Section] = Design,
+) -> Target:
+    """What `path` names in a section of the type `root` or in its tree.
 
     Raises
     ------
@@ -88,25 +95,31 @@ def resolve(path: str, tree: Any, metrics: Mapping[str, Quantity] | None = None)
             "write e.g. cylinder.bore or barrel.layup[0].angle",
         )
     head, _, rest = path.partition(".")
-    if rest and head == "choices":
+    if rest and head == "choices" and head in entries(root):
         raise ValueFault(f"{path}: is a list, not a value", "change the list in the file")
-    if rest and head in _TABLES:
+    if rest and head in _TABLES and head in entries(root):
         return _resolve_table(head, rest, tree, quantities.METRICS if metrics is None else metrics)
     tokens = [_Token(m[1] or m[2], m[1] is not None) for m in _TOKEN.finditer(path)]
-    return _resolve_section(path, tokens, tree, tree, Design, ())
+    return _resolve_section(path, tokens, (tree, root), tree, root, ())
 
 
 def _resolve_section(
-    path: str, tokens: Sequence[_Token], tree: Any, node: Any, section: type[Section], loc: Loc
+    path: str,
+    tokens: Sequence[_Token],
+    whole: tuple[Any, type[Section]],
+    node: Any,
+    section: type[Section],
+    loc: Loc,
 ) -> Target:
-    """Follow `tokens` from one section, whose node may be unset (None)."""
-    known = entries(section)
+    """Follow `tokens` from one section of the whole tree, whose node may be unset (None)."""
+    known, tree = entries(section), whole[0]
     if not tokens:
         raise _not_a_value(path, list(known))
     name, rest = tokens[0].text, tokens[1:]
     entry = known.get(name)
     if entry is None or tokens[0].bracket:
-        raise _unknown(path, tree, [spell((*loc, key), tree) for key in known])
+        siblings = [spell((*loc, key), tree) for key in known]
+        raise _no_such(path, [*siblings, *(spell(at, tree) for at, _, _ in leaves(*whole))])
     node, loc = child(node, name), (*loc, name)
     if entry.shape in ("value", "choice"):
         if rest:
@@ -122,7 +135,7 @@ def _resolve_section(
             return Target(spell(loc, tree), loc, entry.quantity(node), entry)
     if entry.section is None or entry.shape == "table":
         raise _not_a_value(path, ["NAME"])
-    return _resolve_section(path, rest, tree, node, entry.section, loc)
+    return _resolve_section(path, rest, whole, node, entry.section, loc)
 
 
 def _index(path: str, text: str, node: Any, loc: Loc) -> int:
@@ -142,11 +155,11 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
     """A value of a table: its name is free (a PATH, a metric, a material)."""
     path = f"{head}.{rest}"
     name, _, last = rest.rpartition(".")
-    if head == "waivers":
+    if head in _TEXTS:
         return Target(path, (head, rest), None)
     if head == "objective":
         if rest not in ("minimise", "maximise"):
-            raise _unknown(path, tree, ["objective.minimise", "objective.maximise"])
+            raise _no_such(path, ["objective.minimise", "objective.maximise"])
         return Target(path, (head, rest), None)
     if head in _ENDS:
         if not name or last not in _ENDS[head]:
@@ -173,8 +186,7 @@ def _not_a_value(path: str, below: Sequence[str]) -> ValueFault:
     return ValueFault(f"{path}: names a block, not a value", f"add one of .{', .'.join(below[:8])}")
 
 
-def _unknown(path: str, tree: Any, siblings: Sequence[str]) -> ValueFault:
-    every = [*siblings, *(spell(loc, tree) for loc, _, _ in leaves(tree))]
+def _no_such(path: str, every: Sequence[str]) -> ValueFault:
     return ValueFault(f"{path}: no such PATH", suggest.remedy(path, dict.fromkeys(every), 6))
 
 
@@ -255,14 +267,15 @@ def put(tree: dict[str, Any], target: Target, value: object) -> None:
         something else stands where a block belongs
     """
     node: Any = tree
-    for depth, key in enumerate(target.loc[:-1]):
-        below = child(node, key)
-        if below is None:
-            below = node[key] = {}
-        if not isinstance(below, (dict, list)):
-            message = f"{spell(target.loc[: depth + 1])} is not a block"
+    for depth, key in enumerate(target.loc):
+        if depth:
+            above = target.loc[depth - 1]
+            if child(node, above) is None:
+                node[above] = {}
+            node = child(node, above)
+        if not isinstance(node, list if isinstance(key, int) else dict):
+            message = f"{spell(target.loc[:depth])} is not a block"
             raise ValueFault(message, "mend it in the file first")
-        node = below
     key = target.loc[-1]
     if target.loc[0] == "objective":
         node.clear()  # a design has one objective: the new one replaces it

@@ -1,21 +1,25 @@
-"""Design files: read, checked in one pass, every fault at its line and column."""
+"""Design files: read, checked in one pass, every fault at its line and column.
+
+`load` reads files of another root section with the same care.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final, Literal
+from typing import Any, Final, NamedTuple
 
 from .. import suggest, units
 from ..errors import Diagnostic, InputError
 from ..quantities import Quantity
 from ..store import read_bytes
 from . import layup
-from .build import MOST_FAULTS, build, copy_tree
+from .build import MOST_FAULTS, Root, build, copy_tree
 from .kinds import ValueFault
 from .model import Design
 from .paths import put, resolve, spell
+from .section import Section
 from .structure import Loc
 from .view import Fault, Materials
 from .yaml_source import MAX_BYTES, Document, Span, decode, parse
@@ -25,13 +29,35 @@ STDIN = "<stdin>"
 SET: Final = "--set"
 
 
+class Override(NamedTuple):
+    """A value that replaces a file's; `file` and `loc` say where, if another file states it."""
+
+    path: str
+    value: str
+    file: Document | None = None
+    loc: Loc = ()
+
+    def diagnostic(
+        self, message: str, remedy: str, path: str | None, *, at_key: bool = False
+    ) -> Diagnostic:
+        """A fault this value causes."""
+        if self.file is None:
+            return Diagnostic(message, remedy, SET, path=path)
+        spans = self.file.keys if at_key else self.file.values
+        return self.file.diagnostic(spans.get(self.loc), message, remedy, path)
+
+
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where a design's values stand, for faults found later (by an evaluation, a plug-in)."""
+    """Where a file's values stand, for faults found later (by an evaluation, a plug-in)."""
 
     document: Document
-    overrides: Mapping[Loc, str] = field(default_factory=dict)
-    """Places set from outside the file, with the text that set them."""
+    overrides: Mapping[Loc, Override] = field(default_factory=dict)
+    """Places set from outside the file."""
+    root: type[Section] = Design
+    """What the file describes."""
+    metrics: Mapping[str, Quantity] | None = None
+    """Metrics its requirements may name; default: `quantities.METRICS`."""
 
     @property
     def file(self) -> str:
@@ -46,7 +72,7 @@ class Source:
     def diagnostic(self, path: str, message: str, remedy: str = "") -> Diagnostic:
         """A fault of the value at a PATH; a PATH the file does not hold gets its block's place."""
         try:
-            loc = resolve(path, self.document.data).loc
+            loc = resolve(path, self.document.data, self.metrics, self.root).loc
         except ValueFault:
             loc = ()
         return self.at(Fault(loc, message, remedy), path)
@@ -62,8 +88,8 @@ class Source:
         if path is not None:
             path = suggest.shown(path, 120)
         place = self._find(fault)
-        if place == SET:
-            return Diagnostic(fault.message, fault.remedy, SET, path=path)
+        if isinstance(place, Override):
+            return place.diagnostic(fault.message, fault.remedy, path)
         return self.document.diagnostic(place, fault.message, fault.remedy, path)
 
     def place(self, fault: Fault) -> tuple[int, int]:
@@ -71,15 +97,17 @@ class Source:
         found = self._find(fault)
         return found[:2] if isinstance(found, Span) else (0, 0)
 
-    def _find(self, fault: Fault) -> Span | Literal["--set"] | None:
-        """The nearest place in the text at or above the fault's own."""
+    def _find(self, fault: Fault) -> Span | Override | None:
+        """The nearest place in the text at or above the fault's own, or what replaced it."""
         for depth in range(len(fault.loc), -1, -1):
             loc = fault.loc[:depth]
             if loc in self.overrides:
-                return SET
+                return self.overrides[loc]
             span = self.document.values.get(loc)
-            if span is None and any(other[:depth] == loc for other in self.overrides):
-                return SET  # the block itself came from outside
+            if span is None:
+                for other, override in self.overrides.items():
+                    if other[:depth] == loc:
+                        return override  # the block itself came from outside
             if fault.at_key or depth < len(fault.loc):
                 span = self.document.keys.get(loc) or span
             if span is not None:
@@ -98,7 +126,7 @@ class LoadedDesign:
 def read_design(
     source: str | Path,
     *,
-    overrides: Iterable[tuple[str, str]] = (),
+    overrides: Iterable[Override | tuple[str, str]] = (),
     materials: Materials | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> LoadedDesign:
@@ -108,7 +136,7 @@ def read_design(
     ----------
     source : path, ``"-"`` for standard input, or a text of several lines
     overrides : (PATH, value) pairs that replace values before anything is checked; a bare
-        number is SI
+        number is SI, but for those that another file states
     materials : names and kinds of materials; default: the library
     metrics : metrics that may be named; default: `quantities.METRICS`
 
@@ -117,7 +145,7 @@ def read_design(
     InputError
         with every fault, in the order of the file's lines
     """
-    text, file = _open(source)
+    text, file = opened(source)
     return read_document(
         parse(text, file), overrides=overrides, materials=materials, metrics=metrics
     )
@@ -126,29 +154,78 @@ def read_design(
 def read_document(
     document: Document,
     *,
-    overrides: Iterable[tuple[str, str]] = (),
+    overrides: Iterable[Override | tuple[str, str]] = (),
     materials: Materials | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> LoadedDesign:
     """The design of a parsed YAML document; parameters as `read_design`."""
-    document = layup.expanded(document)
+
+    def made(tree: dict[str, Any]) -> tuple[Design | None, Sequence[Fault]]:
+        known = library() if materials is None else materials
+        built = build(tree, materials=known, metrics=metrics)
+        return built.design, built.faults
+
+    return LoadedDesign(*load(layup.expanded(document), Design, made, overrides, metrics))
+
+
+def load(
+    document: Document,
+    root: type[Root],
+    made: Callable[[dict[str, Any]], tuple[Root | None, Sequence[Fault]]],
+    overrides: Iterable[Override | tuple[str, str]] = (),
+    metrics: Mapping[str, Quantity] | None = None,
+) -> tuple[Root, Source]:
+    """The section a document describes, and where its values stand.
+
+    Parameters
+    ----------
+    document : parsed YAML
+    root : the section a whole file of this kind makes
+    made : makes it of a tree, or finds the tree's faults
+    overrides : values that replace the document's, as of `read_design`
+    metrics : metrics that may be named; default: `quantities.METRICS`
+
+    Raises
+    ------
+    InputError
+        with every fault, in the order of the file's lines
+    """
+    _require_kind(document)
     tree = copy_tree(document.data)
     faults = list(document.faults)
-    places: dict[Loc, str] = {}
-    for path, value in overrides:
+    places: dict[Loc, Override] = {}
+    for override in (Override(*given) for given in overrides):
+        path, value, file, _ = override
         try:
-            target = resolve(path, tree, metrics)
-            put(tree, target, _bare_is_si(value, target.quantity))
-            places[target.loc] = value
+            target = resolve(path, tree, metrics, root)
+            if file is not None and target.loc in places:
+                raise ValueFault(f"is also set as {places[target.loc].path}", "keep one of them")
+            put(tree, target, value if file is not None else _bare_is_si(value, target.quantity))
+            places[target.loc] = override
         except ValueFault as fault:
-            message = fault.message.removeprefix(f"{path}: ")
-            faults.append(Diagnostic(message, fault.remedy, SET, path=suggest.shown(path, 120)))
-    source = Source(document, places)
-    built = build(tree, materials=library() if materials is None else materials, metrics=metrics)
-    found = _once([f for f in built.faults if not _unusable(f, document)], document)
-    if built.design is None or faults or found:
+            message, shown = fault.message.removeprefix(f"{path}: "), suggest.shown(path, 120)
+            faults.append(override.diagnostic(message, fault.remedy, shown, at_key=True))
+    source = Source(document, places, root, metrics)
+    section, all_found = made(tree)
+    found = _once([f for f in all_found if not _unusable(f, document)], document)
+    if section is None or faults or found:
         raise InputError(_in_order(source, faults, found))
-    return LoadedDesign(built.design, source)
+    return section, source
+
+
+_MARKS = {"design": "cylinder", "scenario": "design"}
+"""A key that every such file has, and no other."""
+
+
+def _require_kind(document: Document) -> None:
+    """Refuse a scenario in a design's place, or a design in a scenario's, in one line."""
+    for kind, mark in _MARKS.items():
+        if mark in document.data and _MARKS[document.what] not in document.data:
+            remedy = "give the design it names"
+            if kind == "design":
+                remedy = f'name it in a scenario: "design: {Path(document.file).name}"'
+            message = f"the file is a {kind}, not a {document.what}"
+            raise InputError(document.diagnostic(document.keys.get((mark,)), message, remedy))
 
 
 def _unusable(fault: Fault, document: Document) -> bool:
@@ -172,10 +249,13 @@ def _once(faults: Sequence[Fault], document: Document) -> list[Fault]:
 def _in_order(
     source: Source, said: Sequence[Diagnostic], found: Sequence[Fault]
 ) -> list[Diagnostic]:
-    """Faults by line and column, at most `MOST_FAULTS` and a line that counts the rest."""
+    """Faults by line and column, at most `MOST_FAULTS` and a line that counts the rest.
+
+    Those of other files and of the command line stand first.
+    """
     first = sorted(found, key=source.place)[:MOST_FAULTS]
     everything = [*said, *(source.at(fault) for fault in first)]
-    everything.sort(key=lambda fault: (fault.line or 0, fault.column or 0))
+    everything.sort(key=lambda f: (f.file == source.file, f.line or 0, f.column or 0))
     left = len(said) + len(found) - MOST_FAULTS
     if left > 0:
         more = Diagnostic(f"and {left} more faults", "mend these first", source.file)
@@ -196,12 +276,13 @@ def _bare_is_si(value: str, quantity: Quantity | None) -> str:
     return f"{number * 100!r} %" if quantity.name == "fraction" else f"{value} {quantity.si_unit}"
 
 
-def _open(source: str | Path) -> tuple[str, str]:
+def opened(source: str | Path, what: str = "design") -> tuple[str, str]:
+    """Text and name of a file, of standard input, or of a text of several lines."""
     if isinstance(source, str) and ("\n" in source or "\r" in source):
         return source, TEXT
     name = STDIN if source == "-" else str(source)
-    data = read_bytes(source, most=MAX_BYTES + 1, kinds=(".yaml", ".yml"), what="design file")
-    return decode(data, name), name
+    data = read_bytes(source, most=MAX_BYTES + 1, kinds=(".yaml", ".yml"), what=f"{what} file")
+    return decode(data, name, what), name
 
 
 def library() -> Materials:

@@ -1,4 +1,4 @@
-"""JSON Schema (draft-07) of the design file, for completion, hover and checks in an editor.
+"""JSON Schema (draft-07) of the files people write, for completion, hover and checks in an editor.
 
 Generated from the same declarations the reader uses: sections of `model`, quantities, units and
 metrics. Texts carry what yaml-language-server and VS Code show: `description` on hover,
@@ -8,219 +8,62 @@ metrics. Texts carry what yaml-language-server and VS Code show: `description` o
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
 
-from .. import quantities, units
+from .. import quantities
 from ..quantities import Quantity
-from . import choice_list, layup, wishes
-from .kinds import CaseName, Flag, Kind, MaterialName, Of, PositionKind, Text, example
-from .material import ROLES
-from .model import Design, Ply
+from . import choice_list, wishes
+from .kinds import MaterialName, Of, Text
+from .model import Design
+from .schema_values import Schema, entry_schema, quantity_schema, section_schema, text_of
 from .section import Section
 from .structure import Entry, entries
 from .view import Materials
 
-Schema = dict[str, Any]
-
-_NUMBER = r"(\d[\d_]*\.?\d*|\.\d+)([eE][+-]?\d+)?"
 _REFERENCE = str.maketrans({"/": "_per_", "^": "", "*": "_", "%": "percent"})
 _LISTED = {"barrel.layup": 6, "rod.layup": 4, "lines": 2}
 """How many entries of a list have their PATHs offered by name under `variables`."""
+_OF_TABLES = r"^(name|notes|(objective|requirements|variables|measured|materials|waivers)\..+)$"
+"""PATHs that `set` takes beside those of the parts."""
 
 
 def json_schema(
+    root: type[Section] = Design,
     *,
     materials: Materials | None = None,
     metrics: Mapping[str, Quantity] | None = None,
 ) -> Schema:
-    """The schema of a design file.
+    """The schema of a design file, or of a file that describes another root section.
 
     Parameters
     ----------
+    root : what the file describes
     materials : library whose names are offered; None takes any name
     metrics : metrics that may be named; default: `quantities.METRICS`
     """
     metrics = quantities.METRICS if metrics is None else metrics
     definitions: Schema = {}
-    schema = _section(Design, materials)
-    properties = schema["properties"]
-    properties["variables"] |= _variables(definitions)
-    properties["measured"] |= _measured(definitions)
-    properties["choices"] |= _choices()
-    properties["requirements"] |= _requirements(metrics, definitions)
-    properties["objective"] |= _objective(metrics)
-    properties["waivers"] |= _waivers(metrics)
-    properties["materials"] |= _materials(materials)
+    schema = section_schema(root, materials)
+    tables: dict[str, Callable[[], Schema]] = {
+        "set": lambda: _set(materials, definitions),
+        "variables": lambda: _variables(definitions),
+        "measured": lambda: _measured(definitions),
+        "choices": _choices,
+        "requirements": lambda: _requirements(metrics, definitions),
+        "objective": lambda: _objective(metrics),
+        "waivers": lambda: _waivers(metrics),
+        "materials": lambda: _materials(materials),
+    }
+    for name, table in tables.items():
+        if name in entries(root):
+            schema["properties"][name] |= table()
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",
-        "title": "actuator-opt design",
+        "title": f"actuator-opt {root.__name__.lower()}",
         **schema,
         "definitions": definitions,
     }
-
-
-def _text_of(help: str, quantity: Quantity | None = None) -> str:
-    """Hover text: what it is, its symbol, range, units and an example."""
-    if quantity is None:
-        return help
-    names = ", ".join(units.units_of(quantity.dimension)) or "none (a bare number)"
-    lines = [
-        f"{help or quantity.label} ({quantity.symbol})",
-        f"Quantity: {quantity.label}",
-        f"Range: {quantity.range_text()}",
-        f"Units: {names}",
-        f"Example: {example(quantity)}",
-    ]
-    return "\n\n".join(lines)
-
-
-def _unit_pattern(name: str) -> str:
-    """A unit in every spelling the reader takes: N*m, N·m, N m, Nm; m^3, m³, m3, m**3."""
-    pattern = re.escape(name).replace(r"\ ", " ").replace(r"\-", "-").replace(r"\*", "[*·⋅ ]?")
-    for power, raised in (("2", "²"), ("3", "³")):
-        pattern = pattern.replace(rf"\^{power}", rf"(\^|\*\*)?{power}".join(("(", f"|{raised})")))
-    return pattern
-
-
-def quantity_schema(quantity: Quantity, help: str = "") -> Schema:
-    """A value of a quantity: text with one of its units; bare where the reader takes it bare."""
-    names = sorted(units.units_of(quantity.dimension), key=len, reverse=True)
-    bare = quantity.dimension in ("ratio", "count")
-    sign = "[+-]?" if quantity.lower < 0 or quantity.dimension == "temperature" else r"\+?"
-    unit = rf"\s*({'|'.join(map(_unit_pattern, names))})" if names else ""
-    if bare and unit:
-        unit = f"({unit})?"
-    zero = rf"|{sign}0+(\.0*)?" if quantity.lower <= 0 <= quantity.upper and not bare else ""
-    fault = f'write a number with its unit, e.g. "{example(quantity)}" ({quantity.range_text()})'
-    if bare:
-        fault = f'write a number, e.g. "{example(quantity)}" ({quantity.range_text()})'
-    schema: Schema = {
-        "title": quantity.label,
-        "description": _text_of(help, quantity),
-        "type": "string",
-        "pattern": f"^\\s*({sign}{_NUMBER}{unit}{zero})\\s*$",
-        "patternErrorMessage": fault,
-        "errorMessage": fault,
-        "examples": [example(quantity)],
-    }
-    if bare:
-        schema |= {
-            "type": ["string", "number"],
-            "minimum": quantity.lower,
-            "maximum": quantity.upper,
-        }
-    elif zero:
-        schema |= {"type": ["string", "number"], "minimum": 0, "maximum": 0}
-    if quantity.dimension == "count":
-        schema["multipleOf"] = 1
-    return schema
-
-
-def _value(kind: Kind | None, materials: Materials | None) -> Schema:
-    if isinstance(kind, Of):
-        return quantity_schema(kind.quantity, kind.help)
-    if isinstance(kind, PositionKind):
-        length = quantity_schema(kind.length)
-        share = {"type": "string", "pattern": f"^\\s*\\+?{_NUMBER}\\s*%\\s*$"}
-        message = 'write worst, a length ("55 mm") or a share of the stroke ("50 %")'
-        keep = ("type", "pattern", "minimum", "maximum")
-        return {
-            "title": "position",
-            "description": kind.help,
-            "anyOf": [{"const": "worst"}, {k: length[k] for k in keep if k in length}, share],
-            "errorMessage": message,
-            "examples": ["worst", "50 %", "55 mm"],
-        }
-    help = kind.help if kind is not None else ""
-    if isinstance(kind, Flag):
-        words = [*kind.words, True, False]
-        return {"description": help, "enum": words, "examples": [True, False]}
-    schema: Schema = {"description": help, "type": "string"}
-    if isinstance(kind, MaterialName):
-        schema |= {"title": "material", "examples": [kind.example]}
-        if materials is not None:
-            names = [n for n in materials.names() if materials.kind(n) in ROLES[kind.role]]
-            schema |= {"enum": names, "errorMessage": "no such material of a fitting kind"}
-        return schema
-    # names such as 12 or true are texts for the reader, numbers or booleans for an editor
-    schema["type"] = ["string", "number", "boolean"]
-    if isinstance(kind, CaseName):
-        schema["type"] = "string"
-    if isinstance(kind, Text):
-        schema["maxLength"] = kind.longest
-        schema["examples"] = [kind.example]
-    return schema
-
-
-def _entry(entry: Entry, materials: Materials | None) -> Schema:
-    if entry.shape == "choice":
-        help = entry.kind.help if entry.kind is not None else ""
-        schema: Schema = {"description": help, "type": "string", "enum": list(entry.choices)}
-    elif entry.shape == "section" and entry.section is not None:
-        schema = _section(entry.section, materials)
-    elif entry.shape == "list":
-        of = entry.section
-        items = _value(entry.kind, materials) if of is None else _section(of, materials)
-        schema = {"type": "array", "minItems": entry.least, "items": items}
-        schema["description"] = items["description"]
-        if entry.most is not None:
-            schema["maxItems"] = entry.most
-    elif entry.shape == "table":
-        schema = {"type": "object"}
-    else:
-        schema = _value(entry.kind, materials)
-    if isinstance(entry.default, str):
-        schema["default"] = entry.default
-    return schema
-
-
-def _section(section: type[Section], materials: Materials | None) -> Schema:
-    known = entries(section)
-    schema: Schema = {
-        "description": (section.__doc__ or "").split("\n\n")[0].replace("\n    ", " "),
-        "type": "object",
-        "additionalProperties": False,
-        "properties": {name: _entry(entry, materials) for name, entry in known.items()},
-    }
-    required = [name for name, entry in known.items() if entry.required]
-    if required:
-        schema["required"] = required
-        body = {name: _snippet(entry) for name, entry in known.items() if entry.required}
-        schema["defaultSnippets"] = [{"label": section.__name__.lower(), "body": body}]
-    return _with_notation(schema) if section is Ply else schema
-
-
-def _with_notation(schema: Schema) -> Schema:
-    """A layer, or several of them in compact notation."""
-    said = [{"required": [key]} for key in ("angle", "thickness", "balanced")]
-    schema["properties"]["plies"] = {
-        "title": "lay-up in compact notation",
-        "description": "Several layers, from the inside outwards: angles in degrees, +-25 a "
-        "balanced pair of plies, 25 one ply at that angle, _n repeats, s mirrors a group",
-        "type": ["string", "number"],
-        "pattern": r"^[-+±0-9./_\[\]sS\s]+$",
-        "examples": [layup.EXAMPLE],
-        "errorMessage": f'write e.g. "{layup.EXAMPLE}", with ply_thickness',
-    }
-    schema["required"] = ["material"]
-    schema["oneOf"] = [
-        {"required": ["thickness"], "not": {"required": ["plies"]}},
-        {"required": ["plies", "ply_thickness"], "not": {"anyOf": said}},
-    ]
-    body = {"material": "t700_epoxy", "plies": layup.EXAMPLE, "ply_thickness": "0.2 mm"}
-    schema["defaultSnippets"].append({"label": "plies", "body": body})
-    return schema
-
-
-def _snippet(entry: Entry) -> Any:
-    if entry.section is not None:
-        below = {n: _snippet(e) for n, e in entries(entry.section).items() if e.required}
-        return [below] if entry.shape == "list" else below
-    if entry.choices:
-        return entry.choices[0]
-    return entry.kind.example if entry.kind is not None else ""
 
 
 def _of_parts(section: type[Section] = Design, prefix: str = "") -> dict[str, Entry]:
@@ -261,7 +104,7 @@ def _bounds(kind: Of, path: str, definitions: Schema) -> Schema:
     definitions.setdefault(name, quantity_schema(kind.quantity))
     return {
         "title": path,
-        "description": _text_of(kind.help, kind.quantity),
+        "description": text_of(kind.help, kind.quantity),
         "type": "object",
         "additionalProperties": False,
         "required": ["lower", "upper"],
@@ -294,6 +137,21 @@ def _measured(definitions: Schema) -> Schema:
             }
     help = "What a test record says of values above: PATH with 95 % bounds and the record's name."
     return {"description": help} | _by_path(known)
+
+
+def _set(materials: Materials | None, definitions: Schema) -> Schema:
+    known: Schema = {}
+    for path, entry in _of_parts().items():
+        known[path] = entry_schema(entry, materials)
+        if isinstance(entry.kind, Of):
+            name = entry.kind.quantity.name
+            definitions.setdefault(name, quantity_schema(entry.kind.quantity))
+            text = text_of(entry.kind.help, entry.kind.quantity)
+            known[path] = {"description": text, "allOf": [{"$ref": f"#/definitions/{name}"}]}
+        known[path]["title"] = path
+    schema = _by_path(known)
+    schema["patternProperties"][_OF_TABLES] = {"type": ["string", "number"]}
+    return {"description": "Values of the design that are other here, by PATH."} | schema
 
 
 def _choices() -> Schema:

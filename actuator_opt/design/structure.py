@@ -17,7 +17,7 @@ from .model import Design
 from .section import Section
 
 Loc: TypeAlias = tuple[str | int, ...]
-"""Keys and indices from the design to a value."""
+"""Keys and indices from the root to a value."""
 
 Shape: TypeAlias = Literal["value", "choice", "section", "list", "table"]
 
@@ -158,10 +158,9 @@ def number_of(value: object) -> float | None:
     return None
 
 
-def value_at(tree: Any, loc: Loc) -> Any:
-    """The value at a place of a design or a tree, else the default the model gives it there."""
+def value_at(tree: Any, loc: Loc, section: type[Section] = Design) -> Any:
+    """The value at a place of a section or its tree, else the default the model gives it there."""
     node, default = tree, None
-    section: type[Section] = Design
     for key in loc:
         node = child(node, key)
         if isinstance(key, int):

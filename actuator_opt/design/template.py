@@ -130,11 +130,15 @@ lines:                         # between valve and chambers; leave out if there 
 
 load:
   mass: 20 kg                  # moved mass, reflected to the rod
+# linkage:                     # with two pivots about a joint: joint_torque without lever_arm, at
+#   base_radius: 280 mm        # an angle or at the worst of the stroke; joint_speed; load.inertia
+#   crank_radius: 70 mm        # joint axis to the crank pin
+#   angle_offset: 10 deg       # between both radii at joint angle 0; grows with the actuator
 
 load_cases:                    # each requirement is met in the worst of these
   - name: stance
     direction: push
-    force: 3 kN                # or joint_torque: 120 N*m with lever_arm: 40 mm
+    force: 3 kN                # or joint_torque: 120 N*m with lever_arm: 40 mm (or linkage)
     speed: 0.1 m/s
     position: worst            # or a length, or a share of the stroke (50 %)
     side_load: 20 N

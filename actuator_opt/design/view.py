@@ -1,12 +1,14 @@
-"""A design's tree as checks read it: numbers by place, and the fault a check finds there."""
+"""A file's tree as checks read it: numbers by place, and the fault a check finds there."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
 from .. import quantities
+from .model import Design
+from .section import Section
 from .structure import Loc, child_at, number_of, value_at
 
 
@@ -49,31 +51,45 @@ class Properties(Protocol):
 class View:
     """A tree in SI, read by dotted keys, with the model's defaults; None where unusable."""
 
-    def __init__(self, tree: Any) -> None:
+    def __init__(self, tree: Any, root: type[Section] = Design) -> None:
         self.tree = tree
+        self.root = root
+
+    def value(self, *loc: str | int) -> Any:
+        """Whatever stands at a place, else its default."""
+        return value_at(self.tree, loc, self.root)
 
     def number(self, *loc: str | int) -> float | None:
         """The SI number at a place."""
-        return number_of(value_at(self.tree, loc))
+        return number_of(self.value(*loc))
 
     def text(self, *loc: str | int) -> str | None:
         """The text at a place."""
-        value = value_at(self.tree, loc)
+        value = self.value(*loc)
         return value if isinstance(value, str) else None
 
     def flag(self, *loc: str | int) -> bool | None:
         """The yes or no at a place."""
-        value = value_at(self.tree, loc)
+        value = self.value(*loc)
         return value if isinstance(value, bool) else None
 
     def items(self, *loc: str | int) -> Sequence[Any]:
         """The entries of a list."""
-        value = value_at(self.tree, loc)
+        value = self.value(*loc)
         return value if isinstance(value, (list, tuple)) else ()
 
     def has(self, *loc: str | int) -> bool:
         """Whether the file states a value here."""
         return child_at(self.tree, loc) is not None
+
+
+def without_effect(
+    view: View, loc: Loc, keys: Iterable[str], where: str, remedy: str = "remove the line"
+) -> Iterator[Fault]:
+    """A fault of each of the keys below a place that the file states."""
+    for key in keys:
+        if view.has(*loc, key):
+            yield Fault((*loc, key), f"without effect {where}", remedy, at_key=True)
 
 
 def length_text(value: float) -> str:

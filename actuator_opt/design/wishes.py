@@ -15,6 +15,7 @@ from ..quantities import Quantity
 from .kinds import ValueFault, example, read_quantity, what
 from .model import Design
 from .paths import Target, resolve
+from .section import Section
 from .structure import Loc, entries, number_of, value_at
 from .view import Fault
 
@@ -22,6 +23,7 @@ _LARGEST = {
     "ratio": 1e12, "length": 1e3, "mass": 1e7, "force": 1e9, "stiffness": 1e13, "pressure": 1e12,
     "speed": 1e4, "temperature_difference": 1e4, "kinematic_viscosity": 10.0, "frequency": 1e7,
     "flow": 1e3, "damping": 1e13, "energy": 1e12, "power": 1e12, "torque": 1e10,
+    "time": 1e6,
 }  # fmt: skip
 """Limits beyond these SI values are slips, whatever the metric."""
 
@@ -276,11 +278,18 @@ def materials(tree: dict[str, Any]) -> Iterator[Fault]:
                 yield fault
 
 
-def recheck(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:
-    """All of the above."""
-    yield from variables(tree)
-    yield from measured(tree)
-    yield from requirements(tree, metrics)
-    yield from objective(tree, metrics)
-    yield from waivers(tree, metrics)
-    yield from materials(tree)
+def recheck(
+    tree: dict[str, Any], metrics: Mapping[str, Quantity], root: type[Section] = Design
+) -> Iterator[Fault]:
+    """All of the above that a section of the type `root` has."""
+    checks = {
+        "variables": variables(tree),
+        "measured": measured(tree),
+        "requirements": requirements(tree, metrics),
+        "objective": objective(tree, metrics),
+        "waivers": waivers(tree, metrics),
+        "materials": materials(tree),
+    }
+    for name, faults in checks.items():
+        if name in entries(root):
+            yield from faults

@@ -38,6 +38,9 @@ _BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x80-\x84\x86-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
+_START = {"design": "start with: actuator-opt init", "scenario": "start with name: and design:"}
+
+
 class Span(NamedTuple):
     """Place of a node: line and column from 1, and its characters ``text[start:end]``."""
 
@@ -72,6 +75,8 @@ class Document:
     """Places whose value could not be read (aliases)."""
     shorthands: tuple[Shorthand, ...] = ()
     """Layers in compact notation, which `layup.expanded` wrote out."""
+    what: str = "design"
+    """What such a file is, in words."""
 
     def shorthand(self, loc: Loc) -> Shorthand | None:
         """The compact entry that a place lies in."""
@@ -95,13 +100,13 @@ class Document:
         return Diagnostic(message, remedy, self.file, line, column, path, source)
 
 
-def decode(data: bytes, file: str) -> str:
+def decode(data: bytes, file: str, what: str = "design") -> str:
     """Text of a file's bytes; raises `InputError` for what is not one UTF-8 page of text."""
     if len(data) > MAX_BYTES:
         raise InputError(
             Diagnostic(
                 f"the file is larger than {MAX_BYTES / 1e6:.0f} MB",
-                "a design file is a few kilobytes: is this the right file?",
+                f"a {what} file is a few kilobytes: is this the right file?",
                 file,
             )
         )
@@ -117,12 +122,12 @@ def decode(data: bytes, file: str) -> str:
         raise InputError(diagnostic) from None
 
 
-def parse(text: str, file: str) -> Document:
+def parse(text: str, file: str, what: str = "design") -> Document:
     """The tree of a YAML text; raises `InputError` where the text cannot be read as one."""
     text = text.removeprefix("\ufeff")
-    document = Document(file, text, lines=_BREAK.split(text))
+    document = Document(file, text, lines=_BREAK.split(text), what=what)
     if len(text) > MAX_BYTES:
-        decode(text.encode("utf-8", "replace"), file)
+        decode(text.encode("utf-8", "replace"), file, what)
     control = _CONTROL.search(text)
     if control is not None:
         line, column = _line_column(text, control.start())
@@ -178,7 +183,8 @@ class _Builder:
             if isinstance(event, yaml.DocumentStartEvent):
                 documents += 1
                 if documents > 1:
-                    self._stop(event, "a second document starts here", "one design per file")
+                    one = f"one {self.document.what} per file"
+                    self._stop(event, "a second document starts here", one)
             elif isinstance(event, yaml.NodeEvent):
                 nodes += 1
                 if nodes > MAX_NODES:
@@ -186,14 +192,15 @@ class _Builder:
                 self._node(event)
             elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
                 self._close(event)
-        span = Span(1, 1, 0, 0)
+        span, what = Span(1, 1, 0, 0), self.document.what
+        start = _START[what]
         if self.root is None:
-            self._stop_at(span, "the file is empty", "start with: actuator-opt init")
+            self._stop_at(span, "the file is empty", start)
         if not isinstance(self.root, dict):
             self._stop_at(
                 self.document.values.get((), span),
-                "the file is not a design: it must consist of keys with values",
-                "start with: actuator-opt init",
+                f"the file is not a {what}: it must consist of keys with values",
+                start,
             )
         self.document.data = self.root
 
@@ -311,7 +318,7 @@ _SYNTAX = (
     ("expected ',' or", "a bracket is not closed", "close the list or block"),
     ("unexpected end of stream", "a quote is not closed", "close the quote"),
     ("document separator", "a quote is not closed", "close the quote"),
-    ("<document start>", "text after the end of the design", "remove it"),
+    ("<document start>", "text after the end of the document", "remove it"),
     ("escape", "unknown escape in a quoted text", "use single quotes"),
 )  # fmt: skip
 

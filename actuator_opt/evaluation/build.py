@@ -50,6 +50,10 @@ SENSES: dict[str, Sense] = {line.metric: line.sense for line in CHECK_LIST if li
     "liner_yield_factor": "min",
     "local_buckling_factor": "min",
     "film_thickness": "min",
+    "joint_torque_min": "min",
+    "joint_range": "min",
+    "geometry_dead_point": "min",
+    "geometry_joint_angle": "min",
 }
 TOLERANCE = 1e-6
 """A margin of at least −TOLERANCE counts as met (CONTRACT)."""
@@ -166,7 +170,7 @@ def _metric(
 ) -> Metric:
     rows: list[tuple[float, str, str]] = []
     for place, array in computed.metrics.get(name, {}).items():
-        for case, value in by_case(computed, name, array, v.cases):
+        for case, value in by_case(computed, name, array, v.cases, place):
             rows.append((float(value[0]), case, place))
     usable = [row for row in rows if _finite(row[0])]
     if any(math.isnan(row[0]) for row in rows):

@@ -98,18 +98,47 @@ class CentredValve(NamedTuple):
     """Flow-pressure coefficients K_c as line ends; a valve that leaks nothing closes them."""
 
 
+class Edges(NamedTuple):
+    """Coefficients of the valve's edges [m^3/s/sqrt(Pa)]."""
+
+    rated: Array
+    """Fully open, at the oil's viscosity."""
+    supply: Array
+    """Centred, P-A and P-B."""
+    tank: Array
+    """Centred, A-T and B-T."""
+
+
+def valve_edges(v: Values, design: Design, state: State) -> Edges:
+    """The edges of the design's valve in every load case."""
+    assert design.valve is not None
+    at = "valve."
+    rated = valve.edge_coefficient(flow=v[at + "rated_flow"], pressure_drop=v[at + "rated_drop"])
+    if design.valve.rated_viscosity is not None:
+        rated = valve.viscosity_corrected(
+            coefficient=rated,
+            rated_viscosity=v[at + "rated_viscosity"],
+            viscosity=state.kinematic_viscosity,
+        )
+    leakage, drop = v[at + "leakage_flow"], v[at + "leakage_drop"]
+    after = drop if design.valve.tank_leakage_drop is None else v[at + "tank_leakage_drop"]
+    return Edges(
+        rated,
+        valve.edge_coefficient(flow=leakage, pressure_drop=drop),
+        valve.edge_coefficient(flow=leakage, pressure_drop=after),
+    )
+
+
 def centred_valve(v: Values, design: Design, state: State) -> CentredValve:
     """Valve at its centre with the held pressures."""
     if design.valve is None:
         return CentredValve({}, {})
-    rated = valve.edge_coefficient(flow=v["valve.rated_flow"], pressure_drop=v["valve.rated_drop"])
-    leakage = valve.edge_coefficient(
-        flow=v["valve.leakage_flow"], pressure_drop=v["valve.leakage_drop"]
-    )
+    edges = valve_edges(v, design, state)
     out, back = (
         valve.valve_slopes(
-            rated_coefficient=rated,
-            leakage_coefficient=leakage,
+            rated_coefficient=edges.rated,
+            leakage_coefficient=edges.supply,
+            leakage_tank=edges.tank,
             signal=v["valve.signal"],
             supply_pressure=v["supply.pressure"],
             return_pressure=v["supply.return_pressure"],

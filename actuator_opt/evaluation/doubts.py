@@ -9,7 +9,7 @@ import numpy as np
 from ..design.model import PLAIN_CAP
 from ..design.paths import quantity_of
 from ..models import laminate
-from . import motion_range, oil, oil_range, seal_doubts, springs
+from . import joint, motion_range, oil, oil_range, seal_doubts, springs
 from .barrel import LAMINATES, kind
 from .beam import NEAR
 from .kernel import Pass, Subject
@@ -77,6 +77,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
     yield from oil_range.warnings(section, subject.materials[section.material], v.cases, done.state)
     yield from seal_doubts.warnings(subject, v, done)
     yield from springs.warnings(done.springs)
+    yield from joint.warnings(subject.design, done.state.joint)
     yield from motion_range.warnings(v, subject.design, done.motion, done.state, done.computed)
     if done.wall.missing:
         yield "burst_factor", f"barrel: {done.wall.missing[0]}"

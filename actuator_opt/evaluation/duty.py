@@ -9,6 +9,7 @@ from . import rod_strength
 from .allow import Stock
 from .barrel import Wall
 from .geometry import Geometry
+from .joint import Demand
 from .rods import Rod
 from .rows import Computed
 from .state import State
@@ -26,15 +27,15 @@ def compute(
     state: State,
     wall: Wall,
     section: Rod,
-    moving: Array,
+    stop: Demand,
     net: Array,
     out: Computed,
 ) -> None:
-    """Every life and service metric; `net` is the force of every case, `moving` the mass."""
+    """Every life and service metric; `net` is the force of every case, `stop` runs into a stop."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     _endurance(v, stock, design, wall, section, supply, push, pull, out)
-    _end_stop(v, design, g, state, supply, moving, net, out)
+    _end_stop(v, design, g, state, supply, stop, net, out)
     _trapped(v, stock, design, g, state, wall, supply, out)
     _layers(stock, wall, out)
     _service(v, stock, design, out)
@@ -108,7 +109,7 @@ def _end_stop(
     g: Geometry,
     state: State,
     supply: Array,
-    moving: Array,
+    stop: Demand,
     net: Array,
     out: Computed,
 ) -> None:
@@ -124,9 +125,9 @@ def _end_stop(
         area=g.area_a, pressure=supply, travel=v["cylinder.stop_travel"]
     )
     run = {
-        "driving_force": maximum(net - state.force, 0.0),
-        "mass": moving,
-        "velocity": state.speed,
+        "driving_force": maximum(net - stop.force, 0.0),
+        "mass": stop.mass,
+        "velocity": stop.speed,
     }
     travel = endurance.end_stop_compression(stiffness=stiffness, **run)
     out.put("end_stop_energy", endurance.end_stop_energy(compression=travel, **run))

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from ..design.linkage import closed_length
 from ..design.material import Material
 from ..design.model import Design, Ply
 from ..models import forces, mass
@@ -108,7 +109,9 @@ def derive(v: Values, design: Design) -> Geometry:
         barrel_length=barrel_length,
         eye_offset=eye_offset,
         pin_diameter=pin,
-        closed_length=barrel_length + 2 * plate + extension + 2 * eye_offset,
+        closed_length=closed_length(
+            barrel_length=barrel_length, plate=plate, extension=extension, pin_diameter=pin
+        ),
         piston_grooves=grooves(v, design, "piston"),
         rod_grooves=grooves(v, design, "rod"),
         bearing_span=(piston_length + head_length + plate) / 2,

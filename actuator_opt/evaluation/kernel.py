@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from . import (
     duty,
     film_tables,
     hydraulics,
+    joint,
     motion,
     oil_range,
     rods,
@@ -35,6 +36,7 @@ from .barrel import Wall
 from .beam import Beam
 from .film_tables import Key, Table
 from .geometry import Geometry
+from .limits import ENDS
 from .plugin import Plugin
 from .rings import Ring
 from .rods import Rod
@@ -140,6 +142,7 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         friction = sealing.compute(v, design, stock, g, case_state, barrel, rings, there, out)
         sealing.compute_film(g, case_state, there, back, out)
         net = _forces(g, case_state, friction, out)
+        joint.compute(design, case_state.joint, case_state.positions, net, out)
         rod = rods.derive(v, design, stock, g)
         parts = weight.parts(v, design, g, rod)
         out.put("mass", sum(parts.values()))
@@ -148,8 +151,9 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         budget = springs.springs(
             v, design, g, case_state, barrel, rod, friction.breakaway, branches
         )
-        moving = v["load.mass"] + parts["rod"] + parts["piston"] + parts["fastening"]
+        moving = _moving(case_state.asked[joint.WORST].mass, parts)
         weakest = springs.compute(budget, moving, out)
+        _at_stops(v, design, found, rod, friction.breakaway, parts, out)
         damping = hydraulics.compute_damping(g, case_state, friction, out)
         across = there.get("piston seal")
         leakage = hydraulics.compute_leakage(v, design, g, case_state, across, out)
@@ -158,7 +162,9 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         hydraulics.compute_flow(v, design, g, case_state, out)
         beam = beam_module.derive(v, design, g, case_state, barrel, rod, parts)
         strength.compute(v, design, stock, g, case_state, barrel, rod, beam, out)
-        duty.compute(v, design, stock, g, case_state, barrel, rod, moving, net, out)
+        stop = joint.at_stop(case_state.asked, case_state.push)
+        stop = replace(stop, mass=_moving(stop.mass, parts))
+        duty.compute(v, design, stock, g, case_state, barrel, rod, stop, net, out)
         thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
         for name, value in geometry_module.lands(g, thread / 2).items():
             out.put(name, value)
@@ -172,6 +178,39 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
     return Pass(
         out, g, case_state, barrel, rings, rod, beam, budget, linear, weakest, places, parts
     )
+
+
+def _moving(load: Array, parts: dict[str, Array]) -> Array:
+    """Mass that moves with the rod, the load's included."""
+    return load + parts["rod"] + parts["piston"] + parts["fastening"]
+
+
+def _at_stops(
+    v: Values,
+    design: Design,
+    found: Base,
+    rod: Rod,
+    breakaway: Array,
+    parts: dict[str, Array],
+    out: Computed,
+) -> None:
+    """Stiffness and frequency with what a joint asks at either stop, a row for each."""
+    s = found.state
+    both = joint.open_cases(v, design, s.positions)
+    if not both.any():
+        return
+    for end in ENDS:
+        held = state.holding(v, design, found.stock, found.geometry, s, end)
+        branches = circuit.branches(v, design, held)
+        budget = springs.springs(
+            v, design, found.geometry, held, found.wall, rod, breakaway, branches
+        )
+        own = Computed()
+        springs.compute(budget, _moving(s.asked[end].mass, parts), own)
+        for name in springs.LOADED:
+            out.metrics[name][f"loaded as {end}"] = own.metrics[name][""]
+            out.applies_at[name, f"loaded as {end}"] = both
+            out.applies_at[name, ""] = ~both
 
 
 def _films(subject: Subject) -> dict[Key, Table]:
@@ -215,5 +254,5 @@ def _forces(g: Geometry, s: State, friction: sealing.Friction, out: Computed) ->
     net = where(s.push, push, pull)
     driven = where(s.push, g.area_a, g.area_b)
     out.put("efficiency", forces.efficiency(force=net, pressure=s.driven_pressure, area=driven))
-    out.put("power", forces.power(force=minimum(net, s.force), speed=s.speed))
+    out.put("power", forces.power(force=minimum(net, s.force), speed=s.asked[joint.WORKING].speed))
     return net

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from ..design.model import Design
+from ..design.model import Design, LoadCase
 from ..numeric import Array, absolute, real, where
 from .check_list import CHECK_LIST, Sense
 from .geometry import LAND
@@ -35,6 +35,8 @@ class Limit:
     case: str | None = None
     source: str = ""
     lever: str | None = None
+    places: tuple[str, ...] | None = None
+    """Places of the metric it is for; None for all."""
 
     def value(self, v: Values) -> Array:
         """The limit in SI (an array when a parameter study varies it)."""
@@ -52,10 +54,18 @@ GEOMETRY: tuple[str, ...] = (
     "geometry_head_groove",
     "geometry_head_wall",
 )
+ENDS = ("retracted", "extended")
+OWN_PLACE = "position of the case"
+"""Places of a joint torque: both stops, and where a load case says it stands."""
+
+LINKAGE: tuple[tuple[str, float, str], ...] = (
+    ("geometry_dead_point", LAND, "choice: 1 mm before a dead point, where no force turns"),
+    ("geometry_joint_angle", 0.0, "the joint reaches the angle of the load case"),
+)
 
 
 def requirement_limits(design: Design) -> list[Limit]:
-    """The limits a person wrote: `requirements` and the force of every load case."""
+    """The limits a person wrote: `requirements` and the force or torque of every load case."""
     limits = []
     for metric, limit in design.requirements.items():
         for sense in ("min", "max"):
@@ -64,25 +74,37 @@ def requirement_limits(design: Design) -> list[Limit]:
                 name = f"{metric} ({sense})" if both else metric
                 path = f"requirements.{metric}.{sense}"
                 limits.append(Limit(name, metric, sense, path))
-    for case in design.load_cases:
-        metric = f"{case.direction}_force"
-        at = f"load_cases[{case.name}]"
-        path, lever = f"{at}.force", None
-        if case.force is None:
-            path, lever = f"{at}.joint_torque", f"{at}.lever_arm"
-        limits.append(
-            Limit(
-                name=f"force[{case.name}]",
-                metric=metric,
-                sense="min",
-                path=path,
-                origin="case",
-                case=case.name,
-                source="load case",
-                lever=lever,
-            )
+    return limits + [_case_limit(case) for case in design.load_cases]
+
+
+def _case_limit(case: LoadCase) -> Limit:
+    """The force of a load case, or its torque where the linkage makes it one."""
+    at = f"load_cases[{case.name}]"
+    if case.through_linkage:
+        placed = case.angle is not None or case.position != "worst"
+        return Limit(
+            name=f"torque[{case.name}]",
+            metric="joint_torque_min",
+            sense="min",
+            path=f"{at}.joint_torque",
+            origin="case",
+            case=case.name,
+            source="load case",
+            places=(OWN_PLACE,) if placed else ENDS,
         )
-    return limits
+    path, lever = f"{at}.force", None
+    if case.force is None:
+        path, lever = f"{at}.joint_torque", f"{at}.lever_arm"
+    return Limit(
+        name=f"force[{case.name}]",
+        metric=f"{case.direction}_force",
+        sense="min",
+        path=path,
+        origin="case",
+        case=case.name,
+        source="load case",
+        lever=lever,
+    )
 
 
 def check_limits(design: Design) -> list[Limit]:
@@ -122,6 +144,9 @@ def geometry_limits() -> list[Limit]:
     return [
         Limit(name, name, "min", constant=LAND, origin="geometry", source="choice: 1 mm least wall")
         for name in GEOMETRY
+    ] + [
+        Limit(name, name, "min", constant=least, origin="geometry", source=source)
+        for name, least, source in LINKAGE
     ]
 
 

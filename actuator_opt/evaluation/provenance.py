@@ -32,6 +32,7 @@ from ..models import (
     linear,
     liner,
     lines,
+    linkage,
     loop,
     lugre,
     mass,
@@ -162,6 +163,8 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "line_resonance": elements.quarter_wave_frequency,
         "oil_viscosity": fluid.viscosity_astm_d341,
         "cavitation_margin": fluid.vapour_pressure,
+        "joint_torque_min": linkage.joint_torque,
+        "joint_range": linkage.linkage_angle,
     }
 )
 """The leading model of every metric that has one; the rest is plain geometry."""

@@ -21,12 +21,14 @@ class Computed:
     """What a kernel computed: metric → place → array, and why a metric could not be computed.
 
     Arrays are floats, (designs,), (cases, 1) or (cases, designs). A place is a ply, a seal or a
-    part; "" where the metric has only one. `applies` marks the cases a metric has a meaning in.
+    part; "" where the metric has only one. `applies` marks the cases a metric has a meaning in,
+    `applies_at` those of one place.
     """
 
     metrics: dict[str, dict[str, Array]] = field(default_factory=dict)
     why: dict[str, str] = field(default_factory=dict)
     applies: dict[str, Array] = field(default_factory=dict)
+    applies_at: dict[tuple[str, str], Array] = field(default_factory=dict)
 
     def put(self, name: str, value: Array | dict[str, Array], cases: Array = None) -> None:
         """Record a metric: one array, or one per place; `cases` marks where it applies."""
@@ -60,14 +62,14 @@ class Row:
 
 
 def by_case(
-    computed: Computed, metric: str, array: Array, cases: tuple[str, ...]
+    computed: Computed, metric: str, array: Array, cases: tuple[str, ...], place: str = ""
 ) -> Iterator[tuple[str, Array]]:
     """Split a computed array into (case name, (designs,) array) where the metric applies."""
     array = np.asarray(array)
     if array.ndim < 2:
         yield ALL_CASES, np.atleast_1d(array)
         return
-    applies = computed.applies.get(metric)
+    applies = computed.applies_at.get((metric, place), computed.applies.get(metric))
     for i, case in enumerate(cases):
         if applies is None or applies[i]:
             yield case, array[i]
@@ -77,7 +79,9 @@ def rows_of(limit: Limit, computed: Computed, v: Values) -> Iterator[Row]:
     """Every row of one limit; none where the metric was not computed."""
     bound = limit.value(v)
     for place, array in computed.metrics.get(limit.metric, {}).items():
-        for case, value in by_case(computed, limit.metric, array, v.cases):
+        if limit.places is not None and place not in limit.places:
+            continue
+        for case, value in by_case(computed, limit.metric, array, v.cases, place):
             if limit.case is not None and case not in (ALL_CASES, limit.case):
                 continue
             unlimited = real(value) == np.inf

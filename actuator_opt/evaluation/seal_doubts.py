@@ -67,7 +67,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
                 "friction_running",
                 f"{ring.label}: the sealed pressure would open the contact; its load is too small",
             )
-        yield from _limits(subject, v, ring, supply)
+        yield from _limits(subject, done, ring, supply)
     leaking = done.computed.metrics.get("rod_leakage")
     back = subject.films.items()
     at_rest = [
@@ -126,11 +126,11 @@ def _law(ring: Ring) -> Iterable[tuple[str, str]]:
         )
 
 
-def _limits(subject: Subject, v: Values, ring: Ring, supply: float) -> Iterable[tuple[str, str]]:
+def _limits(subject: Subject, done: Pass, ring: Ring, supply: float) -> Iterable[tuple[str, str]]:
     """Pressure and speed beyond what the compound bears, extrusion beyond its data."""
     compound = subject.materials[ring.element.compound]
     known = compound.numbers
-    fastest = float(np.max(np.real(v.case("speed"))))
+    fastest = float(np.max(np.real(done.state.speed)))
     if not ring.element.back_ups and supply > known.get("pressure_max", np.inf):
         yield (
             "",

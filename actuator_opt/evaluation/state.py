@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,9 +11,11 @@ from ..design.kinds import Fraction
 from ..design.model import Design
 from ..models import retention, stiffness
 from ..numeric import Array, where
+from . import joint as joint_module
 from . import oil
 from .allow import Stock
 from .geometry import Geometry
+from .joint import WORST, Demand, Joint
 from .values import Values, stacked
 
 
@@ -25,10 +28,17 @@ class State:
     """
 
     push: np.ndarray
+    joint: Joint | None
+    positions: tuple[Array | None, ...]
+    """Piston position of every case; None for the worst."""
     reach: Array
     """Piston position for column and side load: the case's own, or the full stroke (worst)."""
+    asked: dict[str, Demand]
+    """What the load asks at its worst, where its force is asked, and at both stops of a joint."""
     force: Array
+    """At its worst: through a linkage and without a position, at the least lever arm."""
     speed: Array
+    """At its worst: of a joint without a position, at the largest lever arm."""
     side_load: Array
     temperature: Array
     driven_pressure: Array
@@ -60,32 +70,29 @@ def side_reactions(g: Geometry, state: State) -> dict[str, Array]:
     return {"rod": head, "piston": piston}
 
 
-def case_force(v: Values, design: Design) -> Array:
-    """Force of every case (cases, designs): stated, or joint torque over its lever arm."""
-    rows = []
+def _positions(
+    v: Values, design: Design, geometry: Geometry, joint: Joint | None
+) -> tuple[Array | None, ...]:
+    """Piston position of every case, by its joint angle or its own; None for the worst."""
+    rows: list[Array | None] = []
     for case in design.load_cases:
         at = f"load_cases[{case.name}]"
-        if case.force is not None:
-            rows.append(v[f"{at}.force"])
-        else:
-            rows.append(v[f"{at}.joint_torque"] / v[f"{at}.lever_arm"])
-    return stacked(rows)
-
-
-def _reach(v: Values, design: Design, geometry: Geometry) -> Array:
-    """Position of every case; one number where all are ``worst``, which is full extension."""
-    if all(case.position == "worst" for case in design.load_cases):
-        return geometry.stroke
-    rows = []
-    for case in design.load_cases:
-        path = f"load_cases[{case.name}].position"
-        if case.position == "worst":
-            rows.append(geometry.stroke)
+        if joint is not None and case.angle is not None:
+            rows.append(joint.position(v[f"{at}.angle"]))
+        elif case.position == "worst":
+            rows.append(None)
         elif isinstance(case.position, Fraction):
-            rows.append(v.get(path, case.position.value) * geometry.stroke)
+            rows.append(v.get(f"{at}.position", case.position.value) * geometry.stroke)
         else:
-            rows.append(v[path])
-    return stacked(rows)
+            rows.append(v[f"{at}.position"])
+    return tuple(rows)
+
+
+def _reach(geometry: Geometry, positions: Sequence[Array | None]) -> Array:
+    """Position of every case; one number where all are ``worst``, which is full extension."""
+    if all(position is None for position in positions):
+        return geometry.stroke
+    return stacked([geometry.stroke if x is None else x for x in positions])
 
 
 def _stated(v: Values, design: Design, field: str, otherwise: Array) -> Array:
@@ -94,31 +101,62 @@ def _stated(v: Values, design: Design, field: str, otherwise: Array) -> Array:
     return where(own, v.case(field, 0.0), otherwise) if own.any() else otherwise
 
 
-def derive(v: Values, design: Design, stock: Stock, geometry: Geometry) -> State:
-    """State of every load case of a design."""
-    push = np.array([[case.direction == "push"] for case in design.load_cases])
-    force = case_force(v, design)
-    supply, drain = v["supply.pressure"], v["supply.return_pressure"]
-    driven = v.case("pressure", supply)
-    temperature = v.case("temperature", v["fluid.temperature"])
+def _holding(
+    v: Values, design: Design, geometry: Geometry, push: Array, force: Array
+) -> tuple[Array, Array]:
+    """Pressures that hold the force, where a case does not state its own."""
     holding_a, holding_b = stiffness.holding_pressures(
         force=where(push, force, -force),
-        supply_pressure=supply,
-        return_pressure=drain,
+        supply_pressure=v["supply.pressure"],
+        return_pressure=v["supply.return_pressure"],
         area_a=geometry.area_a,
         area_b=geometry.area_b,
     )
-    holding_a = _stated(v, design, "pressure_a", holding_a)
-    holding_b = _stated(v, design, "pressure_b", holding_b)
+    return (
+        _stated(v, design, "pressure_a", holding_a),
+        _stated(v, design, "pressure_b", holding_b),
+    )
+
+
+def holding(
+    v: Values, design: Design, stock: Stock, geometry: Geometry, s: State, end: str
+) -> State:
+    """The state with what the load asks at one stop of a joint, held there."""
+    force = s.asked[end].force
+    holding_a, holding_b = _holding(v, design, geometry, s.push, force)
+    return replace(
+        s,
+        force=force,
+        holding_a=holding_a,
+        holding_b=holding_b,
+        bulk_modulus_a=oil.bulk_modulus(v, design.fluid, stock, s.temperature, holding_a),
+        bulk_modulus_b=oil.bulk_modulus(v, design.fluid, stock, s.temperature, holding_b),
+    )
+
+
+def derive(v: Values, design: Design, stock: Stock, geometry: Geometry) -> State:
+    """State of every load case of a design."""
+    push = np.array([[case.direction == "push"] for case in design.load_cases])
+    joint = joint_module.derive(v, design, geometry)
+    positions = _positions(v, design, geometry, joint)
+    asked = joint_module.demands(v, design, joint, positions)
+    force = asked[WORST].force
+    supply, drain = v["supply.pressure"], v["supply.return_pressure"]
+    driven = v.case("pressure", supply)
+    temperature = v.case("temperature", v["fluid.temperature"])
+    holding_a, holding_b = _holding(v, design, geometry, push, force)
     kinematic = oil.kinematic_viscosity(v, design.fluid, stock, temperature)
     density = oil.density(v, design.fluid, stock, temperature)
     dynamic = kinematic * density
     moving_a, moving_b = where(push, driven, drain), where(push, drain, driven)
     return State(
         push=push,
-        reach=_reach(v, design, geometry),
+        joint=joint,
+        positions=positions,
+        reach=_reach(geometry, positions),
+        asked=asked,
         force=force,
-        speed=v.case("speed"),
+        speed=asked[WORST].speed,
         side_load=v.case("side_load"),
         temperature=temperature,
         driven_pressure=driven,

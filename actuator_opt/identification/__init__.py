@@ -2,6 +2,7 @@
 
 from .bending import BendingResult, bending
 from .calibration import Calibration, calibration
+from .column import parse_column
 from .csv_table import decode_record
 from .identify import identify
 from .record import CHANNELS, Record, parse_record
@@ -20,5 +21,6 @@ __all__ = [
     "calibration",
     "decode_record",
     "identify",
+    "parse_column",
     "parse_record",
 ]

@@ -118,7 +118,11 @@ class Record:
 
 
 def parse_record(
-    text: str, *, name: str = "record", columns: Mapping[str, str] | None = None
+    text: str,
+    *,
+    name: str = "record",
+    columns: Mapping[str, str] | None = None,
+    channels: Mapping[str, Channel] = CHANNELS,
 ) -> Record:
     """A record from the text of a CSV file.
 
@@ -133,6 +137,7 @@ def parse_record(
     name : of the file, for messages
     columns : header by channel, where it is none of the known names; ``"Channel 3 [bar]"`` states
         the unit of a column ``Channel 3`` without one
+    channels : those that are looked for, ``t`` among them
 
     Returns
     -------
@@ -144,14 +149,12 @@ def parse_record(
         no header, an unknown or doubled column, a missing or wrong unit, a cell that is no number
     """
     sheet = read_sheet(text, name)
-    found = _columns(sheet, columns or {})
+    found = _columns(sheet, columns or {}, channels)
     table, lines = numbers(sheet, [one.place for one in found.values()])
     if not lines.size:
         message = "no samples below the header"
         raise InputError(Diagnostic(message, "give one line per sample", file=name))
-    values = {
-        channel: _converted(table[:, k], one) for k, (channel, one) in enumerate(found.items())
-    }
+    values = {channel: one.values(table[:, k]) for k, (channel, one) in enumerate(found.items())}
     used = {one.place for one in found.values()}
     unused = [cell for k, cell in enumerate(sheet.header) if cell and k not in used]
     notes = [f"columns that are no channel: {_list(unused)}"] if unused else []
@@ -166,12 +169,33 @@ def parse_record(
     return Record(time, values, name, tuple(notes), first, lines if broken else None)
 
 
-class _Column(NamedTuple):
+class Column(NamedTuple):
     """Where a channel stands, and in what unit."""
 
     place: int
     unit: units.Unit
     absolute: bool
+
+    def values(self, written: Array) -> Array:
+        """SI values, pressures gauge; what is not finite is missing."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            found = np.asarray(self.unit.to_si(written))
+            if self.absolute:
+                found = found - ATMOSPHERIC_PRESSURE
+            return np.where(np.abs(found) < _LARGEST, found, np.nan)
+
+
+def converted(unit: str, dimension: str, place: int) -> Column:
+    """A column in a unit as a header writes it; raises `UnitError`."""
+    return Column(place, *_unit(unit, dimension))
+
+
+def header_cells(sheet: Sheet) -> list[tuple[str, str]]:
+    """Name and unit of every column; the unit may stand in a line of its own."""
+    own = [_named(cell) for cell in sheet.header]
+    if sheet.units is None:
+        return own
+    return [(name, unit or sheet.units[k]) for k, (name, unit) in enumerate(own)]
 
 
 def _named(cell: str) -> tuple[str, str]:
@@ -215,11 +239,11 @@ def _fits(text: str, dimension: str) -> bool:
     return True
 
 
-def _channel(name: str, unit: str) -> str | None:
+def _channel(name: str, unit: str, channels: Mapping[str, Channel]) -> str | None:
     """The channel a header name means; the unit decides between t and T."""
     plain = _plain(name)
-    alike = [c for c, one in CHANNELS.items() if plain in (_plain(c), *one.others)]
-    fitting = [c for c in alike if _fits(unit, CHANNELS[c].dimension)]
+    alike = [c for c, one in channels.items() if plain in (_plain(c), *one.others)]
+    fitting = [c for c in alike if _fits(unit, channels[c].dimension)]
     if name in fitting or (name in alike and not fitting):
         return name
     if fitting or not alike:
@@ -227,7 +251,7 @@ def _channel(name: str, unit: str) -> str | None:
     return None if unit and alike[0] in _OPTIONAL else alike[0]
 
 
-def _stated(sheet: Sheet, own: list[tuple[str, str]], header: str) -> tuple[int, str]:
+def column_of(sheet: Sheet, own: list[tuple[str, str]], header: str) -> tuple[int, str]:
     """Column of a header that the caller names, and the unit it states with it.
 
     Raises
@@ -251,7 +275,9 @@ def _stated(sheet: Sheet, own: list[tuple[str, str]], header: str) -> tuple[int,
     raise LookupError(0)
 
 
-def _columns(sheet: Sheet, stated: Mapping[str, str]) -> dict[str, _Column]:
+def _columns(
+    sheet: Sheet, stated: Mapping[str, str], channels: Mapping[str, Channel]
+) -> dict[str, Column]:
     """Column and unit of every channel."""
     faults: list[Diagnostic] = []
 
@@ -259,15 +285,13 @@ def _columns(sheet: Sheet, stated: Mapping[str, str]) -> dict[str, _Column]:
         if not any(one.message == message for one in faults):
             faults.append(Diagnostic(message, remedy, file=sheet.name, line=sheet.header_line))
 
-    own = [_named(cell) for cell in sheet.header]
-    if sheet.units is not None:
-        own = [(a, b or sheet.units[i]) for i, (a, b) in enumerate(own)]
+    own = header_cells(sheet)
     names = [one[0] for one in own]
-    places = _stated_places(sheet, own, stated, fault)
+    places = _stated_places(sheet, own, stated, channels, fault)
     taken = set(places.values())
     doubled = set()
     for i, (header, unit) in enumerate(own):
-        found = _channel(header, unit)
+        found = _channel(header, unit, channels)
         if found is None or found in stated or i in taken or found in doubled:
             continue
         if found in places:
@@ -289,7 +313,7 @@ def _columns(sheet: Sheet, stated: Mapping[str, str]) -> dict[str, _Column]:
         )
     read = {}
     for channel, i in places.items():
-        known, (header, unit) = CHANNELS[channel], own[i]
+        known, (header, unit) = channels[channel], own[i]
         header = shown(header)
         if not unit:
             example = known.unit
@@ -300,7 +324,7 @@ def _columns(sheet: Sheet, stated: Mapping[str, str]) -> dict[str, _Column]:
             )
             continue
         try:
-            read[channel] = _Column(i, *_unit(unit, known.dimension))
+            read[channel] = converted(unit, known.dimension, i)
         except units.UnitError as error:
             fault(f'column "{header}": {shown(error.message, 120)}', shown(error.remedy, 120))
     if faults:
@@ -312,16 +336,17 @@ def _stated_places(
     sheet: Sheet,
     own: list[tuple[str, str]],
     stated: Mapping[str, str],
+    channels: Mapping[str, Channel],
     fault: Callable[[str, str], None],
 ) -> dict[str, int]:
     """Columns the caller names; their units go into `own`."""
     places: dict[str, int] = {}
     for channel, header in stated.items():
-        if channel not in CHANNELS:
-            fault(f'"{shown(channel)}" is no channel', f"use one of {', '.join(CHANNELS)}")
+        if channel not in channels:
+            fault(f'"{shown(channel)}" is no channel', f"use one of {', '.join(channels)}")
             continue
         try:
-            place, unit = _stated(sheet, own, header)
+            place, unit = column_of(sheet, own, header)
         except LookupError as error:
             wanted = shown(_named(header)[0])
             if error.args[0]:
@@ -337,15 +362,6 @@ def _stated_places(
         places[channel] = place
         own[place] = own[place][0], unit
     return places
-
-
-def _converted(values: Array, column: _Column) -> Array:
-    """SI values, pressures gauge; what is not finite is missing."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        found = np.asarray(column.unit.to_si(values))
-        if column.absolute:
-            found = found - ATMOSPHERIC_PRESSURE
-        return np.where(np.abs(found) < _LARGEST, found, np.nan)
 
 
 def _list(names: Sequence[str]) -> str:

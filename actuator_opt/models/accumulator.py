@@ -206,3 +206,43 @@ def stored_energy(
     compression = start * gas_volume * step * expm1_quotient(growth - step)
     left = gas_volume * xp.exp(-step)
     return compression - atmospheric_pressure * (gas_volume - left)
+
+
+def gas_pressure(
+    *,
+    volume: Array,
+    precharge_pressure: Array,
+    gas_volume: Array,
+    polytropic_index: Array = 1.0,
+    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
+) -> Array:
+    """Gas pressure at a gas volume, (p0 + p_a)(V0/V)^n - p_a: `gas_volume_at` inverted.
+
+    Parameters
+    ----------
+    volume : V of the gas [m^3], > 0
+    precharge_pressure : p0, gauge [Pa]
+    gas_volume : V0, at the precharge pressure [m^3]
+    polytropic_index : n [-]
+    atmospheric_pressure : absolute [Pa]
+
+    Returns
+    -------
+    gauge pressure [Pa]
+
+    Notes
+    -----
+    Valid: ideal gas, to about 200 bar; V up to V0.
+
+    References
+    ----------
+    [derived] polytropic ideal gas of constant mass, p V^n constant
+
+    Examples
+    --------
+    >>> p = gas_pressure(volume=0.6040e-3, precharge_pressure=60e5, gas_volume=1e-3)
+    >>> print(f"{p / 1e5:.1f} bar")
+    100.0 bar
+    """
+    start = precharge_pressure + atmospheric_pressure
+    return start * (gas_volume / volume) ** polytropic_index - atmospheric_pressure

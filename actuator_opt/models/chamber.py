@@ -9,7 +9,17 @@ from __future__ import annotations
 
 import math
 
-from ..numeric import Array, absolute, maximum, minimum, namespace, real, sqrt, where
+from ..numeric import (
+    Array,
+    absolute,
+    log1p_quotient,
+    maximum,
+    minimum,
+    namespace,
+    real,
+    sqrt,
+    where,
+)
 from .fluid import ATMOSPHERIC_PRESSURE
 
 _STEPS = 100
@@ -270,17 +280,12 @@ def _shares(
     modulus, slope, air, index, atmosphere = law
     strain = (total - atmosphere if pressure is None else pressure) / modulus
     load = slope * strain
-    xp = namespace(strain, load, air)
-    torn = real(load) <= -1
-    straight = (real(load) < 1e-5) & (real(load) > -1e-5)
-    safe = where(straight | torn, 0 * load + 1, load)
-    mean = where(straight, 1 - load / 2 + load * load / 3, xp.log1p(safe) / safe)
-    change = where(torn, math.nan, xp.expm1(-strain * mean))
+    change = namespace(strain, load).expm1(-strain * log1p_quotient(load))
     open_gas = real(total) > 0
     pressed = where(open_gas, total, atmosphere)
     ratio = (atmosphere / pressed) ** (1 / index)
     gas = where(open_gas | (real(air) == 0), air * ratio, math.nan)
-    falling = (1 + change) / (modulus * where(torn, 1.0, 1 + load)) + gas / (index * pressed)
+    falling = (1 + change) / (modulus * (1 + load)) + gas / (index * pressed)
     return change, gas, falling
 
 

@@ -119,6 +119,38 @@ def stop_force(
     return where(real(position) < 0, out, where(real(beyond) > 0, back, 0.0))
 
 
+def contact_force(
+    *, compression: Array, closing_speed: Array, stiffness: Array, damping: Array
+) -> Array:
+    """Force of a stop while it is touched, max(K delta + b delta', 0): one end of `stop_force`.
+
+    Parameters
+    ----------
+    compression : delta [m]
+    closing_speed : delta' [m/s]
+    stiffness : K_end [N/m]
+    damping : b [N s/m]
+
+    Returns
+    -------
+    force that pushes the piston back [N], >= 0
+
+    Notes
+    -----
+    Valid: from contact until the piston leaves the stop.
+
+    References
+    ----------
+    [MECE5005] cylinder ends as stiff springs and dampers; [derived] never pulling
+
+    Examples
+    --------
+    >>> contact_force(compression=1e-4, closing_speed=0.1, stiffness=5.63e7, damping=2.05e4)
+    7680.0
+    """
+    return maximum(stiffness * compression + damping * closing_speed, 0.0)
+
+
 def stop_restitution(*, stiffness: Array, damping: Array, mass: Array) -> Array:
     """Speed after a bounce over the speed before it, e = exp(-2 theta cot theta).
 

@@ -220,3 +220,76 @@ def lugre_bristle_damping(*, bristle_stiffness: Array, mass: Array) -> Array:
     48373.5
     """
     return namespace(bristle_stiffness * mass).sqrt(bristle_stiffness * mass)
+
+
+def lugre_rate(*, deflection: Array, speed: Array, level: Array, bristle_stiffness: Array) -> Array:
+    """Rate of the bristle deflection, dz/dt = v - sigma0 |v| z/g(v).
+
+    Parameters
+    ----------
+    deflection : z [m]
+    speed : v [m/s]
+    level : g(v) of `stribeck_level` [N], > 0
+    bristle_stiffness : sigma0 [N/m]
+
+    Returns
+    -------
+    rate [m/s]
+
+    Notes
+    -----
+    Valid: |z| <= F_S/sigma0, which it keeps.
+
+    References
+    ----------
+    [AaltoThesis] eq. 27; [MECE5005] LuGre model
+
+    Examples
+    --------
+    >>> rate = lugre_rate(deflection=5e-5, speed=0.02, level=683.9397, bristle_stiffness=1e7)
+    >>> print(f"{rate:.6f} m/s")
+    0.005379 m/s
+    """
+    return speed - bristle_stiffness * absolute(speed) * deflection / level
+
+
+def lugre_force(
+    *,
+    deflection: Array,
+    rate: Array,
+    speed: Array,
+    bristle_stiffness: Array,
+    bristle_damping: Array,
+    viscous: Array,
+) -> Array:
+    """Friction of the bristles, F = sigma0 z + sigma1 dz/dt + sigma2 v.
+
+    Parameters
+    ----------
+    deflection : z [m]
+    rate : dz/dt of `lugre_rate` [m/s]
+    speed : v [m/s]
+    bristle_stiffness : sigma0 [N/m]
+    bristle_damping : sigma1 [N s/m]
+    viscous : sigma2 [N s/m]
+
+    Returns
+    -------
+    friction [N]
+
+    Notes
+    -----
+    Valid: passive while |v| <= `lugre_passive_speed`.
+
+    References
+    ----------
+    [AaltoThesis] eq. 29; [MECE5005] LuGre model
+
+    Examples
+    --------
+    >>> force = lugre_force(deflection=5e-5, rate=0.005379, speed=0.02, bristle_stiffness=1e7,
+    ...                     bristle_damping=3e4, viscous=1000.0)
+    >>> print(f"{force:.2f} N")
+    681.37 N
+    """
+    return bristle_stiffness * deflection + bristle_damping * rate + viscous * speed

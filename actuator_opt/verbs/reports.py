@@ -30,7 +30,7 @@ def _seal_studies(subject: Subject) -> list[SealStudy]:
 
     places: tuple[Place, ...] = ("piston", "rod")
     asked = [x for x in places if getattr(subject.design.seals, x).friction == "film"]
-    moving = any(case.speed > 0 for case in subject.design.load_cases)
+    moving = any(case.moves for case in subject.design.load_cases)
     return [study(subject, x, curves=True, mapped=True) for x in asked if moving]
 
 

@@ -173,7 +173,7 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
     told = [_loop(subject, v, done, one, frequencies) for one in loops]
     return DynamicsStudy(
         case=v.cases[index],
-        mass=float(np.squeeze(motion.mass)),
+        mass=of_case(motion.mass, index),
         end=design.ports.end,
         position=position,
         closed_frequency=_row(closed, index, position),

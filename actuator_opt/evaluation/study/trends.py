@@ -60,7 +60,12 @@ FACTORS = (
     Factor("squeeze", 1, 1, ("seals.{place}.squeeze",)),
     Factor("metal surface finish (RMS)", 1, 1, ("seals.{place}.counterface_roughness",)),
     Factor("seal material hardness", 1, 1, ("materials.{compound}.hardness",)),
-    Factor("relative motion speed", -1, -1, ("load_cases[{case}].speed",)),
+    Factor(
+        "relative motion speed",
+        -1,
+        -1,
+        ("load_cases[{case}].speed", "load_cases[{case}].joint_speed"),
+    ),
     Factor("cross section of seal", 1, 1, ("seals.{place}.section",)),
     Factor(
         "hydraulic pressure",
@@ -174,7 +179,7 @@ def trends(design: Design) -> Trends | None:
     dry, wet = (_fitted(design, replaced, model) for model in ("coefficient", "film"))
     subject = prepare(dry)
     v = subject.values()
-    moving = [i for i, case in enumerate(design.load_cases) if (case.speed or 0.0) > 0]
+    moving = [i for i, case in enumerate(design.load_cases) if case.moves]
     if not moving:
         return None
     (running,) = compute(subject, v).computed.metrics["friction_running"].values()

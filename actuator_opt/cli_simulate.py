@@ -1,0 +1,111 @@
+"""The command `simulate`: a scenario around a design over time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from . import streams
+from .cli_shared import assignments, check_targets, command_line, say_files
+from .errors import Diagnostic, ExitCode, UsageError
+from .options import REPORTS, Date, Json, Out, Quiet, Report, Seed, Set
+from .store import require_apart
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+    from .simulation.integrate import Method
+    from .verbs import Trial
+
+ScenarioFile = Annotated[
+    str, typer.Argument(metavar="SCENARIO", help="Scenario file, or - for stdin.")
+]
+Verify = Annotated[
+    bool,
+    typer.Option("--verify", help="Integrate again by Radau and tell the largest difference."),
+]
+Fast = Annotated[
+    bool, typer.Option("--fast", help='Integrate by CVODES (pip install "actuator-opt[fast]").')
+]
+Csv = Annotated[
+    Path | None, typer.Option("--csv", metavar="FILE", help="Save every signal over time.")
+]
+MeasuredFile = Annotated[
+    str | None,
+    typer.Option("--measured", metavar="F.csv", help="Overlay a record, with its residuals."),
+]
+Fitted = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--fit",
+        metavar="NAME",
+        help="Fit a parameter to the record, with bounds (e.g. air_content, valve_capacity, "
+        "piston_leakage, coulomb). Repeatable.",
+    ),
+]
+Sensitivity = Annotated[
+    bool,
+    typer.Option("--sensitivity", help="Rank the parameters by what they change in the results."),
+]
+
+
+def simulate(
+    scenario: ScenarioFile,
+    sets: Set = None,
+    csv: Csv = None,
+    verify: Verify = False,
+    fast: Fast = False,
+    measured: MeasuredFile = None,
+    fit: Fitted = None,
+    sensitivity: Sensitivity = False,
+    report: Report = False,
+    out: Out = REPORTS,
+    date: Date = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+) -> None:
+    """A scenario around its design over time: servo, pressures, energy, dynamic stiffness."""
+    from . import verbs
+
+    check_targets(out if report else None, date, csv)
+    if csv is not None:
+        require_apart(csv, scenario, *([measured] if measured else []))
+    if fit and measured is None:
+        raise UsageError(Diagnostic("--fit: only with --measured", "name the record"))
+    trial = verbs.read_scenario(scenario, set=assignments(sets))
+    method: Method = "cvodes" if fast else "lsoda"
+    found = verbs.simulate(trial, verify=verify, method=method)
+    data = found.to_dict()
+    overlay = None
+    if measured is not None:
+        overlay = verbs.compare_measured(trial, found, measured, fit=fit or ())
+        data["measured"] = overlay.to_dict()
+    ranked = verbs.servo_sensitivities(trial) if sensitivity else None
+    if ranked is not None:
+        data["sensitivities"] = ranked.to_dict()
+    files: list[dict[str, Any]] = []
+    if csv is not None:
+        files.append(verbs.write_signals(found, csv).to_dict())
+    if report:
+        pages = verbs.write_simulation(
+            found,
+            trial,
+            measured=overlay,
+            sensitivities=ranked,
+            folder=out,
+            command=command_line(),
+            date=date,
+        )
+        files += [page.to_dict() for page in pages]
+    if files:
+        data["files"] = files
+    if as_json:
+        streams.out_json(data)
+    elif not quiet:
+        streams.out(verbs.simulation_text(found, measured=overlay, sensitivities=ranked))
+    if not as_json and not quiet:
+        say_files(files)
+    if not found.met:
+        raise typer.Exit(ExitCode.MISSED)

@@ -1,0 +1,137 @@
+"""Faults of what moves the valve, and of what a scenario asks of the response."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from ..build import how_to_add
+from ..structure import child_at, entries
+from ..view import Fault, View, without_effect
+from .model import Control, Scenario
+from .signal_faults import SHAPES
+
+REFERENCES: Mapping[str, str] = {
+    "position": "position_gain",
+    "speed": "speed_gain",
+    "shaft_speed": "shaft_speed_gain",
+    "shaft_angle": "shaft_angle_gain",
+}
+"""Every loop by its reference, with the gain it has."""
+STEP_RESULTS = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
+"""Results that are read from the answer to one step."""
+
+
+def stated(view: View, *loc: str) -> bool:
+    """Whether the file states something here: no empty list."""
+    return child_at(view.tree, loc) not in (None, [], ())
+
+
+def given(view: View) -> list[str]:
+    """References the control states."""
+    return [name for name in REFERENCES if stated(view, "control", name)]
+
+
+def drives(view: View) -> Iterator[Fault]:
+    """One of signal and control drives the valve, which then ends the lines."""
+    driven = [name for name in ("signal", "control") if stated(view, name)]
+    if len(driven) == 2:
+        message = "a signal beside control: both would drive the valve"
+        yield Fault(("signal",), message, "keep one of them", at_key=True)
+    ends = view.text("ends")
+    if ends == "valve" or ends not in entries(Scenario)["ends"].choices:
+        return
+    if driven:
+        message = f"{ends}: the {driven[0]} would drive a valve that leads nowhere"
+        yield Fault(("ends",), message, f'write "valve", or leave {driven[0]} out')
+    if view.text("supply", "type") in ("fixed_pump", "controlled_pump"):
+        message = f"{ends}: the pump of supply would feed nothing"
+        yield Fault(("ends",), message, 'write "valve", or leave supply out')
+
+
+def reference(view: View) -> Iterator[Fault]:
+    """Exactly one reference, of something that there is."""
+    if not isinstance(child_at(view.tree, ("control",)), dict):
+        return
+    found = given(view)
+    if not found:
+        remedy = f'add a list "position:" (or {", ".join(list(REFERENCES)[1:])})'
+        yield Fault(("control", "position"), "missing: no reference", remedy)
+    for name in found[1:]:
+        message = f"a second reference, beside {found[0]}"
+        yield Fault(("control", name), message, "keep one of them", at_key=True)
+    if not found or found[0].startswith("shaft") == view.has("motor"):
+        return
+    if view.has("motor"):
+        message = "a motor has no rod to move"
+        remedy = "write shaft_speed or shaft_angle, or leave motor out"
+    else:
+        message, remedy = "there is no shaft", "add motor, or write position or speed"
+    yield Fault(("control", found[0]), message, remedy, at_key=True)
+
+
+def tuning(view: View) -> Iterator[Fault]:
+    """Gain and times are stated where the tuning says so; nothing is stated that nobody reads."""
+    found, law, way = given(view), view.text("control", "law"), view.text("control", "tuning")
+    if not isinstance(child_at(view.tree, ("control",)), dict):
+        return
+    known = entries(Control)
+    if law not in known["law"].choices or way not in known["tuning"].choices:
+        return
+    loop = found[0] if found else None
+    for name, gain in REFERENCES.items():
+        if not view.has("control", gain):
+            continue
+        if loop is not None and name != loop:
+            message = f"gain of a {name} loop, the reference is a {loop}"
+            yield Fault(("control", gain), message, f"write {REFERENCES[loop]}", at_key=True)
+        elif way != "stated":
+            message = f"stated, and tuning ({way}) finds it"
+            remedy = 'remove it, or write "tuning: stated"'
+            yield Fault(("control", gain), message, remedy, at_key=True)
+    times = {"p": (), "pi": ("integral_time",), "pid": ("integral_time", "derivative_time")}[law]
+    needed = ([] if loop is None else [REFERENCES[loop]]) + list(times)
+    for key in needed if way == "stated" else ():
+        if not view.has("control", key):
+            what = "tuning stated" if key not in times else f"a stated {law} law"
+            how = how_to_add(key, known[key])
+            yield Fault(("control", key), f"missing: {what} needs it", how)
+    yield from _unread(view, law, way)
+
+
+def _unread(view: View, law: str, way: str) -> Iterator[Fault]:
+    """Keys that neither law nor tuning reads."""
+    parts = {"p": (), "pi": ("integral",), "pid": ("integral", "derivative")}[law]
+    for part in ("integral", "derivative"):
+        if part not in parts:
+            keys = [f"{part}_time", f"{part}_factor"]
+            yield from without_effect(view, ("control",), keys, f"on a {law} law")
+    if "derivative" not in parts:
+        yield from without_effect(view, ("control",), ["filter_time"], f"on a {law} law")
+    if way != "margins":
+        yield from without_effect(view, ("control",), ["margin"], f"where tuning is {way}")
+    if not view.number("control", "pressure_feedback"):
+        keys = ["pressure_time"] if not view.has("control", "pressure_feedback") else []
+        yield from without_effect(view, ("control",), keys, "without pressure_feedback")
+
+
+def step_results(view: View) -> Iterator[Fault]:
+    """What is read from the answer to a step needs a reference that makes one."""
+    asked = [name for name in STEP_RESULTS if view.has("requirements", name)]
+    found = given(view)
+    if not asked or len(found) > 1:
+        return
+    shapes = []
+    for name in found:
+        for index in range(len(view.items("control", name))):
+            shapes.append(view.text("control", name, index, "shape"))
+    faulty = any(shape not in SHAPES for shape in shapes) or bool(found and not shapes)
+    if faulty or ("step" in shapes and not {"sine", "record"} & set(shapes)):
+        return
+    where = f"control.{found[0]}" if found else "control with a reference"
+    for name in asked:
+        message = "no reference that steps"
+        remedy = f'give {where} a part of "shape: step" and no sine or record, or leave this out'
+        yield Fault(("requirements", name), message, remedy, at_key=True)
+
+
+CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (drives, reference, tuning, step_results)

@@ -1,0 +1,168 @@
+"""Faults that only show when two values of a scenario are read together, or scenario and design."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from ... import quantities
+from ..build import how_to_add
+from ..kinds import position_at
+from ..model import Design
+from ..structure import entries
+from ..view import Fault, View, length_text, without_effect
+from . import control_faults, signal_faults
+from .model import Friction, Load, Scenario, Supply
+
+_force = quantities.SCENARIOS["coulomb_force"].text
+_area = quantities.INPUTS["orifice_area"].text
+_NEEDED = {
+    "fixed_pump": ("volume", "relief"),
+    "controlled_pump": ("volume", "flow", "gain", "time_constant"),
+}
+_UNREAD = {
+    "constant": ("volume", "flow", "pump", "relief", "gain", "time_constant", "accumulator"),
+    "fixed_pump": ("gain", "time_constant"),
+    "controlled_pump": ("pump",),
+}
+
+
+def supply(view: View) -> Iterator[Fault]:
+    """A supply states what its type needs, and nothing that it does not read."""
+    kind = view.text("supply", "type")
+    if kind not in _UNREAD:  # itself a fault, told where it stands
+        return
+    known = entries(Supply)
+    for key in _NEEDED.get(kind, ()):
+        if not view.has("supply", key):
+            message = f"missing: a {kind} needs it"
+            yield Fault(("supply", key), message, how_to_add(key, known[key]))
+    flow, pump = view.has("supply", "flow"), view.has("supply", "pump")
+    if kind == "fixed_pump" and not flow and not pump:
+        remedy = f'{how_to_add("flow", known["flow"])}, or a block "pump:"'
+        yield Fault(("supply", "flow"), f"missing: a {kind} needs it, or pump", remedy)
+    if kind == "fixed_pump" and flow and pump:
+        message = "pump beside flow: both say what is delivered"
+        yield Fault(("supply", "pump"), message, "keep one of them", at_key=True)
+    where = "on a constant supply" if kind == "constant" else f"on a {kind}"
+    remedy = "remove it, or write another type" if kind == "constant" else "remove the line"
+    yield from without_effect(view, ("supply",), _UNREAD[kind], where, remedy)
+
+
+def cushion(view: View) -> Iterator[Fault]:
+    """A cushion closes the way of the oil."""
+    loc = ("stops", "cushion")
+    opened, closed = view.number(*loc, "open_area"), view.number(*loc, "end_area")
+    if opened is not None and closed is not None and closed >= opened:
+        message = f"{_area(closed)}: not smaller than open_area ({_area(opened)})"
+        yield Fault((*loc, "end_area"), message, f"write less than {_area(opened)}")
+
+
+def friction(view: View) -> Iterator[Fault]:
+    """The curve is stated from its Coulomb friction on; its breakaway is not below that."""
+    model = view.text("friction", "model")
+    if model == "none":
+        keys = [key for key in entries(Friction) if key not in ("model", "viscous")]
+        yield from without_effect(view, ("friction",), keys, "where model is none")
+        return
+    if model == "stribeck":
+        keys = ["bristle_travel", "bristle_damping"]
+        yield from without_effect(view, ("friction",), keys, "where model is stribeck")
+    known = entries(Friction)
+    if not view.has("friction", "coulomb"):
+        for key in ("static", "stribeck_speed", "viscous"):
+            if view.has("friction", key):
+                message = f"missing: {key} needs it"
+                how = how_to_add("coulomb", known["coulomb"])
+                yield Fault(("friction", "coulomb"), message, how)
+                break
+    if view.has("friction", "static") and not view.has("friction", "stribeck_speed"):
+        remedy = 'add e.g. "stribeck_speed: 5 mm/s"'
+        yield Fault(("friction", "stribeck_speed"), "missing: static needs it", remedy)
+    low, high = view.number("friction", "coulomb"), view.number("friction", "static")
+    if low is not None and high is not None and high < low:
+        message = f"{_force(high)}: below coulomb ({_force(low)})"
+        yield Fault(("friction", "static"), message, f"write {_force(low)} or more")
+
+
+def motor(view: View) -> Iterator[Fault]:
+    """With a motor in the cylinder's place nothing of a cylinder is stated."""
+    if not view.has("motor"):
+        return
+    where = "where a motor stands in the cylinder's place"
+    if view.has("held_ports"):
+        message = "held_ports beside motor: nothing flows to the motor"
+        yield Fault(("held_ports",), message, "keep one of them", at_key=True)
+    yield from without_effect(view, (), ("stops", "friction"), where)
+    yield from without_effect(view, ("initial",), ("position", "speed"), where)
+    yield from without_effect(view, ("load",), entries(Load), where, "its load stands under motor")
+    yield from without_effect(view, ("control",), ["speed_feedback"], where)
+
+
+def held_ports(view: View) -> Iterator[Fault]:
+    """With its ports held the valve moves nothing."""
+    if not view.has("held_ports") or view.has("motor"):  # both is a fault of its own
+        return
+    where, idle = "where the ports are held", ("control", "stops", "friction", "initial")
+    yield from without_effect(view, (), idle, where, "remove it, or leave held_ports out")
+    yield from without_effect(view, ("load",), entries(Load), where)
+    ends = view.text("ends")
+    if ends != "valve" and ends in entries(Scenario)["ends"].choices:
+        remedy = 'write "valve", or leave held_ports out'
+        yield Fault(("ends",), f"{ends}: held_ports are those of the valve", remedy)
+
+
+CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
+    *signal_faults.CHECKS,
+    *control_faults.CHECKS,
+    supply,
+    cushion,
+    friction,
+    motor,
+    held_ports,
+)
+
+
+def cross_field(tree: Any) -> Iterator[Fault]:
+    """Every fault between values of a scenario's tree in SI."""
+    view = View(tree, Scenario)
+    for check in CHECKS:
+        yield from check(view)
+
+
+def design_faults(scenario: Scenario, design: Design) -> Iterator[Fault]:
+    """Every fault of a scenario that shows beside its design, at the scenario's places."""
+    yield from _parts_there_are(scenario, design)
+    stroke = design.cylinder.stroke
+    begin = scenario.initial.position
+    place = None if begin is None else position_at(begin, stroke)
+    if place is not None and place > stroke:
+        message = f"{length_text(place)}: beyond cylinder.stroke ({length_text(stroke)})"
+        remedy = f'write at most {length_text(stroke)}, or a share such as "50 %"'
+        yield Fault(("initial", "position"), message, remedy)
+    spear = scenario.stops.cushion
+    if spear is not None and spear.length > stroke:
+        message = f"{length_text(spear.length)}: beyond cylinder.stroke ({length_text(stroke)})"
+        yield Fault(("stops", "cushion", "length"), message, f"write at most {length_text(stroke)}")
+
+
+def _parts_there_are(scenario: Scenario, design: Design) -> Iterator[Fault]:
+    """What the scenario moves or leads to stands in the design."""
+    needs_valve = {
+        ("signal",): bool(scenario.signal),
+        ("control",): scenario.control is not None,
+        ("held_ports",): scenario.held_ports is not None,
+        ("motor",): scenario.motor is not None,
+        ("ends",): scenario.ends == "valve",
+        ("supply", "type"): scenario.supply.type != "constant",
+    }
+    missing = [loc for loc, needed in needs_valve.items() if needed]
+    if design.valve is None and missing:
+        remedy = f"add valve to the design, or leave {'.'.join(missing[0])} out"
+        yield Fault(missing[0], "the design has no valve", remedy, at_key=True)
+    if scenario.ends == "reducing_valve" and design.ports.reducing_valve is None:
+        remedy = "add ports.reducing_valve to the design, or write another end"
+        yield Fault(("ends",), "reducing_valve: the design describes none", remedy)
+    if scenario.load.torque and getattr(design, "linkage", None) is None:
+        remedy = "add linkage to the design, or write load.force"
+        yield Fault(("load", "torque"), "the design has no linkage", remedy, at_key=True)

@@ -1,0 +1,137 @@
+"""Scenario files: read with the same care as designs, and together with the design they name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ...errors import Diagnostic, InputError
+from ...quantities import METRICS, RESULTS, Quantity
+from ..build import check
+from ..kinds import ValueFault
+from ..model import Design
+from ..paths import resolve
+from ..reader import STDIN, TEXT, LoadedDesign, Override, Source, load, opened, read_design
+from ..section import Section
+from ..structure import entries
+from ..view import Fault, Materials
+from ..yaml_source import parse
+from .faults import cross_field, design_faults
+from .model import Scenario
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedScenario:
+    """A scenario, where it was read, and what it changes in its design."""
+
+    scenario: Scenario
+    source: Source
+    folder: Path
+    """Where the files it names lie: that of its own file."""
+    changes: tuple[Override, ...] = ()
+    """Values of the design that are other here, those of the command line last."""
+
+    @property
+    def design_file(self) -> Path:
+        """The design it names."""
+        return self.folder / self.scenario.design
+
+    def diagnostic(self, path: str, message: str, remedy: str = "") -> Diagnostic:
+        """A fault of the value at a PATH of the scenario."""
+        return self.source.diagnostic(path, message, remedy)
+
+
+def read_scenario(
+    source: str | Path, *, overrides: Iterable[tuple[str, str]] = ()
+) -> LoadedScenario:
+    """Read a scenario file, or the text of one; its design stays unread.
+
+    Parameters
+    ----------
+    source : path, ``"-"`` for standard input, or a text of several lines
+    overrides : (PATH, value) pairs that replace values before anything is checked; a bare number
+        is SI. A PATH that only a design has goes to the design, as one under ``set`` does
+
+    Raises
+    ------
+    InputError
+        with every fault, in the order of the file's lines
+    """
+    text, file = opened(source, "scenario")
+    document = parse(text, file, "scenario")
+    own: list[tuple[str, str]] = []
+    others: list[tuple[str, str]] = []
+    for path, value in overrides:
+        (others if _of_design(path, document.data) else own).append((path, value))
+    scenario, place = load(document, Scenario, _made, own, RESULTS)
+    changes = []
+    for path, value in scenario.set.items():
+        loc = ("set", path)
+        said = None if loc in place.overrides else document
+        changes.append(Override(path, value, said, () if said is None else loc))
+    changes += [Override(path, value) for path, value in others]
+    folder = Path() if file in (TEXT, STDIN) else Path(source).parent
+    return LoadedScenario(scenario, place, folder, tuple(changes))
+
+
+def _made(tree: dict[str, Any]) -> tuple[Scenario | None, Sequence[Fault]]:
+    checked = check(tree, Scenario, RESULTS, cross_field)
+    return checked.section, checked.faults
+
+
+def _of_design(path: str, tree: Any) -> bool:
+    """Whether a PATH names a value of the design and none of the scenario."""
+    head = re.split(r"[.\[]", path.strip(), maxsplit=1)[0]
+    if head not in entries(Scenario):
+        return head in entries(Design)
+    return not _names(path, tree, RESULTS, Scenario) and _names(path, {}, METRICS, Design)
+
+
+def _names(path: str, tree: Any, metrics: Mapping[str, Quantity], root: type[Section]) -> bool:
+    try:
+        resolve(path, tree, metrics, root)
+    except ValueFault:
+        return False
+    return True
+
+
+def read_design_of(
+    loaded: LoadedScenario,
+    *,
+    materials: Materials | None = None,
+    metrics: Mapping[str, Quantity] | None = None,
+) -> LoadedDesign:
+    """Read the design a scenario names, with the values the scenario changes in it.
+
+    Parameters
+    ----------
+    loaded : the scenario
+    materials : names and kinds of materials; default: the library
+    metrics : metrics the design may name; default: `quantities.METRICS`
+
+    Raises
+    ------
+    InputError
+        with every fault of the design, those of changed values at their place in the scenario;
+        else with those that show when both are read together
+    """
+    path = loaded.design_file
+    try:
+        design = read_design(path, overrides=loaded.changes, materials=materials, metrics=metrics)
+    except InputError as error:
+        raise InputError([_at_its_name(fault, loaded) for fault in error.diagnostics]) from None
+    found = sorted(design_faults(loaded.scenario, design.design), key=loaded.source.place)
+    if found:
+        raise InputError([loaded.source.at(fault) for fault in found])
+    return design
+
+
+def _at_its_name(fault: Diagnostic, loaded: LoadedScenario) -> Diagnostic:
+    """A fault of a design file as a whole stands where the scenario names the file."""
+    path = str(loaded.design_file)
+    if fault.file != path or fault.line is not None:
+        return fault
+    return loaded.diagnostic("design", f"{path}: {fault.message}", fault.remedy)

@@ -1,0 +1,67 @@
+"""Signals over time: lists of parts that add up."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from ..kinds import Of
+from ..section import Section
+from . import words
+from .kinds import FileName, Label
+
+
+class Part(Section):
+    """A part of a signal; the parts of a list add up."""
+
+    shape: words.Shape
+    start: Annotated[float, Of("instant", "when it begins; of a record: when its zero is")] = 0.0
+    end: Annotated[float | None, Of("instant", "when it ends")] = None
+    frequency: Annotated[float | None, Of("frequency", "frequency of a sine")] = None
+    phase: Annotated[float, Of("phase", "phase of a sine at its start")] = 0.0
+    file: Annotated[
+        str | None, FileName("CSV file of a record, beside the scenario", "record.csv")
+    ] = None
+    column: Annotated[str | None, Label("column of a record, by its header", "force")] = None
+    scale: Annotated[float, Of("factor", "factor on a record")] = 1.0
+
+
+class Signal(Part):
+    """A part of the valve's signal."""
+
+    value: Annotated[float | None, Of("signal_value", "height, or amplitude of a sine")] = None
+
+
+class Position(Part):
+    """A part of a position over time."""
+
+    value: Annotated[float | None, Of("position_value", "height, or amplitude of a sine")] = None
+
+
+class Speed(Part):
+    """A part of a speed over time."""
+
+    value: Annotated[float | None, Of("speed_value", "height, or amplitude of a sine")] = None
+
+
+class Force(Part):
+    """A part of the load's force, positive against extension."""
+
+    value: Annotated[float | None, Of("force_value", "height, or amplitude of a sine")] = None
+
+
+class Torque(Part):
+    """A part of a load's torque on a shaft or joint."""
+
+    value: Annotated[float | None, Of("torque_value", "height, or amplitude of a sine")] = None
+
+
+class ShaftSpeed(Part):
+    """A part of a shaft's speed over time."""
+
+    value: Annotated[float | None, Of("shaft_speed_value", "height, or amplitude of a sine")] = None
+
+
+class ShaftAngle(Part):
+    """A part of a shaft's angle over time."""
+
+    value: Annotated[float | None, Of("shaft_angle_value", "height, or amplitude of a sine")] = None

@@ -1,0 +1,235 @@
+"""The joint that an actuator turns through its linkage: lever arms, angles, torque, inertia.
+
+The lever arm rises from one dead point to its largest value and falls to the other, so over the
+stroke it is least at a stop. Every end is a row of its own: the optimiser sees no kink between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..design.model import Design
+from ..models import linkage
+from ..numeric import Array, absolute, clip, minimum, real, sqrt, where
+from .geometry import Geometry
+from .limits import ENDS, OWN_PLACE
+from .rows import Computed
+from .values import Values, stacked
+
+LARGEST, WORST, WORKING = "largest lever arm", "worst", "working"
+
+METRICS = ("joint_torque_min", "joint_range", "geometry_dead_point", "geometry_joint_angle")
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """The linkage of a design; floats or arrays (designs,)."""
+
+    base_radius: Array
+    crank_radius: Array
+    angle_offset: Array
+    closed: Array
+    """Length pin to pin, retracted."""
+    stroke: Array
+
+    def position(self, angle: Array) -> Array:
+        """Piston position at a joint angle."""
+        return self._at(angle).length - self.closed
+
+    def angle(self, position: Array) -> Array:
+        """Joint angle at a piston position; NaN past a dead point."""
+        return linkage.linkage_angle(
+            length=self.closed + position,
+            base_radius=self.base_radius,
+            crank_radius=self.crank_radius,
+            angle_offset=self.angle_offset,
+        )
+
+    def lever_arm(self, position: Array) -> Array:
+        """Piston travel per joint angle at a piston position."""
+        return self._at(self.angle(position)).lever_arm
+
+    def _at(self, angle: Array) -> linkage.Linkage:
+        return linkage.linkage(
+            base_radius=self.base_radius,
+            crank_radius=self.crank_radius,
+            joint_angle=angle,
+            angle_offset=self.angle_offset,
+        )
+
+    @property
+    def ends(self) -> dict[str, Array]:
+        """Lever arm at both stops."""
+        return {ENDS[0]: self.lever_arm(0.0), ENDS[1]: self.lever_arm(self.stroke)}
+
+    @property
+    def largest(self) -> Array:
+        """Largest lever arm over the stroke: the shorter radius, square to the actuator.
+
+        l^2 = |a^2 - r^2| there; at a stop where that length is not reached.
+        """
+        square = absolute(self.base_radius * self.base_radius - self.crank_radius**2)
+        return self.lever_arm(clip(sqrt(square) - self.closed, 0.0, self.stroke))
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """What the load asks of the actuator: one number, or (cases, designs)."""
+
+    force: Array
+    speed: Array
+    mass: Array
+    """Of the load at the rod, a joint's inertia included."""
+
+
+def derive(v: Values, design: Design, g: Geometry) -> Joint | None:
+    """The joint of a design; None without a linkage."""
+    if design.linkage is None:
+        return None
+    return Joint(
+        base_radius=v["linkage.base_radius"],
+        crank_radius=v["linkage.crank_radius"],
+        angle_offset=v["linkage.angle_offset"],
+        closed=g.closed_length,
+        stroke=g.stroke,
+    )
+
+
+def arms(joint: Joint, positions: Sequence[Array | None]) -> dict[str, Array]:
+    """Lever arm of every case (cases, designs) at both stops and at its largest.
+
+    A case that states its position has the lever arm there.
+    """
+    placed = [None if x is None else joint.lever_arm(x) for x in positions]
+    everywhere = joint.ends | {LARGEST: joint.largest}
+    return {
+        place: stacked([arm if own is None else own for own in placed])
+        for place, arm in everywhere.items()
+    }
+
+
+def demand(v: Values, design: Design, lever_arm: Array = None) -> Demand:
+    """What every load case asks, a joint on `lever_arm` (cases, designs); None without a joint."""
+    forces, speeds = [], []
+    for i, case in enumerate(design.load_cases):
+        at = f"load_cases[{case.name}]."
+        if case.force is not None:
+            forces.append(v[at + "force"])
+        elif lever_arm is not None and case.through_linkage:
+            torque = v[at + "joint_torque"]
+            forces.append(linkage.actuator_force(torque=torque, lever_arm=lever_arm[i]))
+        else:
+            forces.append(v[at + "joint_torque"] / v[at + "lever_arm"])
+        if lever_arm is not None and case.joint_speed is not None:
+            speeds.append(v[at + "joint_speed"] * lever_arm[i])
+        else:
+            speeds.append(v[at + "speed"])
+    mass = v["load.mass"]
+    if lever_arm is not None:
+        felt = linkage.reflected_inertia(
+            inertia=v["load.inertia"], lever_arm=lever_arm, lever_slope=0.0
+        )
+        mass = mass + felt.mass
+    return Demand(stacked(forces), stacked(speeds), mass)
+
+
+def demands(
+    v: Values, design: Design, joint: Joint | None, positions: Sequence[Array | None]
+) -> dict[str, Demand]:
+    """What every load case asks, at its worst, where its force is asked, and at both stops."""
+    if joint is None:
+        asked = demand(v, design)
+        return {WORST: asked, WORKING: asked}
+    found = arms(joint, positions)
+    stops = {end: demand(v, design, found[end]) for end in ENDS}
+    working = demand(v, design, minimum(*(found[end] for end in ENDS)))
+    fastest = demand(v, design, found[LARGEST]).speed
+    return {WORST: replace(working, speed=fastest), WORKING: working, **stops}
+
+
+def at_stop(asked: dict[str, Demand], push: Array) -> Demand:
+    """What every load case asks at the stop it runs into."""
+    if ENDS[0] not in asked:
+        return asked[WORST]
+    back, out = (asked[end] for end in ENDS)
+    return Demand(
+        where(push, out.force, back.force),
+        where(push, out.speed, back.speed),
+        where(push, out.mass, back.mass),
+    )
+
+
+def open_cases(v: Values, design: Design, positions: Sequence[Array | None]) -> np.ndarray:
+    """Cases that ask another force or mass at one stop than at the other."""
+    if design.linkage is None:
+        return np.array([False])
+    heavy = "load.inertia" in v.varied or design.load.inertia > 0
+    return np.array(
+        [
+            x is None and (case.through_linkage or heavy)
+            for case, x in zip(design.load_cases, positions, strict=True)
+        ]
+    )
+
+
+def compute(
+    design: Design,
+    joint: Joint | None,
+    positions: Sequence[Array | None],
+    net: Array,
+    out: Computed,
+) -> None:
+    """Torque and range of the joint; `net` is the force that every case delivers."""
+    if joint is None:
+        for name in METRICS:
+            out.skip(name, "no linkage stated: add linkage")
+        return
+    arms = dict(joint.ends)
+    own = np.array([position is not None for position in positions])
+    if own.any():
+        placed = [joint.lever_arm(0.0 if x is None else x) for x in positions]
+        arms[OWN_PLACE] = stacked(placed)
+        out.applies_at["joint_torque_min", OWN_PLACE] = own
+    torque = {place: linkage.joint_torque(force=net, lever_arm=arm) for place, arm in arms.items()}
+    out.put("joint_torque_min", torque)
+    out.put("joint_range", joint.angle(joint.stroke) - joint.angle(0.0))
+    out.put("geometry_dead_point", _dead_points(joint))
+    out.skip("geometry_joint_angle", "no load case states an angle")
+    shares = {
+        case.name: position / joint.stroke
+        for case, position in zip(design.load_cases, positions, strict=True)
+        if case.angle is not None
+    }
+    if shares:
+        ends = {f"{name}, {ENDS[0]}": share for name, share in shares.items()}
+        ends |= {f"{name}, {ENDS[1]}": 1 - share for name, share in shares.items()}
+        out.put("geometry_joint_angle", ends)
+    for direction in ("push", "pull"):
+        cases = [case for case in design.load_cases if case.direction == direction]
+        if cases and all(case.through_linkage for case in cases):
+            out.skip(f"{direction}_force", "asked as a joint torque: torque[NAME]")
+
+
+def _dead_points(joint: Joint) -> dict[str, Array]:
+    """Length between a stop and the dead point behind it."""
+    base, crank = joint.base_radius, joint.crank_radius
+    return {
+        ENDS[0]: joint.closed - absolute(base - crank),
+        ENDS[1]: base + crank - joint.closed - joint.stroke,
+    }
+
+
+def warnings(design: Design, joint: Joint | None) -> Iterable[tuple[str, str]]:
+    """(metric, sentence) for what is taken at one place of the stroke."""
+    if joint is None or not design.load.inertia > 0:
+        return
+    ends = {end: float(np.min(real(arm))) for end, arm in joint.ends.items()}
+    end = min(ends, key=lambda name: ends[name])
+    yield (
+        "",
+        f"the joint's inertia weighs {design.load.inertia / ends[end] ** 2:.4g} kg at the rod "
+        f"where the lever arm is least ({end}); load cases without a position count it there",
+    )

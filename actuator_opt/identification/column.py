@@ -1,0 +1,70 @@
+"""One column of a CSV file over its time: the input of a simulation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .. import units
+from ..errors import Diagnostic, InputError
+from ..numeric import Array
+from ..suggest import remedy as remedy_for
+from ..suggest import shown
+from .csv_table import numbers, read_sheet
+from .record import CHANNELS, column_of, converted, header_cells
+
+FEWEST = 2
+"""Samples of a course."""
+
+
+def parse_column(text: str, header: str, dimension: str, *, name: str) -> tuple[Array, Array]:
+    """Time [s] and values [SI] of a column, named by its header with or without its unit.
+
+    Missing samples are left out.
+
+    Parameters
+    ----------
+    text : of the file
+    header : of the column; ``"U [V]"`` states the unit of a column ``U`` without one
+    dimension : of the quantity, "voltage"
+    name : of the file, for messages
+
+    Raises
+    ------
+    InputError
+        no such column, no time, a unit of another dimension, times that do not rise, no samples
+    """
+    sheet = read_sheet(text, name)
+    cells = header_cells(sheet)
+    names = [one[0] for one in cells]
+
+    def fault(message: str, remedy: str) -> InputError:
+        return InputError(Diagnostic(message, remedy, file=name, line=sheet.header_line))
+
+    try:
+        place, unit = column_of(sheet, cells, header)
+    except LookupError:
+        remedy = shown(remedy_for(header, names), 200)
+        raise fault(f'no column "{shown(header)}"', remedy) from None
+    clock = next((k for k, (one, _) in enumerate(cells) if one.strip().lower() in _TIMES), None)
+    if clock is None:
+        raise fault("no column t", 'add one with its unit, "t [s]"')
+    try:
+        columns = [
+            converted(cells[clock][1] or CHANNELS["t"].unit, "time", clock),
+            converted(unit, dimension, place),
+        ]
+    except units.UnitError as error:
+        message = f'column "{shown(header)}": {shown(error.message, 120)}'
+        raise fault(message, shown(error.remedy, 120)) from None
+    table, _ = numbers(sheet, [clock, place])
+    t, x = (column.values(table[:, k]) for k, column in enumerate(columns))
+    known = np.isfinite(t) & np.isfinite(x)
+    t, x = t[known], x[known]
+    if len(t) < FEWEST:
+        raise fault(f'column "{shown(header)}" holds no course', "give two samples or more")
+    if np.any(np.diff(t) <= 0):
+        raise fault("the times do not rise", "sort the samples, leave repeated ones out")
+    return t, x
+
+
+_TIMES = ("t", *CHANNELS["t"].others)

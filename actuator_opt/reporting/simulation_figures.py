@@ -1,0 +1,240 @@
+"""Figures of a Simulation as ink: strips over time, and the panels that its kind of run has."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..quantities import SCENARIOS
+from ..simulation.result import Simulation
+from . import fallback, writer
+from .figures import Axes
+from .identification_axes import Box, even_ticks, spaced
+from .identification_series import thinned
+from .ink import GREY, Ink, text_width
+from .simulation_axes import STYLES, ZERO, kept, names, stack, steady_range
+from .simulation_energy import ROW, TOP, over_time, rows_of, share_panel, time_panel
+from .simulation_series import Measured, scaled, strips, titled
+from .simulation_step import step_panel
+from .simulation_stiffness import (
+    Static,
+    along,
+    limits_of,
+    loop_panel,
+    stiffness_panels,
+    travelled,
+)
+from .text import unit_text
+
+WIDTH = 180.0
+LEAST, MOST = 92.0, 150.0
+"""Heights of the whole figure [mm]."""
+LEFT, STRIPS, GAP = 11.0, 83.0, 8.0
+"""Room for numbers beside the strips, their width, and from there to the panels [mm]."""
+LEAST_PANEL = 26.0
+"""Least height of a panel [mm]."""
+MOST_MARKS = 8
+"""Events that are marked in the strips."""
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """A figure that fills a box: a fixed height, or a weight in what is left [mm]."""
+
+    name: str
+    draw: Callable[[Ink, Box], None]
+    height: float = 0.0
+    weight: float = 1.0
+
+
+def panels(found: Simulation, measured: Measured, static: Static | None) -> list[Panel]:
+    """What this run has beside its strips, the most telling first."""
+    made = []
+    if found.servo is not None:
+        made.append(Panel("step", lambda ink, box: step_panel(ink, box, found, measured)))
+    if found.shaken is not None and found.shaken.windows:
+        made.append(
+            Panel("stiffness", lambda ink, box: _stiffness(ink, box, found, static), weight=1.6)
+        )
+        made.append(Panel("cycles", lambda ink, box: loop_panel(ink, box, found)))
+    if found.scenario.held_ports is not None and np.ptp(found.signals["signal"]) > 0:
+        made.append(Panel("flows", lambda ink, box: _flows(ink, box, found), weight=1.4))
+    count = rows_of(found)
+    if count:
+        made.append(
+            Panel("energy", lambda ink, box: share_panel(ink, box, found), TOP + ROW * count + 1.0)
+        )
+    curves = over_time(found)
+    if len(curves) > 1:
+        made.append(
+            Panel("energy_time", lambda ink, box: time_panel(ink, box, found, curves), weight=0.9)
+        )
+    return made
+
+
+def simulation_figure(
+    found: Simulation,
+    height: float = MOST,
+    *,
+    measured: Measured | None = None,
+    static: Static | None = None,
+) -> Ink:
+    """Strips over time at the left, the panels of this run at the right, in one drawing."""
+    height = min(max(height, LEAST), MOST)
+    ink = Ink(WIDTH, height)
+    known = measured or {}
+    right = _chosen(panels(found, known, static), height)
+    shown = strips(found, known)
+    wide = STRIPS if right else WIDTH - LEFT - 2.0
+    stack(ink, (LEFT, 0.0, wide, height), shown, (0.0, _end(found)), marks=_marks(found))
+    if not right:
+        return ink
+    left = LEFT + STRIPS + GAP
+    fixed = sum(one.height for one in right)
+    weights = sum(one.weight for one in right if not one.height)
+    gaps = 2.0 * (len(right) - 1)
+    share = (height - fixed - gaps) / weights if weights else 0.0
+    y = 0.0
+    for one in right:
+        tall = one.height or min(share * one.weight, 70.0 * one.weight)
+        one.draw(ink, (left, y, WIDTH - left, tall))
+        y += tall + 2.0
+    return ink
+
+
+def _chosen(made: list[Panel], height: float) -> list[Panel]:
+    """As many panels as have room; of the rest the first count more."""
+    chosen: list[Panel] = []
+    used = 0.0
+    for one in made:
+        need = one.height or LEAST_PANEL * max(one.weight, 1.0)
+        if chosen and used + need > height:
+            continue
+        chosen.append(one)
+        used += need + 2.0
+    return chosen
+
+
+def _end(found: Simulation) -> float:
+    return float(found.time[-1])
+
+
+def _marks(found: Simulation) -> list[float]:
+    """Instants of the first events."""
+    return [one.time for one in found.events[:MOST_MARKS]]
+
+
+def figures(
+    found: Simulation, *, measured: Measured | None = None, static: Static | None = None
+) -> dict[str, Ink]:
+    """Every figure of a run alone: the signals over time, and each panel by its name."""
+    known = measured or {}
+    shown = strips(found, known)
+    tall = 20.0 * len(shown) + 8.0
+    signals = Ink(120.0, tall)
+    box = (LEFT, 0.0, 120.0 - LEFT - 2.0, tall)
+    everything = kept(shown, 1e9)
+    stack(signals, box, everything, (0.0, _end(found)), marks=_marks(found))
+    made = {"signals": signals}
+    for one in panels(found, known, static):
+        height = one.height or 60.0 * max(one.weight, 1.0)
+        ink = Ink(90.0, height)
+        one.draw(ink, (1.0, 0.0, 88.0, height))
+        made[one.name] = ink
+    return made
+
+
+def write_figures(
+    found: Simulation,
+    folder: Path,
+    stem: str,
+    *,
+    measured: Measured | None = None,
+    static: Static | None = None,
+) -> list[writer.ReportFile]:
+    """Write every figure alone as ``STEM-NAME.png``, whole or not at all."""
+    made = figures(found, measured=measured, static=static)
+    contents = {f"{stem}-{name.replace('_', '-')}.png": image(ink) for name, ink in made.items()}
+    writer.write_all(folder, contents)
+    return [
+        writer.ReportFile(folder / name, hashlib.sha256(content).hexdigest(), 1)
+        for name, content in contents.items()
+    ]
+
+
+def image(ink: Ink, pixels_per_inch: float = 200.0) -> bytes:
+    """A drawing as PNG."""
+    import matplotlib as mpl
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    style: Any = {
+        "font.family": "DejaVu Sans",
+        "text.parse_math": False,
+        "text.usetex": False,
+    }
+    file = io.BytesIO()
+    with mpl.rc_context(style):
+        figure = fallback.drawn(ink)
+        FigureCanvasAgg(figure)
+        figure.savefig(file, format="png", dpi=pixels_per_inch, metadata={"Software": None})
+    return file.getvalue()
+
+
+# ---- panels of single kinds of run ----
+
+
+def _stiffness(ink: Ink, box: Box, found: Simulation, static: Static | None) -> None:
+    """Size above phase, along the stroke or over time."""
+    shaken = found.shaken
+    assert shaken is not None
+    left, top, width, height = box
+    over = "stroke" if travelled(shaken.windows, found.plant.stroke) else "time"
+    one = along("", shaken, over, STYLES[0])
+    limits = (limits_of(found, "dynamic_stiffness"), limits_of(found, "dynamic_phase"))
+    upper = 0.56 * height
+    boxes = ((left, top, width, upper), (left, top + upper, width, height - upper))
+    side = 12.0 if any(limits) else 1.0
+    stiffness_panels(ink, boxes, [one], over, static=static, limits=limits, side=side)
+
+
+def _flows(ink: Ink, box: Box, found: Simulation) -> None:
+    """Flows of a valve over its signal."""
+    left, top, width, height = box
+    quantity, volts = found.told["flow_a"].quantity, SCENARIOS["signal_value"]
+    entries = [
+        (words, scaled(quantity, found.signals[name]), style)
+        for (name, words), style in zip(
+            (("flow_a", "A"), ("flow_b", "B"), ("flow_supply", "supply"), ("flow_tank", "tank")),
+            STYLES,
+            strict=True,
+        )
+    ]
+    signal = scaled(volts, found.signals["signal"])
+    frame = (left + 11.0, top + 6.5, width - 12.0, height - 14.0)
+    across = steady_range([float(np.min(signal)), float(np.max(signal))])
+    ends = [float(v) for _, values, _ in entries for v in (np.min(values), np.max(values))]
+    axes = Axes(ink, frame, across, steady_range(ends, zero=True))
+    ticks = spaced([(v, w, 1) for v, w in even_ticks(*across, 6)], axes)
+    axes.frame_at("", f"signal, {unit_text(volts.unit)}", ticks, even_ticks(*axes.y_range, 6))
+    title = titled("Flows over the signal", quantity)
+    ink.text(left, top + 2.0, title, size=7.0, bold=True)
+    low, high = axes.y_range
+    for begin, end in (
+        ((across[0], 0.0), (across[1], 0.0)),
+        ((0.0, low), (0.0, high)),
+    ):
+        if across[0] <= begin[0] <= across[1] and low <= begin[1] <= high:
+            ink.line((axes.x(begin[0]), axes.y(begin[1])), (axes.x(end[0]), axes.y(end[1])), **ZERO)
+    for _, values, style in entries:
+        at = thinned(values)
+        xs, ys = ([float(v) for v in one[at]] for one in (signal, values))
+        ink.path(axes.clipped(xs, ys), **style | {"pen": 0.35})
+    room = width - text_width(title, 7.0, bold=True) - 2.0
+    names(ink, left + width, top + 2.0, [(words, style) for words, _, style in entries], room)
+    ink.text(frame[0] + 1.0, frame[1] + 2.0, "into A and B, from supply, to tank", size=6.0, color=GREY)

@@ -1,0 +1,325 @@
+"""Small experiments in time that find what the linear tier computes: each with its own runs.
+
+Amplitudes are small beside stroke, signal and pressure, and stated with every figure: with
+friction, all figures depend on them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import exp, inf, log, pi, radians, sin, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from ..design.scenario.signals import Force, Position
+from ..errors import InputError
+from ..numeric import Array
+from .harmonic import dynamic_stiffness_of_record, harmonic_fit
+from .stand import Measured, Record, Stand
+
+STROKE_SHARE = 0.05
+"""Amplitude of a sine over the stroke (a choice: small)."""
+SIGNAL_SHARE = 0.5
+"""Largest share of the valve's full signal that a sine may need (a choice: never saturated)."""
+FORCE_SHARE = 0.05
+"""A push, or a swing of force, over supply pressure times piston area (a choice: small)."""
+SAMPLES = 40
+"""Samples of a period."""
+HALF = 1 / sqrt(2)
+"""Share of the command that is -3 dB."""
+EXACT = 2e-3
+"""Relative error that is let pass where a figure is searched."""
+MOST = 16.0
+"""Factor on a linear figure within which the nonlinear one is sought (a choice)."""
+LASTING = 1e-3
+"""Decay per period below which a swing counts as lasting (a choice)."""
+EARLY, LATE = (12.0, 18.0), (26.0, 32.0)
+"""Windows after a push, in periods, between which a swing grows or decays."""
+FADED = 0.05
+"""Share of the first swing below which a decay is not read (a choice)."""
+
+
+RINGING = 30.0
+"""Periods of the resonance before a held actuator counts as at rest (a choice)."""
+BESIDE = (0.7, 1.0, 1.4)
+"""Factors on a crossover of the linear loop among which the nonlinear one is sought."""
+SLIDING = (0.9, 1.0, 1.1)
+STICKING = (0.8, 0.9, 1.0, 1.1, 1.22, 1.35, 1.5)
+"""The same on a resonance; the bristles of sticking seals are a spring beside the oil."""
+HOW_PHASE = "position over error of the closed loop where it is one"
+Loop = Callable[[float], complex]
+"""The linear tier's open loop over frequency [Hz], its gain included."""
+
+
+class Sine(NamedTuple):
+    """Complex ratios of fundamentals in a closed loop."""
+
+    closed: complex
+    """Position over reference."""
+    opened: complex
+    """Position over error: the describing function of the open loop."""
+    distortion: float
+    """Residual of the position over its fundamental's amplitude."""
+    record: Record
+
+
+def _inset(stand: Stand, room: float) -> Stand:
+    """The stand with some room to both ends of the stroke."""
+    room = min(room, 0.45 * stand.plant.stroke)
+    place = min(max(stand.position, room), stand.plant.stroke - room)
+    return stand if place == stand.position else stand.but(position=place)
+
+
+def placed(stand: Stand) -> Stand:
+    """The stand moved off the ends of the stroke as far as the experiments swing."""
+    return _inset(stand, 1.5 * STROKE_SHARE * stand.plant.stroke * stand.scale)
+
+
+def held_place(stand: Stand) -> Stand:
+    """The stand moved off the ends as far as a held piston creeps (2 % of the stroke)."""
+    return _inset(stand, 0.02 * stand.plant.stroke)
+
+
+def amplitude(stand: Stand, frequency: float, opened: complex) -> float:
+    """Amplitude of a reference [m]; `opened` is what the linear tier expects of the open loop.
+
+    5 % of the stroke, but no more than takes half the valve's signal for the error expected, or
+    a tenth of the supply pressure for the inertia of the swing expected.
+    """
+    plant = stand.plant
+    assert plant.valve is not None
+    errs = 1 / max(abs(1 + opened), 1e-3)
+    signal = SIGNAL_SHARE * plant.valve.signal / (stand.gain * errs)
+    inertia = 2 * FORCE_SHARE * plant.supply_pressure * plant.area_b
+    swing = inertia / (plant.mass * (2 * pi * frequency) ** 2 * abs(opened) * errs)
+    return stand.scale * min(STROKE_SHARE * plant.stroke, signal, swing)
+
+
+def sine(stand: Stand, frequency: float, size: float, cycles: float) -> Sine:
+    """The loop following a sine, after some cycles."""
+    end = (cycles + 4.0) / frequency
+    part = Position(shape="sine", value=size, frequency=frequency)
+    record = stand.closed(
+        gain=stand.gain,
+        duration=end,
+        sample_time=1 / (SAMPLES * frequency),
+        reference=(part,),
+    ).within(cycles / frequency)
+    t = record.time
+    asked, found, error = (
+        harmonic_fit(time=t, values=record.signals[name], frequency=frequency)
+        for name in ("reference", "position", "error")
+    )
+    size = max(abs(found.amplitude), 1e-30)
+    return Sine(
+        found.amplitude / asked.amplitude,
+        found.amplitude / error.amplitude,
+        found.residual / size,
+        record,
+    )
+
+
+def bandwidth(stand: Stand, expected: float, loop: Loop) -> Measured:
+    """Frequency at which the closed loop's fundamental falls to -3 dB, by secants."""
+    size = amplitude(stand, expected, loop(expected))
+    how = f"sine of {1e3 * size:.3g} mm"
+    seen: list[Sine] = []
+
+    def above(share: float) -> float:
+        seen.append(sine(stand, expected * exp(share), size, 2.0))
+        return log(abs(seen[-1].closed) / HALF)
+
+    share = _root(above, slope=-1.0)
+    facts = stand.facts(seen[-1].record)
+    why = _no_sine(seen[-1])
+    if share is None or why:
+        why = why or f"no -3 dB point within a factor of {MOST:g} of the linear one"
+        return Measured({"bandwidth": None}, how, facts, why)
+    return Measured({"bandwidth": expected * exp(share)}, how, facts)
+
+
+def _no_sine(one: Sine) -> str:
+    if one.distortion < 0.5:
+        return ""
+    return "the response is no sine: the loop swings by itself, or sticks"
+
+
+def _root(function: Callable[[float], float], slope: float) -> float | None:
+    """Zero of a function of the logarithm of a ratio, from 0 on, by secants of steps up to 0.5.
+
+    None where it does not get there in ten.
+    """
+    x, y = 0.0, function(0.0)
+    for _ in range(10):
+        if abs(y) < EXACT:
+            return x - y / slope
+        step = max(-0.5, min(0.5, -y / slope))
+        if abs(x + step) > log(MOST):
+            return None
+        new = function(x + step)
+        if (new - y) / step * slope > 0:
+            slope = (new - y) / step
+        x, y = x + step, new
+    return None
+
+
+def phase_margin(
+    stand: Stand, crossovers: Sequence[float], resonances: Sequence[float], loop: Loop
+) -> Measured:
+    """Least phase margin over the crossovers, from error and position of the closed loop.
+
+    L = position/error of the fundamentals; where |L| is one, the margin is |pi + arg L|. As the
+    loop stays closed, friction and saturation act as in service. Crossovers are sought about the
+    linear ones and about the resonances, which sticking seals move up.
+    """
+    from scipy.optimize import brentq
+
+    seen: dict[float, Sine] = {}
+
+    def above(share: float) -> float:
+        frequency = exp(share)
+        if share not in seen:
+            size = amplitude(stand, frequency, loop(frequency))
+            seen[share] = sine(stand, frequency, size, max(2.0, 0.5 * frequency / stand.bandwidth))
+        return log(abs(seen[share].opened))
+
+    around = STICKING if "bristles" in stand.rest() else SLIDING
+    asked = [f * k for f in crossovers for k in BESIDE]
+    asked += [f * k for f in resonances for k in around]
+    grid = sorted(log(f) for f in set(asked))
+    values = [above(share) for share in grid]
+    found = [
+        float(brentq(above, low, high, xtol=EXACT))
+        for low, high, one, two in zip(grid, grid[1:], values, values[1:], strict=False)
+        if (one > 0) != (two > 0)
+    ]
+    swings = next((one for one in seen.values() if _no_sine(one)), None)
+    if swings is not None or not found:
+        one = swings or seen[grid[0]]
+        why = "" if swings is None else _no_sine(one)
+        value = inf if swings is None else None
+        return Measured({"phase_margin": value}, HOW_PHASE, stand.facts(one.record), why)
+    at = min(found, key=lambda share: abs(np.angle(-seen[share].opened)))
+    margin = abs(float(np.angle(-seen[at].opened)))
+    size = 0.5 * np.ptp(seen[at].record.signals["reference"])
+    how = f"{HOW_PHASE}: {exp(at):.3g} Hz, sine of {1e3 * size:.3g} mm"
+    return Measured({"phase_margin": margin}, how, stand.facts(seen[at].record))
+
+
+def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Measured:
+    """Gain from which the loop keeps swinging after a push; up or down from the linear one."""
+    from scipy.optimize import brentq
+
+    push = FORCE_SHARE * stand.full_force * stand.scale
+    how = f"push of {push:.3g} N for {500 / frequency:.3g} ms"
+    seen: dict[float, Record] = {}
+
+    def growth(share: float) -> float:
+        rate, seen[share] = _growth(stand, expected * exp(share), frequency, push)
+        return rate + LASTING
+
+    step, low, high = log(1.25), 0.0, 0.0
+    value = growth(0.0)
+    way = step if value < 0 else -step
+    while (value < 0) == (way > 0):
+        low, high = high, high + way
+        if abs(high) > log(MOST):
+            break
+        value = growth(high)
+    facts = stand.facts(seen[low])
+    if abs(high) > log(MOST):
+        if way > 0:
+            value = {"ultimate_gain": inf}
+            return Measured(value, how, facts, f"no swinging up to {MOST:g} times the linear one")
+        return Measured({"ultimate_gain": 0.0}, how, facts, "it swings at every gain")
+    share = float(brentq(growth, low, high, xtol=EXACT))
+    near = min(seen, key=lambda one: abs(one - share))
+    facts = stand.facts(seen[near])
+    how += f", swing of {1e3 * facts.swing:.2g} mm"
+    return Measured({"ultimate_gain": expected * exp(share)}, how, facts)
+
+
+def _growth(
+    stand: Stand, gain: float, frequency: float, push: float
+) -> tuple[float, Record]:
+    """Growth of the speed's swing per period, and the record of its early window."""
+    period = 1 / frequency
+    record = stand.closed(
+        gain=gain,
+        duration=LATE[1] * period,
+        sample_time=period / SAMPLES,
+        force=(Force(shape="pulse", value=push, start=0.0, end=0.5 * period),),
+    )
+    early, late = (record.within(a * period, b * period) for a, b in (EARLY, LATE))
+    before, after = (max(float(np.ptp(one.signals["speed"])), 1e-15) for one in (early, late))
+    apart = LATE[0] - EARLY[0]
+    return max(log(after / before) / apart, -1.0), early
+
+
+def dynamic_stiffness(stand: Stand, ends: str, frequency: float, resonance: float) -> Measured:
+    """Stiffness against a sine of force at the rod, the ports ended, the valve centred."""
+    swing = 2 * FORCE_SHARE * stand.full_force * stand.scale
+    settle, cycles = RINGING / resonance, 10.0
+    record = stand.run(
+        duration=settle + cycles / frequency,
+        sample_time=1 / (SAMPLES * frequency),
+        ends=ends,
+        force=(Force(shape="sine", value=swing, frequency=frequency),),
+    ).within(settle)
+    facts = stand.facts(record)
+    how = f"force of {swing:.3g} N at {frequency:.3g} Hz, swing of {1e3 * facts.swing:.2g} mm"
+    names = ("dynamic_stiffness", "dynamic_phase")
+    if facts.stopped:
+        return Measured(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
+    one = dynamic_stiffness_of_record(
+        time=record.time,
+        position=record.signals["position"],
+        force=-record.signals["load_force"],
+        frequency=frequency,
+    ).stiffness
+    return Measured(dict(zip(names, (abs(one), float(np.angle(one))), strict=True)), how, facts)
+
+
+def decay(stand: Stand, ends: str, resonance: float) -> Measured:
+    """Natural frequency and damping ratio of the swing after a step of force, ports ended.
+
+    Of successive extremes of the speed, D_i their spans: zeta from the logarithmic decrement
+    ln(D_0/D_n)/n over half periods, down to a twentieth; f = f_d/sqrt(1 - zeta^2).
+    """
+    push = FORCE_SHARE * stand.full_force * stand.scale
+    begin = RINGING / resonance
+    record = stand.run(
+        duration=begin + 20 / resonance,
+        sample_time=1 / (2 * SAMPLES * resonance),
+        ends=ends,
+        force=(Force(shape="step", value=push, start=begin),),
+    ).within(begin)
+    facts = stand.facts(record)
+    how = f"step of {push:.3g} N, swing of {1e3 * facts.swing:.2g} mm"
+    names = ("natural_frequency", "damping_ratio")
+    if facts.stopped:
+        return Measured(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
+    times, values = _extremes(record.time, record.signals["speed"])
+    spans = np.abs(np.diff(values))
+    kept = int(np.argmax(spans < FADED * spans[:1])) if np.any(spans < FADED * spans[:1]) else len(spans)
+    if kept < 2:
+        why = f"overdamped or stuck: it comes to rest after {len(spans)} half swings"
+        return Measured(dict.fromkeys(names), how, facts, why)
+    decrement = log(spans[0] / spans[kept - 1]) / (kept - 1)
+    ratio = decrement / sqrt(pi * pi + decrement * decrement)
+    damped = (kept - 1) / (2 * float(times[kept - 1] - times[0]))
+    found = damped / sqrt(1 - ratio * ratio), ratio
+    how += f", read over {kept} half swings"
+    return Measured(dict(zip(names, found, strict=True)), how, facts)
+
+
+def _extremes(time: Array, values: Array) -> tuple[Array, Array]:
+    """Times and values of the extremes, by parabolas through three samples."""
+    rising = np.diff(values) > 0
+    at = np.flatnonzero(rising[1:] != rising[:-1]) + 1
+    left, here, right = values[at - 1], values[at], values[at + 1]
+    bend = left - 2 * here + right
+    off = np.where(bend != 0, 0.5 * (left - right) / np.where(bend != 0, bend, 1.0), 0.0)
+    step = time[at + 1] - time[at]
+    return time[at] + off * step, here - 0.25 * (left - right) * off

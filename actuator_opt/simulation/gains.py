@@ -1,0 +1,184 @@
+"""Gains of the controller: stated, or tuned from the linear loop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf, isfinite, radians
+
+import numpy as np
+
+from ..design.scenario.model import Control, Scenario
+from ..errors import Diagnostic, InputError
+from ..evaluation.study.plant import Plant
+from ..models.tuning import ControllerGains, margin_rules, ziegler_nichols
+from ..numeric import Array
+from .assemble import Loop, assemble, loop_of, start_of
+from .linearise import Linear, Margins, OpenLoop, Ultimate, controller, least, margins
+from .parts.signals import Records, steady_value
+
+MARGIN = {"p": 2.0, "pi": 3.0}
+"""Gain margin of tuning by margins (a choice: the P law as the design's default, half the ultimate
+gain; an integral part takes phase)."""
+PHASE = radians(60.0)
+"""Phase margin that the integral part of a speed loop leaves (a choice)."""
+UNITS: dict[Loop, str] = {
+    "position": "V/m", "speed": "V*s/m", "shaft_speed": "V*s/rad", "shaft_angle": "V/rad",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Tuned:
+    """The controller's gains and where they come from."""
+
+    gains: ControllerGains
+    origin: str
+    ultimate: Ultimate
+    margins: Margins
+    """In the linear loop, factors of the scenario included."""
+    unit: str
+    notes: tuple[str, ...] = ()
+
+
+def tune(scenario: Scenario, plant: Plant, records: Records) -> Tuned | None:
+    """Gains of a scenario's controller; None without one.
+
+    The loop is taken without sticking friction, at the start and at every end of the reference, the
+    spool to either side; a speed loop also where it runs steadily. The least ultimate gain counts.
+
+    Raises
+    ------
+    InputError
+        a law that the rule does not give; a loop that no gain makes swing, or that swings alone
+    """
+    control, loop = scenario.control, loop_of(scenario.control)
+    if control is None or loop is None:
+        return None
+    circuit = assemble(scenario, plant, records, None, linear=True)
+    linear = Linear.of(circuit)
+    limit, worst = least(_loops(linear, scenario, plant, control, loop))
+    stated = getattr(control, f"{loop}_gain")
+    design = plant.design.control
+    notes: tuple[str, ...] = ()
+    if stated is not None:
+        gains = ControllerGains(
+            stated, control.integral_time or inf, control.derivative_time or 0.0
+        )
+        origin = "stated"
+    elif (
+        control.tuning == "margins"
+        and loop == "position"
+        and control.law == "p"
+        and design is not None
+        and design.gain is not None
+        and control.margin is None
+    ):
+        gains, origin = ControllerGains(design.gain, inf, 0.0), "control.gain of the design"
+    else:
+        gains, origin, notes = _ruled(control, loop, limit, worst)
+    shaped = controller(
+        control.gain_factor * gains.proportional_gain,
+        gains.integral_time,
+        control.derivative_factor * gains.derivative_time,
+        control.filter_time,
+    )
+    return Tuned(gains, origin, limit, margins(worst, shaped), UNITS[loop], notes)
+
+
+def _loops(
+    linear: Linear, scenario: Scenario, plant: Plant, control: Control, loop: Loop
+) -> list[OpenLoop]:
+    """Open loops at every point that counts."""
+    end = steady_value(getattr(control, loop))
+    if loop in ("shaft_speed", "shaft_angle"):
+        found = linear.about()
+        if loop == "shaft_speed" and end:
+            found += _running(linear, "shaft speed", end)
+        return found
+    begin = start_of(scenario, plant).position
+    places = {begin}
+    if loop == "position":
+        reached = begin
+        for part in control.position:
+            reached += part.value or 0.0 if part.shape in ("step", "ramp", "constant") else 0.0
+            places.add(min(max(reached, 0.0), plant.stroke))
+    return [one for place in sorted(places) for one in linear.about(position=place)]
+
+
+def _running(linear: Linear, name: str, value: float) -> list[OpenLoop]:
+    """The open loop where the actuator runs steadily at a speed."""
+    from scipy.optimize import root
+
+    names = linear.names
+    y = linear.initial.copy()
+    y[names.index(name)] = value
+    free = [k for k, one in enumerate(names) if one not in (name, "shaft angle", "position")]
+    scale = np.array([1e5 if abs(linear.initial[k]) > 1e3 else 1.0 for k in free])
+
+    def missing(x: Array) -> Array:
+        state = y.copy()
+        state[free] = x[:-1] * scale
+        rates = np.array(linear.rates(0.0, state.tolist(), x[-1], linear.flags))
+        kept = [k for k, one in enumerate(names) if one not in ("shaft angle", "position")]
+        return rates[kept] / np.array([max(abs(linear.scale[k]), 1e-12) for k in kept]) * 1e-9
+
+    start = np.append(y[free] / scale, np.copysign(1.0, value))
+    start[:-1][[names[k] == "spool" for k in free]] = np.copysign(1.0, value)
+    solved = root(missing, start, method="hybr")
+    if not solved.success:
+        return []
+    y[free] = solved.x[:-1] * scale
+    return [linear.loop(y, float(solved.x[-1]))]
+
+
+def _ruled(
+    control: Control, loop: Loop, limit: Ultimate, worst: OpenLoop
+) -> tuple[ControllerGains, str, tuple[str, ...]]:
+    """Gains by a rule from the ultimate point."""
+    if not isfinite(limit.gain) or limit.gain <= 0:
+        message = "no gain makes the linear loop swing, so no rule gives one"
+        raise InputError(Diagnostic(message, "state the gain", path=f"control.{loop}_gain"))
+    if control.tuning == "ziegler_nichols":
+        gains = ziegler_nichols(
+            law=control.law, ultimate_gain=limit.gain, ultimate_period=limit.period
+        )
+        note = (
+            "Ziegler-Nichols knows no friction and leaves little margin on a lightly damped oil "
+            "spring: read the overshoot before the gain is used"
+        )
+        return gains, "Ziegler and Nichols", (note,)
+    if control.law == "pid":
+        message = "tuning by margins gives p or pi: a derivative part takes margin away here"
+        remedy = "write law: pi, or tuning: ziegler_nichols"
+        raise InputError(Diagnostic(message, remedy, path="control.tuning"))
+    margin = MARGIN[control.law] if control.margin is None else control.margin
+    origin = f"gain margin {margin:g}"
+    if loop in ("position", "shaft_angle") or control.law == "p":
+        return (
+            margin_rules(
+                law=control.law,
+                ultimate_gain=limit.gain,
+                velocity_gain=abs(worst.steady_rate) or 1.0,
+                gain_margin=margin,
+            ),
+            origin,
+            (),
+        )
+    gain = limit.gain / margin
+    return (
+        ControllerGains(gain, _integral_time(worst, limit, gain, control, margin), 0.0),
+        origin,
+        (),
+    )
+
+
+def _integral_time(
+    loop: OpenLoop, limit: Ultimate, gain: float, control: Control, margin: float
+) -> float:
+    """Shortest integral time of a speed loop that keeps the phase margin and most of the gain's."""
+    for time in np.geomspace(0.02 * limit.period, 1e4 * limit.period, 140):
+        shaped: Callable[[Array], Array] = controller(gain, float(time), 0.0, control.filter_time)
+        found = margins(loop, shaped)
+        if found.gain >= 0.8 * margin and (found.phase is None or found.phase >= PHASE):
+            return float(time)
+    return 1e4 * limit.period

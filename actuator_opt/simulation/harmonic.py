@@ -1,0 +1,218 @@
+"""Amplitude and phase at one frequency, of records that drift, and the dynamic stiffness.
+
+Mean, drift and swing are fitted together. Detrending first takes part of the swing with the drift:
+up to 6/(pi n)^2 of it over n cycles, 2.4 % over 5, depending on its phase [derived].
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import floor, pi
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import Diagnostic, InputError
+from ..numeric import Array
+from .sampled import sampled
+
+FEWEST_SAMPLES = 5
+"""Four unknowns and one sample more, to know the scatter."""
+RESOLVED = 1e-12
+"""Share of the largest position below which its swing is rounding (a choice)."""
+
+
+class HarmonicFit(NamedTuple):
+    """Fit x(t) = mean + slope (t - t_mid) + Re(amplitude e^(i omega t))."""
+
+    mean: float
+    """Of the drift, at the middle of the time."""
+    slope: float
+    """Drift per second."""
+    amplitude: complex
+    """Phase 0: a cosine that peaks at t = 0."""
+    residual: float
+    """Root of the squared residuals over n - 4."""
+    standard_error: float
+    """Of each part of the amplitude, if residuals are independent; harmonics raise it."""
+
+
+def harmonic_fit(*, time: Array, values: Array, frequency: float) -> HarmonicFit:
+    """Mean, drift and swing of a record by one least-squares fit on [1, t, cos wt, sin wt].
+
+    Parameters
+    ----------
+    time : (n,) [s], one cycle or more; even steps are not needed
+    values : (n,)
+    frequency : of the swing [Hz]
+
+    Returns
+    -------
+    mean, slope per second, complex amplitude, residual and standard error, in the values' unit
+
+    Raises
+    ------
+    InputError : samples that are no record, less than one cycle, two samples a cycle or fewer
+
+    Notes
+    -----
+    Valid: straight drift; the frequency is known.
+
+    References
+    ----------
+    [derived] linear least squares, covariance s^2 (X^T X)^-1
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 1.0, 101)
+    >>> fit = harmonic_fit(time=t, values=3 + 2 * t + np.sin(2 * pi * 4 * t), frequency=4.0)
+    >>> print(f"{abs(fit.amplitude):.6f} {np.degrees(np.angle(fit.amplitude)):.1f} {fit.slope:.4f}")
+    1.000000 -90.0 2.0000
+    """
+    t, x = sampled(time=time, fewest=FEWEST_SAMPLES, values=values)
+    return _fitted(_design(t, frequency), x)
+
+
+class Stiffness(NamedTuple):
+    """Dynamic stiffness of a record."""
+
+    stiffness: complex
+    """Force over position [N/m]; a positive phase: the force leads."""
+    standard_error: float
+    """Of each part [N/m], if residuals are independent."""
+
+
+def dynamic_stiffness_of_record(
+    *, time: Array, position: Array, force: Array, frequency: float
+) -> Stiffness:
+    """Dynamic stiffness k = F/x of the swings of force and position at one frequency.
+
+    Both are fitted on the same [1, t, cos wt, sin wt]. The force counts in the direction of the
+    position: a load that opposes extension enters with its sign changed.
+
+    Parameters
+    ----------
+    time : (n,) [s], one cycle or more
+    position : (n,) [m]
+    force : (n,) on the rod, positive in the direction of the position [N]
+    frequency : of the load [Hz]
+
+    Returns
+    -------
+    complex stiffness and its standard error [N/m]
+
+    Raises
+    ------
+    InputError : as `harmonic_fit`; a position that does not move at the frequency
+
+    Notes
+    -----
+    Valid: small swings; noise of position and force independent.
+
+    References
+    ----------
+    [AaltoThesis] eq. 2; [derived] joint least squares, relative errors in quadrature
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 1.0, 201)
+    >>> x, f = 1e-4 * np.sin(2 * pi * 5 * t), 1e3 * np.sin(2 * pi * 5 * t + 0.1)
+    >>> k = dynamic_stiffness_of_record(time=t, position=x, force=f, frequency=5.0).stiffness
+    >>> print(f"{abs(k):.4g} N/m, {np.angle(k):.4f} rad")
+    1e+07 N/m, 0.1000 rad
+    """
+    t, x, f = sampled(time=time, fewest=FEWEST_SAMPLES, position=position, force=force)
+    design = _design(t, frequency)
+    moved, pushed = _fitted(design, x), _fitted(design, f)
+    size = abs(moved.amplitude)
+    if size <= RESOLVED * np.max(np.abs(x)):
+        message = f"the position does not swing at {frequency:g} Hz"
+        raise InputError(Diagnostic(message, "give the frequency of the load"))
+    stiffness = pushed.amplitude / moved.amplitude
+    error = np.hypot(pushed.standard_error, abs(stiffness) * moved.standard_error) / size
+    return Stiffness(complex(stiffness), float(error))
+
+
+def windows(*, time: Array, frequency: float, cycles: int) -> tuple[slice, ...]:
+    """Slices of a record, each of whole cycles, one after the other: a stroke in pieces.
+
+    A window ends before the sample that begins the next one; what is left at the end is left out.
+
+    Parameters
+    ----------
+    time : (n,) [s]
+    frequency : [Hz]
+    cycles : of one window, 1 or more
+
+    Returns
+    -------
+    slices of the samples
+
+    Raises
+    ------
+    InputError : a record shorter than one window, or windows with too few samples to fit
+
+    Notes
+    -----
+    Valid: steps about even.
+
+    Examples
+    --------
+    >>> windows(time=np.arange(25) * 0.1, frequency=1.0, cycles=1)
+    (slice(0, 10, None), slice(10, 20, None))
+    """
+    (t,) = sampled(time=time)
+    if not frequency > 0 or cycles < 1:
+        message = f"windows of {cycles} cycles at {frequency:g} Hz"
+        raise InputError(Diagnostic(message, "give a positive frequency and 1 cycle or more"))
+    step = (t[-1] - t[0]) / (len(t) - 1)
+    length = cycles / frequency
+    count = floor((t[-1] - t[0] + step) / length + 1e-6)
+    if count < 1:
+        message = f"{t[-1] - t[0]:.3g} s hold no {cycles} cycles of {frequency:g} Hz"
+        raise InputError(Diagnostic(message, "take fewer cycles"))
+    edges = t[0] + length * np.arange(count + 1) - 1e-3 * step  # a sample on an edge begins there
+    places = np.searchsorted(t, edges)
+    if np.min(np.diff(places)) < FEWEST_SAMPLES:
+        message = f"a window of {length:.3g} s holds fewer than {FEWEST_SAMPLES} samples"
+        raise InputError(Diagnostic(message, "take more cycles"))
+    return tuple(slice(int(a), int(b)) for a, b in pairwise(places))
+
+
+class _Design(NamedTuple):
+    """Columns of a fit, their pseudo-inverse, and the middle and half length of the time."""
+
+    columns: np.ndarray
+    inverse: np.ndarray
+    half: float
+
+
+def _design(t: np.ndarray, frequency: float) -> _Design:
+    """Columns [1, (t - t_mid)/half, cos wt, sin wt]: all about one in size."""
+    span = t[-1] - t[0]
+    step = span / (len(t) - 1)
+    if not frequency > 0 or (span + step) * frequency < 1 - 1e-6:
+        message = f"{span:.3g} s hold less than one cycle of {frequency:g} Hz"
+        raise InputError(Diagnostic(message, "give a longer record or a higher frequency"))
+    if 2 * step * frequency >= 1:
+        message = f"samples every {step:.3g} s do not show {frequency:g} Hz"
+        raise InputError(Diagnostic(message, "give more than two samples a cycle"))
+    middle, half = 0.5 * (t[0] + t[-1]), 0.5 * span
+    phase = 2 * pi * frequency * t
+    columns = np.stack([np.ones_like(t), (t - middle) / half, np.cos(phase), np.sin(phase)], axis=1)
+    return _Design(columns, np.linalg.pinv(columns), float(half))
+
+
+def _fitted(design: _Design, values: np.ndarray) -> HarmonicFit:
+    """Least-squares fit of one channel."""
+    found = design.inverse @ values
+    left = values - design.columns @ found
+    residual = float(np.linalg.norm(left) / np.sqrt(len(values) - 4))
+    spread = np.sqrt(0.5 * np.sum(design.inverse[2:] ** 2))  # (X^T X)^-1 = X+ X+^T
+    return HarmonicFit(
+        float(found[0]),
+        float(found[1] / design.half),
+        complex(found[2], -found[3]),
+        residual,
+        float(residual * spread),
+    )

@@ -1,0 +1,187 @@
+"""The linear loop of a circuit: its equations about a point, open at the valve's signal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import inf, pi
+
+import numpy as np
+
+from ..numeric import Array
+from ..symbolic import function, jacobian
+from .assemble import Circuit
+
+TOUCH = 1e-9
+"""Position of the spool beside its centre [V]: which pair of edges opens."""
+POINTS = 2000
+"""Frequencies between two decades below the slowest and one above the fastest pole."""
+
+
+@dataclass(frozen=True, slots=True)
+class OpenLoop:
+    """Measured value over signal, L(s) = sum of r_i/(s - lambda_i)."""
+
+    poles: Array
+    residues: Array
+
+    def at(self, omega: Array) -> Array:
+        """L(i omega)."""
+        s = 1j * np.asarray(omega, dtype=float)[..., None]
+        return np.sum(self.residues / (s - self.poles), axis=-1)
+
+    @property
+    def frequencies(self) -> Array:
+        """Angular frequencies that show every resonance [rad/s]."""
+        size = np.abs(self.poles)
+        size = size[size > 1e-3]
+        grid = np.geomspace(size.min() / 100, size.max() * 10, POINTS)
+        near = size[:, None] * (1 + np.array([-0.02, -0.005, -1e-3, 0.0, 1e-3, 0.005, 0.02]))
+        return np.unique(np.concatenate((grid, near.ravel())))
+
+    @property
+    def steady_rate(self) -> float:
+        """Steady rate of the measured value per signal: the residue of the integrator."""
+        slow = np.abs(self.poles) < 1e-6 * np.abs(self.poles).max()
+        return float(np.real(np.sum(self.residues[slow])))
+
+
+@dataclass(frozen=True, slots=True)
+class Linear:
+    """A circuit's linearisation, to be taken at any state."""
+
+    circuit: Circuit
+    names: tuple[str, ...]
+    initial: Array
+    scale: Array
+    slopes: Callable[..., list[float]]
+    rates: Callable[..., list[float]]
+    flags: tuple[bool, ...]
+
+    @classmethod
+    def of(cls, circuit: Circuit) -> Linear:
+        """Of a circuit assembled with ``linear=True``; its integrals are left out."""
+        system = circuit.system
+        states = [one for one in system.states if not one.integral]
+        symbols = [one.symbol for one in states]
+        u = system.graph.variable("u")
+        rates = [one.rate for one in states]
+        rows = jacobian([*rates, circuit.measured], [*symbols, u])
+        flags = [one.flag for one in system.instants] + [one.flag for one in system.switches]
+        unpack = {f"{', '.join(str(s.args[0]) for s in symbols)},": "y"}
+        if flags:
+            unpack[f"{', '.join(flags)},"] = "m"
+        return cls(
+            circuit=circuit,
+            names=tuple(one.name for one in states),
+            initial=np.array([one.initial for one in states]),
+            scale=np.array([one.tolerance for one in states]),
+            slopes=function("slopes", "t, y, u, m", unpack, [x for row in rows for x in row]),
+            rates=function("rates", "t, y, u, m", unpack, rates),
+            flags=(False,) * len(flags),
+        )
+
+    def loop(self, state: Array, signal: float) -> OpenLoop:
+        """The open loop about a state and a signal."""
+        size = len(state)
+        flat = np.array(self.slopes(0.0, state.tolist(), signal, self.flags))
+        table = flat.reshape(size + 1, size + 1)
+        d = self.scale
+        a = table[:size, :size] * d / d[:, None]
+        b, c = table[:size, size] / d, table[size, :size] * d
+        poles, modes = np.linalg.eig(a)
+        residues = (c @ modes) * np.linalg.solve(modes, b.astype(complex))
+        return OpenLoop(poles, residues)
+
+    def about(self, **states: float) -> list[OpenLoop]:
+        """Open loops at the start with some states changed, the spool a touch to either side."""
+        y = self.initial.copy()
+        for name, value in states.items():
+            y[self.names.index(name.replace("_", " "))] = value
+        found = []
+        for side in (TOUCH, -TOUCH):
+            y[self.names.index("spool")] = side
+            found.append(self.loop(y, side))
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Ultimate:
+    """Where a proportional loop begins to swing."""
+
+    gain: float
+    period: float
+    """[s]"""
+
+
+def ultimate(loop: OpenLoop) -> Ultimate:
+    """Smallest gain with K L(i omega) = -1; infinite where none swings."""
+    found = [(-1 / value.real, omega) for omega, value in _crossings(loop, loop.at)]
+    gain, omega = min(found, default=(inf, 0.0))
+    return Ultimate(gain, 2 * pi / omega if omega > 0 else inf)
+
+
+def _crossings(loop: OpenLoop, response: Callable[[Array], Array]) -> list[tuple[float, complex]]:
+    """Frequencies at which a response is real and negative."""
+    from scipy.optimize import brentq
+
+    omega = loop.frequencies
+    value = response(omega)
+    found = []
+    for k in np.flatnonzero(np.diff(np.sign(value.imag)) != 0):
+        if min(value[k].real, value[k + 1].real) >= 0:
+            continue
+        at = float(
+            brentq(lambda w: float(response(np.array(w)).imag), omega[k], omega[k + 1], rtol=1e-12)
+        )
+        there = complex(response(np.array(at)))
+        if there.real < 0:
+            found.append((at, there))
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Margins:
+    """Margins of a loop with its controller."""
+
+    gain: float
+    phase: float | None
+    """[rad]; None where the loop's gain never passes one."""
+
+
+def margins(loop: OpenLoop, controller: Callable[[Array], Array]) -> Margins:
+    """Gain and phase margin of L(i omega) C(i omega); a gain margin below one is unstable."""
+
+    def response(omega: Array) -> Array:
+        return loop.at(omega) * controller(omega)
+
+    above = [-1 / value.real for _, value in _crossings(loop, response)]
+    omega = loop.frequencies
+    value = response(omega)
+    size = np.abs(value)
+    phase = None
+    for k in np.flatnonzero((size[:-1] >= 1) & (size[1:] < 1)):
+        share = np.log(size[k]) / np.log(size[k] / size[k + 1])
+        here = response(omega[k : k + 1] * (omega[k + 1] / omega[k]) ** share)[0]
+        own = float(np.angle(-here))
+        phase = own if phase is None or abs(own) < abs(phase) else phase
+    return Margins(min(above, default=inf), phase)
+
+
+def controller(
+    gain: float, integral_time: float, derivative_time: float, filter_time: float
+) -> Callable[[Array], Array]:
+    """C(i omega) = K (1 + 1/(i omega T_i) + i omega T_d/(1 + i omega T_f))."""
+
+    def at(omega: Array) -> Array:
+        s = 1j * np.asarray(omega, dtype=float)
+        part = 1.0 + derivative_time * s / (1 + filter_time * s)
+        return gain * (part + 1 / (s * integral_time) if integral_time < inf else part)
+
+    return at
+
+
+def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:
+    """The loop that swings first."""
+    found = [(ultimate(one), one) for one in loops]
+    return min(found, key=lambda pair: pair[0].gain)

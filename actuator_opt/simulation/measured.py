@@ -1,0 +1,329 @@
+"""A measured record beside a simulation: read, laid over it in time, and what is left over."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..errors import Diagnostic, InputError
+from ..identification.record import CHANNELS, Channel, Record, parse_record
+from ..numeric import Array
+from ..suggest import shown
+from .result import Simulation, Told
+
+COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L")} | {
+    "U": Channel("voltage", "V", "signal of the valve", ("signal", "command")),
+    "spool": Channel("voltage", "V", "position of the spool", ("spoolposition",)),
+    "pS": Channel("pressure", "bar", "supply pressure", ("pressuresupply", "psupply", "pp")),
+    "qA": Channel("flow", "l/min", "flow into port A", ("flowa",)),
+    "qB": Channel("flow", "l/min", "flow into port B", ("flowb",)),
+    "n_shaft": Channel("angular_speed", "rpm", "speed of the shaft", ("shaftspeed", "speed")),
+    "phi": Channel("angle", "deg", "angle of the shaft", ("shaftangle",)),
+}
+"""Channels of a record that a simulation can be held against, as a header writes them."""
+SIGNALS = {
+    "p1": "pressure_a", "p2": "pressure_b", "x": "position", "v": "speed", "F_L": "load_force",
+    "U": "signal", "spool": "spool", "pS": "pressure_supply", "qA": "flow_a", "qB": "flow_b",
+    "n_shaft": "shaft_speed", "phi": "shaft_angle",
+}  # fmt: skip
+"""The simulated signal that each channel measures."""
+FEWEST = 10
+"""Samples of a channel that say something (a choice)."""
+FINEST = 1e-4
+"""Least noise of a sensor over the span of its record (a choice: a clean record is a synthetic one)."""
+ROBUST = 1.4826
+"""Standard deviation over the median distance from zero, of a normal distribution."""
+APART = 0.02
+"""Share of a channel's span by which the start may be off before it is told (a choice)."""
+BEYOND = 5.0
+"""The same in standard deviations of the noise (a choice)."""
+STARTS = ("position", "pressure_a", "pressure_b")
+"""Signals whose start a scenario states."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measured:
+    """A measured record on the scenario's time: signals by name, each (time [s], values [SI]).
+
+    Channels may be sampled differently, begin late and have gaps; times rise.
+    """
+
+    channels: Mapping[str, tuple[Array, Array]]
+    name: str = "record"
+    notes: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, record: Record) -> Measured:
+        """The channels of a record; missing samples are left out.
+
+        Raises
+        ------
+        InputError
+            no time at a sample, times that do not rise, no channel that can be compared
+        """
+        time = _rising(record)
+        channels: dict[str, tuple[Array, Array]] = {}
+        notes = [*record.notes]
+        for column, signal in SIGNALS.items():
+            if column not in record:
+                continue
+            seen = np.isfinite(record[column])
+            if np.count_nonzero(seen) < FEWEST:
+                notes.append(f"{column}: fewer than {FEWEST} samples, left out")
+            else:
+                channels[signal] = time[seen], record[column][seen]
+        if not channels:
+            message = "no channel that a simulation tells"
+            raise record.fault(message, f"name columns {', '.join(list(COLUMNS)[1:])} with units")
+        return cls(channels, record.name, tuple(notes))
+
+    def delayed(self, time: float) -> Measured:
+        """The same record with a time added, as for a logger with another zero."""
+        moved = {name: (t + time, y) for name, (t, y) in self.channels.items()}
+        return Measured(moved, self.name, self.notes)
+
+    def fault(self, message: str, remedy: str) -> InputError:
+        """A fault of this record."""
+        return InputError(Diagnostic(message, remedy, file=self.name))
+
+
+def parse_measured(
+    text: str, *, name: str = "record", columns: Mapping[str, str] | None = None
+) -> Measured:
+    """A measured record from the text of a CSV file, columns as in `COLUMNS`.
+
+    Parameters
+    ----------
+    text : of the file
+    name : of the file, for messages
+    columns : header by channel, where it is none of the known names: ``{"p1": "Channel 3 [bar]"}``
+
+    Raises
+    ------
+    InputError
+        as `identification.parse_record`; no channel that a simulation tells
+    """
+    return Measured.of(parse_record(text, name=name, columns=columns, channels=COLUMNS))
+
+
+def _rising(record: Record) -> Array:
+    """The times of a record, checked."""
+    time = record.time
+    lost = np.flatnonzero(~np.isfinite(time))
+    if lost.size:
+        raise record.fault("no time", "give every sample its time", int(lost[0]))
+    back = np.flatnonzero(np.diff(time) <= 0)
+    if back.size:
+        at = int(back[0]) + 1
+        message = f"time does not rise at {time[at]:.9g} s"
+        raise record.fault(message, "sort the lines by time, leave repeated ones out", at)
+    return time
+
+
+class Residual(NamedTuple):
+    """What a channel measured less what was simulated, SI."""
+
+    count: int
+    rms: float
+    largest: float
+    """Largest |measured - simulated|."""
+    time: float
+    """When that is [s]."""
+    bias: float
+    """Their mean."""
+    span: float
+    """Largest less least value measured, over the same samples."""
+    noise: float
+    """Standard deviation of the sensor's noise, by `noise`."""
+
+    @property
+    def relative(self) -> float | None:
+        """Root mean square over the span; None of a channel that stands still."""
+        return self.rms / self.span if self.span > 0 else None
+
+    def to_dict(self, told: Told) -> dict[str, Any]:
+        """As plain data for JSON, SI."""
+        return {
+            "label": told.label,
+            "unit": told.quantity.si_unit,
+            "count": self.count,
+            "rms": self.rms,
+            "max": self.largest,
+            "time": self.time,
+            "bias": self.bias,
+            "span": self.span,
+            "relative": self.relative,
+            "noise": self.noise,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Overlay:
+    """A measured record over a simulation."""
+
+    measured: Measured
+    simulation: Simulation
+    lag: float
+    """Time by which the record comes late [s]."""
+    residuals: Mapping[str, Residual]
+    notes: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI; without the samples."""
+        told = self.simulation.told
+        return {
+            "record": self.measured.name,
+            "lag": self.lag,
+            "residuals": {name: one.to_dict(told[name]) for name, one in self.residuals.items()},
+            "notes": list(self.notes),
+        }
+
+
+def overlay(simulation: Simulation, measured: Measured, *, lag: float = 0.0) -> Overlay:
+    """Lay a record over a simulation and tell what is left over, channel by channel.
+
+    Parameters
+    ----------
+    simulation, measured : on one time
+    lag : time by which the record comes late [s]
+
+    Raises
+    ------
+    InputError
+        no signal in common, no time in common
+    """
+    time, signals = simulation.time, simulation.signals
+    duration = float(time[-1])
+    used = inside(measured, signals, duration, lag)
+    found = {
+        name: residual(t, y, at(t - lag, time, signals[name])) for name, (t, y) in used.items()
+    }
+    notes = [*measured.notes]
+    absent = [name for name in measured.channels if name not in signals]
+    if absent:
+        notes.append(f"not simulated here: {', '.join(absent)}")
+    short = [name for name in measured.channels if name in signals and name not in used]
+    if short:
+        notes.append(f"no time in common: {', '.join(short)}")
+    notes += _sampling(simulation, used)
+    notes += _starts(simulation, used, found, lag)
+    return Overlay(measured, simulation, lag, found, tuple(notes))
+
+
+def inside(
+    measured: Measured, signals: Mapping[str, Any], duration: float, lag: float
+) -> dict[str, tuple[Array, Array]]:
+    """The samples of a record within a run, of the signals that are simulated.
+
+    Raises
+    ------
+    InputError
+        where there are none
+    """
+    common = {name: one for name, one in measured.channels.items() if name in signals}
+    if not common:
+        have = ", ".join(measured.channels) or "none"
+        known = ", ".join(name for name in SIGNALS.values() if name in signals)
+        message = f"none of its channels is simulated ({have})"
+        raise measured.fault(message, shown(f"give some of {known}", 200))
+    found = {}
+    for name, (t, y) in common.items():
+        within = (t - lag >= 0) & (t - lag <= duration)
+        if np.count_nonzero(within) >= FEWEST:
+            found[name] = t[within], y[within]
+    if not found:
+        first = min(float(t[0]) for t, _ in common.values()) - lag
+        last = max(float(t[-1]) for t, _ in common.values()) - lag
+        raise measured.fault(
+            f"the record runs from {first:.6g} to {last:.6g} s, the scenario from 0 to "
+            f"{duration:.6g} s: fewer than {FEWEST} samples in common",
+            "count the record's time from the scenario's start, or simulate longer",
+        )
+    return found
+
+
+def at(moment: Array, time: Array, values: Array) -> Array:
+    """A simulated signal at other times, linear between samples and across no jump."""
+    if time.size == 1:
+        return np.full(np.shape(moment), values[0])
+    right = np.clip(np.searchsorted(time, moment, side="right"), 1, time.size - 1)
+    left = right - 1
+    step = time[right] - time[left]
+    share = np.clip((moment - time[left]) / np.where(step > 0, step, 1.0), 0.0, 1.0)
+    return values[left] + share * (values[right] - values[left])
+
+
+def residual(time: Array, measured: Array, simulated: Array) -> Residual:
+    """What is left over of one channel."""
+    rest = measured - simulated
+    worst = int(np.argmax(np.abs(rest)))
+    return Residual(
+        count=rest.size,
+        rms=float(np.sqrt(np.mean(rest**2))),
+        largest=float(np.abs(rest[worst])),
+        time=float(time[worst]),
+        bias=float(np.mean(rest)),
+        span=float(np.ptp(measured)),
+        noise=noise(measured),
+    )
+
+
+def noise(values: Array) -> float:
+    """Standard deviation of a sensor's noise, from differences of neighbouring samples.
+
+    The median size of third differences, whose variance is 20 that of a sample, leaves out jumps
+    and whatever is smooth over four samples; steps of the sensor count as theirs, step/sqrt(12);
+    not less than `FINEST` of the span.
+
+    Parameters
+    ----------
+    values : of one channel (samples)
+
+    Notes
+    -----
+    Noise that a filter has made smooth is taken for the signal.
+    """
+    span = float(np.ptp(values))
+    steps = np.abs(np.diff(values))
+    steps = steps[steps > 1e-9 * span]
+    grain = float(np.min(steps)) if steps.size else 0.0
+    rough = ROBUST * float(np.median(np.abs(np.diff(values, 3)))) / np.sqrt(20.0)
+    return max(rough, grain / np.sqrt(12.0), FINEST * span)
+
+
+def _sampling(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -> Iterator[str]:
+    """Whether the simulation is told more coarsely than the record."""
+    own = float(np.median(np.diff(simulation.time)))
+    theirs = min(float(np.median(np.diff(t))) for t, _ in used.values())
+    if own > 1.5 * theirs:
+        yield (
+            f"the simulation is told every {1e3 * own:.3g} ms, the record every "
+            f"{1e3 * theirs:.3g} ms: peaks between are cut; state sample_time"
+        )
+
+
+def _starts(
+    simulation: Simulation,
+    used: Mapping[str, tuple[Array, Array]],
+    found: Mapping[str, Residual],
+    lag: float,
+) -> Iterator[str]:
+    """Where the record begins elsewhere than the scenario."""
+    for name in STARTS:
+        if name not in used:
+            continue
+        t, y = used[name]
+        step = float(np.median(np.diff(t)))
+        if t[0] - lag > 1.5 * step:
+            continue
+        begun = float(simulation.signals[name][0])
+        apart = abs(float(y[0]) - begun)
+        if apart > max(APART * found[name].span, BEYOND * found[name].noise):
+            quantity = simulation.told[name].quantity
+            yield (
+                f"{name} begins at {quantity.text(float(y[0]))} in the record, at "
+                f"{quantity.text(begun)} in the scenario: state initial.{name}"
+            )

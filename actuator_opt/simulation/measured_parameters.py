@@ -1,0 +1,339 @@
+"""Parameters that a measured record can tell: where each enters, its start and its range."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+from ..design.scenario.model import Scenario
+from ..design.scenario.signals import Force
+from ..errors import Diagnostic, InputError
+from ..evaluation.study.plant import LEAST_AIR, Plane, Plant
+from ..quantities import INPUTS, MATERIAL_PROPERTIES, RECORDS, SCENARIOS, Quantity
+from ..suggest import remedy, shown
+from .assemble import LEAST_DEAD, ends_of, start_of
+
+Case: TypeAlias = tuple[Scenario, Plant]
+Put: TypeAlias = Callable[[Scenario, Plant, float], Case]
+
+SMALL = 0.01
+"""Share of the full signal, or of the supply pressure's force, that is little (a choice): where a
+design states no friction the search begins there, and an offset known to it is known."""
+BLEED = 1e-6 / 60 / 1e5
+"""Leakage where the search begins in a design without any (a choice): 1 ml/min/bar [m^3/s/Pa]."""
+RISE = 1.5
+"""Breakaway over Coulomb friction where the search begins without any rise (a choice)."""
+LATEST = 0.2
+"""Largest lag of a record over the simulated time (a choice: a logger started by hand)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A parameter: what it is, where the search begins and ends, and how it is put in, SI."""
+
+    name: str
+    quantity: Quantity
+    start: float
+    lower: float
+    upper: float
+    positive: bool
+    """Whether it is searched by its logarithm."""
+    near: float
+    """Bounds within this of the value are near enough, even about 0; of signed ones."""
+    put: Put
+
+
+def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[Entry, ...]:
+    """Parameters by their names, in that order.
+
+    Raises
+    ------
+    InputError
+        no name, an unknown or repeated one, one without effect in this scenario
+    """
+    known = (*PARAMETERS, "lag")
+    faults = []
+    for k, name in enumerate(names):
+        if name not in known:
+            message = f'"{shown(name)}" is no parameter'
+            faults.append(Diagnostic(message, remedy(name, known, limit=len(known))))
+        elif name in names[:k]:
+            faults.append(Diagnostic(f"{name} is named twice", "name it once"))
+        elif why := _idle(name, scenario, plant):
+            faults.append(Diagnostic(f"{name} has no effect: {why}", "leave it out"))
+    if not names:
+        faults.append(Diagnostic("no parameter to fit", f"name one of {', '.join(known)}"))
+    if faults:
+        raise InputError(faults)
+    return tuple(_entry(name, scenario, plant) for name in names)
+
+
+def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
+    """Why a parameter does nothing here, if so."""
+    bench, motor = scenario.held_ports is not None, scenario.motor is not None
+    if name in VALVE:
+        if plant.valve is None:
+            return "the design has no valve"
+        if not bench and not motor and ends_of(scenario, plant) != "valve":
+            return "no valve ends the lines here"
+        leaks = plant.valve.leakage_supply or plant.valve.leakage_tank
+        if name == "valve_leakage" and not leaks:
+            return "it is a factor, and the design's valve leaks nothing"
+        return None
+    if name == "lag":
+        return None
+    if bench:
+        return "the ports of the valve are held"
+    if motor and name not in OIL:
+        return "a motor stands in the cylinder's place"
+    if name in FRICTION and scenario.friction.model == "none" and name != "viscous":
+        return "friction.model is none"
+    if name == "bristle_travel" and scenario.friction.model == "stribeck":
+        return "friction.model is stribeck"
+    return None
+
+
+def _entry(name: str, scenario: Scenario, plant: Plant) -> Entry:
+    if name == "lag":
+        most = LATEST * scenario.duration
+        quantity = RECORDS["pressure_lag"]
+        late = replace(quantity, name="lag", label="time by which the record comes late")
+        return Entry(name, late, 0.0, -most, most, False, 0.0, lambda s, p, _: (s, p))
+    return PARAMETERS[name](scenario, plant)
+
+
+def _force(plant: Plant) -> float:
+    """Force of the supply pressure."""
+    return plant.supply_pressure * plant.area_a
+
+
+def _positive(
+    name: str, quantity: Quantity, start: float, least: float, most: float, put: Put
+) -> Entry:
+    begin = min(max(start, 1.001 * least), 0.999 * most)
+    return Entry(name, quantity, begin, least, most, True, 0.0, put)
+
+
+def _air(scenario: Scenario, plant: Plant) -> Entry:
+    quantity = INPUTS["air_content"]
+
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        return s, replace(p, oil=replace(p.oil, air_content=value))
+
+    start = plant.oil.air_content
+    return _positive("air_content", quantity, start, LEAST_AIR, quantity.upper, put)
+
+
+def _bulk(scenario: Scenario, plant: Plant) -> Entry:
+    quantity = MATERIAL_PROPERTIES["bulk_modulus"]
+    quantity = replace(quantity, label="bulk modulus of the oil without air, at no pressure")
+
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        return s, replace(p, oil=replace(p.oil, bulk_modulus=value))
+
+    start = plant.oil.bulk_modulus
+    return _positive("bulk_modulus", quantity, start, quantity.lower, quantity.upper, put)
+
+
+def _capacity(scenario: Scenario, plant: Plant) -> Entry:
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        assert p.valve is not None
+        return s, replace(p, valve=replace(p.valve, rated=value * p.valve.rated))
+
+    quantity = replace(SCENARIOS["factor"], label="factor on the rated flow of the valve's edges")
+    return _positive("valve_capacity", quantity, 1.0, 0.05, 20.0, put)
+
+
+def _valve_leakage(scenario: Scenario, plant: Plant) -> Entry:
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        assert p.valve is not None
+        leaks = {name: value * getattr(p.valve, name) for name in _LEAKS}
+        return s, replace(p, valve=replace(p.valve, **leaks))
+
+    quantity = replace(SCENARIOS["factor"], label="factor on the leakage of the valve's edges")
+    return _positive("valve_leakage", quantity, 1.0, 1e-3, 100.0, put)
+
+
+def _valve_offset(scenario: Scenario, plant: Plant) -> Entry:
+    assert plant.valve is not None
+    full, start = plant.valve.signal, plant.valve.offset
+
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        assert p.valve is not None
+        return s, replace(p, valve=replace(p.valve, offset=value))
+
+    quantity = replace(SCENARIOS["signal_value"], label="signal at which the spool is centred")
+    return Entry("valve_offset", quantity, start, -full, full, False, SMALL * full, put)
+
+
+def _leakage(scenario: Scenario, plant: Plant) -> Entry:
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        return s, replace(p, leakage=value)
+
+    quantity = replace(INPUTS["conductance"], label="leakage past the piston")
+    start = plant.leakage or BLEED
+    return _positive("piston_leakage", quantity, start, 1e-4 * BLEED, 1e4 * BLEED, put)
+
+
+def _level(plane: Plane, scenario: Scenario, plant: Plant) -> float:
+    """Friction of a plane at the pressures of the start."""
+    begin = start_of(scenario, plant)
+    a, b = begin.pressure_a, begin.pressure_b
+    return (
+        plane.constant
+        + plane.difference * abs(a - b)
+        + plane.rod_side * b
+        + plane.higher * max(a, b)
+    )
+
+
+def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Plane:
+    """A plane with another level at the start; over the pressures it keeps its shape."""
+    level = _level(plane, scenario, plant)
+    if level <= 0:
+        return Plane(value)
+    by = value / level
+    return Plane(
+        by * plane.constant, by * plane.difference, by * plane.rod_side, by * plane.higher,
+        plane.error,
+    )  # fmt: skip
+
+
+def _stated(scenario: Scenario, **values: float) -> Scenario:
+    """A scenario with other values of its friction."""
+    return scenario.model_copy(update={"friction": scenario.friction.model_copy(update=values)})
+
+
+def _coulomb(scenario: Scenario, plant: Plant) -> Entry:
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        if s.friction.coulomb is not None:
+            return _stated(s, coulomb=value), p
+        rise = _level(p.seals.static, s, p) / max(_level(p.seals.coulomb, s, p), 1e-9)
+        seals = replace(
+            p.seals,
+            coulomb=_scaled(p.seals.coulomb, s, p, value),
+            static=_scaled(p.seals.static, s, p, max(rise, 1.0) * value),
+        )
+        return s, replace(p, seals=seals)
+
+    stated = scenario.friction.coulomb
+    level = _level(plant.seals.coulomb, scenario, plant) if stated is None else stated
+    most = _force(plant)
+    return _positive(
+        "coulomb", SCENARIOS["coulomb_force"], level or SMALL * most, 1e-5 * most, most, put
+    )
+
+
+def _static(scenario: Scenario, plant: Plant) -> Entry:
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        if s.friction.coulomb is not None:
+            return _stated(s, static=value), p
+        return s, replace(p, seals=replace(p.seals, static=_scaled(p.seals.static, s, p, value)))
+
+    own = scenario.friction
+    if own.coulomb is None:
+        level = _level(plant.seals.coulomb, scenario, plant)
+        start = _level(plant.seals.static, scenario, plant)
+    else:
+        level, start = own.coulomb, own.static or own.coulomb
+    most = _force(plant)
+    begin = max(start, RISE * level if start <= 1.01 * level else start, SMALL * most)
+    return _positive("static", SCENARIOS["static_force"], begin, 1e-5 * most, most, put)
+
+
+def _stribeck_speed(scenario: Scenario, plant: Plant) -> Entry:
+    quantity = INPUTS["stribeck_speed"]
+
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        if s.friction.coulomb is not None:
+            return _stated(s, stribeck_speed=value), p
+        return s, replace(p, seals=replace(p.seals, stribeck_speed=value))
+
+    own = scenario.friction
+    start = plant.seals.stribeck_speed if own.coulomb is None else own.stribeck_speed or 5e-3
+    return _positive("stribeck_speed", quantity, start, quantity.lower, quantity.upper, put)
+
+
+def _viscous(scenario: Scenario, plant: Plant) -> Entry:
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        return _stated(s, viscous=value), p
+
+    own = scenario.friction
+    start = own.viscous
+    if start is None:
+        start = 0.0 if own.coulomb is not None else plant.seals.viscous
+    size = _force(plant)  # at 1 m/s
+    quantity = INPUTS["viscous_friction"]
+    return _positive("viscous", quantity, start or SMALL * size, 1e-6 * size, 10 * size, put)
+
+
+def _travel(scenario: Scenario, plant: Plant) -> Entry:
+    quantity = INPUTS["breakaway_travel"]
+
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        return _stated(s, bristle_travel=value), p
+
+    start = scenario.friction.bristle_travel or plant.seals.bristle_travel
+    return _positive("bristle_travel", quantity, start, quantity.lower, quantity.upper, put)
+
+
+def _mass(scenario: Scenario, plant: Plant) -> Entry:
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        return s, replace(p, mass=value)
+
+    quantity = replace(INPUTS["load_mass"], label="mass of load, rod and piston")
+    return _positive("mass", quantity, plant.mass, 0.01 * plant.mass, 100 * plant.mass, put)
+
+
+def _dead(chamber: str) -> Callable[[Scenario, Plant], Entry]:
+    field, area = f"dead_{chamber}", f"area_{chamber}"
+
+    def entry(scenario: Scenario, plant: Plant) -> Entry:
+        def put(s: Scenario, p: Plant, value: float) -> Case:
+            return s, replace(p, **{field: value})  # type: ignore[arg-type]
+
+        size = float(getattr(plant, area))
+        label = f"dead volume of chamber {chamber.upper()}"
+        quantity = replace(INPUTS["volume"], label=label)
+        start, most = float(getattr(plant, field)), 10 * size * plant.stroke
+        return _positive(f"dead_volume_{chamber}", quantity, start, LEAST_DEAD * size, most, put)
+
+    return entry
+
+
+def _offset(scenario: Scenario, plant: Plant) -> Entry:
+    def put(s: Scenario, p: Plant, value: float) -> Case:
+        force = (*s.load.force, Force(shape="constant", value=value))
+        return s.model_copy(update={"load": s.load.model_copy(update={"force": force})}), p
+
+    most = _force(plant)
+    quantity = replace(SCENARIOS["force_value"], label="force of the load beside the stated one")
+    return Entry("load_offset", quantity, 0.0, -most, most, False, SMALL * most, put)
+
+
+_LEAKS = ("leakage_supply", "leakage_tank")
+VALVE = ("valve_capacity", "valve_leakage", "valve_offset")
+OIL = ("air_content", "bulk_modulus")
+FRICTION = ("coulomb", "static", "stribeck_speed", "viscous", "bristle_travel")
+PARAMETERS: dict[str, Callable[[Scenario, Plant], Entry]] = {
+    "air_content": _air,
+    "bulk_modulus": _bulk,
+    "valve_capacity": _capacity,
+    "valve_leakage": _valve_leakage,
+    "valve_offset": _valve_offset,
+    "piston_leakage": _leakage,
+    "coulomb": _coulomb,
+    "static": _static,
+    "stribeck_speed": _stribeck_speed,
+    "viscous": _viscous,
+    "bristle_travel": _travel,
+    "mass": _mass,
+    "dead_volume_a": _dead("a"),
+    "dead_volume_b": _dead("b"),
+    "load_offset": _offset,
+}
+"""Parameters by name; `lag`, which shifts the record, stands beside them.
+
+Friction over the pressures keeps its shape: `coulomb` and `static` are its levels at the start.
+"""

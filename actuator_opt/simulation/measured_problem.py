@@ -1,0 +1,220 @@
+"""A simulation over the parameters that a record is to tell: residuals, their slopes, the search."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+import numpy as np
+
+from ..design.scenario.model import Scenario
+from ..errors import Unsolvable
+from ..evaluation.study.plant import Plant
+from ..numeric import Array
+from .assemble import assemble
+from .gains import Tuned
+from .integrate import integrate
+from .measured import Measured, at, inside, noise
+from .measured_parameters import PARAMETERS, Case, Entry
+from .parts.signals import Records
+
+MOST: Final = 4000
+"""Largest number of samples of a channel in a fit (a choice: what is denser is thinned evenly)."""
+FINE: Final = 4
+"""Samples of the simulation to one of the record (a choice: straight between them, a swing of ten
+samples to the period loses 0.3 % at most)."""
+RELATIVE: Final = 1e-8
+"""Tolerance of an integration step: slopes are differences of two runs."""
+STEP: Final = 1e-3
+"""Step of a slope on the way, over a parameter's size (a choice: far above what is integrated)."""
+WIDEST: Final = 0.1
+"""Largest step of the last slopes, which are secants over a standard error (a choice)."""
+GUESSES: Final = (1 / 3, 3.0)
+"""Factors on each start that are tried before the search (a choice)."""
+MISFIT: Final = 3.0
+"""Residual over noise from which the model misses the record (a choice)."""
+MARGIN: Final = 0.02
+"""Range about the best lag that is searched, over the simulated time (a choice)."""
+LAGS: Final = 801
+"""Lags that are tried before the search (a choice)."""
+FAR: Final = 10.0
+"""Residual of a run that cannot go on, over the largest of the first run (a choice)."""
+PASSES: Final = 40
+"""Most steps of a search (a choice)."""
+
+
+class Problem:
+    """Weighted residuals over the searched values: logarithms of positive parameters, else theirs.
+
+    Parameters
+    ----------
+    scenario, plant, records, tuned : of the simulation
+    measured : on the scenario's time
+    own : the parameters
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        plant: Plant,
+        records: Records,
+        tuned: Tuned | None,
+        measured: Measured,
+        own: Sequence[Entry],
+    ) -> None:
+        self.scenario, self.plant, self.records, self.tuned = scenario, plant, records, tuned
+        self.own, self.names = tuple(own), tuple(one.name for one in own)
+        self.late = self.names.index("lag") if "lag" in self.names else None
+        self.start, self.low, self.high = (
+            np.array([_searched(one, getattr(one, end)) for one in own])
+            for end in ("start", "lower", "upper")
+        )
+        apart = min(float(np.median(np.diff(t))) for t, _ in measured.channels.values())
+        self.sizes = np.array([1.0 if one.positive else one.near or apart for one in own])
+        duration = scenario.duration
+        self.step = float(np.clip(apart / FINE, duration / (FINE * MOST), duration / MOST))
+        self.runs = 0
+        self._known: tuple[bytes, Array, Mapping[str, Array]] | None = None
+        time, signals = self._simulated(self.start)
+        whole = inside(measured, signals, float(time[-1]), 0.0 if self.late is None else np.nan)
+        self.noise = {name: noise(y) for name, (_, y) in whole.items()}
+        self.weights = {name: 1 / one for name, one in self.noise.items()}
+        self.used = {name: _thinned(*one) for name, one in whole.items()}
+        self.far = np.inf
+        self.far = FAR * float(np.max(np.abs(self.rest(self.start))))
+
+    def put(self, x: Array) -> Case:
+        """Scenario and plant with values put in, in the order of the table."""
+        scenario, plant = self.scenario, self.plant
+        for name in PARAMETERS:
+            if name in self.names:
+                k = self.names.index(name)
+                value = float(np.exp(x[k])) if self.own[k].positive else float(x[k])
+                scenario, plant = self.own[k].put(scenario, plant, value)
+        return scenario, plant
+
+    def lag(self, x: Array) -> float:
+        """Time by which the record comes late [s]."""
+        return 0.0 if self.late is None else float(x[self.late])
+
+    def _simulated(self, x: Array) -> tuple[Array, Mapping[str, Array]]:
+        """Time and signals; the last run is kept, since a lag needs none of its own."""
+        own = np.array(x, dtype=float)
+        if self.late is not None:
+            own[self.late] = 0.0
+        key = own.tobytes()
+        if self._known is not None and self._known[0] == key:
+            return self._known[1:]
+        scenario, plant = self.put(x)
+        gains = None if self.tuned is None else self.tuned.gains
+        circuit = assemble(scenario, plant, self.records, gains)
+        idle = {id(one[1]) for one in circuit.audit.flows}
+        idle |= {id(one[2]) for one in circuit.audit.mass}
+        states = circuit.system.states
+        circuit.system.states = [one for one in states if id(one.symbol) not in idle]
+        compiled = circuit.system.compiled()
+        self.runs += 1
+        found = integrate(
+            compiled, duration=scenario.duration, sample_time=self.step, relative=RELATIVE
+        )
+        signals = compiled.signals(found.time, found.states, found.flags)
+        self._known = key, found.time, signals
+        return found.time, signals
+
+    def apart(self, x: Array) -> dict[str, Array]:
+        """Simulated less measured, by channel."""
+        time, signals = self._simulated(x)
+        late = self.lag(x)
+        return {name: at(t - late, time, signals[name]) - y for name, (t, y) in self.used.items()}
+
+    def rest(self, x: Array) -> Array:
+        """Weighted residuals; of a run that cannot go on those of a very bad one."""
+        try:
+            found = self.apart(x)
+        except Unsolvable:
+            if not np.isfinite(self.far):
+                raise
+            return np.full(sum(t.size for t, _ in self.used.values()), self.far)
+        return np.concatenate([self.weights[name] * one for name, one in found.items()])
+
+    def cost(self, x: Array) -> float:
+        """Sum of the squares of the residuals."""
+        return float(np.sum(self.rest(x) ** 2))
+
+    def slopes(self, x: Array, steps: Array) -> Array:
+        """Derivatives of the residuals by central differences, within the range."""
+        columns = []
+        for k, step in enumerate(steps):
+            up, down = x.copy(), x.copy()
+            up[k], down[k] = min(x[k] + step, self.high[k]), max(x[k] - step, self.low[k])
+            columns.append((self.rest(up) - self.rest(down)) / (up[k] - down[k]))
+        return np.stack(columns, axis=1)
+
+    def solve(self) -> Array:
+        """The best values: a lag and starts that are tried, a search, another one by what is left.
+
+        Where the model misses the record from there, the search begins once more at the start.
+        """
+        tried = self._guessed(self._aligned(self.start))
+        x = self._descended(tried)
+        if self.missed(x) and not np.array_equal(tried, self.start):
+            other = self._descended(self._aligned(self.start))
+            x = other if self.cost(other) < self.cost(x) else x
+        for name, one in self.apart(x).items():
+            self.weights[name] = 1 / max(self.noise[name], float(np.sqrt(np.mean(one**2))))
+        return self._descended(x)
+
+    def missed(self, x: Array) -> bool:
+        """Whether some channel is left with more than its noise."""
+        return any(
+            np.sqrt(np.mean(one**2)) > MISFIT * self.noise[name]
+            for name, one in self.apart(x).items()
+        )
+
+    def _aligned(self, x: Array) -> Array:
+        """With the lag that suits a run best."""
+        if self.late is None:
+            return x
+        rows = np.tile(x, (LAGS, 1))
+        rows[:, self.late] = np.linspace(self.low[self.late], self.high[self.late], LAGS)
+        return rows[int(np.argmin([self.cost(row) for row in rows]))]
+
+    def _guessed(self, x: Array) -> Array:
+        """With starts of positive parameters that are better by a factor, one after the other."""
+        best, least = x, self.cost(x)
+        for k, one in enumerate(self.own):
+            for by in GUESSES if one.positive else ():
+                row = best.copy()
+                row[k] = np.clip(x[k] + np.log(by), self.low[k], self.high[k])
+                row = self._aligned(row)
+                cost = self.cost(row)
+                best, least = (row, cost) if cost < least else (best, least)
+        return best
+
+    def _descended(self, x: Array) -> Array:
+        """Least squares within the range."""
+        from scipy.optimize import least_squares  # slow to import, rarely needed
+
+        room = 1e-6 * (self.high - self.low)
+        found = least_squares(
+            self.rest,
+            np.clip(x, self.low + room, self.high - room),
+            jac=lambda row: self.slopes(row, STEP * self.sizes),
+            bounds=(self.low, self.high),
+            x_scale=self.sizes,
+            ftol=1e-8,
+            xtol=1e-8,
+            max_nfev=PASSES,
+        )
+        best: Array = found.x
+        return best
+
+
+def _searched(entry: Entry, value: float) -> float:
+    return float(np.log(value)) if entry.positive else float(value)
+
+
+def _thinned(time: Array, values: Array) -> tuple[Array, Array]:
+    """Every so many samples, as few as a fit takes."""
+    every = -(-time.size // MOST)
+    return time[::every], values[::every]

@@ -1,0 +1,166 @@
+"""Volumes of oil under one pressure: their rate, their mass, their elastic energy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ...evaluation.springs import Give
+from ...evaluation.study.plant import Oil
+from ...models import chamber, oil_energy
+from ...models.fluid import ATMOSPHERIC_PRESSURE
+from ...numeric import maximum
+from ...symbolic import Expression, Symbol
+from ..system import System
+
+PRESSURE = 1.0
+"""Error of a pressure that is let pass [Pa]."""
+FLOOR = 1.0
+"""Least absolute pressure of the laws of oil and air [Pa]: below it both are at their limit."""
+
+
+@dataclass(slots=True)
+class Audit:
+    """What the balance of a run adds up."""
+
+    mass: list[tuple[str, Expression, Symbol]]
+    """Name, content at reference density [m^3], and the integral of what flowed in."""
+    stored: list[tuple[str, Expression]]
+    """Energy as a function of the states [J]."""
+    flows: list[tuple[str, Symbol, bool]]
+    """Energy that went in (True) or out [J]."""
+
+
+class Volumes(NamedTuple):
+    """The oil law at a pressure."""
+
+    ratio: Expression
+    modulus: Expression
+    energy: Expression
+
+
+def oil_at(oil: Oil, pressure: Expression) -> Volumes:
+    """Density ratio, bulk modulus and energy density; a vacuum keeps a trace of pressure."""
+    held = maximum(pressure, FLOOR - ATMOSPHERIC_PRESSURE)
+    return Volumes(
+        chamber.density_ratio(pressure=held, **oil.law),
+        chamber.mixture_bulk_modulus(pressure=held, **oil.law),
+        oil_energy.oil_energy_density(pressure=held, **oil.law),
+    )
+
+
+def node(
+    system: System,
+    audit: Audit,
+    name: str,
+    oil: Oil,
+    pressure: Symbol,
+    *,
+    inflow: Expression,
+    volume: float,
+    wall: float = 0.0,
+) -> None:
+    """A rigid volume with an elastic wall: its pressure follows the net inflow."""
+    law = oil_at(oil, pressure)
+    whole = volume + wall * pressure
+    system.rate(
+        pressure,
+        chamber.pressure_rate(
+            flow=inflow, volume=whole, volume_rate=0.0, bulk_modulus=law.modulus, compliance=wall
+        ),
+    )
+    _content(system, audit, name, law, whole, inflow, pressure, volume)
+    audit.stored.append((f"walls of {name}", 0.5 * wall * pressure * pressure))
+
+
+def _content(
+    system: System,
+    audit: Audit,
+    name: str,
+    law: Volumes,
+    volume: Expression,
+    inflow: Expression,
+    pressure: Expression,
+    scale: float,
+) -> None:
+    """Count mass and energy of a volume."""
+    mass = system.integral(f"inflow of {name}", law.ratio * inflow, scale=1e-3 * scale)
+    audit.mass.append((name, law.ratio * volume, mass))
+    audit.stored.append((f"oil of {name}", law.energy * volume))
+    carried = system.integral(f"carried into {name}", law.energy * inflow, scale=1e4 * scale)
+    audit.flows.append(("carried by the oil", carried, True))
+
+
+class Cylinder(NamedTuple):
+    """The two chambers of a cylinder."""
+
+    force: Expression
+    """Of the pressures on the piston [N]."""
+    volume_a: Expression
+    volume_b: Expression
+
+
+def cylinder(
+    system: System,
+    audit: Audit,
+    oil: Oil,
+    *,
+    pressure_a: Expression,
+    pressure_b: Expression,
+    inflow_a: Expression,
+    inflow_b: Expression,
+    position: Expression,
+    speed: Expression,
+    area_a: float,
+    area_b: float,
+    stroke: float,
+    dead_a: float,
+    dead_b: float,
+    walls: Give,
+    flexibility: float,
+    of: str = "",
+) -> Cylinder:
+    """Both chambers of a cylinder, coupled by their walls and by the rod's give.
+
+    V_A = A_A x + V_0A + W_AA p_A + W_AB p_B, V_B = A_B (s - x) + V_0B + W_BB p_B + W_AB p_A, W(x)
+    of the walls plus f a a^T of rod and mount with a = (A_A, -A_B). The force on the piston is
+    a^T p + p^T W' p/2, as the work of the walls asks. A pressure that is a number is held outside.
+    """
+    beyond = stroke - position
+    w_a = walls.a0 + walls.a1 * position + flexibility * area_a * area_a
+    w_b = walls.b0 + walls.b1 * beyond + flexibility * area_b * area_b
+    w_ab = walls.c0 + walls.c1 * position - flexibility * area_a * area_b
+    v_a = area_a * position + dead_a + w_a * pressure_a + w_ab * pressure_b
+    v_b = area_b * beyond + dead_b + w_b * pressure_b + w_ab * pressure_a
+    swept_a = area_a + walls.a1 * pressure_a + walls.c1 * pressure_b
+    swept_b = -area_b - walls.b1 * pressure_b + walls.c1 * pressure_a
+    law_a, law_b = oil_at(oil, pressure_a), oil_at(oil, pressure_b)
+    c_a, c_b = v_a / law_a.modulus + w_a, v_b / law_b.modulus + w_b
+    net_a, net_b = inflow_a - swept_a * speed, inflow_b - swept_b * speed
+    moved_a, moved_b = isinstance(pressure_a, Symbol), isinstance(pressure_b, Symbol)
+    if moved_a and moved_b:
+        det = c_a * c_b - w_ab * w_ab
+        system.rate(pressure_a, (c_b * net_a - w_ab * net_b) / det)
+        system.rate(pressure_b, (c_a * net_b - w_ab * net_a) / det)
+    elif moved_a:
+        system.rate(pressure_a, net_a / c_a)
+    elif moved_b:
+        system.rate(pressure_b, net_b / c_b)
+    if moved_a:
+        scale = area_a * stroke + dead_a
+        _content(system, audit, f"chamber A{of}", law_a, v_a, inflow_a, pressure_a, scale)
+    if moved_b:
+        scale = area_b * stroke + dead_b
+        _content(system, audit, f"chamber B{of}", law_b, v_b, inflow_b, pressure_b, scale)
+    energy = 0.5 * (
+        w_a * pressure_a * pressure_a
+        + w_b * pressure_b * pressure_b
+        + 2 * w_ab * pressure_a * pressure_b
+    )
+    audit.stored.append((f"walls, rod and mount{of}", energy))
+    bent = 0.5 * (
+        walls.a1 * pressure_a * pressure_a
+        - walls.b1 * pressure_b * pressure_b
+        + 2 * walls.c1 * pressure_a * pressure_b
+    )
+    return Cylinder(area_a * pressure_a - area_b * pressure_b + bent, v_a, v_b)

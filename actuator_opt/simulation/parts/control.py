@@ -1,0 +1,72 @@
+"""The controller: P, PI or PID on the error, inner loops, limits of value and rate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+from ...design.scenario.model import Control
+from ...models.tuning import ControllerGains
+from ...numeric import clip, where
+from ...symbolic import Expression
+from ..system import System
+
+HOLD_BAND = 0.01
+"""Share of the full signal over which the integral part comes to rest before the limit (a choice:
+the integral is held while the signal is saturated and would be pushed further)."""
+RATE_TIME = 1e-4
+"""Lag of a signal behind its wish where its rate is limited [s] (a choice)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What the controller sees."""
+
+    value: Expression
+    """Of the loop: position, speed, shaft speed or angle."""
+    speed: Expression
+    load_pressure: Expression
+    """Force of the pressures over area A [Pa]."""
+
+
+def command(
+    system: System,
+    stated: Control,
+    gains: ControllerGains,
+    *,
+    reference: Expression,
+    measured: Measured,
+    full_signal: float,
+    scale: float,
+) -> Expression:
+    """Signal to the valve; `scale` is a typical error of the loop, for tolerances."""
+    gain = stated.gain_factor * gains.proportional_gain
+    error = reference - measured.value
+    wish: Expression = gain * error
+    if gains.derivative_time > 0:
+        slow = system.state("filtered error", 0.0, tolerance=1e-9 * scale)
+        change = (error - slow) / stated.filter_time
+        system.rate(slow, change)
+        factor = stated.derivative_factor * gains.proportional_gain
+        wish = wish + factor * gains.derivative_time * change
+    wish = wish - stated.speed_feedback * measured.speed
+    if stated.pressure_feedback:
+        slow = system.state("filtered load pressure", 0.0, tolerance=1.0)
+        change = (measured.load_pressure - slow) / stated.pressure_time
+        system.rate(slow, change)
+        wish = wish - stated.pressure_feedback * (measured.load_pressure - slow)
+    if gains.integral_time < inf:
+        part = system.state("integral part", 0.0, tolerance=1e-7 * full_signal)
+        wish = wish + part
+        band = HOLD_BAND * full_signal
+        up = clip((full_signal - wish) / band, 0.0, 1.0)
+        down = clip((full_signal + wish) / band, 0.0, 1.0)
+        factor = stated.integral_factor * gains.proportional_gain
+        rate = factor / gains.integral_time * error
+        system.rate(part, where(rate > 0, rate * up, rate * down))
+    wish = clip(wish, -full_signal, full_signal)
+    if stated.rate_limit is None:
+        return wish
+    limited = system.state("limited signal", 0.0, tolerance=1e-7 * full_signal)
+    system.rate(limited, clip((wish - limited) / RATE_TIME, -stated.rate_limit, stated.rate_limit))
+    return limited

@@ -1,0 +1,127 @@
+"""Friction of the seals in time: bristles, a smooth Stribeck curve, or none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ...design.scenario.model import Friction as Stated
+from ...evaluation.study.plant import Plane, Plant
+from ...models import friction, lugre
+from ...numeric import absolute, maximum
+from ...quantities import SCENARIOS
+from ...symbolic import Expression
+from ..system import System
+
+LEAST = 1e-3
+"""Least level of the friction [N]: bristles without any have no length."""
+SMOOTHING = 0.05
+"""Speed over the Stribeck speed within which the curve passes through zero (a choice)."""
+LONE_SPEED = 1e-3
+"""The same scale where the friction does not fall with speed [m/s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    """Friction over speed and chamber pressures."""
+
+    coulomb: Plane
+    static: Plane
+    stribeck_speed: float
+    exponent: float
+    viscous: float
+    bristle_stiffness: float
+    bristle_damping: float
+    taper_speed: float
+
+
+def law(plant: Plant, stated: Stated, pressures: tuple[float, float]) -> Law:
+    """The design's friction, or the stated one; bristles at the pressures of the start."""
+    seals = plant.seals
+    coulomb, static = seals.coulomb, seals.static
+    speed = seals.stribeck_speed
+    viscous = seals.viscous
+    if stated.coulomb is not None:
+        coulomb = Plane(stated.coulomb)
+        static = Plane(stated.coulomb if stated.static is None else stated.static)
+        speed = stated.stribeck_speed or LONE_SPEED
+        viscous = 0.0
+    if stated.model == "none":
+        viscous = 0.0
+    if stated.viscous is not None:
+        viscous = stated.viscous
+    level = max(float(_at(coulomb, *pressures)), LEAST)
+    breakaway = max(float(_at(static, *pressures)), level)
+    travel = stated.bristle_travel or seals.bristle_travel
+    stiffness = float(lugre.lugre_bristle_stiffness(static=breakaway, largest_deflection=travel))
+    damping = stated.bristle_damping
+    if damping is None:
+        damping = float(lugre.lugre_bristle_damping(bristle_stiffness=stiffness, mass=plant.mass))
+    passive = lugre.lugre_passive_speed(
+        level=level, bristle_damping=max(damping, 1e-9), viscous=viscous
+    )
+    return Law(
+        coulomb, static, speed, stated.exponent, viscous, stiffness, damping, 0.5 * float(passive)
+    )
+
+
+def _at(plane: Plane, pressure_a: Expression, pressure_b: Expression) -> Expression:
+    higher = maximum(pressure_a, pressure_b) if plane.higher else 0.0
+    across = absolute(pressure_a - pressure_b) if plane.difference else 0.0
+    return (
+        plane.constant
+        + plane.difference * across
+        + plane.rod_side * pressure_b
+        + plane.higher * higher
+    )
+
+
+def resist(
+    system: System,
+    stated: Stated,
+    own: Law,
+    *,
+    speed: Expression,
+    pressure_a: Expression,
+    pressure_b: Expression,
+) -> Expression:
+    """Friction force on the piston, with the sign of the speed [N]."""
+    if stated.model == "none":
+        return own.viscous * speed
+    coulomb = maximum(_at(own.coulomb, pressure_a, pressure_b), LEAST)
+    static = coulomb
+    if own.static is not own.coulomb:
+        static = maximum(_at(own.static, pressure_a, pressure_b), coulomb)
+    if stated.model == "stribeck":
+        return friction.stribeck(
+            speed=speed,
+            coulomb=coulomb,
+            static=static,
+            stribeck_speed=own.stribeck_speed,
+            exponent=own.exponent,
+            viscous=own.viscous,
+            smoothing_speed=SMOOTHING * own.stribeck_speed,
+        )
+    level = friction.stribeck_level(
+        speed=speed,
+        coulomb=coulomb,
+        static=static,
+        stribeck_speed=own.stribeck_speed,
+        exponent=own.exponent,
+    )
+    bristle = system.state("bristles", 0.0, tolerance=1e-10)
+    rate = lugre.lugre_rate(
+        deflection=bristle, speed=speed, level=level, bristle_stiffness=own.bristle_stiffness
+    )
+    system.rate(bristle, rate)
+    system.signal("bristles", "deflection of the bristles", SCENARIOS["position_value"], bristle)
+    damping = lugre.lugre_tapered_damping(
+        bristle_damping=own.bristle_damping, speed=speed, taper_speed=own.taper_speed
+    )
+    return lugre.lugre_force(
+        deflection=bristle,
+        rate=rate,
+        speed=speed,
+        bristle_stiffness=own.bristle_stiffness,
+        bristle_damping=damping,
+        viscous=own.viscous,
+    )

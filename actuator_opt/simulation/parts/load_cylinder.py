@@ -1,0 +1,101 @@
+"""A load cylinder on a valve of its own: what a test bench shakes the rod with."""
+
+from __future__ import annotations
+
+from ...design.scenario.model import LoadCylinder
+from ...evaluation.springs import Give
+from ...evaluation.study.plant import Plant, ValveData
+from ...models import forces
+from ...models.valve import edge_coefficient
+from ...quantities import INPUTS, SCENARIOS
+from ...symbolic import Expression, Symbol
+from ..system import System
+from . import chambers, valve
+from .chambers import Audit
+from .signals import Records, signal
+
+WHOSE = "load_"
+LEAST_DEAD = 0.5e-3
+"""Least dead volume over the area [m] (a choice), as of the actuator's own chambers."""
+
+
+def push(
+    system: System,
+    audit: Audit,
+    plant: Plant,
+    stated: LoadCylinder,
+    records: Records,
+    *,
+    position: Symbol,
+    start: float,
+    speed: Symbol,
+    power: float,
+) -> Expression:
+    """Force of the load cylinder on the rod, outwards [N]; its rod moves with the actuator's."""
+    area = float(forces.annulus_area(bore=stated.bore, rod_diameter=stated.rod_diameter))
+    middle = 0.5 * (stated.supply_pressure + stated.return_pressure)
+    half = 0.5 * stated.force / area
+    a = system.state(f"{WHOSE}pressure a", middle + half, tolerance=chambers.PRESSURE)
+    b = system.state(f"{WHOSE}pressure b", middle - half, tolerance=chambers.PRESSURE)
+    data = _data(stated)
+    opening = valve.spool(system, data, signal(system, stated.signal, records), WHOSE)
+    flows = valve.edges(
+        system,
+        audit,
+        data,
+        opening=opening,
+        supply_pressure=stated.supply_pressure,
+        return_pressure=stated.return_pressure,
+        pressure_a=a,
+        pressure_b=b,
+        power=power,
+        whose=WHOSE,
+    )
+    given = stated.supply_pressure * flows.supply - stated.return_pressure * flows.tank
+    work = system.integral(f"{WHOSE}supply work", given, scale=power)
+    audit.flows.append(("supply of the load cylinder", work, True))
+    dead = max(stated.dead_volume, LEAST_DEAD * area)
+    found = chambers.cylinder(
+        system,
+        audit,
+        plant.oil,
+        pressure_a=a,
+        pressure_b=b,
+        inflow_a=flows.into_a,
+        inflow_b=flows.into_b,
+        position=position + (0.5 * stated.stroke - start),
+        speed=speed,
+        area_a=area,
+        area_b=area,
+        stroke=stated.stroke,
+        dead_a=dead,
+        dead_b=dead,
+        walls=Give(),
+        flexibility=0.0,
+        of=" of the load cylinder",
+    )
+    pressures = INPUTS["pressure"]
+    system.signal(f"{WHOSE}pressure_a", "pressure of the load cylinder, side A", pressures, a)
+    system.signal(f"{WHOSE}pressure_b", "pressure of the load cylinder, side B", pressures, b)
+    force = SCENARIOS["force_value"]
+    system.signal("load_cylinder_force", "force of the load cylinder", force, found.force)
+    return found.force
+
+
+def _data(stated: LoadCylinder) -> ValveData:
+    """Its valve's edges, without correction for viscosity."""
+    own = stated.valve
+    after = own.leakage_drop if own.tank_leakage_drop is None else own.tank_leakage_drop
+
+    def coefficient(flow: float, drop: float) -> float:
+        return float(edge_coefficient(flow=flow, pressure_drop=drop))
+
+    return ValveData(
+        rated=coefficient(own.rated_flow, own.rated_drop),
+        leakage_supply=coefficient(own.leakage_flow, own.leakage_drop),
+        leakage_tank=coefficient(own.leakage_flow, after),
+        signal=own.signal,
+        natural_frequency=own.natural_frequency,
+        damping_ratio=own.damping_ratio,
+        offset=own.offset,
+    )

@@ -1,0 +1,162 @@
+"""What the rod moves and what stops it: mass, stops, cushion, load, joint, a machine outside."""
+
+from __future__ import annotations
+
+from ...design.scenario.model import Cushion, Scenario
+from ...evaluation.study.plant import Plant
+from ...models import end_stop, linkage
+from ...numeric import where
+from ...quantities import INPUTS, SCENARIOS
+from ...symbolic import Expression, Symbol
+from ..system import System
+from .chambers import Audit
+from .signals import Records, rate, signal
+
+POSITION = 1e-10
+SPEED = 1e-9
+"""Errors of position [m] and speed [m/s] that are let pass."""
+_FORCE = SCENARIOS["force_value"]
+
+
+def stops(
+    system: System, plant: Plant, scenario: Scenario, position: Symbol, speed: Symbol
+) -> Expression:
+    """Force of the end stops; contact is located, since the force jumps there."""
+    damping = end_stop.stop_damping(
+        stiffness=plant.stop_stiffness, mass=plant.mass, factor=scenario.stops.damping
+    )
+    law = {"stiffness": plant.stop_stiffness, "damping": float(damping)}
+    at_cap = system.switch("stop at the cap end", -position)
+    at_rod = system.switch("stop at the rod end", position - plant.stroke)
+    cap = end_stop.contact_force(compression=-position, closing_speed=-speed, **law)
+    rod = end_stop.contact_force(compression=position - plant.stroke, closing_speed=speed, **law)
+    return where(at_cap, cap, 0.0) - where(at_rod, rod, 0.0)
+
+
+def cushions(plant: Plant, cushion: Cushion | None, position: Symbol, speed: Symbol) -> Expression:
+    """Force of the oil driven past the spears; each chamber's whole area takes part."""
+    if cushion is None:
+        return 0.0
+    total: Expression = 0.0
+    ends = (
+        ("cap", position, -speed, plant.area_a, 1.0),
+        ("rod", plant.stroke - position, speed, plant.area_b, -1.0),
+    )
+    for name, left, into, area, way in ends:
+        if cushion.ends not in ("both", name):
+            continue
+        opening = end_stop.cushion_flow_area(
+            remaining=left,
+            length=cushion.length,
+            open_area=cushion.open_area,
+            end_area=cushion.end_area,
+            exponent=cushion.exponent,
+        )
+        pressure = end_stop.cushion_pressure(
+            speed=into,
+            area=area,
+            flow_area=opening,
+            density=plant.oil.density,
+            dynamic_viscosity=plant.oil.dynamic_viscosity,
+        )
+        total = total + way * where(left < cushion.length, pressure * area, 0.0)
+    return total
+
+
+def move(
+    system: System,
+    audit: Audit,
+    plant: Plant,
+    scenario: Scenario,
+    records: Records,
+    *,
+    position: Symbol,
+    speed: Symbol,
+    pressure_force: Expression,
+    friction: Expression,
+    pulled: Expression = 0.0,
+    power: float,
+) -> None:
+    """Equation of motion, m a = F_p - F_fr - b v + F_stop + F_cushion - F_L, and its balance."""
+    load = scenario.load
+
+    def spent(name: str, force: Expression) -> None:
+        done = system.integral(f"work on {name}", force * speed, scale=power)
+        audit.flows.append((name, done, False))
+
+    sheared = plant.oil_damping * speed
+    stopping = stops(system, plant, scenario, position, speed)
+    braking = cushions(plant, scenario.stops.cushion, position, speed)
+    outside = signal(system, load.force, records)
+    held = outside + load.stiffness * (position - _start(system, position)) + load.damping * speed
+    total = pressure_force - friction - sheared + stopping + braking - held + pulled
+    mass: Expression = plant.mass
+    audit.stored.append(("motion", 0.5 * plant.mass * speed * speed))
+    spent("friction of the seals", friction)
+    if plant.oil_damping:
+        spent("shear of the oil", sheared)
+    spent("stops", -stopping)
+    if scenario.stops.cushion is not None:
+        spent("cushions", -braking)
+    spent("load", held)
+    held = held - pulled
+    if load.drive is not None:
+        where_to = signal(system, load.drive.position, records) + _start(system, position)
+        moved = rate(system, where_to)
+        pull = load.drive.stiffness * (where_to - position) + load.drive.damping * (moved - speed)
+        total = total + pull
+        spent("machine outside", -pull)
+        held = held - pull
+        system.signal("drive_position", "position of the machine", INPUTS["position"], where_to)
+    if plant.design.linkage is not None:
+        mass, more = _joint(system, audit, plant, scenario, records, position, speed, power)
+        total, held = total - more, held + more
+    acceleration = total / mass
+    system.rate(position, speed)
+    system.rate(speed, acceleration)
+    system.signal("position", "position of the piston", INPUTS["position"], position)
+    system.signal("speed", "speed of the piston", SCENARIOS["speed_value"], speed)
+    system.signal("load_force", "force of the load", _FORCE, held)
+    system.signal("friction", "friction of the seals", _FORCE, friction)
+    system.signal("stop_force", "force of the end stops", _FORCE, stopping)
+    system.signal("pressure_force", "force of the pressures", _FORCE, pressure_force)
+    if scenario.stops.cushion is not None:
+        system.signal("cushion_force", "force of the cushions", _FORCE, braking)
+
+
+def _start(system: System, position: Symbol) -> float:
+    """Where a state begins."""
+    return next(one.initial for one in system.states if one.symbol is position)
+
+
+def _joint(
+    system: System,
+    audit: Audit,
+    plant: Plant,
+    scenario: Scenario,
+    records: Records,
+    position: Symbol,
+    speed: Symbol,
+    power: float,
+) -> tuple[Expression, Expression]:
+    """Mass at the rod with the joint's inertia, and the force of joint torque and inertia."""
+    pivots = plant.design.linkage
+    assert pivots is not None
+    size = {
+        "base_radius": pivots.base_radius,
+        "crank_radius": pivots.crank_radius,
+        "angle_offset": pivots.angle_offset,
+    }
+    angle = linkage.linkage_angle(length=plant.closed_length + position, **size)
+    arm = linkage.linkage(joint_angle=angle, **size)
+    felt = linkage.reflected_inertia(
+        inertia=plant.design.load.inertia, lever_arm=arm.lever_arm, lever_slope=arm.lever_slope
+    )
+    torque = signal(system, scenario.load.torque, records)
+    force = linkage.actuator_force(torque=torque, lever_arm=arm.lever_arm)
+    done = system.integral("work on the joint", force * speed, scale=power)
+    audit.flows.append(("joint", done, False))
+    audit.stored.append(("motion of the joint", 0.5 * felt.mass * speed * speed))
+    system.signal("joint_angle", "joint angle", SCENARIOS["shaft_angle_value"], angle)
+    system.signal("joint_torque", "torque on the joint", SCENARIOS["torque_value"], torque)
+    return plant.mass + felt.mass, force + felt.velocity_factor * speed * speed

@@ -1,0 +1,83 @@
+"""Signals over time as expressions: parts that add up, split where they jump."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from ...design.scenario.signals import Part
+from ...numeric import Array, where
+from ...symbolic import Expression, Namespace, jacobian
+from ..system import System
+
+Records = Mapping[tuple[str, str], tuple[Array, Array]]
+"""Time [s] and values [SI] of every column of a file that a part names."""
+
+
+def signal(system: System, parts: Sequence[Part], records: Records) -> Expression:
+    """The sum of the parts at the system's time; zero without parts."""
+    total: Expression = 0.0
+    for part in parts:
+        total = total + _part(system, part, records)
+    return total
+
+
+def _part(system: System, part: Part, records: Records) -> Expression:
+    t, start, end = system.time, part.start, part.end
+    value: float = getattr(part, "value", None) or 0.0
+    if part.shape == "constant":
+        return value
+    if part.shape == "record":
+        assert part.file is not None
+        assert part.column is not None
+        time, values = records[part.file, part.column]
+        return system.graph.table(_between(time + start, part.scale * values), t)
+    on = system.after(start)
+    if part.shape == "step":
+        return where(on, value, 0.0)
+    if part.shape == "ramp":
+        assert end is not None
+        done = system.after(end)
+        return where(done, value, where(on, value * (t - start) / (end - start), 0.0))
+    if end is not None:
+        on = on & ~system.after(end) if on is not True else ~system.after(end)
+    if part.shape == "pulse":
+        return where(on, value, 0.0)
+    assert part.frequency is not None
+    turn = 2 * pi * part.frequency * (t - start) + part.phase
+    return where(on, value * Namespace.sin(turn), 0.0)
+
+
+def _between(time: Array, values: Array) -> Callable[[Any], Any]:
+    """Linear between samples, constant outside."""
+
+    def at(moment: Any) -> Any:
+        found = np.interp(moment, time, values)
+        return float(found) if np.ndim(found) == 0 else found
+
+    return at
+
+
+def rate(system: System, expression: Expression) -> Expression:
+    """Time derivative of a signal between its jumps; a record counts as slow."""
+    return jacobian([expression], [system.time])[0][0]
+
+
+def steady_value(parts: Sequence[Part]) -> float:
+    """What a signal comes to in the end: constants, steps and ramps."""
+    kept = ("constant", "step", "ramp")
+    return sum(getattr(part, "value", None) or 0.0 for part in parts if part.shape in kept)
+
+
+def single_step(parts: Sequence[Part]) -> Part | None:
+    """The step of a signal that has no other course; None where there is not just one."""
+    moving = [part for part in parts if part.shape != "constant"]
+    return moving[0] if len(moving) == 1 and moving[0].shape == "step" else None
+
+
+def frequencies(parts: Sequence[Part]) -> tuple[float, ...]:
+    """Frequencies of the sines of a signal [Hz]."""
+    return tuple(part.frequency for part in parts if part.shape == "sine" and part.frequency)

@@ -1,0 +1,96 @@
+"""The proportional valve: spool and four edges."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ...evaluation.study.plant import ValveData
+from ...models import valve
+from ...models.spool import spool_acceleration
+from ...numeric import clip
+from ...quantities import SCENARIOS
+from ...symbolic import Expression
+from ..system import System
+from .chambers import Audit
+
+SPOOL = 1e-7
+"""Error of the spool's position that is let pass [V]."""
+
+
+class Port(NamedTuple):
+    """Flows of the valve."""
+
+    into_a: Expression
+    into_b: Expression
+    supply: Expression
+    tank: Expression
+
+
+def spool(system: System, data: ValveData, command: Expression, whose: str = "") -> Expression:
+    """Position of the spool under a command, in volts; `whose` begins the names of its signals."""
+    opening = system.state(f"{whose}spool", 0.0, tolerance=SPOOL)
+    speed = system.state(f"{whose}spool rate", 0.0, tolerance=SPOOL * 6 * data.natural_frequency)
+    limited = clip(command, -data.signal, data.signal)
+    system.rate(opening, speed)
+    system.rate(
+        speed,
+        spool_acceleration(
+            command=limited,
+            opening=opening,
+            rate=speed,
+            natural_frequency=data.natural_frequency,
+            damping_ratio=data.damping_ratio,
+        ),
+    )
+    volts = SCENARIOS["signal_value"]
+    of = " of the load cylinder" if whose else ""
+    system.signal(f"{whose}signal", f"signal of the valve{of}", volts, limited)
+    system.signal(f"{whose}spool", f"position of the spool{of}", volts, opening)
+    return opening
+
+
+def edges(
+    system: System,
+    audit: Audit,
+    data: ValveData,
+    *,
+    opening: Expression,
+    supply_pressure: Expression,
+    return_pressure: float,
+    pressure_a: Expression,
+    pressure_b: Expression,
+    power: float,
+    whose: str = "",
+) -> Port:
+    """Flows through the four edges, and what they lose; `power` is the scale of that [W]."""
+    flows = valve.valve_flows(
+        signal=opening - data.offset,
+        rated_coefficient=data.rated,
+        leakage_supply=data.leakage_supply,
+        leakage_tank=data.leakage_tank,
+        full_signal=data.signal,
+        supply_pressure=supply_pressure,
+        return_pressure=return_pressure,
+        pressure_a=pressure_a,
+        pressure_b=pressure_b,
+    )
+    lost = (
+        (supply_pressure - pressure_a) * flows.supply_a
+        + (supply_pressure - pressure_b) * flows.supply_b
+        + (pressure_a - return_pressure) * flows.a_tank
+        + (pressure_b - return_pressure) * flows.b_tank
+    )
+    of = " of the load cylinder" if whose else ""
+    loss = system.integral(f"{whose}valve loss", lost, scale=power)
+    audit.flows.append((f"valve edges{of}", loss, False))
+    for name, words, value in (
+        ("a", "into port A", flows.into_a),
+        ("b", "into port B", flows.into_b),
+        ("supply", "from the supply", flows.supply),
+        ("tank", "into the tank", flows.tank),
+    ):
+        system.signal(f"{whose}flow_{name}", f"flow {words}{of}", _FLOW, value)
+    return Port(flows.into_a, flows.into_b, flows.supply, flows.tank)
+
+
+_FLOW = SCENARIOS["flow_value"]

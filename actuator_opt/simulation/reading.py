@@ -1,0 +1,201 @@
+"""What the signals of a run say: the loop's figures, pressures, stiffness, requirements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ..design.scenario.model import Scenario
+from ..design.scenario.signals import Part
+from ..errors import InputError
+from ..evaluation.study.plant import Plant
+from ..models.fluid import ATMOSPHERIC_PRESSURE
+from ..numeric import Array
+from ..quantities import RESULTS
+from .assemble import LOOPS, Loop
+from .harmonic import dynamic_stiffness_of_record, windows
+from .integrate import Event
+from .parts.signals import frequencies
+from .result import Balance, Row, Servo, Shaken, Window
+from .step_response import step_metrics
+
+LAST = 0.1
+"""Share of the time whose creep is told."""
+_STEP = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
+
+
+def reference(scenario: Scenario) -> tuple[Loop | None, Sequence[Part]]:
+    """The loop of a scenario and the parts of its reference."""
+    control = scenario.control
+    for loop in LOOPS if control is not None else ():
+        parts: Sequence[Part] = getattr(control, loop)
+        if parts:
+            return loop, parts
+    return None, ()
+
+
+def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Servo | None:
+    """The first step of the reference, until it changes again; None without a step."""
+    loop, parts = reference(scenario)
+    steps = [part for part in parts if part.shape == "step"]
+    if loop is None or not steps or any(part.shape in ("sine", "record") for part in parts):
+        return None
+    first = min(steps, key=lambda part: part.start)
+    changes = [t for part in parts for t in (part.start, part.end) if t is not None]
+    end = min((t for t in changes if t > first.start), default=scenario.duration)
+    value = signals[loop]
+    inside = np.flatnonzero((time >= first.start) & (time <= end))
+    if first.start > 0 and inside.size:  # the instant stands twice
+        inside = inside[time[inside] > first.start]
+        inside = np.concatenate(([inside[0] - 1], inside)) if inside.size else inside
+    if inside.size < 3:
+        return None
+    asked = signals["reference"]
+    target = float(asked[inside[1]])
+    start = float(asked[inside[0] - 1]) if inside[0] > 0 else target - (getattr(first, "value", 0))
+    if start == target:
+        return None
+    found = step_metrics(time=time[inside], response=value[inside], start=start, target=target)
+    return Servo(loop, first.start, start, target, found)
+
+
+def shaken(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Shaken | None:
+    """Dynamic stiffness along the stroke where sines of one frequency shake the rod."""
+    if "position" not in signals:
+        return None
+    load = scenario.load
+    parts: list[Part] = [*load.force, *(load.drive.position if load.drive is not None else ())]
+    parts += load.cylinder.signal if load.cylinder is not None else ()
+    sines = [part for part in parts if part.shape == "sine"]
+    tones = set(frequencies(sines))
+    if len(tones) != 1:
+        return None
+    tone = tones.pop()
+    begin = max(part.start for part in sines)
+    end = min(part.end or scenario.duration for part in sines)
+    inside = (time >= begin) & (time <= end)
+    t, keep = np.unique(time[inside], return_index=True)
+    x, force = (signals[name][inside][keep] for name in ("position", "load_force"))
+    cycles = int(scenario.analysis.window_cycles)
+    try:
+        pieces = windows(time=t, frequency=tone, cycles=cycles)
+        found = tuple(_window(t[one], x[one], -force[one], tone) for one in pieces)
+    except InputError:
+        return None
+    return Shaken(tone, found)
+
+
+def _window(time: Array, position: Array, force: Array, frequency: float) -> Window:
+    one = dynamic_stiffness_of_record(
+        time=time, position=position, force=force, frequency=frequency
+    )
+    return Window(float(np.mean(time)), float(np.mean(position)), one.stiffness, one.standard_error)
+
+
+def values(
+    scenario: Scenario,
+    plant: Plant,
+    time: Array,
+    signals: Mapping[str, Array],
+    balance: Balance,
+    events: Sequence[Event],
+    step: Servo | None,
+    dynamic: Shaken | None,
+) -> tuple[dict[str, float | None], dict[str, str]]:
+    """Every result of `quantities.RESULTS`, None with a reason where it does not apply."""
+    found: dict[str, float | None] = dict.fromkeys(RESULTS)
+    why = dict.fromkeys(RESULTS, "does not apply to this scenario")
+    why |= dict.fromkeys(_STEP, "the reference has no step")
+    if step is not None:
+        size = abs(step.target - step.start)
+        own = step.metrics
+        found |= {
+            "rise_time": own.rise_time,
+            "settling_time": own.settling_time,
+            "overshoot": own.overshoot,
+            "steady_state_ratio": abs(own.steady_state_error) / size,
+        }
+        why["rise_time"] = "the response never gets to 90 % of the step"
+        why["settling_time"] = "the response does not stay within 2 % of the step"
+    chambers = [signals[name] for name in ("pressure_a", "pressure_b") if name in signals]
+    if chambers:
+        found["peak_pressure"] = float(max(np.max(one) for one in chambers))
+        lowest = float(min(np.min(one) for one in chambers))
+        found["lowest_pressure"] = lowest
+        found["cavitation_margin"] = lowest + ATMOSPHERIC_PRESSURE - plant.oil.vapour_pressure
+    if "position" in signals:
+        found["hold_drift"] = _drift(scenario, time, signals)
+        why["hold_drift"] = "the reference or the load still moves in the last tenth"
+        speed = _stop_speed(time, signals["speed"], events)
+        found["stop_speed"], why["stop_speed"] = speed, "the piston meets no stop"
+    loop, parts = reference(scenario)
+    if loop == "position" and any(p.shape in ("sine", "ramp", "record") for p in parts):
+        late = time >= _settled_from(parts, scenario.duration)
+        found["following_error"] = float(np.max(np.abs(signals["error"][late])))
+    why["following_error"] = "the reference does not move on"
+    came = {flow.name: flow.energy for flow in balance.flows}
+    if "supply" in came:
+        found["supply_energy"] = came["supply"]
+        work = -(came.get("load", 0.0) + came.get("joint", 0.0))
+        net = came["supply"] + came.get("return line", 0.0)
+        found["efficiency"] = work / net if work > 0 and net > 0 else None
+        why["efficiency"] = "the load took no work"
+    if dynamic is not None:
+        worst = min(dynamic.windows, key=lambda one: abs(one.stiffness))
+        found["dynamic_stiffness"] = abs(worst.stiffness)
+        found["dynamic_phase"] = float(np.angle(worst.stiffness))
+    why |= dict.fromkeys(("dynamic_stiffness", "dynamic_phase"), "no sine shakes the rod")
+    return found, {name: reason for name, reason in why.items() if found[name] is None}
+
+
+def _settled_from(parts: Sequence[Part], duration: float) -> float:
+    """After one period of the slowest sine, or at once."""
+    tones = frequencies(parts)
+    begin = min(part.start for part in parts)
+    return min(begin + (1 / min(tones) if tones else 0.0), 0.9 * duration)
+
+
+def _drift(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> float | None:
+    """Mean speed over the last part, where nothing asks for motion."""
+    begin = (1 - LAST) * scenario.duration
+    late = time >= begin
+    for name in ("reference", "signal"):
+        if name in signals and name == "reference" and np.ptp(signals[name][late]) > 0:
+            return None
+    _, parts = reference(scenario)
+    load = scenario.load
+    moving = [*load.force, *load.torque, *(load.drive.position if load.drive else ()), *parts]
+    moving += load.cylinder.signal if load.cylinder is not None else ()
+    moving += [] if parts else scenario.signal
+    if any(part.shape in ("sine", "record") and (part.end or 1e9) > begin for part in moving):
+        return None
+    t, x = time[late], signals["position"][late]
+    return float(abs(x[-1] - x[0]) / (t[-1] - t[0]))
+
+
+def _stop_speed(time: Array, speed: Array, events: Sequence[Event]) -> float | None:
+    touched = [event.time for event in events if event.on and event.name.startswith("stop")]
+    if not touched:
+        return None
+    return float(max(abs(np.interp(t, time, speed)) for t in touched))
+
+
+def requirements(
+    scenario: Scenario, found: Mapping[str, float | None], why: Mapping[str, str]
+) -> tuple[Row, ...]:
+    """Every limit of the scenario against its result."""
+    rows = []
+    for metric, limit in scenario.requirements.items():
+        for sense in ("min", "max"):
+            bound: float | None = getattr(limit, sense)
+            if bound is None:
+                continue
+            value = found.get(metric)
+            if value is None:
+                rows.append(Row(metric, sense, bound, None, None, False, why.get(metric, "")))
+                continue
+            gap = value - bound if sense == "min" else bound - value
+            margin = gap / abs(bound) if bound else gap
+            rows.append(Row(metric, sense, bound, value, margin, margin >= -1e-6))
+    return tuple(rows)

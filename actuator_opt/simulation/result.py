@@ -1,0 +1,239 @@
+"""What a simulation tells, as plain records."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..design.scenario.model import Scenario
+from ..evaluation.study.plant import Plant
+from ..numeric import Array
+from ..quantities import RESULTS, Quantity
+from .assemble import Loop
+from .gains import Tuned
+from .integrate import Event
+from .step_response import StepMetrics
+
+
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """Energy through one door over the run [J]; what comes in is positive."""
+
+    name: str
+    energy: float
+
+
+@dataclass(frozen=True, slots=True)
+class Balance:
+    """What the run adds up to, over what went through."""
+
+    mass: float
+    """Largest |content - what flowed in| of any volume, over its content."""
+    energy: float
+    """|stored - what came in|, over everything that went through a door."""
+    flows: tuple[Flow, ...]
+    stored: tuple[Flow, ...]
+    """Change of what is stored."""
+
+
+@dataclass(frozen=True, slots=True)
+class Second:
+    """A second integrator on the same equations."""
+
+    method: str
+    max_difference: float
+    """Largest difference of any signal compared, over its span."""
+    signal: str
+    """Which one."""
+    time: float
+    """When [s]."""
+    differences: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """Dynamic stiffness in a window of whole cycles along the stroke."""
+
+    time: float
+    position: float
+    """Their means."""
+    stiffness: complex
+    """Force over position [N/m]."""
+    standard_error: float
+
+
+@dataclass(frozen=True, slots=True)
+class Shaken:
+    """Dynamic stiffness at the frequency of the load."""
+
+    frequency: float
+    windows: tuple[Window, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Servo:
+    """How the loop follows."""
+
+    loop: Loop
+    time: float
+    """Of the step [s]."""
+    start: float
+    target: float
+    metrics: StepMetrics
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A requirement on the simulation."""
+
+    metric: str
+    sense: str
+    limit: float
+    value: float | None
+    margin: float | None
+    met: bool
+    why: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A signal's name in words and its quantity."""
+
+    label: str
+    quantity: Quantity
+
+
+@dataclass(frozen=True, slots=True)
+class Simulation:
+    """A scenario, simulated.
+
+    `time` may hold an instant twice: before and after a jump. `values` are results by the names of
+    `quantities.RESULTS`, None where they do not apply, with the reason in `why`.
+    """
+
+    scenario: Scenario
+    plant: Plant
+    spec_hash: str
+    time: Array
+    signals: Mapping[str, Array]
+    told: Mapping[str, Told]
+    balance: Balance
+    values: Mapping[str, float | None]
+    why: Mapping[str, str]
+    requirements: tuple[Row, ...]
+    tuned: Tuned | None
+    servo: Servo | None
+    shaken: Shaken | None
+    events: tuple[Event, ...]
+    notes: tuple[str, ...]
+    second: Second | None = None
+    evaluations: int = 0
+    seconds: float = 0.0
+    extra: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def met(self) -> bool:
+        """Whether every requirement holds."""
+        return all(row.met for row in self.requirements)
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI; without the samples."""
+        servo = self.servo
+        return {
+            "name": self.scenario.name,
+            "design": self.plant.design.name,
+            "spec_hash": self.spec_hash,
+            "signals": {
+                name: {
+                    "final": float(values[-1]),
+                    "min": float(np.min(values)),
+                    "max": float(np.max(values)),
+                    "unit": self.told[name].quantity.si_unit,
+                    "label": self.told[name].label,
+                }
+                for name, values in self.signals.items()
+            },
+            "servo": None
+            if servo is None
+            else {
+                "loop": servo.loop,
+                "time": servo.time,
+                "start": servo.start,
+                "target": servo.target,
+                **servo.metrics._asdict(),
+            },
+            "controller": self._controller(),
+            "results": {
+                name: {
+                    "value": value,
+                    "unit": RESULTS[name].si_unit,
+                    "label": RESULTS[name].label,
+                    **({"why": self.why[name]} if value is None else {}),
+                }
+                for name, value in self.values.items()
+            },
+            "requirements": [
+                {name: getattr(row, name) for name in Row.__dataclass_fields__}
+                for row in self.requirements
+            ],
+            "balance": {
+                "mass": self.balance.mass,
+                "energy": self.balance.energy,
+                "flows": {one.name: one.energy for one in self.balance.flows},
+                "stored": {one.name: one.energy for one in self.balance.stored},
+            },
+            "dynamic_stiffness": self._shaken(),
+            "events": [{"name": one.name, "time": one.time, "on": one.on} for one in self.events],
+            "second_integrator": None
+            if self.second is None
+            else {
+                "method": self.second.method,
+                "max_difference": self.second.max_difference,
+                "signal": self.second.signal,
+                "time": self.second.time,
+                "differences": dict(self.second.differences),
+            },
+            "notes": list(self.notes),
+            "evaluations": self.evaluations,
+            "seconds": self.seconds,
+        }
+
+    def _controller(self) -> dict[str, Any] | None:
+        tuned = self.tuned
+        if tuned is None:
+            return None
+        return {
+            "origin": tuned.origin,
+            "unit": tuned.unit,
+            "proportional_gain": tuned.gains.proportional_gain,
+            "integral_time": _finite(tuned.gains.integral_time),
+            "derivative_time": tuned.gains.derivative_time,
+            "ultimate_gain": _finite(tuned.ultimate.gain),
+            "ultimate_period": _finite(tuned.ultimate.period),
+            "gain_margin": _finite(tuned.margins.gain),
+            "phase_margin": tuned.margins.phase,
+        }
+
+    def _shaken(self) -> dict[str, Any] | None:
+        if self.shaken is None:
+            return None
+        return {
+            "frequency": self.shaken.frequency,
+            "windows": [
+                {
+                    "time": one.time,
+                    "position": one.position,
+                    "stiffness": abs(one.stiffness),
+                    "phase": float(np.angle(one.stiffness)),
+                    "standard_error": one.standard_error,
+                }
+                for one in self.shaken.windows
+            ],
+        }
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None

@@ -1,0 +1,179 @@
+"""Simulate a scenario."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import replace
+from time import perf_counter
+from typing import Final
+
+import numpy as np
+
+from ..design.scenario.model import Scenario
+from ..evaluation.build import spec_hash
+from ..evaluation.kernel import Subject
+from ..evaluation.study.plant import Plant, plant
+from ..numeric import Array
+from . import reading
+from .assemble import Circuit, assemble
+from .balance import balance
+from .gains import Tuned, tune
+from .integrate import Method, Trajectory, integrate
+from .parts.signals import Records
+from .result import Second, Simulation, Told
+from .system import Compiled
+
+SAMPLES = 2000
+"""Samples of a run whose sample time is not stated."""
+SECOND: Final[Method] = "radau"
+COMPARED = (
+    "position", "speed", "pressure_a", "pressure_b", "shaft_speed", "shaft_angle", "spool",
+    "flow_a", "flow_b",
+)  # fmt: skip
+"""Signals on which two integrators are compared."""
+WARN_PLANE = 0.02
+"""Error of the friction's fit over the pressures that is told."""
+
+
+def simulate(
+    scenario: Scenario,
+    subject: Subject,
+    *,
+    records: Records | None = None,
+    verify: bool = False,
+    method: Method = "lsoda",
+) -> Simulation:
+    """A scenario around a design over time.
+
+    Parameters
+    ----------
+    scenario : what happens
+    subject : the design, with the values that the scenario sets
+    records : columns of the files that its signals name
+    verify : integrate again by another method and tell the difference
+    method : of the integration
+
+    Raises
+    ------
+    InputError
+        a valve or a gain that is missing, a law that no rule gives
+    Unsolvable
+        where the integration cannot go on, with the time
+    """
+    begin = perf_counter()
+    files = {} if records is None else records
+    own = plant(subject)
+    tuned = tune(scenario, own, files)
+    return run(
+        scenario, own, files, tuned, verify=verify, method=method,
+        spec=_spec(subject, scenario), begin=begin,
+    )  # fmt: skip
+
+
+def run(
+    scenario: Scenario,
+    own: Plant,
+    records: Records,
+    tuned: Tuned | None,
+    *,
+    verify: bool = False,
+    method: Method = "lsoda",
+    spec: str = "",
+    begin: float | None = None,
+) -> Simulation:
+    """A scenario around a plant with known gains; parameters as `simulate`."""
+    begin = perf_counter() if begin is None else begin
+    circuit = assemble(scenario, own, records, None if tuned is None else tuned.gains)
+    compiled = circuit.system.compiled()
+    step = scenario.sample_time or scenario.duration / SAMPLES
+    found = integrate(compiled, duration=scenario.duration, sample_time=step, method=method)
+    signals = compiled.signals(found.time, found.states, found.flags)
+    added = balance(circuit, found)
+    followed = reading.servo(scenario, found.time, signals)
+    dynamic = reading.shaken(scenario, found.time, signals)
+    values, why = reading.values(
+        scenario, own, found.time, signals, added, found.events, followed, dynamic
+    )
+    result = Simulation(
+        scenario=scenario,
+        plant=own,
+        spec_hash=spec,
+        time=found.time,
+        signals=signals,
+        told={one.name: Told(one.label, one.quantity) for one in circuit.system.signals},
+        balance=added,
+        values=values,
+        why=why,
+        requirements=reading.requirements(scenario, values, why),
+        tuned=tuned,
+        servo=followed,
+        shaken=dynamic,
+        events=found.events,
+        notes=_notes(circuit, own, tuned),
+        evaluations=found.evaluations,
+        seconds=perf_counter() - begin,
+    )
+    if not verify:
+        return result
+    return replace(result, second=_second(compiled, scenario, step, found, signals))
+
+
+def _second(
+    compiled: Compiled,
+    scenario: Scenario,
+    step: float,
+    first: Trajectory,
+    signals: dict[str, Array],
+) -> Second:
+    """The same equations by another integrator: largest differences over each signal's span."""
+    other = integrate(compiled, duration=scenario.duration, sample_time=step, method=SECOND)
+    again = compiled.signals(other.time, other.states, other.flags)
+    grid, at = _single(first.time)
+    times, there = _single(other.time)
+    differences, where = {}, {}
+    for name in COMPARED:
+        if name not in signals:
+            continue
+        mine = signals[name][at]
+        apart = np.abs(mine - np.interp(grid, times, again[name][there]))
+        span = float(np.ptp(mine))
+        if span <= 1e-9 * max(float(np.max(np.abs(mine))), 1e-12):
+            continue
+        worst = int(np.argmax(apart))
+        differences[name], where[name] = float(apart[worst]) / span, float(grid[worst])
+    name = max(differences, key=lambda one: differences[one], default="")
+    if not name:
+        return Second(SECOND, 0.0, "", 0.0, {})
+    return Second(SECOND, differences[name], name, where[name], differences)
+
+
+def _single(time: Array) -> tuple[Array, Array]:
+    """Samples whose time stands once: jumps are compared where both are sure."""
+    kept, first, count = np.unique(time, return_index=True, return_counts=True)
+    alone = count == 1
+    return kept[alone], first[alone]
+
+
+def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]:
+    """What a reader should know of this run."""
+    notes = [*circuit.system.notes]
+    if tuned is not None:
+        notes += tuned.notes
+        if tuned.margins.gain <= 1:
+            notes.append(
+                f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}, it swings "
+                "until the valve's limits or the friction hold it"
+            )
+    if own.seals.coulomb.error > WARN_PLANE:
+        notes.append(
+            f"friction over the pressures is fitted within {100 * own.seals.coulomb.error:.1f} %"
+        )
+    return tuple(notes)
+
+
+def _spec(subject: Subject, scenario: Scenario) -> str:
+    """Hash of everything that decides the result."""
+    content = json.dumps(scenario.model_dump(mode="json"), sort_keys=True, default=str)
+    text = spec_hash(subject) + content
+    return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -1,0 +1,249 @@
+"""A design on a stand: held at a place of its stroke under a force, for small experiments.
+
+The equations are those of the scenario (plant, friction, valve, supply, stops); what moves it and
+what closes its loop is the experiment's own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from ..design.scenario.model import Control, Initial, Load, Scenario
+from ..design.scenario.signals import Force, Position
+from ..evaluation.study.plant import Plant
+from ..models.tuning import ControllerGains
+from ..numeric import Array
+from .assemble import assemble
+from .integrate import integrate
+
+RELATIVE = 1e-9
+"""Relative tolerance of a step: a swing of a micrometre shows beside a position of 100 mm."""
+SETTLED = 3.0
+"""Periods of the loop's bandwidth after which it counts as at rest (a choice: e^(-6 pi) is left)."""
+
+
+@dataclass(slots=True)
+class Tally:
+    """How many runs were made."""
+
+    runs: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """Signals of a run, and its last states by name."""
+
+    time: Array
+    signals: Mapping[str, Array]
+    last: Mapping[str, float]
+
+    def within(self, begin: float, end: float = inf) -> Record:
+        """The samples from one time to another; of an instant told twice the later one."""
+        later = np.append(np.diff(self.time) > 0, True)
+        kept = (self.time >= begin) & (self.time <= end) & later
+        signals = {name: values[kept] for name, values in self.signals.items()}
+        return Record(self.time[kept], signals, self.last)
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What a record shows beside its figure."""
+
+    swing: float
+    """Half the span of the position, drift taken off [m]."""
+    travel: float
+    """What the bristles of the seals give before they slip [m]; 0 without sticking friction."""
+    saturated: float
+    """Share of the time with the valve's signal at its limit."""
+    spool: tuple[float, float] | None
+    """Least and largest position of the spool [V]."""
+    extending: float
+    """Share of the time with the spool on the side that extends."""
+    pressures: tuple[float, float]
+    """Means of the chambers A and B [Pa]."""
+    lowest: float
+    """Lowest chamber pressure [Pa]."""
+    stopped: bool
+    """Whether the piston met a stop."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """Figures of an experiment, None with a reason where it gives none."""
+
+    values: Mapping[str, float | None]
+    how: str
+    facts: Facts | None = None
+    why: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """A plant at a place, its chambers at pressures that a constant force balances."""
+
+    plant: Plant
+    scenario: Scenario
+    position: float
+    pressure_a: float
+    pressure_b: float
+    gain: float = 0.0
+    """Of the design's proportional position loop [V/m]; 0 without one."""
+    steady_gain: float = 0.0
+    """With which the loop comes to rest, where the design's own gain swings [V/m]."""
+    bandwidth: float = 1.0
+    """Expected of the loop: how long it takes to rest [Hz]."""
+    scale: float = 1.0
+    """On every amplitude."""
+    tally: Tally = field(default_factory=Tally)
+    rested: dict[str, float] = field(default_factory=dict)
+    """States of the loop at rest, once they were found."""
+
+    def but(self, **changes: Any) -> Stand:
+        """The same stand, some of it other; it has not come to rest yet."""
+        return replace(self, rested={}, **changes)
+
+    def bare(self) -> Stand:
+        """Without sticking friction."""
+        free = self.scenario.friction.model_copy(update={"model": "none"})
+        return self.but(scenario=self.scenario.model_copy(update={"friction": free}))
+
+    @property
+    def force(self) -> float:
+        """What holds the pressures [N], positive against extension."""
+        return self.pressure_a * self.plant.area_a - self.pressure_b * self.plant.area_b
+
+    @property
+    def full_force(self) -> float:
+        """Of the supply pressure on the whole piston [N]."""
+        return self.plant.supply_pressure * self.plant.area_a
+
+    def run(
+        self,
+        *,
+        duration: float,
+        sample_time: float,
+        gain: float | None = None,
+        ends: str | None = None,
+        reference: Sequence[Position] = (),
+        force: Sequence[Force] = (),
+        start: Mapping[str, float] | None = None,
+    ) -> Record:
+        """One run: closed over a gain, or open with the ports ended and the valve centred.
+
+        Parameters
+        ----------
+        duration, sample_time : [s]
+        gain : of a proportional position loop [V/m]; None: no loop
+        ends : what the ports lead to; None: the valve
+        reference : beside the stand's position
+        force : beside the one that holds
+        start : states by name that replace those of the stand
+        """
+        self.tally.runs += 1
+        stated = self.scenario.control
+        control = None
+        if gain is not None:
+            control = Control(
+                position=(*reference, Position(shape="constant", value=0.0)),
+                tuning="stated",
+                position_gain=gain,
+                rate_limit=None if stated is None else stated.rate_limit,
+            )
+        holding = Force(shape="constant", value=self.force)
+        scenario = self.scenario.model_copy(
+            update={
+                "duration": duration,
+                "sample_time": sample_time,
+                "initial": Initial(
+                    position=self.position,
+                    pressure_a=self.pressure_a,
+                    pressure_b=self.pressure_b,
+                ),
+                "ends": ends,
+                "motor": None,
+                "held_ports": None,
+                "load": Load(force=(holding, *force)),
+                "signal": (),
+                "control": control,
+                "requirements": {},
+            }
+        )
+        gains = None if gain is None else ControllerGains(gain, inf, 0.0)
+        circuit = assemble(scenario, self.plant, {}, gains)
+        compiled = circuit.system.compiled()
+        names = [one.name for one in circuit.system.states]
+        if start is not None:
+            begin = np.array(
+                [start.get(name, value) for name, value in zip(names, compiled.initial, strict=True)]
+            )
+            compiled = replace(compiled, initial=begin)
+        found = integrate(
+            compiled, duration=duration, sample_time=sample_time, relative=RELATIVE
+        )
+        signals = compiled.signals(found.time, found.states, found.flags)
+        last = dict(zip(names, found.states[:, -1].tolist(), strict=True))
+        return Record(found.time, signals, last)
+
+    def rest(self) -> Mapping[str, float]:
+        """States in which the loop holds the force; found once."""
+        if not self.rested:
+            duration = SETTLED / self.bandwidth
+            record = self.run(
+                duration=duration, sample_time=duration / 20, gain=self.steady_gain
+            )
+            self.rested.update(record.last)
+        return self.rested
+
+    def closed(
+        self,
+        *,
+        gain: float,
+        duration: float,
+        sample_time: float,
+        reference: Sequence[Position] = (),
+        force: Sequence[Force] = (),
+    ) -> Record:
+        """A run of the loop from its rest, at a gain put in without a jump of the signal."""
+        state = self.rest()
+        shift = state["position"] + state["spool"] / gain - self.position
+        held = Position(shape="constant", value=shift)
+        return self.run(
+            duration=duration,
+            sample_time=sample_time,
+            gain=gain,
+            reference=(held, *reference),
+            force=force,
+            start=state,
+        )
+
+    def facts(self, record: Record) -> Facts:
+        """What a record shows."""
+        t, signals = record.time, record.signals
+        position = signals["position"]
+        straight = np.polynomial.polynomial.polyfit(t - t[0], position, 1)
+        swing = position - np.polynomial.polynomial.polyval(t - t[0], straight)
+        spool = signals.get("spool")
+        signal = signals.get("signal")
+        valve = self.plant.valve
+        full = inf if valve is None else valve.signal
+        chambers = signals["pressure_a"], signals["pressure_b"]
+        return Facts(
+            swing=0.5 * float(np.ptp(swing)),
+            travel=self.travel if "bristles" in signals else 0.0,
+            saturated=0.0 if signal is None else float(np.mean(np.abs(signal) > 0.999 * full)),
+            spool=None if spool is None else (float(np.min(spool)), float(np.max(spool))),
+            extending=0.5 if spool is None else float(np.mean(spool > 0)),
+            pressures=(float(np.mean(chambers[0])), float(np.mean(chambers[1]))),
+            lowest=float(min(np.min(one) for one in chambers)),
+            stopped=bool(np.any(signals["stop_force"] != 0)),
+        )
+
+    @property
+    def travel(self) -> float:
+        """What the bristles give before the seals slip [m]."""
+        return self.scenario.friction.bristle_travel or self.plant.seals.bristle_travel

@@ -1,0 +1,191 @@
+"""A system of ordinary differential equations under construction, and its compiled form.
+
+Parts (`parts`) add states, rates and signals as expressions of the same symbols; the models of
+`actuator_opt.models` are called with these symbols, so that simulation has no formula of its own.
+What jumps is a flag that holds between two restarts: an instant of an input, or a switch that
+follows the sign of a guard.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..numeric import Array
+from ..quantities import Quantity
+from ..symbolic import Expression, Graph, Symbol, function, jacobian, vectorised
+
+LOOSE = 1e3
+"""Tolerance of an integral over its scale: it follows, the states lead."""
+
+
+@dataclass(slots=True)
+class State:
+    """A state with its start, the error that is let pass, and its rate."""
+
+    name: str
+    symbol: Symbol
+    initial: float
+    tolerance: float
+    rate: Expression = 0.0
+    integral: bool = False
+    """Whether it only adds up: nothing depends on it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Switch:
+    """A flag that is true where its guard is above zero."""
+
+    name: str
+    flag: str
+    guard: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Instant:
+    """A flag that is true from an instant on."""
+
+    flag: str
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """What is told of a run: an expression with its quantity."""
+
+    name: str
+    label: str
+    quantity: Quantity
+    value: Expression
+
+
+@dataclass(slots=True)
+class System:
+    """The equations; `compiled` makes them run."""
+
+    graph: Graph = field(default_factory=Graph)
+    states: list[State] = field(default_factory=list)
+    switches: list[Switch] = field(default_factory=list)
+    instants: list[Instant] = field(default_factory=list)
+    signals: list[Signal] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    """What a reader of the result should know: choices and simplifications that acted."""
+
+    @property
+    def time(self) -> Symbol:
+        """The time [s]."""
+        return self.graph.variable("t")
+
+    def state(self, name: str, initial: float, *, tolerance: float) -> Symbol:
+        """A new state; `rate` gives it its equation."""
+        symbol = self.graph.variable(f"y_{len(self.states)}")
+        self.states.append(State(name, symbol, float(initial), tolerance))
+        return symbol
+
+    def rate(self, symbol: Symbol, rate: Expression) -> None:
+        """The time derivative of a state."""
+        next(s for s in self.states if s.symbol is symbol).rate = rate
+
+    def rate_of(self, symbol: Symbol) -> Expression:
+        """The time derivative that a state was given."""
+        return next(s for s in self.states if s.symbol is symbol).rate
+
+    def integral(self, name: str, rate: Expression, *, scale: float) -> Symbol:
+        """The integral of an expression over time, from zero; it does not steer the steps."""
+        symbol = self.state(name, 0.0, tolerance=LOOSE * scale)
+        self.states[-1].rate, self.states[-1].integral = rate, True
+        return symbol
+
+    def after(self, time: float) -> Any:
+        """A flag that is true from an instant on; the integration stops and starts there."""
+        if time <= 0:
+            return True
+        known = next((one for one in self.instants if one.time == time), None)
+        if known is None:
+            known = Instant(f"m_{len(self.instants)}", time)
+            self.instants.append(known)
+        return self.graph.flag(known.flag)
+
+    def switch(self, name: str, guard: Expression) -> Symbol:
+        """A flag that is true while the guard is above zero; its change is located."""
+        flag = f"s_{len(self.switches)}"
+        self.switches.append(Switch(name, flag, guard))
+        return self.graph.flag(flag)
+
+    def signal(self, name: str, label: str, quantity: Quantity, value: Expression) -> None:
+        """Tell a value under a name; a later one of the same name replaces it."""
+        self.signals = [one for one in self.signals if one.name != name]
+        self.signals.append(Signal(name, label, quantity, value))
+
+    def value_of(self, name: str) -> Expression:
+        """The expression of a signal."""
+        return next(one.value for one in self.signals if one.name == name)
+
+    def compiled(self) -> Compiled:
+        """The equations as functions of time, states and flags."""
+        return Compiled.of(self)
+
+
+@dataclass(frozen=True, slots=True)
+class Compiled:
+    """Functions of a system: ``f(t, y, m)`` with a vector y and a tuple m of flags.
+
+    Flags come in the order of `instants`, then `switches`.
+    """
+
+    system: System
+    rates: Callable[[float, Array, tuple[bool, ...]], list[float]]
+    slopes: Callable[[float, Array, tuple[bool, ...]], list[list[float]]]
+    """Jacobian of the rates, row by row."""
+    guards: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
+    """Of every switch, at many samples: y is (states, samples)."""
+    told: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
+    """The signals, at many samples."""
+    initial: Array
+    tolerances: Array
+    instants: tuple[float, ...]
+
+    @classmethod
+    def of(cls, system: System) -> Compiled:
+        """Trace, differentiate, write and compile."""
+        symbols = [state.symbol for state in system.states]
+        rates = [state.rate for state in system.states]
+        flags = [one.flag for one in system.instants] + [one.flag for one in system.switches]
+        names = ", ".join(str(symbol.args[0]) for symbol in symbols)
+        one = {f"{names},": "y.tolist()"} if names else {}
+        many = {f"{names},": "y"} if names else {}
+        switch = {f"{', '.join(flags)},": "m"} if flags else {}
+        matrix = jacobian(rates, symbols)
+        flat = function("jacobian", "t, y, m", one | switch, [x for row in matrix for x in row])
+        size = len(symbols)
+
+        def slopes(t: float, y: Array, m: tuple[bool, ...]) -> list[list[float]]:
+            values = flat(t, y, m)
+            return [values[k * size : (k + 1) * size] for k in range(size)]
+
+        return cls(
+            system=system,
+            rates=function("rates", "t, y, m", one | switch, rates),
+            slopes=slopes,
+            guards=vectorised(
+                "guards", "t, y, m", many | switch, [one.guard for one in system.switches]
+            ),
+            told=vectorised(
+                "told", "t, y, m", many | switch, [one.value for one in system.signals]
+            ),
+            initial=np.array([state.initial for state in system.states]),
+            tolerances=np.array([state.tolerance for state in system.states]),
+            instants=tuple(one.time for one in system.instants),
+        )
+
+    def signals(self, t: Array, y: Array, m: Sequence[Array]) -> dict[str, Array]:
+        """Every signal at samples: y (states, samples), a row of m for every flag."""
+        with np.errstate(all="ignore"):
+            values = self.told(t, y, tuple(m))
+        return {
+            one.name: np.broadcast_to(np.asarray(value, dtype=float), np.shape(t)).copy()
+            for one, value in zip(self.system.signals, values, strict=True)
+        }

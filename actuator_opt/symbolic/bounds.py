@@ -1,0 +1,88 @@
+"""Bounds of an operation's result from those of its operands (interval arithmetic)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final, TypeAlias
+
+Bounds: TypeAlias = tuple[float, float]
+ANY: Final[Bounds] = (-math.inf, math.inf)
+
+
+def bounds_of(value: Any) -> Bounds:
+    """Bounds of a symbol or a number; a number that is none has no bounds."""
+    if hasattr(value, "bounds"):
+        found: Bounds = value.bounds
+        return found
+    return (float(value), float(value)) if value == value else ANY
+
+
+def bounds(op: str, args: tuple[Any, ...]) -> Bounds:
+    """Bounds of a result from those of its operands."""
+    if op == "add":
+        (a, b), (c, d) = bounds_of(args[0]), bounds_of(args[1])
+        return _clean(a + c, b + d)
+    if op == "sub":
+        (a, b), (c, d) = bounds_of(args[0]), bounds_of(args[1])
+        return _clean(a - d, b - c)
+    if op == "neg":
+        a, b = bounds_of(args[0])
+        return -b, -a
+    if op == "mul":
+        if args[0] is args[1]:
+            a, b = bounds_of(args[0])
+            least = 0.0 if a <= 0 <= b else min(a * a, b * b)
+            return least, max(a * a, b * b)
+        (a, b), (c, d) = bounds_of(args[0]), bounds_of(args[1])
+        return _hull(_product(a, c), _product(a, d), _product(b, c), _product(b, d))
+    if op == "div":
+        (a, b), (c, d) = bounds_of(args[0]), bounds_of(args[1])
+        if c > 0:
+            return _hull(a / c, a / d, b / c, b / d)
+        return (0.0, math.inf) if a >= 0 and c >= 0 else ANY
+    if op == "where":
+        return _of_choice(*args)
+    return _of_function(op, args)
+
+
+def _of_function(op: str, args: tuple[Any, ...]) -> Bounds:
+    if op in ("sqrt", "exp"):
+        return 0.0, math.inf
+    if op == "pow" and bounds_of(args[0])[0] >= 0:
+        return 0.0, math.inf
+    if op == "expm1":
+        return -1.0, math.inf
+    if op in ("tanh", "sin", "cos"):
+        return -1.0, 1.0
+    return ANY
+
+
+def _product(a: float, b: float) -> float:
+    return 0.0 if a == 0 or b == 0 else a * b
+
+
+def _clean(low: float, high: float) -> Bounds:
+    return (-math.inf if low != low else low), (math.inf if high != high else high)
+
+
+def _hull(*values: float) -> Bounds:
+    known = [value for value in values if value == value]
+    return (min(known), max(known)) if len(known) == len(values) else ANY
+
+
+def _of_choice(condition: Any, yes: Any, no: Any) -> Bounds:
+    """Bounds of a choice; a value compared with the other branch is limited by it."""
+    (a, b), (c, d) = bounds_of(yes), bounds_of(no)
+    if getattr(condition, "op", None) in ("lt", "le"):
+        less, more = condition.args
+        if _same(less, no) and _same(more, yes):  # the larger of both
+            return max(a, c), max(b, d)
+        if _same(less, yes) and _same(more, no):  # the smaller
+            return min(a, c), min(b, d)
+    return min(a, c), max(b, d)
+
+
+def _same(first: Any, second: Any) -> bool:
+    if first is second:
+        return True
+    return isinstance(first, float) and isinstance(second, float) and first == second

@@ -1,0 +1,136 @@
+"""Straight-line code of expressions: plain Python for one point, NumPy for many."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from .expression import Symbol, needed
+
+DEEPEST = 12
+"""Operations in one another in a line of code; deeper ones get a line of their own."""
+
+_OPERATORS = {"add": "+", "sub": "-", "mul": "*", "div": "/", "lt": "<", "le": "<="}
+_LOGIC = {"and": ("and", "&"), "or": ("or", "|")}
+
+
+def function(
+    name: str, arguments: str, unpack: Mapping[str, str], outputs: Sequence[Any]
+) -> Callable[..., Any]:
+    """A Python function of floats that returns the values of some outputs as a list.
+
+    Parameters
+    ----------
+    name : of the function
+    arguments : of its definition, ``"t, y, m"``
+    unpack : names of variables and flags, with the code that gives each: ``{"x": "y[0]"}``; a key
+        of several names, ``"a, b"``, unpacks them at once
+    outputs : expressions
+    """
+    scope: dict[str, Any] = {f"_{key}": getattr(math, key) for key in _MATH}
+    return _compiled(name, arguments, unpack, outputs, scope, many=False)
+
+
+def vectorised(
+    name: str, arguments: str, unpack: Mapping[str, str], outputs: Sequence[Any]
+) -> Callable[..., Any]:
+    """As `function`, of NumPy arrays; both branches of every choice are computed."""
+    scope: dict[str, Any] = {f"_{key}": getattr(np, _NUMPY.get(key, key)) for key in _MATH}
+    scope["_where"], scope["_not"] = np.where, np.logical_not
+    return _compiled(name, arguments, unpack, outputs, scope, many=True)
+
+
+_MATH = ("sqrt", "exp", "expm1", "log", "log1p", "tanh", "sin", "cos", "atan2", "pow")
+_NUMPY = {"pow": "power", "atan2": "arctan2"}
+
+
+def _compiled(
+    name: str,
+    arguments: str,
+    unpack: Mapping[str, str],
+    outputs: Sequence[Any],
+    scope: dict[str, Any],
+    *,
+    many: bool,
+) -> Callable[..., Any]:
+    nodes = needed(outputs)
+    scope["_nan"], scope["_inf"] = math.nan, math.inf
+    if nodes:
+        scope |= {f"_table{i}": one for i, one in enumerate(nodes[0].graph.tables)}
+    used = {node.args[0] for node in nodes if node.op in ("variable", "flag")}
+    lines = [
+        f" {names} = {code}"
+        for names, code in unpack.items()
+        if any(one.strip() in used for one in names.split(","))
+    ]
+    lines += _lines(nodes, outputs, many)
+    source = f"def {name}({arguments}):\n" + "\n".join(lines)
+    exec(compile(source, f"<{name}>", "exec"), scope)  # our own text: operations and numbers
+    found: Callable[..., Any] = scope[name]
+    return found
+
+
+def _lines(nodes: Sequence[Symbol], outputs: Sequence[Any], many: bool) -> list[str]:
+    """A line for every node that is needed twice or stands deep, then the return."""
+    uses: dict[int, int] = {}
+    for node in nodes:
+        for operand in node.operands:
+            uses[operand.index] = uses.get(operand.index, 0) + 1
+    for out in outputs:
+        if isinstance(out, Symbol):
+            uses[out.index] = uses.get(out.index, 0) + 1
+    lines: list[str] = []
+    text: dict[int, str] = {}
+    depth: dict[int, int] = {}
+
+    def said(value: Any) -> str:
+        return text[value.index] if isinstance(value, Symbol) else _literal(value)
+
+    for node in nodes:
+        code = _code(node, said, many)
+        deep = 1 + max((depth[o.index] for o in node.operands), default=0)
+        plain = node.op in ("variable", "flag")
+        if plain or (uses[node.index] == 1 and deep < DEEPEST):
+            text[node.index], depth[node.index] = code, 0 if plain else deep
+        else:
+            lines.append(f" v{node.index} = {code}")
+            text[node.index], depth[node.index] = f"v{node.index}", 0
+    lines.append(f" return [{', '.join(said(out) for out in outputs)}]")
+    return lines
+
+
+def _literal(value: Any) -> str:
+    if isinstance(value, bool):
+        return repr(value)
+    if value != value:
+        return "_nan"
+    if math.isinf(value):
+        return "_inf" if value > 0 else "(-_inf)"
+    return repr(value) if value >= 0 else f"({value!r})"
+
+
+def _code(node: Symbol, said: Callable[[Any], str], many: bool) -> str:
+    op = node.op
+    if op in ("variable", "flag"):
+        return str(node.args[0])
+    if op == "table":
+        return f"_table{node.args[0]}({said(node.args[1])})"
+    args = [said(a) for a in node.args]
+    if op in _OPERATORS:
+        return f"({args[0]} {_OPERATORS[op]} {args[1]})"
+    if op in _LOGIC:
+        return f"({args[0]} {_LOGIC[op][many]} {args[1]})"
+    if op == "where":
+        return (
+            f"_where({args[0]}, {args[1]}, {args[2]})"
+            if many
+            else f"({args[1]} if {args[0]} else {args[2]})"
+        )
+    if op == "not":
+        return f"_not({args[0]})" if many else f"(not {args[0]})"
+    if op == "neg":
+        return f"(-{args[0]})"
+    return f"_{op}({', '.join(args)})"

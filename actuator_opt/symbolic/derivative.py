@@ -1,0 +1,73 @@
+"""Exact derivatives of expressions, in expressions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
+
+from .expression import Namespace, Symbol, choose, is_boolean, needed, power
+
+xp = Namespace
+
+
+Slopes: TypeAlias = dict[int, Any]
+"""Derivatives that are not zero, by the number of their variable."""
+
+
+def jacobian(outputs: Sequence[Any], variables: Sequence[Symbol]) -> list[list[Any]]:
+    """Derivatives of outputs (rows) by variables (columns); 0.0 where there is none.
+
+    A choice has the derivative of the branch taken; flags and looked-up functions have none.
+    """
+    known: dict[int, Slopes] = {one.index: {k: 1.0} for k, one in enumerate(variables)}
+    for node in needed(outputs):
+        if node.index not in known and not is_boolean(node):
+            slopes = _slopes(node, known)
+            if slopes:
+                known[node.index] = slopes
+    rows = []
+    for out in outputs:
+        slopes = known.get(out.index, {}) if isinstance(out, Symbol) else {}
+        rows.append([slopes.get(k, 0.0) for k in range(len(variables))])
+    return rows
+
+
+def _slopes(node: Symbol, known: dict[int, Slopes]) -> Slopes:
+    """Derivatives of a node from those of its operands."""
+    inner = [known.get(a.index, {}) if isinstance(a, Symbol) else {} for a in node.args]
+    columns = dict.fromkeys(k for slopes in inner for k in slopes)
+    if not columns:
+        return {}
+    rule = _RULES[node.op](node, *node.args)
+    found = {}
+    for k in columns:
+        slope = rule(*(slopes.get(k, 0.0) for slopes in inner))
+        if isinstance(slope, Symbol) or slope != 0:
+            found[k] = slope
+    return found
+
+
+def _scaled(factor: Any) -> Callable[..., Any]:
+    return lambda da: factor * da
+
+
+_RULES: dict[str, Callable[..., Callable[..., Any]]] = {
+    "add": lambda node, a, b: lambda da, db: da + db,
+    "sub": lambda node, a, b: lambda da, db: da - db,
+    "mul": lambda node, a, b: lambda da, db: da * b + a * db,
+    "div": lambda node, a, b: lambda da, db: (da - node * db) / b,
+    "pow": lambda node, a, b: lambda da, db: b * power(a, b - 1) * da,
+    "atan2": lambda node, a, b: lambda da, db: (b * da - a * db) / (a * a + b * b),
+    "where": lambda node, c, a, b: lambda dc, da, db: choose(c, da, db),
+    "table": lambda node, k, t: lambda dk, dt: 0.0,
+    "neg": lambda node, a: lambda da: -da,
+    "sqrt": lambda node, a: _scaled(0.5 / node),
+    "exp": lambda node, a: _scaled(node),
+    "expm1": lambda node, a: _scaled(node + 1.0),
+    "log": lambda node, a: _scaled(1.0 / a),
+    "log1p": lambda node, a: _scaled(1.0 / (1.0 + a)),
+    "tanh": lambda node, a: _scaled(1.0 - node * node),
+    "sin": lambda node, a: _scaled(xp.cos(a)),
+    "cos": lambda node, a: _scaled(-xp.sin(a)),
+}
+"""Derivative of every operation from those of its operands."""
