@@ -24,6 +24,7 @@ from .cli_shared import (
     say_files,
     write_report,
 )
+from .cli_simulate import simulate
 from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from .options import (
     REPORTS,
@@ -106,7 +107,8 @@ def init(
 @app.command()
 def check(
     designs: Annotated[
-        list[str], typer.Argument(metavar="DESIGN", help="Design files, or - for stdin.")
+        list[str],
+        typer.Argument(metavar="FILE", help="Design or scenario files; - for stdin."),
     ],
     sets: Set = None,
     plugin: PluginFile = None,
@@ -115,7 +117,7 @@ def check(
     out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> None:
-    """Name every fault of design files, each at its place."""
+    """Name every fault of design and scenario files, each at its place."""
     from . import verbs
 
     pairs = assignments(sets)
@@ -224,6 +226,7 @@ app.command("optimize", hidden=True)(optimise)
 app.command()(seal)
 app.command()(identify)
 app.command()(calibrate)
+app.command()(simulate)
 
 
 @app.command()
@@ -287,14 +290,22 @@ def report(
 
 @app.command()
 def schema(
+    scenario: Annotated[
+        bool, typer.Option("--scenario", help="Of scenario files, not of designs.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="As always: it is JSON.")] = False,
 ) -> None:
-    """Print the JSON Schema of design files, for editors."""
+    """Print the JSON Schema of design (or scenario) files, for editors."""
     from .design.materials import load_library
     from .design.schema import json_schema
-    from .quantities import METRICS
+    from .quantities import METRICS, RESULTS
 
-    streams.out_json(json_schema(materials=load_library(), metrics=METRICS))
+    if scenario:
+        from .design.scenario import Scenario
+
+        streams.out_json(json_schema(Scenario, materials=load_library(), metrics=RESULTS))
+    else:
+        streams.out_json(json_schema(materials=load_library(), metrics=METRICS))
 
 
 def _misunderstood(error: TyperException) -> ExitCode:

@@ -6,7 +6,7 @@ from .build import to_tree, with_values
 from .kinds import Fraction, position_at
 from .model import Design
 from .paths import canonical, get, numbers, quantity_of, split_assignment
-from .reader import LoadedDesign, Source, read_design
+from .reader import LoadedDesign, Source, is_scenario, read_design
 
 __all__ = [
     "Design",
@@ -15,6 +15,7 @@ __all__ = [
     "Source",
     "canonical",
     "get",
+    "is_scenario",
     "numbers",
     "position_at",
     "quantity_of",

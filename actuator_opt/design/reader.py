@@ -74,7 +74,7 @@ class Source:
         try:
             loc = resolve(path, self.document.data, self.metrics, self.root).loc
         except ValueFault:
-            loc = ()
+            return self.at(Fault(tuple(path.split(".")), message, remedy, at_key=True), path)
         return self.at(Fault(loc, message, remedy), path)
 
     def of_variable(self, path: str, message: str, remedy: str = "") -> Diagnostic:
@@ -215,6 +215,14 @@ def load(
 
 _MARKS = {"design": "cylinder", "scenario": "design"}
 """A key that every such file has, and no other."""
+
+
+def is_scenario(source: str | Path) -> bool:
+    """Whether a file, or a text of several lines, looks like a scenario; False for stdin."""
+    if source == "-":
+        return False
+    data = parse(*opened(source, "design")).data
+    return _MARKS["scenario"] in data and _MARKS["design"] not in data
 
 
 def _require_kind(document: Document) -> None:

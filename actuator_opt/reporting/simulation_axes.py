@@ -173,15 +173,23 @@ def lines(axes: Axes, time: Array, values: Array) -> list[list[Point]]:
 
 def time_axis(axes: Axes, words: str = "time") -> None:
     """Ticks, numbers and the name of the time below a frame, whose range is in seconds."""
-    bottom = axes.top + axes.height
     label, scale = time_words(axes.x_range[1] - axes.x_range[0], words)
-    ticks = even_ticks(scale * axes.x_range[0], scale * axes.x_range[1], max(2, int(axes.width / 14)))
+    x_axis(axes, label, scale)
+
+
+def x_axis(axes: Axes, label: str, scale: float = 1.0) -> None:
+    """Ticks of an x axis that shows its values times `scale`; their numbers only with a label."""
+    bottom = axes.top + axes.height
+    low, high = (scale * v for v in axes.x_range)
+    ticks = even_ticks(low, high, max(2, int(axes.width / 11)))
     for value, said in spaced([(v / scale, w, 1) for v, w in ticks], axes):
         x = axes.x(value)
         axes.ink.line((x, bottom), (x, bottom + 1.0), pen=0.13)
-        axes.ink.text(x, bottom + 2.8, said, anchor="center")
-    middle = axes.left + axes.width / 2
-    axes.ink.text(middle, bottom + 6.0, label, anchor="center", color=GREY)
+        if label:
+            axes.ink.text(x, bottom + 2.8, said, anchor="center")
+    if label:
+        middle = axes.left + axes.width / 2
+        axes.ink.text(middle, bottom + 6.0, label, anchor="center", color=GREY)
 
 
 def _distinct(entries: Sequence[tuple[str, dict[str, Any]]]) -> list[tuple[str, dict[str, Any]]]:
@@ -199,16 +207,19 @@ def names(
     """Names of curves in one line that ends at `right`, each after its line, cut to the room."""
     if not entries:
         return
-    line, after, gap = 4.0, 0.8, 2.2
-    share = (room + gap) / len(entries) - line - after - gap
-    wide = [text_width(words, SIZE) for words, _ in entries]
-    if sum(wide) > share * len(entries):
-        words_shown = [fitted(words, max(share, 2.0), SIZE) for words, _ in entries]
-        wide = [text_width(words, SIZE) for words in words_shown]
-    else:
-        words_shown = [words for words, _ in entries]
-    x = right - sum(wide) - len(entries) * (line + after + gap) + gap
-    for words, size, (_, style) in zip(words_shown, wide, entries, strict=True):
+    words = [one for one, _ in entries]
+    for line, gap in ((4.0, 2.2), (2.8, 1.4)):
+        left = room + gap - len(entries) * (line + 0.8 + gap)
+        if sum(text_width(one, SIZE) for one in words) <= left:
+            break
+    while len(words) > 1 and sum(text_width(one, SIZE) for one in words) > left:
+        widest = max(range(len(words)), key=lambda k: text_width(words[k], SIZE))
+        cut = fitted(words[widest], text_width(words[widest], SIZE) - 0.5, SIZE)
+        if len(cut) < 3:
+            break
+        words[widest] = cut
+    x = right + gap - sum(text_width(one, SIZE) + line + 0.8 + gap for one in words)
+    for one, (_, style) in zip(words, entries, strict=True):
         ink.line((x, y), (x + line, y), **style)
-        ink.text(x + line + after, y, words, size=SIZE)
-        x += line + after + size + gap
+        ink.text(x + line + 0.8, y, one, size=SIZE)
+        x += line + 0.8 + text_width(one, SIZE) + gap

@@ -23,6 +23,8 @@ SHEET, TILES, FOOT, HEAD = 265.0, 23.0, 24.5, 8.2
 of a block [mm]."""
 HALF, FULL = 86.0, 172.0
 """Width of words in half a sheet and in a whole one [mm]."""
+BRIEF = 900
+"""Letters of the notes that stand beside a table (a choice: a quarter of the sheet)."""
 KIND = "Simulation in time"
 
 
@@ -73,7 +75,7 @@ def document(
     extra : blocks below all others
     """
     below = blocks(simulation, notes)
-    what = rows.what(simulation)
+    what = rows.tied(rows.what(simulation))
     room = _room(simulation.scenario.name, what, [*below, *extra])
     if room < LEAST:  # what the caller adds goes on to the next sheet
         room = _room(simulation.scenario.name, what, below)
@@ -101,22 +103,22 @@ def headed(name: str, design: str, origin: Origin, kind: str) -> dict[str, Any]:
 
 def blocks(found: Simulation, more: Sequence[str] = ()) -> list[Block]:
     """Results and controller side by side, then how far to trust them."""
-    right = _controller(found)
-    left = _results(found)
-    below: list[Block] = []
-    if right is None:
-        if left is not None:
-            below.append(left)
-    elif left is None:
-        below.append(right)
-    else:
-        below.append({"kind": "pair", "title": "", "sides": [[left], [right]], "note": ""})
     said = [
         f"{rows.balance_words(found)} {rows.second_words(found)} {rows.event_words(found)}"
         f" {rows.run_words(found)}",
         *rows.remarks(found, more),
     ]
-    return [*below, notes("What this rests on", said)]
+    trust = notes("What this rests on", [rows.tied(one) for one in said])
+    made = [one for one in (_results(found), _controller(found)) if one is not None]
+    if len(made) == 2:
+        return [_pair(*made), trust]
+    if made and sum(map(len, said)) < BRIEF:
+        return [_pair(made[0], trust)]
+    return [*made, trust]
+
+
+def _pair(left: Block, right: Block) -> Block:
+    return {"kind": "pair", "title": "", "sides": [[left], [right]], "note": ""}
 
 
 def _results(found: Simulation) -> Block | None:

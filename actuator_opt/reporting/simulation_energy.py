@@ -101,7 +101,7 @@ def share_panel(ink: Ink, box: Box, found: Simulation) -> None:
     parts = [per_cent(abs(one.energy) / total) for one in shown]
     wide = max(text_width(words, 6.2) for words in values)
     names = min(max(text_width(one.name, 6.2) for one in shown), 0.42 * width)
-    ends = left + width - wide - 10.5
+    ends = left + width - wide - 12.5
     axes = Axes(ink, (left + names + 1.5, top, ends - left - names - 2.5, 1.0), (0, total), (0, 1))
     level = 0.0
     for k, (one, words, part) in enumerate(zip(shown, values, parts, strict=True)):
@@ -116,7 +116,7 @@ def share_panel(ink: Ink, box: Box, found: Simulation) -> None:
         if k + 1 < len(shown):
             at = axes.x(min(max(level, 0.0), total))
             ink.line((at, y + 1.15), (at, y + ROW - 1.15), pen=0.1, stroke=GREY)
-        ink.text(left + width - 9.5, y, words, size=6.2, anchor="right")
+        ink.text(left + width - 11.5, y, words, size=6.2, anchor="right")
         ink.text(left + width, y, part, size=6.2, anchor="right", color=GREY)
     bottom = top + TOP + ROW * len(shown)
     ink.line((axes.left, top + TOP), (axes.left, bottom), pen=0.13)
@@ -193,28 +193,55 @@ POWERS: dict[str, Callable[[Simulation], Array | None]] = {
 """Power of a door by the signals [W]; None where they do not tell it."""
 
 
-def over_time(found: Simulation) -> dict[str, Array]:
-    """Energy through the largest doors over time [J], out of them positive but for the supply's.
+def _summed(found: Simulation) -> tuple[dict[str, Array], dict[str, float]]:
+    """Energy through every door whose power is known, and how far its end is off the door's own.
 
-    Sampled powers are summed; one that does not come to its door's own energy is left out.
+    Energies [J] are positive out of the doors, but for the supply's; what is off is a share of all.
     """
     doors: dict[str, float] = {one.name: one.energy for one in found.balance.flows}
-    total = sum(energy for energy in doors.values() if energy > 0)
-    total = max(total, -sum(energy for energy in doors.values() if energy < 0))
+    ways = [sum(abs(e) for e in doors.values() if (e > 0) == way) for way in (True, False)]
     curves: dict[str, Array] = {}
+    off: dict[str, float] = {}
     for name, power_of in POWERS.items():
-        power = power_of(found)
-        if power is None or name not in doors or not np.all(np.isfinite(power)):
+        power = power_of(found) if name in doors else None
+        if power is None or not np.all(np.isfinite(power)):
             continue
         steps = 0.5 * (power[1:] + power[:-1]) * np.diff(found.time)
         energy = np.concatenate(([0.0], np.cumsum(steps)))
         ends = doors[name] if name == "supply" else -doors[name]
-        if abs(energy[-1] - ends) <= AGREES * total:
-            curves[name] = energy
+        curves[name] = energy
+        off[name] = float(energy[-1] - ends) / (max(ways) or 1.0)
+    return curves, off
+
+
+def over_time(found: Simulation) -> dict[str, Array]:
+    """Energy through the largest doors over time [J], out of them positive but for the supply's.
+
+    A door whose sampled power does not add up to its own energy is left out.
+    """
+    curves, off = _summed(found)
+    curves = {name: one for name, one in curves.items() if abs(off[name]) <= AGREES}
     sizes: Mapping[str, float] = {name: float(np.ptp(one)) for name, one in curves.items()}
     most = max(sizes.values(), default=0.0)
     names = sorted(sizes, key=lambda name: -sizes[name])[:MOST_CURVES]
     return {name: curves[name] for name in curves if name in names and sizes[name] > SMALL * most}
+
+
+_LOADED = ("load", "valve edges")
+"""Doors whose power the signals tell only without lines, a joint or a machine outside."""
+
+
+def doubts(found: Simulation) -> list[str]:
+    """Doors whose energy is not what their sampled power adds up to, in one sentence."""
+    _, off = _summed(found)
+    wrong = {n: e for n, e in off.items() if abs(e) > AGREES and n not in _LOADED}
+    if not wrong:
+        return []
+    said = ", ".join(f"{name} by {number(100 * e, 2, signed=True)} %" for name, e in wrong.items())
+    return [
+        f"powers at the samples add up to other energies than the integration tells: {said} of all"
+        " energy; take shorter samples, and doubt the energies where that does not help"
+    ]
 
 
 def time_panel(ink: Ink, box: Box, found: Simulation, curves: Mapping[str, Array]) -> None:

@@ -15,10 +15,10 @@ from ..quantities import SCENARIOS
 from ..simulation.result import Simulation
 from . import fallback, writer
 from .figures import Axes
-from .identification_axes import Box, even_ticks, spaced
+from .identification_axes import Box, even_ticks
 from .identification_series import thinned
-from .ink import GREY, Ink, text_width
-from .simulation_axes import STYLES, ZERO, kept, names, stack, steady_range
+from .ink import BLUE, Ink, text_width
+from .simulation_axes import STYLES, ZERO, kept, names, stack, steady_range, x_axis
 from .simulation_energy import ROW, TOP, over_time, rows_of, share_panel, time_panel
 from .simulation_series import Measured, scaled, strips, titled
 from .simulation_step import step_panel
@@ -41,6 +41,10 @@ LEAST_PANEL = 26.0
 """Least height of a panel [mm]."""
 MOST_MARKS = 8
 """Events that are marked in the strips."""
+LAG = 0.02
+"""Distance of the spool from its signal, over the largest signal, within which a flow belongs to the
+signal (a choice)."""
+FLOWS = (("flow_a", "A"), ("flow_b", "B"), ("flow_supply", "supply"), ("flow_tank", "tank"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +79,8 @@ def panels(found: Simulation, measured: Measured, static: Static | None) -> list
         made.append(
             Panel("energy_time", lambda ink, box: time_panel(ink, box, found, curves), weight=0.9)
         )
+    if "friction" in found.signals and np.ptp(found.signals["speed"]) > 0:
+        made.append(Panel("friction", lambda ink, box: _friction(ink, box, found), weight=0.9))
     return made
 
 
@@ -203,38 +209,58 @@ def _stiffness(ink: Ink, box: Box, found: Simulation, static: Static | None) -> 
     stiffness_panels(ink, boxes, [one], over, static=static, limits=limits, side=side)
 
 
+def _friction(ink: Ink, box: Box, found: Simulation) -> None:
+    """Friction over speed, as the run went."""
+    left, top, width, height = box
+    force, speed = (found.told[name].quantity for name in ("friction", "speed"))
+    xs, ys = (scaled(found.told[n].quantity, found.signals[n]) for n in ("speed", "friction"))
+    frame = (left + 11.0, top + 6.5, width - 12.0, height - 14.0)
+    ranges = [steady_range([float(np.min(v)), float(np.max(v))], zero=True) for v in (xs, ys)]
+    axes = Axes(ink, frame, ranges[0], ranges[1])
+    axes.frame_at("", "", [], even_ticks(*ranges[1], 4))
+    ink.text(left, top + 2.0, titled("Friction over speed", force), size=7.0, bold=True)
+    _cross(axes)
+    at = np.union1d(thinned(xs, 2000), thinned(ys, 2000))
+    points = ([float(v) for v in one[at]] for one in (xs, ys))
+    ink.path(axes.clipped(*points), stroke=BLUE, pen=0.2)
+    x_axis(axes, titled("speed", speed))
+
+
+def _cross(axes: Axes) -> None:
+    """Lines at zero, where it lies inside."""
+    (left, right), (low, high) = axes.x_range, axes.y_range
+    if left < 0 < right:
+        axes.ink.line((axes.x(0.0), axes.y(low)), (axes.x(0.0), axes.y(high)), **ZERO)
+    if low < 0 < high:
+        axes.ink.line((axes.x(left), axes.y(0.0)), (axes.x(right), axes.y(0.0)), **ZERO)
+
+
 def _flows(ink: Ink, box: Box, found: Simulation) -> None:
-    """Flows of a valve over its signal."""
+    """Flows of a valve over its signal, the spool being where the signal wants it."""
     left, top, width, height = box
     quantity, volts = found.told["flow_a"].quantity, SCENARIOS["signal_value"]
-    entries = [
-        (words, scaled(quantity, found.signals[name]), style)
-        for (name, words), style in zip(
-            (("flow_a", "A"), ("flow_b", "B"), ("flow_supply", "supply"), ("flow_tank", "tank")),
-            STYLES,
-            strict=True,
-        )
-    ]
     signal = scaled(volts, found.signals["signal"])
+    lag = np.abs(scaled(volts, found.signals["spool"]) - signal)
+    there = lag <= LAG * float(np.max(np.abs(signal)))
+    if np.count_nonzero(there) < 0.5 * there.size:
+        there[:] = True
+    entries = [
+        (words, scaled(quantity, found.signals[name])[there], style)
+        for (name, words), style in zip(FLOWS, STYLES, strict=True)
+    ]
+    signal = signal[there]
     frame = (left + 11.0, top + 6.5, width - 12.0, height - 14.0)
     across = steady_range([float(np.min(signal)), float(np.max(signal))])
     ends = [float(v) for _, values, _ in entries for v in (np.min(values), np.max(values))]
     axes = Axes(ink, frame, across, steady_range(ends, zero=True))
-    ticks = spaced([(v, w, 1) for v, w in even_ticks(*across, 6)], axes)
-    axes.frame_at("", f"signal, {unit_text(volts.unit)}", ticks, even_ticks(*axes.y_range, 6))
-    title = titled("Flows over the signal", quantity)
+    axes.frame_at("", "", [], even_ticks(*axes.y_range, 6))
+    title = titled("Flows over signal", quantity)
     ink.text(left, top + 2.0, title, size=7.0, bold=True)
-    low, high = axes.y_range
-    for begin, end in (
-        ((across[0], 0.0), (across[1], 0.0)),
-        ((0.0, low), (0.0, high)),
-    ):
-        if across[0] <= begin[0] <= across[1] and low <= begin[1] <= high:
-            ink.line((axes.x(begin[0]), axes.y(begin[1])), (axes.x(end[0]), axes.y(end[1])), **ZERO)
+    _cross(axes)
     for _, values, style in entries:
         at = thinned(values)
         xs, ys = ([float(v) for v in one[at]] for one in (signal, values))
         ink.path(axes.clipped(xs, ys), **style | {"pen": 0.35})
     room = width - text_width(title, 7.0, bold=True) - 2.0
     names(ink, left + width, top + 2.0, [(words, style) for words, _, style in entries], room)
-    ink.text(frame[0] + 1.0, frame[1] + 2.0, "into A and B, from supply, to tank", size=6.0, color=GREY)
+    x_axis(axes, f"signal, {unit_text(volts.unit)}")

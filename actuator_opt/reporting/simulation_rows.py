@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -14,6 +15,7 @@ from ..simulation.result import Row, Simulation
 from . import text
 from .optimum import sentence
 from .origin import tile
+from .simulation_energy import doubts
 from .text import DASH, number, pretty, trimmed, unit_text, value_text, with_unit
 
 SHORT = {
@@ -21,7 +23,6 @@ SHORT = {
     "hold_drift": "creep at the end",
     "stop_speed": "speed at the stops",
     "supply_energy": "work of the supply",
-    "dynamic_phase": "its phase",
 }
 """Results whose name says less than these words."""
 LEAST = {
@@ -58,6 +59,16 @@ ENDS = {
     "constant_pressure": "ports at constant pressure",
     "reducing_valve": "ports at reducing valves",
 }
+
+
+NOTHING = (
+    "does not apply to this scenario",
+    "the reference has no step",
+    "the reference does not move on",
+    "no sine shakes the rod",
+    "the piston meets no stop",
+)
+"""Reasons that surprise nobody: a page tells them only where there is a limit."""
 
 
 class Shown(NamedTuple):
@@ -123,11 +134,11 @@ def results(found: Simulation) -> list[Shown]:
 
 
 def reasons(found: Simulation) -> dict[str, list[str]]:
-    """Why results have no value: names by reason, those left out that do not apply at all."""
+    """Why results have no value: names by reason, those left out that nobody expects."""
     said: dict[str, list[str]] = {}
     limited = {row.metric for row in found.requirements}
     for name, why in found.why.items():
-        if name in limited or not why.startswith("does not apply"):
+        if name in limited or why not in NOTHING:
             said.setdefault(why, []).append(label(name))
     return said
 
@@ -143,13 +154,13 @@ def controller(found: Simulation) -> list[tuple[str, str]]:
     gain = with_unit(number(float(gains.proportional_gain)), unit)
     factor = control.gain_factor
     rows.append(("gain K", gain if factor == 1 else f"{gain} × {trimmed(factor)}"))
-    times = (
+    parts = (
         ("integral time", float(gains.integral_time), control.integral_factor),
         ("derivative time", float(gains.derivative_time), control.derivative_factor),
     )
-    for words, value, factor in times:
+    for words, value, factor in parts:
         if 0 < value < math.inf:
-            rows.append((words, f"{number(1e3 * value)} ms{_factor(factor)}"))
+            rows.append((words, f"{duration(value)}{_factor(factor)}"))
     rows.append(("origin", tuned.origin))
     for words, value, name in (
         ("speed feedback", control.speed_feedback, "speed_gain"),
@@ -162,7 +173,7 @@ def controller(found: Simulation) -> list[tuple[str, str]]:
     swings = math.isfinite(limit.gain)
     rows.append(("ultimate gain", with_unit(number(limit.gain), unit) if swings else "none"))
     if swings:
-        rows.append(("ultimate period", f"{number(1e3 * limit.period)} ms"))
+        rows.append(("ultimate period", duration(limit.period)))
     rows.append(("gain margin", gain_margin(tuned.margins.gain)))
     phase = tuned.margins.phase
     rows.append(("phase margin", DASH if phase is None else f"{number(math.degrees(phase), 3)}°"))
@@ -172,6 +183,15 @@ def controller(found: Simulation) -> list[tuple[str, str]]:
 def _factor(factor: float) -> str:
     """A factor of the scenario on a part of the controller."""
     return "" if factor == 1 else f", part × {trimmed(factor)}"
+
+
+def duration(value: float) -> str:
+    """A time in ms, or in s from one second on.
+
+    >>> duration(0.0094675), duration(2.5)
+    ('9.468 ms', '2.500 s')
+    """
+    return f"{number(value)} s" if value >= 1 else f"{number(1e3 * value)} ms"
 
 
 def gain_margin(ratio: float) -> str:
@@ -187,14 +207,32 @@ def gain_margin(ratio: float) -> str:
     return f"{number(ratio, 3)}, {text.fixed(20 * math.log10(ratio), 1)} dB"
 
 
+_UNITS = r"(?:mm|m|m/s|ms|s|V|bar|k?N|Hz|J|l/min|rpm|rad|N·m|V/m|kN/mm|MPa)(?![\w/])|%|°"
+_TIED = re.compile(rf"(?<=\d) (?={_UNITS})")
+
+
+def tied(words: str) -> str:
+    """Words of a page: a number stays on the line of its unit.
+
+    >>> tied("step of 20 mm at 0.5 s, 3 steps")
+    'step of 20\xa0mm at 0.5\xa0s, 3 steps'
+    """
+    return _TIED.sub("\N{NO-BREAK SPACE}", words)
+
+
 # ---- what was simulated ----
+
+
+def amount(quantity: Quantity, value: float) -> str:
+    """A value that a person wrote, with its unit."""
+    return with_unit(trimmed(quantity.to_display(value)), unit_text(quantity.unit))
 
 
 def _part(part: Any, quantity: Quantity) -> str:
     """A part of a signal."""
     if part.shape == "record":
         return f"record {part.file}, {part.column}"
-    value = with_unit(trimmed(quantity.to_display(part.value or 0.0)), unit_text(quantity.unit))
+    value = amount(quantity, part.value or 0.0)
     if part.shape == "constant":
         return value
     begin = trimmed(part.start)
@@ -224,7 +262,7 @@ def what(found: Simulation) -> str:
         if found_words := parts_words(getattr(control, name), quantity):
             asked = f"{words}: {found_words}"
             if name == "position":
-                start = value_text(quantity, float(found.signals["reference"][0]))
+                start = amount(quantity, float(found.signals["position"][0]))
                 asked = f"{words} from {start}: {found_words}"
     if not asked:
         signal = parts_words(scenario.signal, SCENARIOS["signal_value"])
@@ -258,15 +296,15 @@ def _machine(found: Simulation) -> str:
     held = scenario.held_ports
     words = []
     if held is not None:
-        ports = " and ".join(value_text(PRESSURE, p, 3) for p in (held.pressure_a, held.pressure_b))
+        ports = " and ".join(amount(PRESSURE, p) for p in (held.pressure_a, held.pressure_b))
         words.append(f"the valve alone, ports at {ports}")
     elif scenario.motor is not None:
         words.append("its valve with a hydraulic motor")
     elif "flow_supply" not in found.signals:
         words.append(ENDS.get(scenario.ends or plant.design.ports.end, "no valve"))
     if "flow_supply" in found.signals:
-        supply = f"{SUPPLY[scenario.supply.type]} {value_text(PRESSURE, plant.supply_pressure, 3)}"
-        words.append(f"{supply}, return {value_text(PRESSURE, plant.return_pressure, 3)}")
+        supply = f"{SUPPLY[scenario.supply.type]} {amount(PRESSURE, plant.supply_pressure)}"
+        words.append(f"{supply}, return {amount(PRESSURE, plant.return_pressure)}")
     if "friction" in found.signals:
         words.append(FRICTION[scenario.friction.model])
     return ", ".join(words)
@@ -294,7 +332,7 @@ def share_words(share: float) -> str:
     >>> share_words(7.8865e-9), share_words(0.0), share_words(0.02)
     ('8×10⁻⁹', '0', '0.02')
     """
-    return "0" if share < 1e-15 else number(share, 1)
+    return number(share, 1)
 
 
 def second_words(found: Simulation) -> str:
@@ -339,8 +377,8 @@ def run_words(found: Simulation) -> str:
 
 
 def remarks(found: Simulation, more: Sequence[str] = ()) -> list[str]:
-    """Notes of the run, of the scenario and of the caller, in full sentences."""
-    said = [*found.notes, *more]
+    """Doubts, notes of the run, of the caller and of the scenario, in full sentences."""
+    said = [*doubts(found), *found.notes, *more]
     own = found.scenario.notes.strip()
     return [sentence(pretty(" ".join(one.split()))) for one in [*said, *([own] if own else [])]]
 
@@ -354,7 +392,7 @@ def verdict(found: Simulation) -> dict[str, Any]:
     met = sum(row.met for row in found.requirements)
     mass, energy = (share_words(v) for v in (found.balance.mass, found.balance.energy))
     lines = [f"{met} of {total} requirements met" if total else "no requirement stated"]
-    lines.append(f"balances: mass {mass} · energy {energy}")
+    lines.append(f"balances: {f'mass {mass} · ' if found.balance.mass else ''}energy {energy}")
     if met < total:
         return {"state": "missed", "text": "REQUIREMENTS MISSED", "lines": lines}
     words = "REQUIREMENTS MET" if total else "SIMULATED"
@@ -405,7 +443,7 @@ def _note(found: Simulation, name: str) -> str:
     if name == "dynamic_stiffness" and shaken is not None:
         return f"least, at {trimmed(shaken.frequency)} Hz"
     if name == "dynamic_phase":
-        return "of force, there"
+        return "of the force, there"
     notes = {
         "rise_time": "10 to 90 %",
         "settling_time": "within 2 %",

@@ -23,7 +23,7 @@ _SIGNALS: tuple[tuple[str, int, bool, tuple[tuple[str, str], ...]], ...] = (
     ("Shaft angle", 5, False, (("shaft_angle", ""),)),
     ("Joint angle", 7, False, (("joint_angle", ""),)),
     ("Valve signal", 3, True, (("signal", "signal"), ("spool", "spool"))),
-    ("Chamber pressures", 2, False, (("pressure_a", "A"), ("pressure_b", "B"))),
+    ("Pressures", 2, False, (("pressure_a", "A"), ("pressure_b", "B"))),
     (
         "Supply",
         7,
@@ -160,10 +160,9 @@ def _levels(found: Simulation, name: str, zero: bool) -> tuple[tuple[Level, ...]
         supplied = found.signals.get("pressure_supply")
         if supplied is None:
             return (vapour,), False
-        levels = [Level("supply, return", scale * plant.return_pressure, LEVEL), vapour]
-        if not _moves(supplied):
-            levels.insert(0, Level("supply, return", scale * plant.supply_pressure, LEVEL))
-        return tuple(levels), True
+        held = [plant.return_pressure] + ([] if _moves(supplied) else [plant.supply_pressure])
+        words = "supply, return" if len(held) > 1 else "return"
+        return (*(Level(words, scale * p, LEVEL) for p in held), vapour), True
     if name == "signal" and found.plant.valve is not None:
         full = found.plant.valve.signal
         if float(np.max(np.abs(found.signals[name]))) > 0.5 * full:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..numeric import Array
 from ..simulation.result import Servo, Simulation
 from ..simulation.step_response import BAND
 from .figures import Axes
@@ -11,7 +12,6 @@ from .identification_axes import Box, even_ticks
 from .ink import BLACK, Ink, text_width
 from .simulation_axes import (
     ASKED,
-    LEVEL,
     SIZE,
     STYLES,
     lines,
@@ -69,25 +69,26 @@ def step_panel(ink: Ink, box: Box, found: Simulation, measured: Measured) -> Non
     low, high = steady_range(ends)
     spare = 0.12 * (high - low)
     low, high = (low, high + spare) if size > 0 else (low - spare, high)
-    axes = Axes(ink, frame, (begin, end), (low, high))
+    axes = Axes(ink, frame, (begin - servo.time, end - servo.time), (low, high))
+    time = found.time - servo.time
     half = BAND * abs(size)
     upper, lower = axes.y(target + half), axes.y(target - half)
     ink.box(frame[0], upper, frame[2], lower - upper, fill=_BAND, stroke=None)
     axes.frame_at("", "", [], even_ticks(low, high, 5))
     ink.text(left, top + 2.0, titled(f"Step of the {words}", quantity), size=7.0, bold=True)
-    ink.path(lines(axes, found.time, scaled(quantity, found.signals["reference"])), **ASKED)
+    ink.path(lines(axes, time, scaled(quantity, found.signals["reference"])), **ASKED)
     for one in under:
-        ink.path(lines(axes, one.time, one.values), **one.style)
+        ink.path(lines(axes, one.time - servo.time, one.values), **one.style)
     style = STYLES[0] | {"pen": 0.4}
-    ink.path(lines(axes, found.time, values), **style)
+    ink.path(lines(axes, time, values), **style)
     entries = [("measured", under[0].style)] if under else []
     entries += [("band ±2 %", {"stroke": _BAND, "pen": 1.6}), ("asked", ASKED)]
     room = width - text_width(titled(f"Step of the {words}", quantity), 7.0, bold=True) - 2.0
     names(ink, left + width, top + 2.0, entries, room)
-    _rise(axes, servo, start, size)
+    _rise(axes, servo, time, (values - start) / size, start, size)
     _settled(axes, servo, start, size)
     _peak(axes, servo, scale, target, size)
-    time_axis(axes)
+    time_axis(axes, "time after the step")
 
 
 def _words(axes: Axes, x: float, y: float, words: str) -> None:
@@ -101,19 +102,23 @@ def _words(axes: Axes, x: float, y: float, words: str) -> None:
         axes.ink.text(at, y, words, size=SIZE, anchor="right", color=OCHRE, halo=True)
 
 
-def _rise(axes: Axes, servo: Servo, start: float, size: float) -> None:
-    """From 10 to 90 %: two levels, and the time between on the lower one."""
+def _rise(
+    axes: Axes, servo: Servo, time: Array, done: Array, start: float, size: float
+) -> None:
+    """From 10 to 90 %: the time between, at the lower level."""
     rise = servo.metrics.rise_time
     if rise is None:
         return
-    for share in (0.1, 0.9):
-        y = axes.y(start + share * size)
-        axes.ink.line((axes.left, y), (axes.left + axes.width, y), **LEVEL | {"pen": 0.1})
-    y = axes.y(start + 0.1 * size)
-    words = f"rise {number(1e3 * rise, 3)} ms"
-    x = axes.left + axes.width - 1.0
-    towards = -2.2 if size > 0 else 2.2
-    axes.ink.text(x, y + towards, words, size=SIZE, anchor="right", color=OCHRE)
+    late = np.flatnonzero((time > 0) & (done >= 0.9))
+    if not late.size:
+        return
+    right = axes.x(float(time[late[0]]))
+    left = axes.x(float(time[late[0]]) - rise)
+    low, high = (axes.y(start + share * size) for share in (0.1, 0.9))
+    axes.ink.line((left, low), (right, low), (right, high), **_MARK)
+    for y in (low, high):
+        axes.ink.circle(left if y == low else right, y, 0.5, fill=OCHRE, stroke=None)
+    _words(axes, right, low, f"rise {number(1e3 * rise, 3)} ms")
 
 
 def _settled(axes: Axes, servo: Servo, start: float, size: float) -> None:
@@ -125,7 +130,7 @@ def _settled(axes: Axes, servo: Servo, start: float, size: float) -> None:
         words = "does not settle within 2 %"
         axes.ink.text(x, level, words, size=SIZE, anchor="right", color=OCHRE, halo=True)
         return
-    x = axes.x(servo.time + settling)
+    x = axes.x(settling)
     if axes.left <= x <= axes.left + axes.width:
         end = axes.y(start + size)
         axes.ink.line((x, axes.y(start + 0.34 * size)), (x, end), **_MARK | {"dash": (1.0, 0.6)})
@@ -137,7 +142,7 @@ def _peak(axes: Axes, servo: Servo, scale: float, target: float, size: float) ->
     own = servo.metrics
     if own.overshoot < LEAST_SHOWN:
         return
-    x, y = axes.x(servo.time + own.peak_time), axes.y(scale * own.peak)
+    x, y = axes.x(own.peak_time), axes.y(scale * own.peak)
     if not axes.left <= x <= axes.left + axes.width:
         return
     axes.ink.line((x, y), (x, axes.y(target)), **_MARK | {"stroke": BLACK})

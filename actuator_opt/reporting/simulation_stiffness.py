@@ -14,9 +14,9 @@ from ..quantities import RESULTS
 from ..simulation.harmonic import harmonic_fit
 from ..simulation.result import Shaken, Simulation, Window
 from .figures import Axes, required
-from .identification_axes import SURE, Box, band, error_bar, even_ticks, spaced
-from .ink import BLUE, GREY, WHITE, Ink, text_width
-from .simulation_axes import ASKED, LEVEL, STYLES, ZERO, names, steady_range
+from .identification_axes import SURE, Box, band, error_bar, even_ticks
+from .ink import BLUE, WHITE, Ink, text_width
+from .simulation_axes import ASKED, LEVEL, STYLES, ZERO, names, steady_range, x_axis
 from .text import SENSES, trimmed
 
 STIFFNESS, PHASE = RESULTS["dynamic_stiffness"], RESULTS["dynamic_phase"]
@@ -163,7 +163,7 @@ def _panel(
         required(axes, limit, f"{SENSES[sense]} {trimmed(limit)}")
     for xs, ys, errors, style in series:
         _drawn(axes, xs, ys, errors, style, alone=len(series) == 1)
-    _x_axis(axes, x_words)
+    x_axis(axes, x_words)
 
 
 def _drawn(
@@ -188,19 +188,6 @@ def _drawn(
     for x, y, error in zip(xs, ys, errors, strict=True):
         error_bar(axes, x, y - error, y + error, colour)
         axes.ink.circle(axes.x(x), axes.y(y), 0.6, fill=WHITE, stroke=colour, pen=0.25)
-
-
-def _x_axis(axes: Axes, words: str) -> None:
-    bottom = axes.top + axes.height
-    ticks = even_ticks(*axes.x_range, max(2, int(axes.width / 14)))
-    for value, said in spaced([(v, w, 1) for v, w in ticks], axes):
-        x = axes.x(value)
-        axes.ink.line((x, bottom), (x, bottom + 1.0), pen=0.13)
-        if words:
-            axes.ink.text(x, bottom + 2.8, said, anchor="center")
-    if words:
-        middle = axes.left + axes.width / 2
-        axes.ink.text(middle, bottom + 6.0, words, anchor="center", color=GREY)
 
 
 # ---- the last cycles ----
@@ -243,7 +230,7 @@ def loop_panel(ink: Ink, box: Box, found: Simulation) -> None:
         (factor * fitted_x, fitted_f, ASKED),
     ):
         ink.path(axes.clipped([float(v) for v in xs], [float(v) for v in ys]), **style)
-    _x_axis(axes, f"position about its mean, {unit}")
+    x_axis(axes, f"position about its mean, {unit}")
 
 
 def _micro(size: float) -> tuple[str, float]:

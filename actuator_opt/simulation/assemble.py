@@ -18,7 +18,7 @@ from ..quantities import INPUTS, SCENARIOS, Quantity
 from ..symbolic import Expression, Symbol
 from .parts import chambers, friction, load_cylinder, motion, motor, ports, signals, valve
 from .parts.chambers import Audit
-from .parts.control import Measured, command
+from .parts.control import Measured, command, inner
 from .parts.signals import Records
 from .parts.supply import Source
 from .system import System
@@ -148,7 +148,8 @@ def _command(
     system, loop = circuit.system, circuit.loop
     circuit.measured = measured.value
     if linear:
-        return system.graph.variable("u")
+        free = system.graph.variable("u")
+        return free if scenario.control is None else inner(system, scenario.control, free, measured)
     if loop is None or scenario.control is None:
         return signals.signal(system, scenario.signal, records)
     assert gains is not None
@@ -277,7 +278,8 @@ def _cylinder(
     if ends == "valve":
         load_pressure = a.pressure - (plant.area_b / plant.area_a) * b.pressure
         value = speed if circuit.loop == "speed" else position
-        measured = Measured(value, speed, load_pressure)
+        start = begin.pressure_a - (plant.area_b / plant.area_a) * begin.pressure_b
+        measured = Measured(value, speed, load_pressure, start)
         wish = _command(circuit, scenario, plant, records, gains, measured, linear)
         flows = _driven(circuit, scenario, plant, wish, (a.end, b.end), power)
         feed = flows.into_a, flows.into_b

@@ -22,6 +22,11 @@ MARGIN = {"p": 2.0, "pi": 3.0}
 gain; an integral part takes phase)."""
 PHASE = radians(60.0)
 """Phase margin that the integral part of a speed loop leaves (a choice)."""
+KEPT = 0.8
+"""Share of the gain margin, and of the phase margin of a position loop without it, that an integral
+part leaves (a choice)."""
+NO_GAIN = 1e-9
+"""Factor that stands for a gain of zero beside an integral or derivative part."""
 UNITS: dict[Loop, str] = {
     "position": "V/m", "speed": "V*s/m", "shaft_speed": "V*s/rad", "shaft_angle": "V/rad",
 }  # fmt: skip
@@ -76,10 +81,11 @@ def tune(scenario: Scenario, plant: Plant, records: Records) -> Tuned | None:
         gains, origin = ControllerGains(design.gain, inf, 0.0), "control.gain of the design"
     else:
         gains, origin, notes = _ruled(control, loop, limit, worst)
-    shaped = controller(
-        control.gain_factor * gains.proportional_gain,
-        gains.integral_time,
-        control.derivative_factor * gains.derivative_time,
+    factor, integral = control.gain_factor or NO_GAIN, control.integral_factor
+    shaped = controller(  # each factor on its own part, as `parts.control`
+        factor * gains.proportional_gain,
+        factor / integral * gains.integral_time if integral else inf,
+        control.derivative_factor / factor * gains.derivative_time,
         control.filter_time,
     )
     return Tuned(gains, origin, limit, margins(worst, shaped), UNITS[loop], notes)
@@ -135,6 +141,10 @@ def _ruled(
     control: Control, loop: Loop, limit: Ultimate, worst: OpenLoop
 ) -> tuple[ControllerGains, str, tuple[str, ...]]:
     """Gains by a rule from the ultimate point."""
+    if worst.swings:
+        message = "the circuit swings by itself, before the loop is closed"
+        remedy = "lower speed_feedback and pressure_feedback, or add leakage across the piston"
+        raise InputError(Diagnostic(message, remedy, path="control"))
     if not isfinite(limit.gain) or limit.gain <= 0:
         message = "no gain makes the linear loop swing, so no rule gives one"
         raise InputError(Diagnostic(message, "state the gain", path=f"control.{loop}_gain"))
@@ -154,31 +164,37 @@ def _ruled(
     margin = MARGIN[control.law] if control.margin is None else control.margin
     origin = f"gain margin {margin:g}"
     if loop in ("position", "shaft_angle") or control.law == "p":
-        return (
-            margin_rules(
-                law=control.law,
-                ultimate_gain=limit.gain,
-                velocity_gain=abs(worst.steady_rate) or 1.0,
-                gain_margin=margin,
-            ),
-            origin,
-            (),
+        gains = margin_rules(
+            law=control.law,
+            ultimate_gain=limit.gain,
+            velocity_gain=abs(worst.steady_rate) or 1.0,
+            gain_margin=margin,
         )
-    gain = limit.gain / margin
-    return (
-        ControllerGains(gain, _integral_time(worst, limit, gain, control, margin), 0.0),
-        origin,
-        (),
-    )
+        if control.law == "p":
+            return gains, origin, ()
+        gain, shortest = gains.proportional_gain, gains.integral_time
+        alone = margins(worst, controller(gain, inf, 0.0, control.filter_time)).phase
+        phase = PHASE if alone is None else KEPT * min(alone, PHASE)
+    else:
+        gain, shortest, phase = limit.gain / margin, 0.02 * limit.period, PHASE
+    time = _integral_time(worst, limit, gain, control, (margin, phase), shortest)
+    return ControllerGains(gain, time, 0.0), origin, ()
 
 
 def _integral_time(
-    loop: OpenLoop, limit: Ultimate, gain: float, control: Control, margin: float
+    loop: OpenLoop,
+    limit: Ultimate,
+    gain: float,
+    control: Control,
+    wanted: tuple[float, float],
+    shortest: float,
 ) -> float:
-    """Shortest integral time of a speed loop that keeps the phase margin and most of the gain's."""
-    for time in np.geomspace(0.02 * limit.period, 1e4 * limit.period, 140):
+    """Shortest integral time that keeps the phase margin and most of the gain margin."""
+    margin, phase = wanted
+    longest = 1e4 * max(limit.period, shortest)
+    for time in np.geomspace(shortest, longest, 140):
         shaped: Callable[[Array], Array] = controller(gain, float(time), 0.0, control.filter_time)
         found = margins(loop, shaped)
-        if found.gain >= 0.8 * margin and (found.phase is None or found.phase >= PHASE):
+        if found.gain >= KEPT * margin and (found.phase is None or found.phase >= phase):
             return float(time)
-    return 1e4 * limit.period
+    return longest

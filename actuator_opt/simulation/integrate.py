@@ -24,6 +24,10 @@ CHUNK = 400
 """Samples between two looks at the switches."""
 MOST_TURNS = 20_000
 """Turns of switches before a run counts as chattering (a choice)."""
+FEW, MOST = 2_000, 100_000
+"""Steps between two samples: of a first try, which may run past a switch, and at most."""
+PARTS, LEVELS = 16, 5
+"""An interval in which a switch may turn is looked at in so many parts, and these again."""
 _LOCATED = 1e-12
 
 
@@ -50,11 +54,22 @@ class Trajectory:
     restarts: int = 0
 
 
+Advance = Callable[[Array, Array, tuple[bool, ...], int], Array]
+"""States (times, states) at times from the first on, with at most so many steps between two."""
+
+
+class _Stuck(Unsolvable):
+    """An integration that came no further than a time."""
+
+    def __init__(self, time: float, message: str, remedy: str) -> None:
+        super().__init__(Diagnostic(f"at {time:.6g} s: {message}", remedy))
+        self.time = time
+
+
 @dataclass(slots=True)
 class _Run:
     compiled: Compiled
-    advance: Callable[[Array, Array, tuple[bool, ...]], Array]
-    """States at times from the first on: (times, states)."""
+    advance: Advance
     time: list[Array] = field(default_factory=list)
     states: list[Array] = field(default_factory=list)
     flags: list[Array] = field(default_factory=list)
@@ -125,120 +140,157 @@ def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> 
 
 def _guards(compiled: Compiled, t: Array, states: Array) -> Array:
     """Guards at samples, (switches, samples)."""
+    return _each(compiled, compiled.guards, t, states, ())
+
+
+def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[Array, Array]:
+    """How far every switch is from turning, and the rate of that, (switches, samples)."""
+    signs = np.where(m[len(run.compiled.instants) :], 1.0, -1.0)[:, None]
+    margin = _each(run.compiled, run.compiled.guards, t, states, m) * signs
+    return margin, _each(run.compiled, run.compiled.guard_rates, t, states, m) * signs
+
+
+def _each(
+    compiled: Compiled,
+    function: Callable[[Array, Array, tuple[Array, ...]], list[Array]],
+    t: Array,
+    states: Array,
+    m: tuple[bool, ...],
+) -> Array:
     count = len(compiled.system.switches)
     if not count:
         return np.empty((0, len(t)))
-    nothing = (False,) * (len(compiled.instants) + count)
-    values = compiled.guards(t, states.T, nothing)
-    return np.array([np.broadcast_to(value, t.shape) for value in values])
+    flags = m or (False,) * (len(compiled.instants) + count)
+    return np.array([np.broadcast_to(one, t.shape) for one in function(t, states.T, flags)])
 
 
 def _segment(
     run: _Run, times: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, tuple[bool, ...]]:
     """From the first to the last of some times, no input jumping between."""
-    first = len(run.compiled.instants)
-    begin, chunk = 0, CHUNK
-    start = times[0]
-    while begin < len(times) - 1:
-        end = min(begin + chunk, len(times) - 1)
+    first, last = len(run.compiled.instants), len(times) - 1
+    begin, start = 0, float(times[0])
+    while begin < last:
+        end = min(begin + CHUNK, last)
         asked = np.concatenate(([start], times[begin + 1 : end + 1]))
+        asked, found, turn = _ahead(run, asked, y, m)
         run.restarts += 1
-        try:
-            found = run.advance(asked, y, m)
-        except Unsolvable:
-            if chunk == 1:
-                raise
-            chunk = max(chunk // 8, 1)
+        if turn is None:
+            kept = slice(None) if end == last else slice(-1)  # the next piece has its first sample
+            run.keep(asked[kept], found[kept], m)
+            y, start, begin = found[-1], float(times[end]), end
             continue
-        chunk = min(2 * chunk, CHUNK)
-        turned = (_guards(run.compiled, asked, found) > 0) != np.array(m[first:], bool)[:, None]
-        turned[:, 0] = False
-        hit = np.flatnonzero(turned.any(axis=0)) if turned.size else np.empty(0, int)
-        if not hit.size:
-            run.keep(asked, found, m)
-            y, start, begin = found[-1], times[end], end
-            continue
-        k = int(hit[0])
-        at, there, which = _locate(run, asked, found, k, m)
-        run.keep(np.append(asked[:k], at), np.vstack((found[:k], there)), m)
-        m = tuple(bool(flag) ^ (i == first + which) for i, flag in enumerate(m))
+        k, at, there, which = turn
+        before = np.flatnonzero(asked[: k + 1] < at)
+        run.keep(np.append(asked[before], at), np.vstack((found[before], there)), m)
+        m = tuple(flag ^ (i == first + which) for i, flag in enumerate(m))
         name = run.compiled.system.switches[which].name
-        run.events.append(Event(name, at, m[first + which]))
+        run.events.append(Event(name, at, bool(m[first + which])))
         if len(run.events) > MOST_TURNS:
-            raise _failure(at, f"{name} turns without end", "raise the damping of what turns it")
+            raise _Stuck(at, f"{name} turns without end", "raise the damping of what turns it")
         y, start = there, at
-        begin += k - 1 if at < asked[k] else k
+        begin += k + (at >= times[begin + k + 1])
     return y, m
 
 
-def _locate(
-    run: _Run, times: Array, found: Array, k: int, m: tuple[bool, ...]
-) -> tuple[float, Array, int]:
-    """Time, states and number of the first switch that turns before sample k."""
+Turn = tuple[int, float, Array, int]
+"""Sample before it, time, states and number of a switch that turns."""
+
+
+def _ahead(
+    run: _Run, times: Array, y: Array, m: tuple[bool, ...]
+) -> tuple[Array, Array, Turn | None]:
+    """States at some times and the first turn; without that turn the equations may end early."""
+    try:
+        found = run.advance(times, y, m, FEW)
+    except _Stuck as stuck:
+        near = times[0] + 0.99 * (stuck.time - times[0])
+        if run.compiled.system.switches and near > times[0]:
+            short = np.append(times[times < near], near)
+            try:
+                found = run.advance(short, y, m, FEW)
+            except _Stuck:
+                pass
+            else:
+                turn = _first_turn(run, short, found, m)
+                if turn is not None:
+                    return short, found, turn
+        found = run.advance(times, y, m, MOST)
+    return times, found, _first_turn(run, times, found, m)
+
+
+def _first_turn(run: _Run, times: Array, found: Array, m: tuple[bool, ...]) -> Turn | None:
+    """The first switch that turns between samples."""
+    if not run.compiled.system.switches:
+        return None
+    suspect = _suspects(times, *_margins(run, times, found, m))
+    for k in np.flatnonzero(suspect.any(axis=0)):
+        turns = []
+        for which in np.flatnonzero(suspect[:, k]):
+            turn = _turn(run, times[k : k + 2], found[k], m, int(which))
+            if turn is not None:
+                turns.append((int(k), *turn, int(which)))
+        if turns:
+            return min(turns, key=lambda one: one[1])
+    return None
+
+
+def _suspects(times: Array, margin: Array, slope: Array) -> Array:
+    """Intervals at whose end a margin is gone, or in which the cubic through both ends has none."""
+    step = np.diff(times)
+    (a, b), (c, d) = (
+        (margin[:, :-1], margin[:, 1:]), (slope[:, :-1] * step, slope[:, 1:] * step),
+    )  # fmt: skip
+    gone = b <= 0
+    valley = ~gone & (c < 0) & (d > 0)
+    if valley.any():
+        for s in np.linspace(0.1, 0.9, 9):
+            here = (1 + 2 * s) * (1 - s) ** 2 * a + s * (1 - s) ** 2 * c
+            here += s * s * (3 - 2 * s) * b + s * s * (s - 1) * d
+            gone = gone | (valley & (here <= 0))
+    return gone
+
+
+def _turn(
+    run: _Run, span: Array, y: Array, m: tuple[bool, ...], which: int, level: int = 0
+) -> tuple[float, Array] | None:
+    """Time and states at which a switch turns in an interval, if it does."""
     from scipy.optimize import brentq
 
-    first = len(run.compiled.instants)
-    low, high = float(times[k - 1]), float(times[k])
-    signs = np.where(m[first:], 1.0, -1.0)
-    before = _guards(run.compiled, times[k - 1 : k], found[k - 1 : k])[:, 0] * signs
-    after = _guards(run.compiled, times[k : k + 1], found[k : k + 1])[:, 0] * signs
-    best: tuple[float, int] | None = None
-    for which in np.flatnonzero(after <= 0):
-        if before[which] <= 0:  # turned at the start of this piece, and back: at once
-            moment = low
-        else:
+    times = np.linspace(span[0], span[1], PARTS + 1)
+    states = run.advance(times, y, m, MOST)
+    margin, slope = (one[which : which + 1] for one in _margins(run, times, states, m))
+    for k in np.flatnonzero(_suspects(times, margin, slope)[0]):
+        low, high, here = float(times[k]), float(times[k + 1]), states[k]
+        if margin[0, k] > 0 >= margin[0, k + 1]:
 
-            def margin(t: float, which: int = which) -> float:
-                y = _state_at(run, low, t, found[k - 1], m)
-                value = _guards(run.compiled, np.array([t]), y[None])[which, 0]
-                return float(value * signs[which])
+            def left(t: float, low: float = low, here: Array = here) -> float:
+                y = _state_at(run, low, t, here, m)
+                return float(_margins(run, np.array([t]), y[None], m)[0][which, 0])
 
-            moment = float(brentq(margin, low, high, xtol=_LOCATED * max(high, 1.0), rtol=1e-14))
-        if best is None or moment < best[0]:
-            best = moment, int(which)
-    assert best is not None
-    return best[0], _state_at(run, low, best[0], found[k - 1], m), best[1]
+            at = high
+            if left(high) <= 0:
+                at = float(brentq(left, low, high, xtol=_LOCATED * max(high, 1.0), rtol=1e-14))
+            return at, _state_at(run, low, at, here, m)
+        if margin[0, k] <= 0 and (slope[0, k] <= 0 or level == LEVELS):
+            return low, here
+        if level < LEVELS:
+            turn = _turn(run, times[k : k + 2], here, m, which, level + 1)
+            if turn is not None:
+                return turn
+    return None
 
 
 def _state_at(run: _Run, start: float, t: float, y: Array, m: tuple[bool, ...]) -> Array:
-    return y if t <= start else run.advance(np.array([start, t]), y, m)[-1]
-
-
-def _failure(time: float, message: str, remedy: str) -> Unsolvable:
-    return Unsolvable(Diagnostic(f"at {time:.6g} s: {message}", remedy))
+    return y if t <= start else run.advance(np.array([start, t]), y, m, MOST)[-1]
 
 
 def _checked(times: Array, found: Array) -> Array:
     """The states, where all of them are numbers."""
     bad = ~np.isfinite(found).all(axis=1)
     if bad.any():
-        at = float(times[int(np.argmax(bad))])
-        raise _failure(at, "the equations have no solution", "look at the signals up to there")
+        raise _Stuck(float(times[int(np.argmax(bad))]), "the equations have no solution", _REMEDY)
     return found
-
-
-def _lsoda(
-    compiled: Compiled, relative: float, counted: list[int]
-) -> Callable[[Array, Array, tuple[bool, ...]], Array]:
-    from scipy.integrate import ODEintWarning, odeint
-
-    def advance(times: Array, y: Array, m: tuple[bool, ...]) -> Array:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ODEintWarning)
-            try:
-                found, report = odeint(
-                    compiled.rates, y, times, args=(m,), Dfun=compiled.slopes, tfirst=True,
-                    rtol=relative, atol=compiled.tolerances, mxstep=100_000, full_output=True,
-                )  # fmt: skip
-            except (ArithmeticError, ValueError) as error:
-                raise _failure(float(times[0]), _why(error), _REMEDY) from None
-        counted[0] += int(report["nfe"][-1])
-        if report["message"] != "Integration successful.":
-            raise _failure(_reached(report, times), "no step is small enough", _REMEDY)
-        return _checked(times, found)
-
-    return advance
 
 
 _REMEDY = "look at the signals up to there: a gain, a volume or a leakage may be absurd"
@@ -248,29 +300,64 @@ def _why(error: Exception) -> str:
     return f"the equations cannot be evaluated ({error})"
 
 
-def _reached(report: dict[str, Array], times: Array) -> float:
-    known = report["tcur"]
-    return float(np.max(known)) if np.size(known) else float(times[0])
+def _longest(compiled: Compiled, times: Array) -> float:
+    """Longest step that does not miss what a record does in some time; 0 without a limit."""
+    bends = compiled.bends
+    inside = bends[(bends >= times[0]) & (bends <= times[-1])]
+    return float(np.min(np.diff(inside, append=times[-1] + 1.0))) if len(inside) else 0.0
 
 
-def _radau(
-    compiled: Compiled, relative: float, counted: list[int]
-) -> Callable[[Array, Array, tuple[bool, ...]], Array]:
+def _lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
+    from scipy.integrate import ODEintWarning, odeint
+
+    reached = [0.0]
+
+    def rates(t: float, y: Array, m: tuple[bool, ...]) -> list[float]:
+        reached[0] = t
+        return compiled.rates(t, y, m)
+
+    def advance(times: Array, y: Array, m: tuple[bool, ...], most: int) -> Array:
+        reached[0] = float(times[0])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ODEintWarning)
+            try:
+                found, report = odeint(
+                    rates, y, times, args=(m,), Dfun=compiled.slopes, tfirst=True,
+                    rtol=relative, atol=compiled.tolerances, mxstep=most, full_output=True,
+                    hmax=_longest(compiled, times),
+                )  # fmt: skip
+            except (ArithmeticError, ValueError) as error:
+                raise _Stuck(reached[0], _why(error), _REMEDY) from None
+        if report["message"] != "Integration successful.":
+            raise _Stuck(reached[0], "no step is small enough", _REMEDY)
+        counted[0] += int(report["nfe"][-1])
+        return _checked(times, found)
+
+    return advance
+
+
+def _radau(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
     from scipy.integrate import solve_ivp
 
-    def advance(times: Array, y: Array, m: tuple[bool, ...]) -> Array:
+    reached = [0.0]
+
+    def advance(times: Array, y: Array, m: tuple[bool, ...], most: int) -> Array:
+        def rates(t: float, y: Array) -> list[float]:
+            reached[0] = t
+            return compiled.rates(t, y, m)
+
         try:
             found = solve_ivp(
-                lambda t, y: compiled.rates(t, y, m), (times[0], times[-1]), y, method="Radau",
+                rates, (times[0], times[-1]), y, method="Radau",
                 t_eval=times, rtol=relative, atol=0.01 * compiled.tolerances,
                 jac=lambda t, y: np.array(compiled.slopes(t, y, m)),
+                max_step=_longest(compiled, times) or np.inf,
             )  # fmt: skip
         except (ArithmeticError, ValueError) as error:
-            raise _failure(float(times[0]), _why(error), _REMEDY) from None
+            raise _Stuck(reached[0], _why(error), _REMEDY) from None
         counted[0] += int(found.nfev)
         if not found.success:
-            at = float(found.t[-1]) if np.size(found.t) else float(times[0])
-            raise _failure(at, "no step is small enough", _REMEDY)
+            raise _Stuck(reached[0], "no step is small enough", _REMEDY)
         return _checked(times, found.y.T)
 
     return advance

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +33,7 @@ SIGNALS = {
 FEWEST = 10
 """Samples of a channel that say something (a choice)."""
 FINEST = 1e-4
-"""Least noise of a sensor over the span of its record (a choice: a clean record is a synthetic one)."""
+"""Least noise of a sensor over the span of its record (a choice: no sensor is better)."""
 ROBUST = 1.4826
 """Standard deviation over the median distance from zero, of a normal distribution."""
 APART = 0.02
@@ -123,7 +123,8 @@ def _rising(record: Record) -> Array:
     return time
 
 
-class Residual(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Residual:
     """What a channel measured less what was simulated, SI."""
 
     count: int
@@ -290,8 +291,8 @@ def noise(values: Array) -> float:
     steps = np.abs(np.diff(values))
     steps = steps[steps > 1e-9 * span]
     grain = float(np.min(steps)) if steps.size else 0.0
-    rough = ROBUST * float(np.median(np.abs(np.diff(values, 3)))) / np.sqrt(20.0)
-    return max(rough, grain / np.sqrt(12.0), FINEST * span)
+    rough = float(ROBUST * np.median(np.abs(np.diff(values, 3))) / np.sqrt(20.0))
+    return max(rough, float(grain / np.sqrt(12.0)), FINEST * span)
 
 
 def _sampling(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -> Iterator[str]:

@@ -1,52 +1,35 @@
-"""Parameters of a design from a measured record: least squares over the whole simulation."""
+"""Parameters of a design from a measured record: least squares over whole simulations."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 from time import perf_counter
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
 
 from ..design.scenario.model import Scenario
-from ..errors import InputError, Unsolvable
 from ..evaluation.study.plant import Plant
-from ..least_squares import NORMAL, Parameter, known, rated
+from ..least_squares import WEAK, Known, Parameter, known, rated
 from ..numeric import Array
-from .assemble import assemble
+from ..suggest import shown
 from .gains import Tuned, tune
-from .integrate import integrate
-from .measured import Measured, Overlay, Residual, at, inside, noise, overlay
-from .measured_parameters import PARAMETERS, Entry, entries
+from .measured import Measured, Overlay, overlay
+from .measured_parameters import Entry, entries
+from .measured_problem import MISFIT, STEP, WIDEST, Problem
 from .parts.signals import Records
 from .run import run
-from .system import Compiled
 
-MOST: Final = 4000
-"""Largest number of samples of a channel in a fit (a choice: what is denser is thinned evenly)."""
-FINE: Final = 4
-"""Samples of the simulation to one of the record (a choice: straight between them, a swing of ten
-samples to the period loses 0.3 %)."""
-RELATIVE: Final = 1e-8
-"""Tolerance of an integration step: slopes are differences of two runs."""
-STEP: Final = 1e-3
-"""Step of a slope on the way, over a parameter's size (a choice: far above what is integrated)."""
-WIDEST: Final = 0.1
-"""Largest step of the last slopes, which are secants over a standard error (a choice)."""
-GUESSES: Final = (1 / 3, 3.0)
-"""Factors on each start that are tried before the search (a choice)."""
-ROUNDS: Final = 2
-"""Searches: weighted by the sensors' noise, then by what is left over where that is more."""
-MISFIT: Final = 3.0
-"""Residual over noise from which the model misses the record (a choice)."""
 ALIKE: Final = 0.9
 """Correlation from which two parameters are named as not parted (a choice)."""
 EDGE: Final = 1e-3
 """Share of a parameter's range within which it lies at its end (a choice)."""
-MARGIN: Final = 0.02
-"""Range about the best lag that is searched, over the simulated time (a choice)."""
+STEADIEST: Final = 0.97
+"""Largest correlation of neighbouring samples that the bandwidth counts, as is usual."""
+WHOLE: Final = 4
+"""Least number of bandwidths in a record (a choice)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +38,8 @@ class Fitted:
 
     entry: Entry
     parameter: Parameter
-    edge: str
-    """The end of its range at which it lies: "lower", "upper" or none."""
+    at_bound: Literal["lower", "upper"] | None
+    """The end of its range at which it lies."""
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI."""
@@ -66,7 +49,7 @@ class Fitted:
             "unit": quantity.si_unit,
             "start": self.entry.start,
             **self.parameter.to_dict(),
-            "at_bound": self.edge or None,
+            "at_bound": self.at_bound,
         }
 
 
@@ -78,8 +61,8 @@ class Fit:
     ----------
     scenario, plant : with the parameters put in
     parameters : by name
-    correlations : of the parameters' errors, pairs of known ones
-    before, after : the record over the simulation with the first and the fitted values
+    correlations : of the errors of two parameters, by their names
+    before, after : the record over the simulation with the first and with the fitted values
     doubts : what the numbers alone do not say
     runs, seconds : what it took
     """
@@ -105,8 +88,7 @@ class Fit:
             "record": self.after.measured.name,
             "parameters": {name: one.to_dict() for name, one in self.parameters.items()},
             "correlations": [
-                {"between": list(pair), "value": value}
-                for pair, value in self.correlations.items()
+                {"between": list(pair), "value": value} for pair, value in self.correlations.items()
             ],
             "before": self.before.to_dict(),
             "after": self.after.to_dict(),
@@ -128,8 +110,8 @@ def fit(
     """Fit named parameters of a design or scenario to a measured record.
 
     Least squares over all channels, each weighted by the noise of its sensor (`measured.noise`),
-    then by what is left over where the model misses it by more. Bounds of 95 % count residuals that
-    hang together over time.
+    then by what is left over where that is more. Bounds hold 95 %, by the slopes at the solution
+    and by residuals that hang together over time.
 
     Parameters
     ----------
@@ -149,51 +131,192 @@ def fit(
     begin = perf_counter()
     own = entries(names, scenario, plant)
     gains = tune(scenario, plant, records) if tuned is None else tuned
-    before = overlay(run(scenario, plant, records, gains), measured)
-    problem = Problem(scenario, plant, records, measured, own, gains)
+    problem = Problem(scenario, plant, records, gains, measured, own)
+    first = problem.lag(problem.start)
+    before = overlay(run(scenario, plant, records, gains), measured, lag=first)
     x = problem.solve()
-    fitted, correlations = problem.bounded(x)
-    final_scenario, final_plant = problem.put(x)
-    final = run(final_scenario, final_plant, records, gains)
+    told = bounds(problem, x)
+    fitted = {
+        one.name: Fitted(one, _natural(one, told, problem), _edge(problem, x, k))
+        for k, one in enumerate(own)
+    }
+    correlations = _correlations(told)
+    new_scenario, new_plant = problem.put(x)
+    final = run(new_scenario, new_plant, records, gains)
     after = overlay(final, measured, lag=problem.lag(x))
-    doubts = (*_doubts(fitted, correlations, after.residuals), *_tuned(gains))
+    doubts = (
+        *_unknown(fitted),
+        *_parted(fitted, correlations),
+        *_missed(after, before),
+        *_loop(gains),
+    )
     return Fit(
-        final_scenario, final_plant, fitted, correlations, before, after, doubts,
+        new_scenario, new_plant, fitted, correlations, before, after, doubts,
         problem.runs, perf_counter() - begin,
     )  # fmt: skip
 
 
-class Problem:
-    """Weighted residuals of a record over the searched parameters.
+def bounds(problem: Problem, x: Array) -> Known:
+    """What the residuals tell of the searched values.
 
-    Searched are the logarithms of positive parameters, over the start; signed ones over their size.
+    cov = H^-1 S H^-1, H = J^T J, S the sum of J^T r r^T J over times and over the lags within a
+    bandwidth, with Bartlett's weights (Newey and West; bandwidth by Andrews' rule for an
+    autoregression, channels of one instant together). S is not taken below that of independent
+    residuals. Spare points are those that a window of this width leaves, 3 n/(2 m). The slopes are
+    secants over a standard error.
     """
+    steps = STEP * problem.sizes
+    rest = problem.rest(x)
+    for _ in range(2):
+        slopes = problem.slopes(x, steps)
+        scaled = slopes * problem.sizes
+        left, singular, right = np.linalg.svd(scaled, full_matrices=False)
+        variance = float(np.sum(rest**2)) / max(rest.size - x.size, 1)
+        errors = np.sqrt(variance) * np.linalg.norm(
+            right.T / np.maximum(singular, 1e-12 * (singular[0] or 1.0)), axis=1
+        )
+        steps = np.clip(errors, STEP, WIDEST) * problem.sizes
+    moments = _by_time(problem, left * rest[:, None])
+    width = _bandwidth(moments)
+    inner = _summed(moments, width)
+    values, turn = np.linalg.eigh(inner)
+    root = turn * np.sqrt(np.maximum(values, variance))
+    whitened = np.linalg.solve(root, singular[:, None] * right) / problem.sizes
+    spare = max(min(rest.size, 1.5 * moments.shape[0] / width) - x.size, 1.0)
+    return known(
+        dict(zip(problem.names, x.tolist(), strict=True)),
+        whitened,
+        np.ones(1) * np.sqrt(spare),
+        problem.sizes,
+        spare=spare,
+    )
 
-    def __init__(
-        self,
-        scenario: Scenario,
-        plant: Plant,
-        records: Records,
-        measured: Measured,
-        own: Sequence[Entry],
-        tuned: Tuned | None,
-    ) -> None:
-        self.scenario, self.plant, self.records, self.tuned = scenario, plant, records, tuned
-        self.own, self.measured = tuple(own), measured
-        self.names = tuple(one.name for one in own)
-        self.runs = 0
-        self._last: tuple[bytes, Mapping[str, Array], Array] | None = None
-        self.sizes = np.array([1.0 if one.positive else one.upper for one in own])
-        logs = [(one, np.log) if one.positive else (one, float) for one in own]
-        self.start = np.array([to(one.start) for one, to in logs])
-        self.low = np.array([to(one.lower) for one, to in logs])
-        self.high = np.array([to(one.upper) for one, to in logs])
-        steps = [float(np.median(np.diff(t))) for t, _ in measured.channels.values()]
-        asked = min(steps) / FINE
-        duration = scenario.duration
-        self.step = min(max(asked, duration / (FINE * MOST)), duration / MOST)
-        time, signals = self._simulated(self.start, needed=True)
-        used = inside(measured, signals, float(time[-1]), 0.0)
-        self.noise = {name: noise(y) for name, (_, y) in used.items()}
-        self.scale = dict(self.noise)
-        self.used = {name: _thin(*one) for name, one in used.items()}
+
+def _by_time(problem: Problem, rows: Array) -> Array:
+    """Rows of samples, those of one instant added up, in the order of time."""
+    times = np.concatenate([t for t, _ in problem.used.values()])
+    instants, place = np.unique(times, return_inverse=True)
+    found = np.zeros((instants.size, rows.shape[1]))
+    np.add.at(found, place, rows)
+    return found
+
+
+def _bandwidth(moments: Array) -> float:
+    """Samples over which moments hang together, by the correlation of neighbours."""
+    before, after = moments[:-1], moments[1:]
+    power = np.maximum(np.sum(before**2, axis=0), 1e-300)
+    rho = np.clip(np.sum(before * after, axis=0) / power, -STEADIEST, STEADIEST)
+    square = (power / power.size) ** 2
+    above = np.sum(4 * rho**2 * square / ((1 - rho) ** 6 * (1 + rho) ** 2))
+    alpha = float(above / np.sum(square / (1 - rho) ** 4))
+    count = moments.shape[0]
+    return float(np.clip(1.1447 * (alpha * count) ** (1 / 3), 1.0, max(count / WHOLE, 1.0)))
+
+
+def _summed(moments: Array, width: float) -> Array:
+    """Sum of products of moments within a bandwidth, with weights that fall to zero."""
+    total: Array = moments.T @ moments
+    for k in range(1, min(int(np.ceil(width)), moments.shape[0])):
+        product = moments[:-k].T @ moments[k:]
+        total = total + (1 - k / width) * (product + product.T)
+    return total
+
+
+def _natural(one: Entry, told: Known, problem: Problem) -> Parameter:
+    """A parameter of its own size from the searched one.
+
+    Bounds of a logarithm are factors while they are below e; wider ones are straight, from zero.
+    """
+    x = told.parameters[one.name]
+    half = x.upper - x.value
+    if not one.positive:
+        near = one.near or float(problem.sizes[problem.names.index(one.name)])
+        sure = bool(half <= max(WEAK * abs(x.value), near))
+        return Parameter(x.value, float(x.lower), float(x.upper), x.standard_error, sure)
+    value = float(np.exp(x.value))
+    if not np.isfinite(half):
+        return Parameter(value, -np.inf, np.inf, np.inf, False)
+    error = value * x.standard_error
+    if half < 1:
+        by = float(np.exp(half))
+        return rated(value, value / by, value * by, error)
+    return rated(value, 0.0, value * (1 + float(half)), error)
+
+
+def _edge(problem: Problem, x: Array, k: int) -> Literal["lower", "upper"] | None:
+    """The end of its range at which a parameter lies."""
+    room = EDGE * (problem.high[k] - problem.low[k])
+    if x[k] - problem.low[k] < room:
+        return "lower"
+    return "upper" if problem.high[k] - x[k] < room else None
+
+
+def _correlations(told: Known) -> dict[tuple[str, str], float]:
+    """Of the errors of parameters that are bounded."""
+    found = {}
+    for (i, one), (k, other) in combinations(enumerate(told.parameters), 2):
+        size = np.sqrt(told.covariance[i, i] * told.covariance[k, k])
+        if np.isfinite(size) and size > 0:
+            found[one, other] = float(np.clip(told.covariance[i, k] / size, -1.0, 1.0))
+    return found
+
+
+def _unknown(fitted: Mapping[str, Fitted]) -> Iterator[str]:
+    """Parameters that are not known, and why."""
+    for name, one in fitted.items():
+        quantity, found = one.entry.quantity, one.parameter
+        if one.at_bound is not None:
+            end = one.entry.lower if one.at_bound == "lower" else one.entry.upper
+            yield (
+                f"{name} lies at the {one.at_bound} end of its range, {quantity.text(end)}: the "
+                "record asks for none, or something else is missing from the simulation"
+            )
+        elif found.verdict == "identifiable":
+            continue
+        elif not np.isfinite(found.upper):
+            yield (
+                f"{name} is not identifiable: nothing measured moves with it, or only as others "
+                "that are fitted move it"
+            )
+        else:
+            between = f"{quantity.text(found.lower, 3)} to {quantity.text(found.upper, 3)}"
+            yield f"{name} is {found.verdict}: the record allows {between}"
+
+
+def _parted(
+    fitted: Mapping[str, Fitted], correlations: Mapping[tuple[str, str], float]
+) -> Iterator[str]:
+    """Parameters of which one hides in the other."""
+    for (one, other), value in correlations.items():
+        sure = all(fitted[name].parameter.identifiable for name in (one, other))
+        if abs(value) > ALIKE and not sure:
+            how = "together" if value > 0 else "against each other"
+            yield (
+                f"{one} and {other} move {how} (correlation {value:.3f}): their combination is "
+                "better known than either; state one, or measure something that parts them"
+            )
+
+
+def _missed(after: Overlay, before: Overlay) -> Iterator[str]:
+    """Channels of which more is left than noise."""
+    missed = []
+    for name, one in after.residuals.items():
+        quantity = after.simulation.told[name].quantity
+        if one.rms > MISFIT * one.noise:
+            missed.append(f"{name} {quantity.text(one.rms, 2)}, {one.rms / one.noise:.2g} times")
+        if one.rms > 1.05 * before.residuals[name].rms and one.rms > MISFIT * one.noise:
+            yield f"{name} fits worse than before: the channels contradict each other"
+    if missed:
+        yield shown(
+            f"the simulation misses the record by more than its noise ({'; '.join(missed)}): it "
+            "lacks something, and bounds do not hold by how much that pulls the parameters",
+            400,
+        )
+
+
+def _loop(tuned: Tuned | None) -> Iterator[str]:
+    if tuned is not None and tuned.origin != "stated":
+        yield (
+            f"the controller's gain is that of the design ({tuned.origin}), not of the bench: "
+            "state it in control"
+        )

@@ -1,4 +1,4 @@
-"""A simulation over the parameters that a record is to tell: residuals, their slopes, the search."""
+"""A simulation over the parameters that a record is to tell: residuals, slopes, the search."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ GUESSES: Final = (1 / 3, 3.0)
 MISFIT: Final = 3.0
 """Residual over noise from which the model misses the record (a choice)."""
 MARGIN: Final = 0.02
-"""Range about the best lag that is searched, over the simulated time (a choice)."""
+"""Range about the lag tried best that is searched, over the simulated time (a choice)."""
 LAGS: Final = 801
 """Lags that are tried before the search (a choice)."""
 FAR: Final = 10.0
@@ -75,11 +75,23 @@ class Problem:
         self.step = float(np.clip(apart / FINE, duration / (FINE * MOST), duration / MOST))
         self.runs = 0
         self._known: tuple[bytes, Array, Mapping[str, Array]] | None = None
-        time, signals = self._simulated(self.start)
-        whole = inside(measured, signals, float(time[-1]), 0.0 if self.late is None else np.nan)
-        self.noise = {name: noise(y) for name, (_, y) in whole.items()}
+        _, signals = self._simulated(self.start)
+        self.noise = {name: noise(y) for name, (_, y) in measured.channels.items()}
         self.weights = {name: 1 / one for name, one in self.noise.items()}
-        self.used = {name: _thinned(*one) for name, one in whole.items()}
+        if self.late is not None:
+            middle = self._aligned(measured, signals)
+            self.start[self.late] = middle
+            self.low[self.late] = middle - MARGIN * duration
+            self.high[self.late] = middle + MARGIN * duration
+        kept = inside(measured, signals, duration, self.lag(self.start))
+        if self.late is not None:
+            ends = self.high[self.late], duration + self.low[self.late]
+            kept = {
+                name: (t[within], y[within])
+                for name, (t, y) in kept.items()
+                if np.any(within := (t >= ends[0]) & (t <= ends[1]))
+            }
+        self.used = {name: _thinned(*one) for name, one in kept.items()}
         self.far = np.inf
         self.far = FAR * float(np.max(np.abs(self.rest(self.start))))
 
@@ -150,15 +162,24 @@ class Problem:
             columns.append((self.rest(up) - self.rest(down)) / (up[k] - down[k]))
         return np.stack(columns, axis=1)
 
+    def _slopes(self, x: Array) -> Array:
+        """Derivatives on the way, by differences to one side."""
+        here, columns = self.rest(x), []
+        for k, size in enumerate(self.sizes):
+            row = x.copy()
+            row[k] += STEP * size if x[k] + STEP * size < self.high[k] else -STEP * size
+            columns.append((self.rest(row) - here) / (row[k] - x[k]))
+        return np.stack(columns, axis=1)
+
     def solve(self) -> Array:
         """The best values: a lag and starts that are tried, a search, another one by what is left.
 
         Where the model misses the record from there, the search begins once more at the start.
         """
-        tried = self._guessed(self._aligned(self.start))
+        tried = self._guessed(self.start)
         x = self._descended(tried)
         if self.missed(x) and not np.array_equal(tried, self.start):
-            other = self._descended(self._aligned(self.start))
+            other = self._descended(self.start)
             x = other if self.cost(other) < self.cost(x) else x
         for name, one in self.apart(x).items():
             self.weights[name] = 1 / max(self.noise[name], float(np.sqrt(np.mean(one**2))))
@@ -171,13 +192,24 @@ class Problem:
             for name, one in self.apart(x).items()
         )
 
-    def _aligned(self, x: Array) -> Array:
-        """With the lag that suits a run best."""
-        if self.late is None:
-            return x
-        rows = np.tile(x, (LAGS, 1))
-        rows[:, self.late] = np.linspace(self.low[self.late], self.high[self.late], LAGS)
-        return rows[int(np.argmin([self.cost(row) for row in rows]))]
+    def _aligned(self, measured: Measured, signals: Mapping[str, Array]) -> float:
+        """The lag at which the record is nearest to the first run, by the mean of what overlaps."""
+        assert self.late is not None
+        time, _ = self._simulated(self.start)
+        lags = np.linspace(self.low[self.late], self.high[self.late], LAGS)
+        total, count = np.zeros(LAGS), np.zeros(LAGS)
+        for name, channel in measured.channels.items():
+            if name not in signals:
+                continue
+            t, y = _thinned(*channel)
+            for k, lag in enumerate(lags):
+                within = (t >= lag) & (t <= lag + time[-1])
+                off = self.weights[name] * (at(t[within] - lag, time, signals[name]) - y[within])
+                total[k] += np.sum(off**2)
+                count[k] += off.size
+        enough = count >= max(0.5 * float(np.max(count)), 1.0)
+        mean = np.where(enough, total / np.maximum(count, 1.0), np.inf)
+        return float(lags[int(np.argmin(mean))]) if enough.any() else 0.0
 
     def _guessed(self, x: Array) -> Array:
         """With starts of positive parameters that are better by a factor, one after the other."""
@@ -186,7 +218,6 @@ class Problem:
             for by in GUESSES if one.positive else ():
                 row = best.copy()
                 row[k] = np.clip(x[k] + np.log(by), self.low[k], self.high[k])
-                row = self._aligned(row)
                 cost = self.cost(row)
                 best, least = (row, cost) if cost < least else (best, least)
         return best
@@ -199,7 +230,7 @@ class Problem:
         found = least_squares(
             self.rest,
             np.clip(x, self.low + room, self.high - room),
-            jac=lambda row: self.slopes(row, STEP * self.sizes),
+            jac=self._slopes,
             bounds=(self.low, self.high),
             x_scale=self.sizes,
             ftol=1e-8,

@@ -71,6 +71,8 @@ class System:
     switches: list[Switch] = field(default_factory=list)
     instants: list[Instant] = field(default_factory=list)
     signals: list[Signal] = field(default_factory=list)
+    bends: list[float] = field(default_factory=list)
+    """Instants at which a record changes its course: no step is longer than between two."""
     notes: list[str] = field(default_factory=list)
     """What a reader of the result should know: choices and simplifications that acted."""
 
@@ -142,11 +144,15 @@ class Compiled:
     """Jacobian of the rates, row by row."""
     guards: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
     """Of every switch, at many samples: y is (states, samples)."""
+    guard_rates: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
+    """Their rates."""
     told: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
     """The signals, at many samples."""
     initial: Array
     tolerances: Array
     instants: tuple[float, ...]
+    bends: Array
+    """Instants at which a record changes its course, each once."""
 
     @classmethod
     def of(cls, system: System) -> Compiled:
@@ -173,12 +179,14 @@ class Compiled:
             guards=vectorised(
                 "guards", "t, y, m", many | switch, [one.guard for one in system.switches]
             ),
+            guard_rates=vectorised("guard_rates", "t, y, m", many | switch, _along(system)),
             told=vectorised(
                 "told", "t, y, m", many | switch, [one.value for one in system.signals]
             ),
             initial=np.array([state.initial for state in system.states]),
             tolerances=np.array([state.tolerance for state in system.states]),
             instants=tuple(one.time for one in system.instants),
+            bends=np.unique(np.array(system.bends, dtype=float)),
         )
 
     def signals(self, t: Array, y: Array, m: Sequence[Array]) -> dict[str, Array]:
@@ -189,3 +197,13 @@ class Compiled:
             one.name: np.broadcast_to(np.asarray(value, dtype=float), np.shape(t)).copy()
             for one, value in zip(self.system.signals, values, strict=True)
         }
+
+
+def _along(system: System) -> list[Expression]:
+    """Rates of the guards along the solution."""
+    symbols, rates = [state.symbol for state in system.states], [s.rate for s in system.states]
+    found = []
+    for row in jacobian([one.guard for one in system.switches], [*symbols, system.time]):
+        slopes = zip(row, [*rates, 1.0], strict=True)
+        found.append(sum((slope * rate for slope, rate in slopes), start=0.0))
+    return found

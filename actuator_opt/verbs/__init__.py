@@ -14,10 +14,12 @@ from .records import (
 )
 from .reports import date_from_environment, report, save
 from .seals import seal, with_contact, write_seal
+from .simulations import Trial, read_scenario, simulate, write_signals
 
 __all__ = [
     "Actuator",
     "Calibrated",
+    "Trial",
     "bending",
     "calibrate",
     "check",
@@ -27,13 +29,16 @@ __all__ = [
     "optimise",
     "read",
     "read_record",
+    "read_scenario",
     "report",
     "save",
     "seal",
     "sensitivity",
+    "simulate",
     "with_contact",
     "write_calibration",
     "write_identification",
     "write_seal",
     "write_series",
+    "write_signals",
 ]

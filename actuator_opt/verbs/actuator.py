@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..design import Design, LoadedDesign, Source, read_design, with_values
+from ..design import Design, LoadedDesign, Source, is_scenario, read_design, with_values
 from ..errors import Diagnostic, InputError
 from ..evaluation import Subject, compute, prepare
 from ..evaluation.plugin import Plugin, View, collect, load
@@ -94,11 +94,16 @@ def check(
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),
 ) -> list[Diagnostic]:
-    """All faults of a design file; an empty list for a good one. Parameters as `read`.
+    """All faults of a design or scenario file; an empty list for a good one. Parameters as `read`.
 
     Found too: variables that no model reads, requirements that no model answers.
     """
     try:
+        if is_scenario(source):
+            from .simulations import read_scenario
+
+            read_scenario(source, set=set)
+            return []
         actuator = read(source, set=set, plugins=plugins)
         subject = actuator.subject()
         faults = unanswered(actuator, subject)

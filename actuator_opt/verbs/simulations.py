@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -113,13 +114,30 @@ def simulate(
     from ..simulation import simulate as run
 
     trial = as_trial(scenario, set)
-    return run(
-        trial.scenario,
-        trial.actuator.subject(),
-        records=trial.records,
-        verify=verify,
-        method=method,
-    )
+    with placed(trial):
+        return run(
+            trial.scenario,
+            trial.actuator.subject(),
+            records=trial.records,
+            verify=verify,
+            method=method,
+        )
+
+
+@contextmanager
+def placed(trial: Trial) -> Iterator[None]:
+    """Give faults of a scenario's values their place in its file."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(
+            [
+                trial.loaded.diagnostic(fault.path, fault.message, fault.remedy)
+                if fault.path is not None and fault.file is None
+                else fault
+                for fault in error.diagnostics
+            ]
+        ) from None
 
 
 def as_trial(

@@ -27,6 +27,18 @@ class Measured:
     speed: Expression
     load_pressure: Expression
     """Force of the pressures over area A [Pa]."""
+    load_pressure_start: float = 0.0
+
+
+def inner(system: System, stated: Control, wish: Expression, measured: Measured) -> Expression:
+    """A wish less what the inner loops take off it: speed, and changes of the load pressure."""
+    wish = wish - stated.speed_feedback * measured.speed
+    if stated.pressure_feedback:
+        start = measured.load_pressure_start
+        slow = system.state("filtered load pressure", start, tolerance=1.0)
+        system.rate(slow, (measured.load_pressure - slow) / stated.pressure_time)
+        wish = wish - stated.pressure_feedback * (measured.load_pressure - slow)
+    return wish
 
 
 def command(
@@ -49,12 +61,7 @@ def command(
         system.rate(slow, change)
         factor = stated.derivative_factor * gains.proportional_gain
         wish = wish + factor * gains.derivative_time * change
-    wish = wish - stated.speed_feedback * measured.speed
-    if stated.pressure_feedback:
-        slow = system.state("filtered load pressure", 0.0, tolerance=1.0)
-        change = (measured.load_pressure - slow) / stated.pressure_time
-        system.rate(slow, change)
-        wish = wish - stated.pressure_feedback * (measured.load_pressure - slow)
+    wish = inner(system, stated, wish, measured)
     if gains.integral_time < inf:
         part = system.state("integral part", 0.0, tolerance=1e-7 * full_signal)
         wish = wish + part

@@ -34,7 +34,9 @@ def _part(system: System, part: Part, records: Records) -> Expression:
         assert part.file is not None
         assert part.column is not None
         time, values = records[part.file, part.column]
-        return system.graph.table(_between(time + start, part.scale * values), t)
+        time, values = time + start, part.scale * values
+        system.bends += _bends(time, values)
+        return system.graph.table(_between(time, values), t)
     on = system.after(start)
     if part.shape == "step":
         return where(on, value, 0.0)
@@ -59,6 +61,15 @@ def _between(time: Array, values: Array) -> Callable[[Any], Any]:
         return float(found) if np.ndim(found) == 0 else found
 
     return at
+
+
+def _bends(time: Array, values: Array) -> list[float]:
+    """Samples at which the course between samples changes its slope, first and last included."""
+    rise, run = np.diff(values, prepend=values[:1], append=values[-1:]), np.diff(time)
+    run = np.concatenate(([1.0], run, [1.0]))
+    slope = np.divide(rise, run, out=np.full(len(rise), np.inf), where=run > 0)
+    found: list[float] = time[slope[1:] != slope[:-1]].tolist()
+    return found
 
 
 def rate(system: System, expression: Expression) -> Expression:
