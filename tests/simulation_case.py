@@ -105,7 +105,7 @@ class Run:
     def lost_energy(self) -> float:
         """Largest energy that nothing explains [J]."""
         audit = self.circuit.audit
-        stored = sum(self.values([value for _, value in audit.stored]))
+        stored = sum(self.values([value for _, value in audit.stored]), np.zeros(len(self.time)))
         missing = stored - stored[0]
         for _, symbol, into in audit.flows:
             missing = missing - (1 if into else -1) * self.integral(symbol)

@@ -36,6 +36,10 @@ HEAD, FOOT = 5.2, 7.5
 """Height of the words above a strip and below the last one [mm]."""
 LEAST_STRIP = 10.0
 """Least height of the frame of a strip [mm] (a choice: three numbers beside it)."""
+DENSE = 8
+"""Values of a thinned curve per mm (a choice: four pairs, finer than the pen)."""
+MOST_JUMPS = 500
+"""Instants that stand twice and are kept as they are."""
 SHORT = 0.1
 """Time below which an axis counts milliseconds [s]."""
 
@@ -163,10 +167,13 @@ def lines(axes: Axes, time: Array, values: Array) -> list[list[Point]]:
     """A curve on paper, thinned, cut where it leaves the frame or has no value."""
     inside = (time >= axes.x_range[0]) & (time <= axes.x_range[1]) & np.isfinite(values)
     known = np.flatnonzero(inside)
+    jumps = np.flatnonzero(np.diff(time) == 0)  # an instant stands twice: upright, not aslant
+    jumps = np.union1d(jumps, jumps + 1) if jumps.size < MOST_JUMPS else jumps[:0]
     found: list[list[Point]] = []
     for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
         if run.size > 1:
-            at = run[thinned(values[run], max(int(6 * axes.width), 16))]
+            at = run[thinned(values[run], max(int(DENSE * axes.width), 16))]
+            at = np.union1d(at, np.intersect1d(run, jumps))
             found += axes.clipped([float(t) for t in time[at]], [float(v) for v in values[at]])
     return found
 

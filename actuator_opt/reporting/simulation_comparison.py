@@ -11,12 +11,13 @@ from ..errors import Diagnostic, InputError
 from ..quantities import RESULTS
 from ..simulation.gains import Tuned
 from ..simulation.result import Simulation
-from ..suggest import suggestion
+from ..suggest import remedy
 from . import simulation_rows as rows
 from .blocks import Block, Cell, column, soft, table
 from .optimum import sentence
 from .origin import tile
 from .simulation_axes import COLOURS, DASHES
+from .simulation_words import what as whole
 from .text import DASH, number, pretty, unit_text, with_unit
 
 MOST_COLUMNS = 9
@@ -35,7 +36,7 @@ class Comparison:
 
     @property
     def kind(self) -> str:
-        """What all runs have: a "step", a shaken rod ("stiffness"), or signals alone ("signals")."""
+        """What all runs have: a "step", a "stiffness" of a shaken rod, or "signals" alone."""
         simulations = [one for _, one in self.runs]
         if all(one.shaken is not None and one.shaken.windows for one in simulations):
             return "stiffness"
@@ -74,7 +75,7 @@ def comparison(
     for name in columns:
         if name not in COLUMNS:
             message = f'no column "{name}"'
-            raise InputError(Diagnostic(message, suggestion(name, COLUMNS)))
+            raise InputError(Diagnostic(message, remedy(name, COLUMNS)))
     made = Comparison(tuple(runs), title, tuple(notes), tuple(columns))
     chosen = made.columns or tuple(_usual(made))
     return Comparison(made.runs, title, made.notes, chosen[:MOST_COLUMNS])
@@ -210,7 +211,7 @@ def what(one: Comparison) -> str:
     named = " and ".join(designs) if len(designs) < 3 else f"{len(designs)} designs"
     count = "1 run" if len(one.runs) == 1 else f"{len(one.runs)} runs"
     said = f"{count} of {named}."
-    words = {rows.what(found).partition(": ")[2] for _, found in one.runs}
+    words = {whole(found).partition(": ")[2] for _, found in one.runs}
     return f"{said} {sentence(words.pop())}" if len(words) == 1 else said
 
 
@@ -229,7 +230,7 @@ def verdict(one: Comparison) -> dict[str, Any]:
 def tiles(one: Comparison) -> list[dict[str, Any]]:
     """From least to most of the first columns, the results before the gains."""
     order = sorted(one.columns, key=lambda name: name not in RESULTS)
-    made = []
+    made: list[dict[str, Any]] = []
     for name in order:
         values = [(COLUMNS[name].value(found), run) for run, found in one.runs]
         known = [(value, run) for value, run in values if value is not None]
@@ -270,7 +271,7 @@ def trust(one: Comparison) -> list[str]:
     shown = [" ".join(said), *(sentence(pretty(note)) for note in one.notes)]
     for note, names in by_note.items():
         every = len(names) == len(one.runs)
-        shown.append(note if every else f"{', '.join(names)}: {note[0].lower()}{note[1:]}")
+        shown.append(note if every else f"{'; '.join(names)}: {note}")
     return shown
 
 
@@ -290,7 +291,6 @@ def styles(names: Sequence[str]) -> list[dict[str, Any]]:
     kinds = list(dict.fromkeys(tail for _, _, tail in split))
     grouped = all(head for head, _, _ in split) and 1 < len(families) < len(names)
     if not grouped or len(kinds) > len(DASHES):
-        families, split = list(names), [(name, "", "") for name in names]
         return [_style(k, k) for k in range(len(names))]
     return [_style(families.index(head), kinds.index(tail)) for head, _, tail in split]
 

@@ -17,6 +17,7 @@ from .origin import Origin
 from .simulation_figures import LEAST, MOST, simulation_figure
 from .simulation_series import Measured
 from .simulation_stiffness import Static
+from .simulation_words import tied, what
 
 SHEET, TILES, FOOT, HEAD = 265.0, 23.0, 24.5, 8.2
 """Heights inside the margins of the sheet, of the key figures, of the title block, and of the title
@@ -45,9 +46,7 @@ def write_simulation_sheet(
     ----------
     folder, stem : where to
     """
-    data = document(
-        simulation, origin, notes=notes, measured=measured, static=static, extra=extra
-    )
+    data = document(simulation, origin, notes=notes, measured=measured, static=static, extra=extra)
     return writer.write_page(
         data, origin, title=simulation.scenario.name, folder=folder, stem=stem,
         scenario_hash=simulation.spec_hash,
@@ -75,16 +74,16 @@ def document(
     extra : blocks below all others
     """
     below = blocks(simulation, notes)
-    what = rows.tied(rows.what(simulation))
-    room = _room(simulation.scenario.name, what, [*below, *extra])
-    if room < LEAST:  # what the caller adds goes on to the next sheet
-        room = _room(simulation.scenario.name, what, below)
+    words = tied(what(simulation))
+    left = room(simulation.scenario.name, words, [*below, *extra])
+    if left < LEAST:  # what the caller adds goes on to the next sheet
+        left = room(simulation.scenario.name, words, below)
     drawing = simulation_figure(
-        simulation, min(max(room, LEAST), MOST), measured=measured, static=static
+        simulation, min(max(left, LEAST), MOST), measured=measured, static=static
     )
     return headed(simulation.scenario.name, simulation.plant.design.name, origin, KIND) | {
         "verdict": rows.verdict(simulation),
-        "sentence": soft(what),
+        "sentence": soft(words),
         "tiles": rows.tiles(simulation),
         "section": drawing.data(),
         "scale": "",
@@ -108,7 +107,7 @@ def blocks(found: Simulation, more: Sequence[str] = ()) -> list[Block]:
         f" {rows.run_words(found)}",
         *rows.remarks(found, more),
     ]
-    trust = notes("What this rests on", [rows.tied(one) for one in said])
+    trust = notes("What this rests on", [tied(one) for one in said])
     made = [one for one in (_results(found), _controller(found)) if one is not None]
     if len(made) == 2:
         return [_pair(*made), trust]
@@ -151,7 +150,7 @@ def _controller(found: Simulation) -> Block | None:
 # ---- room ----
 
 
-def _room(name: str, what: str, below: Sequence[Block]) -> float:
+def room(name: str, what: str, below: Sequence[Block]) -> float:
     """Height left for the figure on one sheet, by the widths of the words [mm]."""
     head = 6.0 + (8.0 if len(name) <= 28 else 6.0 * math.ceil(len(name) / 45))
     head += 3.1 * len(wrap(what, 112.0, 7.5))
@@ -167,7 +166,7 @@ def height(block: Block, width: float = FULL) -> float:
         return HEAD + note + 3.6 * sum(_lines(block, width))
     if block["kind"] == "figure":
         return HEAD + note + float(block["ink"]["height"]) + 3.0
-    words = [joined(item) for item in block.get("items", block.get("lines", ()))]
+    words = [joined(item) for item in block.get("items") or block.get("lines") or ()]
     return HEAD + 1.5 + note + sum(3.2 * len(wrap(one, width, 7.0)) + 0.5 for one in words)
 
 

@@ -49,7 +49,7 @@ class Share(NamedTuple):
 
 
 def shares(found: Simulation) -> list[Share]:
-    """What gave energy, the supply first, then what took it, the largest first; small ones summed."""
+    """What gave energy, the supply first, then what took it, by size; small ones summed."""
     doors = [Share(one.name, one.energy) for one in found.balance.flows]
     doors.append(Share("store", -sum(one.energy for one in found.balance.stored)))
     total = sum(one.energy for one in doors if one.energy > 0)
@@ -274,8 +274,11 @@ def table_rows(found: Simulation) -> list[list[str]]:
     """Every share in words: name, energy with its sign, share of what came in."""
     shown = shares(found)
     total = sum(one.energy for one in shown if one.energy > 0)
-    unit = ENERGY.unit
     return [
-        [one.name, f"{number(one.energy, 4, signed=True)} {unit}", per_cent(abs(one.energy) / total)]
+        [
+            one.name,
+            f"{number(one.energy, 4, signed=True)} {ENERGY.unit}",
+            per_cent(abs(one.energy) / total),
+        ]
         for one in shown
     ]

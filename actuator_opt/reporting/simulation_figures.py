@@ -42,8 +42,8 @@ LEAST_PANEL = 26.0
 MOST_MARKS = 8
 """Events that are marked in the strips."""
 LAG = 0.02
-"""Distance of the spool from its signal, over the largest signal, within which a flow belongs to the
-signal (a choice)."""
+"""Distance of the spool from its signal, over the largest signal, within which a flow belongs to
+the signal (a choice)."""
 FLOWS = (("flow_a", "A"), ("flow_b", "B"), ("flow_supply", "supply"), ("flow_tank", "tank"))
 
 
@@ -55,20 +55,23 @@ class Panel:
     draw: Callable[[Ink, Box], None]
     height: float = 0.0
     weight: float = 1.0
+    least: float = LEAST_PANEL
 
 
 def panels(found: Simulation, measured: Measured, static: Static | None) -> list[Panel]:
     """What this run has beside its strips, the most telling first."""
     made = []
     if found.servo is not None:
-        made.append(Panel("step", lambda ink, box: step_panel(ink, box, found, measured)))
+        made.append(
+            Panel("step", lambda ink, box: step_panel(ink, box, found, measured), 0.0, 1.5, 44.0)
+        )
     if found.shaken is not None and found.shaken.windows:
         made.append(
-            Panel("stiffness", lambda ink, box: _stiffness(ink, box, found, static), weight=1.6)
+            Panel("stiffness", lambda ink, box: _stiffness(ink, box, found, static), 0.0, 1.6, 40.0)
         )
         made.append(Panel("cycles", lambda ink, box: loop_panel(ink, box, found)))
     if found.scenario.held_ports is not None and np.ptp(found.signals["signal"]) > 0:
-        made.append(Panel("flows", lambda ink, box: _flows(ink, box, found), weight=1.4))
+        made.append(Panel("flows", lambda ink, box: _flows(ink, box, found), 0.0, 1.4, 40.0))
     count = rows_of(found)
     if count:
         made.append(
@@ -80,7 +83,7 @@ def panels(found: Simulation, measured: Measured, static: Static | None) -> list
             Panel("energy_time", lambda ink, box: time_panel(ink, box, found, curves), weight=0.9)
         )
     if "friction" in found.signals and np.ptp(found.signals["speed"]) > 0:
-        made.append(Panel("friction", lambda ink, box: _friction(ink, box, found), weight=0.9))
+        made.append(Panel("friction", lambda ink, box: _friction(ink, box, found), 0.0, 0.9, 38.0))
     return made
 
 
@@ -119,7 +122,7 @@ def _chosen(made: list[Panel], height: float) -> list[Panel]:
     chosen: list[Panel] = []
     used = 0.0
     for one in made:
-        need = one.height or LEAST_PANEL * max(one.weight, 1.0)
+        need = one.height or one.least
         if chosen and used + need > height:
             continue
         chosen.append(one)
@@ -144,7 +147,7 @@ def figures(
     shown = strips(found, known)
     tall = 20.0 * len(shown) + 8.0
     signals = Ink(120.0, tall)
-    box = (LEFT, 0.0, 120.0 - LEFT - 2.0, tall)
+    box = (LEFT, 0.0, 120.0 - LEFT - 4.0, tall)
     everything = kept(shown, 1e9)
     stack(signals, box, everything, (0.0, _end(found)), marks=_marks(found))
     made = {"signals": signals}
@@ -205,7 +208,7 @@ def _stiffness(ink: Ink, box: Box, found: Simulation, static: Static | None) -> 
     limits = (limits_of(found, "dynamic_stiffness"), limits_of(found, "dynamic_phase"))
     upper = 0.56 * height
     boxes = ((left, top, width, upper), (left, top + upper, width, height - upper))
-    side = 12.0 if any(limits) else 1.0
+    side = 12.0 if any(limits) else 3.0
     stiffness_panels(ink, boxes, [one], over, static=static, limits=limits, side=side)
 
 
@@ -214,7 +217,7 @@ def _friction(ink: Ink, box: Box, found: Simulation) -> None:
     left, top, width, height = box
     force, speed = (found.told[name].quantity for name in ("friction", "speed"))
     xs, ys = (scaled(found.told[n].quantity, found.signals[n]) for n in ("speed", "friction"))
-    frame = (left + 11.0, top + 6.5, width - 12.0, height - 14.0)
+    frame = (left + 11.0, top + 6.5, width - 14.0, height - 14.0)
     ranges = [steady_range([float(np.min(v)), float(np.max(v))], zero=True) for v in (xs, ys)]
     axes = Axes(ink, frame, ranges[0], ranges[1])
     axes.frame_at("", "", [], even_ticks(*ranges[1], 4))
@@ -249,7 +252,7 @@ def _flows(ink: Ink, box: Box, found: Simulation) -> None:
         for (name, words), style in zip(FLOWS, STYLES, strict=True)
     ]
     signal = signal[there]
-    frame = (left + 11.0, top + 6.5, width - 12.0, height - 14.0)
+    frame = (left + 11.0, top + 6.5, width - 14.0, height - 14.0)
     across = steady_range([float(np.min(signal)), float(np.max(signal))])
     ends = [float(v) for _, values, _ in entries for v in (np.min(values), np.max(values))]
     axes = Axes(ink, frame, across, steady_range(ends, zero=True))

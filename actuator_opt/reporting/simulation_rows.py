@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..design.scenario.model import Scenario
-from ..quantities import INPUTS, RESULTS, SCENARIOS, Quantity
+from ..quantities import RESULTS, SCENARIOS, Quantity
 from ..simulation.result import Row, Simulation
 from . import text
 from .optimum import sentence
 from .origin import tile
 from .simulation_energy import doubts
+from .simulation_words import LOOPS, PRESSURE
 from .text import DASH, number, pretty, trimmed, unit_text, value_text, with_unit
 
 SHORT = {
@@ -36,31 +35,8 @@ SURE = 1e-3
 """Error of a balance from which on a page warns (a choice: a digit of what it shows)."""
 AGREE = 1e-2
 """Difference of two integrators over a signal's span from which on a page warns (a choice)."""
-MOST_PARTS = 3
-"""Parts of a signal that are told."""
 MOST_EVENTS = 4
 """Events that are told."""
-PRESSURE, LENGTH = INPUTS["pressure"], INPUTS["position"]
-LOOPS: dict[str, tuple[str, Quantity]] = {
-    "position": ("position", LENGTH),
-    "speed": ("speed", SCENARIOS["speed_value"]),
-    "shaft_speed": ("shaft speed", SCENARIOS["shaft_speed_value"]),
-    "shaft_angle": ("shaft angle", SCENARIOS["shaft_angle_value"]),
-}
-"""Each loop in words, with its quantity."""
-FRICTION = {"lugre": "LuGre friction", "stribeck": "Stribeck friction", "none": "no dry friction"}
-SUPPLY = {
-    "constant": "constant supply",
-    "fixed_pump": "fixed pump",
-    "controlled_pump": "controlled pump",
-}
-ENDS = {
-    "closed": "ports closed",
-    "constant_pressure": "ports at constant pressure",
-    "reducing_valve": "ports at reducing valves",
-}
-
-
 NOTHING = (
     "does not apply to this scenario",
     "the reference has no step",
@@ -138,7 +114,8 @@ def reasons(found: Simulation) -> dict[str, list[str]]:
     said: dict[str, list[str]] = {}
     limited = {row.metric for row in found.requirements}
     for name, why in found.why.items():
-        if name in limited or why not in NOTHING:
+        idle = why in NOTHING or (name == "efficiency" and found.scenario.held_ports is not None)
+        if name in limited or not idle:
             said.setdefault(why, []).append(label(name))
     return said
 
@@ -188,7 +165,7 @@ def _factor(factor: float) -> str:
 def duration(value: float) -> str:
     """A time in ms, or in s from one second on.
 
-    >>> duration(0.0094675), duration(2.5)
+    >>> duration(0.0094678), duration(2.5)
     ('9.468 ms', '2.500 s')
     """
     return f"{number(value)} s" if value >= 1 else f"{number(1e3 * value)} ms"
@@ -207,115 +184,12 @@ def gain_margin(ratio: float) -> str:
     return f"{number(ratio, 3)}, {text.fixed(20 * math.log10(ratio), 1)} dB"
 
 
-_UNITS = r"(?:mm|m|m/s|ms|s|V|bar|k?N|Hz|J|l/min|rpm|rad|N·m|V/m|kN/mm|MPa)(?![\w/])|%|°"
-_TIED = re.compile(rf"(?<=\d) (?={_UNITS})")
-
-
-def tied(words: str) -> str:
-    """Words of a page: a number stays on the line of its unit.
-
-    >>> tied("step of 20 mm at 0.5 s, 3 steps")
-    'step of 20\xa0mm at 0.5\xa0s, 3 steps'
-    """
-    return _TIED.sub("\N{NO-BREAK SPACE}", words)
-
-
-# ---- what was simulated ----
-
-
-def amount(quantity: Quantity, value: float) -> str:
-    """A value that a person wrote, with its unit."""
-    return with_unit(trimmed(quantity.to_display(value)), unit_text(quantity.unit))
-
-
-def _part(part: Any, quantity: Quantity) -> str:
-    """A part of a signal."""
-    if part.shape == "record":
-        return f"record {part.file}, {part.column}"
-    value = amount(quantity, part.value or 0.0)
-    if part.shape == "constant":
-        return value
-    begin = trimmed(part.start)
-    if part.shape == "step":
-        return f"step of {value} at {begin} s"
-    if part.shape == "sine":
-        return f"sine of {value} at {trimmed(part.frequency)} Hz"
-    ramp = "ramp of " if part.shape == "ramp" else ""
-    return f"{ramp}{value} from {begin} to {trimmed(part.end)} s"
-
-
-def parts_words(parts: Sequence[Any], quantity: Quantity) -> str:
-    """A signal in words; empty where it is zero all the time."""
-    told = [one for one in parts if one.shape == "record" or one.value]
-    said = [_part(one, quantity) for one in told[:MOST_PARTS]]
-    more = len(told) - len(said)
-    return ", ".join(said) + (f" and {more} more" if more else "")
-
-
-def what(found: Simulation) -> str:
-    """What was simulated, in a few sentences."""
-    scenario, plant = found.scenario, found.plant
-    said = [f"{plant.design.name}: {_machine(found)}, {trimmed(scenario.duration)} s."]
-    control = scenario.control
-    asked = ""
-    for name, (words, quantity) in LOOPS.items() if control is not None else ():
-        if found_words := parts_words(getattr(control, name), quantity):
-            asked = f"{words}: {found_words}"
-            if name == "position":
-                start = amount(quantity, float(found.signals["position"][0]))
-                asked = f"{words} from {start}: {found_words}"
-    if not asked:
-        signal = parts_words(scenario.signal, SCENARIOS["signal_value"])
-        asked = f"valve signal: {signal}" if signal else ""
-    torque = scenario.load.torque if scenario.motor is None else scenario.motor.torque
-    said += [
-        sentence(words)
-        for words in (
-            asked,
-            _told("load", parts_words(scenario.load.force, SCENARIOS["force_value"])),
-            _told("torque", parts_words(torque, SCENARIOS["torque_value"])),
-            _told("machine outside", _drive(scenario)),
-        )
-        if words
-    ]
-    return " ".join(said)
-
-
-def _told(head: str, words: str) -> str:
-    return f"{head}: {words}" if words else ""
-
-
-def _drive(scenario: Scenario) -> str:
-    drive = scenario.load.drive
-    return "" if drive is None else parts_words(drive.position, LENGTH)
-
-
-def _machine(found: Simulation) -> str:
-    """What was around the design."""
-    scenario, plant = found.scenario, found.plant
-    held = scenario.held_ports
-    words = []
-    if held is not None:
-        ports = " and ".join(amount(PRESSURE, p) for p in (held.pressure_a, held.pressure_b))
-        words.append(f"the valve alone, ports at {ports}")
-    elif scenario.motor is not None:
-        words.append("its valve with a hydraulic motor")
-    elif "flow_supply" not in found.signals:
-        words.append(ENDS.get(scenario.ends or plant.design.ports.end, "no valve"))
-    if "flow_supply" in found.signals:
-        supply = f"{SUPPLY[scenario.supply.type]} {amount(PRESSURE, plant.supply_pressure)}"
-        words.append(f"{supply}, return {amount(PRESSURE, plant.return_pressure)}")
-    if "friction" in found.signals:
-        words.append(FRICTION[scenario.friction.model])
-    return ", ".join(words)
-
-
 # ---- how far to trust it ----
 
 
 def sound(found: Simulation) -> bool:
-    """Whether balances close and the integrators agree, where there are two."""
-    balances = max(found.balance.mass, found.balance.energy) < SURE
+    """Whether balances close, powers add up, and the integrators agree where there are two."""
+    balances = max(found.balance.mass, found.balance.energy) < SURE and not doubts(found)
     return balances and (found.second is None or found.second.max_difference < AGREE)
 
 
@@ -413,7 +287,7 @@ MOST_TILES = 6
 def tiles(found: Simulation) -> list[dict[str, Any]]:
     """Up to six key figures, each with its limit or what to know of it."""
     shown = {one.name: one for one in reversed(results(found))}
-    made = [*_bench(found)]
+    made = [*bench(found)]
     for name in _KEYS:
         if name in shown and len(made) < MOST_TILES:
             one = shown[name]
@@ -454,7 +328,7 @@ def _note(found: Simulation, name: str) -> str:
     return notes.get(name, "")
 
 
-def _bench(found: Simulation) -> list[dict[str, Any]]:
+def bench(found: Simulation) -> list[dict[str, Any]]:
     """Flows of a valve whose ports are held."""
     if found.scenario.held_ports is None:
         return []
@@ -465,8 +339,9 @@ def _bench(found: Simulation) -> list[dict[str, Any]]:
         at = int(np.argmax(np.abs(values)))
         note = f"at {value_text(SCENARIOS['signal_value'], float(signal[at]), 3)}"
         made.append(tile(f"largest flow {words}", value_text(flow, float(values[at])), note))
-    took = found.signals["flow_supply"]
-    at = int(np.argmin(np.abs(found.signals["signal"])))
-    note = f"supply, at {value_text(SCENARIOS['signal_value'], float(found.signals['signal'][at]), 2)}"
-    made.append(tile("flow at the least signal", value_text(flow, float(took[at])), note))
+    valve = found.plant.valve
+    centre = 0.0 if valve is None else valve.offset
+    at = int(np.argmin(np.abs(found.signals["spool"] - centre)))
+    least = value_text(flow, float(found.signals["flow_supply"][at]))
+    made.append(tile("flow, valve centred", least, "from the supply"))
     return made

@@ -12,7 +12,7 @@ from ..numeric import Array
 from ..quantities import Quantity
 from ..simulation.result import Simulation
 from .simulation_axes import ASKED, LEVEL, LIMIT, MEASURED, STYLES, Curve, Level, Strip
-from .simulation_rows import LOOPS, PRESSURE
+from .simulation_words import LOOPS, PRESSURE
 from .text import unit_text
 
 Measured = Mapping[str, tuple[Array, Array]]
@@ -142,7 +142,7 @@ def _strip(
         over = [curve(found, here[0][0], "simulated", STYLES[0])]
     quantity = found.told[here[0][0]].quantity
     levels, zero = _levels(found, here[0][0], zero)
-    return [Strip(titled(title, quantity), tuple([*under, *over]), levels, zero, rank)]
+    return [Strip(titled(title, quantity), (*under, *over), levels, zero, rank)]
 
 
 def _moves(values: Array) -> bool:
@@ -154,9 +154,7 @@ def _levels(found: Simulation, name: str, zero: bool) -> tuple[tuple[Level, ...]
     scale = PRESSURE.to_display(1.0)
     if name == "pressure_a":
         plant = found.plant
-        vapour = Level(
-            "vapour", scale * (plant.oil.vapour_pressure - ATMOSPHERIC_PRESSURE), LIMIT
-        )
+        vapour = Level("vapour", scale * (plant.oil.vapour_pressure - ATMOSPHERIC_PRESSURE), LIMIT)
         supplied = found.signals.get("pressure_supply")
         if supplied is None:
             return (vapour,), False

@@ -19,13 +19,15 @@ from .simulation_axes import (
     steady_range,
     time_axis,
 )
-from .simulation_rows import LOOPS
 from .simulation_series import Measured, overlay, scaled, titled
+from .simulation_words import LOOPS
 from .text import number
 from .wall_figures import OCHRE
 
 LEAST_SHOWN = 0.01
 """Overshoot from which on it is marked, share of the step: less is in the width of the band."""
+ROOM = 4.6
+"""Room of a line of words beyond the peak [mm]."""
 _BAND = "#e8eef2"
 _MARK = {"stroke": OCHRE, "pen": 0.18}
 
@@ -61,13 +63,13 @@ def step_panel(ink: Ink, box: Box, found: Simulation, measured: Measured) -> Non
     scale = quantity.to_display(1.0)
     start, target = scale * servo.start, scale * servo.target
     size = target - start
-    frame = (left + 11.0, top + 6.5, width - 12.0, height - 14.0)
+    frame = (left + 11.0, top + 6.5, width - 14.0, height - 14.0)
     values = scaled(quantity, found.signals[servo.loop])
     inside = (found.time >= begin) & (found.time <= end)
     under = overlay(found, servo.loop, measured)
     ends = [start, target, float(np.min(values[inside])), float(np.max(values[inside]))]
     low, high = steady_range(ends)
-    spare = 0.12 * (high - low)
+    spare = max(0.06, ROOM / max(frame[3] - ROOM, ROOM)) * (high - low)
     low, high = (low, high + spare) if size > 0 else (low - spare, high)
     axes = Axes(ink, frame, (begin - servo.time, end - servo.time), (low, high))
     time = found.time - servo.time
@@ -82,7 +84,7 @@ def step_panel(ink: Ink, box: Box, found: Simulation, measured: Measured) -> Non
     style = STYLES[0] | {"pen": 0.4}
     ink.path(lines(axes, time, values), **style)
     entries = [("measured", under[0].style)] if under else []
-    entries += [("band ±2 %", {"stroke": _BAND, "pen": 1.6}), ("asked", ASKED)]
+    entries += [("±2 %", {"stroke": _BAND, "pen": 1.6}), ("asked", ASKED)]
     room = width - text_width(titled(f"Step of the {words}", quantity), 7.0, bold=True) - 2.0
     names(ink, left + width, top + 2.0, entries, room)
     _rise(axes, servo, time, (values - start) / size, start, size)
@@ -102,9 +104,7 @@ def _words(axes: Axes, x: float, y: float, words: str) -> None:
         axes.ink.text(at, y, words, size=SIZE, anchor="right", color=OCHRE, halo=True)
 
 
-def _rise(
-    axes: Axes, servo: Servo, time: Array, done: Array, start: float, size: float
-) -> None:
+def _rise(axes: Axes, servo: Servo, time: Array, done: Array, start: float, size: float) -> None:
     """From 10 to 90 %: the time between, at the lower level."""
     rise = servo.metrics.rise_time
     if rise is None:

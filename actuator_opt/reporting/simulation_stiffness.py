@@ -1,4 +1,4 @@
-"""Dynamic stiffness of a Simulation as ink: its size and phase along the stroke, its last cycles."""
+"""Dynamic stiffness of a Simulation as ink: size and phase along the stroke, last cycles."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def stiffness_panels(
     *,
     static: Static | None = None,
     limits: tuple[Limits, Limits] = ((), ()),
-    side: float = 1.0,
+    side: float = 3.0,
 ) -> None:
     """Size (first box) and phase (second box) of several runs; `side` is the room for limits."""
     across = _across(runs)
@@ -142,8 +142,7 @@ def _panel(
     left, top, width, height = box
     below = 7.5 if x_words else 1.0
     frame = (left + 11.0, top + 6.5, width - 11.0 - side, height - 6.5 - below)
-    ends = [y + way * e for _, ys, errors, _ in series
-            for y, e in zip(ys, errors, strict=True) for way in (-1, 1)]  # fmt: skip
+    ends = _ends(series)
     if static is not None:
         inside = (static[0] >= across[0]) & (static[0] <= across[1])
         ends += [float(v) for v in static[1][inside & np.isfinite(static[1])]]
@@ -164,6 +163,16 @@ def _panel(
     for xs, ys, errors, style in series:
         _drawn(axes, xs, ys, errors, style, alone=len(series) == 1)
     x_axis(axes, x_words)
+
+
+def _ends(series: Sequence[Series]) -> list[float]:
+    """Values, and their bars as far as these do not hide how the values differ."""
+    values = [y for _, ys, _, _ in series for y in ys]
+    errors = [e for _, _, es, _ in series for e in es]
+    low, high = min(values), max(values)
+    most = max(0.5 * (high - low), 3.0 * float(np.median(errors)), 1e-6 * max(abs(low), abs(high)))
+    bars = [y + way * e for y, e in zip(values, errors, strict=True) for way in (-1, 1)]
+    return [min(max(v, low - most), high + most) for v in (*values, *bars)]
 
 
 def _drawn(
@@ -216,7 +225,7 @@ def loop_panel(ink: Ink, box: Box, found: Simulation) -> None:
     fitted_f = np.real(last.stiffness * swing[0].amplitude * turn)
     x_scale = _micro(float(np.max(np.abs(drawn_x))))
     unit, factor = x_scale
-    frame = (left + 11.0, top + 6.5, width - 12.0, height - 14.0)
+    frame = (left + 11.0, top + 6.5, width - 14.0, height - 14.0)
     across = steady_range([float(factor * v) for one in (drawn_x, fitted_x) for v in one])
     upwards = steady_range([float(v) for one in (drawn_f, fitted_f) for v in one])
     axes = Axes(ink, frame, across, upwards)

@@ -58,6 +58,8 @@ class Circuit:
     start: Start
     loop: Loop | None = None
     measured: Expression = 0.0
+    centre: float = 0.0
+    """Signal that centres the spool [V]."""
     notes: list[str] = field(default_factory=list)
 
 
@@ -183,6 +185,7 @@ def _driven(
         raise InputError(Diagnostic(message, 'add a block "valve" to the design', path="valve"))
     system, audit = circuit.system, circuit.audit
     source = Source.of(system, audit, plant, scenario)
+    circuit.centre = plant.valve.offset
     opening = valve.spool(system, plant.valve, wish)
     flows = valve.edges(
         system,
@@ -225,7 +228,7 @@ def _motor(
     assert scenario.motor is not None
     system, audit, begin = circuit.system, circuit.audit, circuit.start
     a, b = (
-        system.state(f"pressure {name}", value, tolerance=chambers.PRESSURE)
+        system.pressure(f"pressure {name}", value)
         for name, value in (("a", begin.pressure_a), ("b", begin.pressure_b))
     )
     shaft = motor.shaft(system)
@@ -296,8 +299,7 @@ def _cylinder(
         audit.flows.append(("leakage across the piston", lost, False))
         system.signal("flow_leakage", "leakage across the piston", SCENARIOS["flow_value"], across)
     net = inflow["a"] - across, inflow["b"] + across
-    pressed = _chambers(circuit, plant, (a, b), net, position, speed)
-    _held_work(circuit, plant, (a.pressure, b.pressure), speed, power)
+    pressed = _chambers(circuit, plant, (a, b), net, position, speed, power)
     stated = scenario.friction.model_copy(update={"model": "none"}) if linear else scenario.friction
     own = friction.law(plant, scenario.friction, (begin.pressure_a, begin.pressure_b))
     force = friction.resist(
@@ -339,6 +341,7 @@ def _chambers(
     inflow: tuple[Expression, Expression],
     position: Symbol,
     speed: Symbol,
+    power: float,
 ) -> Expression:
     """Both chambers with what of their lines counts to them; the force of their pressures."""
     a, b = sides
@@ -361,27 +364,9 @@ def _chambers(
             a0=plant.walls.a0 + a.lumped_wall, b0=plant.walls.b0 + b.lumped_wall
         ),
         flexibility=plant.flexibility,
+        power=power,
     )
     return found.force
-
-
-def _held_work(
-    circuit: Circuit,
-    plant: Plant,
-    pressures: tuple[Expression, Expression],
-    speed: Symbol,
-    power: float,
-) -> None:
-    """Work of ports that hold the pressure of their chamber without a line between."""
-    for pressure, area, name in (
-        (pressures[0], plant.area_a, "a"),
-        (pressures[1], -plant.area_b, "b"),
-    ):
-        if not isinstance(pressure, Symbol):
-            work = circuit.system.integral(
-                f"held work {name}", pressure * area * speed, scale=power
-            )
-            circuit.audit.flows.append(("held ports", work, True))
 
 
 def _dead(circuit: Circuit, volume: float, area: float, word: str) -> float:

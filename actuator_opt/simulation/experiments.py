@@ -40,6 +40,8 @@ FADED = 0.05
 """Share of the first swing below which a decay is not read (a choice)."""
 
 
+SWINGS = 8.0
+"""Periods over which a decay is read (a choice: leakage shifts closed chambers meanwhile)."""
 RINGING = 30.0
 """Periods of the resonance before a held actuator counts as at rest (a choice)."""
 BESIDE = (0.7, 1.0, 1.4)
@@ -188,6 +190,8 @@ def phase_margin(
     asked = [f * k for f in crossovers for k in BESIDE]
     asked += [f * k for f in resonances for k in around]
     grid = sorted(log(f) for f in set(asked))
+    while above(grid[0]) <= 0 and exp(grid[0]) > stand.bandwidth / MOST:
+        grid.insert(0, grid[0] - log(BESIDE[-1]))
     values = [above(share) for share in grid]
     found = [
         float(brentq(above, low, high, xtol=EXACT))
@@ -219,20 +223,17 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Measured:
         rate, seen[share] = _growth(stand, expected * exp(share), frequency, push)
         return rate + LASTING
 
-    step, low, high = log(1.25), 0.0, 0.0
+    step, low, high, most = log(1.25), 0.0, 0.0, log(MOST)
     value = growth(0.0)
-    way = step if value < 0 else -step
-    while (value < 0) == (way > 0):
-        low, high = high, high + way
-        if abs(high) > log(MOST):
-            break
+    way = 1 if value < 0 else -1
+    while (value < 0) == (way > 0) and abs(high) < most:
+        low, high, step = high, way * min(abs(high) + step, most), 2 * step
         value = growth(high)
-    facts = stand.facts(seen[low])
-    if abs(high) > log(MOST):
-        if way > 0:
-            value = {"ultimate_gain": inf}
-            return Measured(value, how, facts, f"no swinging up to {MOST:g} times the linear one")
-        return Measured({"ultimate_gain": 0.0}, how, facts, "it swings at every gain")
+    facts = stand.facts(seen[high])
+    if (value < 0) == (way > 0):
+        found = {"ultimate_gain": inf if way > 0 else 0.0}
+        words = "no swinging up to" if way > 0 else "it swings down to 1 over"
+        return Measured(found, how, facts, f"{words} {MOST:g} times the linear one")
     share = float(brentq(growth, low, high, xtol=EXACT))
     near = min(seen, key=lambda one: abs(one - share))
     facts = stand.facts(seen[near])
@@ -258,10 +259,10 @@ def _growth(
 
 
 def dynamic_stiffness(stand: Stand, ends: str, frequency: float, resonance: float) -> Measured:
-    """Stiffness against a sine of force at the rod, the ports ended, the valve centred."""
+    """Stiffness against a sine of force at the rod, the ports ended."""
     swing = 2 * FORCE_SHARE * stand.full_force * stand.scale
     settle, cycles = RINGING / resonance, 10.0
-    record = stand.run(
+    record = stand.held(
         duration=settle + cycles / frequency,
         sample_time=1 / (SAMPLES * frequency),
         ends=ends,
@@ -288,13 +289,12 @@ def decay(stand: Stand, ends: str, resonance: float) -> Measured:
     ln(D_0/D_n)/n over half periods, down to a twentieth; f = f_d/sqrt(1 - zeta^2).
     """
     push = FORCE_SHARE * stand.full_force * stand.scale
-    begin = RINGING / resonance
-    record = stand.run(
-        duration=begin + 20 / resonance,
+    record = stand.held(
+        duration=SWINGS / resonance,
         sample_time=1 / (2 * SAMPLES * resonance),
         ends=ends,
-        force=(Force(shape="step", value=push, start=begin),),
-    ).within(begin)
+        force=(Force(shape="constant", value=push),),
+    )
     facts = stand.facts(record)
     how = f"step of {push:.3g} N, swing of {1e3 * facts.swing:.2g} mm"
     names = ("natural_frequency", "damping_ratio")

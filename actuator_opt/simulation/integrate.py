@@ -6,6 +6,7 @@ second opinion.
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -17,11 +18,13 @@ from ..errors import Diagnostic, Unsolvable
 from ..numeric import Array
 from .system import Compiled
 
-Method = Literal["lsoda", "radau"]
-RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8}
+Method = Literal["lsoda", "radau", "cvodes"]
+RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
 """Relative tolerance of a step; the second opinion is the sharper one."""
 CHUNK = 400
-"""Samples between two looks at the switches."""
+"""Samples after which the switches are looked at."""
+LOOK = 2e-3
+"""Longest time between two samples of a switch [s] (a choice: a half swing of the oil)."""
 MOST_TURNS = 20_000
 """Turns of switches before a run counts as chattering (a choice)."""
 FEW, MOST = 2_000, 100_000
@@ -97,27 +100,32 @@ def integrate(
     compiled : the equations
     duration : simulated time [s]
     sample_time : of the result [s]; steps inside are the method's own
-    method : "lsoda" or "radau"
+    method : "lsoda", "radau" or "cvodes" (extra ``fast``)
     relative : relative tolerance of a step
 
     Raises
     ------
     Unsolvable
         where no step is small enough, or a state is no longer a number
+    InputError
+        "cvodes" without CasADi, or of a record
     """
     counted = [0]
     tolerance = RELATIVE[method] if relative is None else relative
-    advance = (_lsoda if method == "lsoda" else _radau)(compiled, tolerance, counted)
+    advance = METHODS[method](compiled, tolerance, counted)
     run = _Run(compiled, advance)
     count = max(round(duration / sample_time), 1)
-    grid = np.linspace(0.0, duration, count + 1)
+    looks = math.ceil(sample_time / LOOK) if compiled.system.switches else 1
+    grid = np.linspace(0.0, duration, looks * count + 1)
+    told = np.arange(looks * count + 1) % looks == 0
     stops = sorted({t for t in compiled.instants if 0 < t < duration} | {duration})
-    near = 1e-6 * sample_time  # a sample beside an instant is that instant
+    near = 1e-6 * sample_time / looks  # a sample beside an instant is that instant
     t, y = 0.0, compiled.initial.copy()
     m = _flags(compiled, t, y, ())
     for stop in stops:
-        inside = grid[(grid > t + near) & (grid < stop - near)]
-        y, m = _segment(run, np.concatenate(([t], inside, [stop])), y, m)
+        inside = (grid > t + near) & (grid < stop - near)
+        times = np.concatenate(([t], grid[inside], [stop]))
+        y, m = _segment(run, times, np.concatenate(([True], told[inside], [True])), y, m)
         t = stop
         m = _flags(compiled, t, y, m)
     return Trajectory(
@@ -165,30 +173,31 @@ def _each(
 
 
 def _segment(
-    run: _Run, times: Array, y: Array, m: tuple[bool, ...]
+    run: _Run, times: Array, told: Array, y: Array, m: tuple[bool, ...]
 ) -> tuple[Array, tuple[bool, ...]]:
-    """From the first to the last of some times, no input jumping between."""
+    """From the first to the last of some times, no input jumping between; some are told."""
     first, last = len(run.compiled.instants), len(times) - 1
-    begin, start = 0, float(times[0])
+    begin, start, own = 0, float(times[0]), True
     while begin < last:
         end = min(begin + CHUNK, last)
         asked = np.concatenate(([start], times[begin + 1 : end + 1]))
+        wanted = np.concatenate(([own], told[begin + 1 : end + 1]))
         asked, found, turn = _ahead(run, asked, y, m)
         run.restarts += 1
         if turn is None:
-            kept = slice(None) if end == last else slice(-1)  # the next piece has its first sample
-            run.keep(asked[kept], found[kept], m)
-            y, start, begin = found[-1], float(times[end]), end
+            wanted[-1] &= end == last  # the next piece has its first sample
+            run.keep(asked[wanted], found[wanted], m)
+            y, start, own, begin = found[-1], float(times[end]), bool(told[end]), end
             continue
         k, at, there, which = turn
-        before = np.flatnonzero(asked[: k + 1] < at)
+        before = np.flatnonzero(wanted[: k + 1] & (asked[: k + 1] < at))
         run.keep(np.append(asked[before], at), np.vstack((found[before], there)), m)
         m = tuple(flag ^ (i == first + which) for i, flag in enumerate(m))
         name = run.compiled.system.switches[which].name
         run.events.append(Event(name, at, bool(m[first + which])))
         if len(run.events) > MOST_TURNS:
             raise _Stuck(at, f"{name} turns without end", "raise the damping of what turns it")
-        y, start = there, at
+        y, start, own = there, at, True
         begin += k + (at >= times[begin + k + 1])
     return y, m
 
@@ -361,3 +370,14 @@ def _radau(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
         return _checked(times, found.y.T)
 
     return advance
+
+
+def _cvodes(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
+    from .fast import cvodes
+
+    return cvodes(compiled, relative, counted, _lsoda(compiled, RELATIVE["lsoda"], counted))
+
+
+METHODS: Final[dict[Method, Callable[[Compiled, float, list[int]], Advance]]] = {
+    "lsoda": _lsoda, "radau": _radau, "cvodes": _cvodes,
+}  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import inf, nan, pi
+from math import nan, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -172,20 +172,12 @@ class LinearTier:
             "dynamic_phase": float(np.angle(value)),
         }
 
-    def closed(self, metric: str, case: int, position: float, extending: float) -> float:
-        """A figure of the loop whose spool is on the extending side a share of the time.
-
-        The gains of both ways average: an ultimate gain goes with their inverse.
-        """
-        ways = (extending, True), (1 - extending, False)
-        found = [(share, self.figures(case, position, way)) for share, way in ways if share > 0]
-        if metric not in ("ultimate_gain", "gain_margin"):
-            return float(sum(share * getattr(one, metric) for share, one in found))
-        inverse = sum(share / one.ultimate_gain for share, one in found if one.ultimate_gain)
-        if any(one.ultimate_gain == 0 for _, one in found):
-            return 0.0
-        limit = 1 / inverse if inverse else inf
-        return limit if metric == "ultimate_gain" else limit / self._gain(case)
+    def closed(self, metric: str, case: int, position: float, extending: bool) -> float:
+        """A figure of the loop in one way of the spool."""
+        figures = self.figures(case, position, extending)
+        if metric == "gain_margin":
+            return figures.ultimate_gain / self._gain(case)
+        return float(getattr(figures, metric))
 
     def stated(self, case: int) -> tuple[float, float]:
         """Chamber pressures that the linear tier takes [Pa]."""

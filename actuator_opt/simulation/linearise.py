@@ -109,8 +109,8 @@ class Linear:
             y[self.names.index(name.replace("_", " "))] = value
         found = []
         for side in (TOUCH, -TOUCH):
-            y[self.names.index("spool")] = side
-            found.append(self.loop(y, side))
+            y[self.names.index("spool")] = beside = self.circuit.centre + side
+            found.append(self.loop(y, beside))
         return found
 
 

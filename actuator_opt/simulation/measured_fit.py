@@ -12,13 +12,14 @@ import numpy as np
 
 from ..design.scenario.model import Scenario
 from ..evaluation.study.plant import Plant
-from ..least_squares import WEAK, Known, Parameter, known, rated
+from ..least_squares import WEAK, Known, Parameter, rated
 from ..numeric import Array
 from ..suggest import shown
 from .gains import Tuned, tune
 from .measured import Measured, Overlay, overlay
+from .measured_bounds import bounds
 from .measured_parameters import Entry, entries
-from .measured_problem import MISFIT, STEP, WIDEST, Problem
+from .measured_problem import MISFIT, Problem
 from .parts.signals import Records
 from .run import run
 
@@ -26,10 +27,6 @@ ALIKE: Final = 0.9
 """Correlation from which two parameters are named as not parted (a choice)."""
 EDGE: Final = 1e-3
 """Share of a parameter's range within which it lies at its end (a choice)."""
-STEADIEST: Final = 0.97
-"""Largest correlation of neighbouring samples that the bandwidth counts, as is usual."""
-WHOLE: Final = 4
-"""Least number of bandwidths in a record (a choice)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,76 +153,11 @@ def fit(
     )  # fmt: skip
 
 
-def bounds(problem: Problem, x: Array) -> Known:
-    """What the residuals tell of the searched values.
-
-    cov = H^-1 S H^-1, H = J^T J, S the sum of J^T r r^T J over times and over the lags within a
-    bandwidth, with Bartlett's weights (Newey and West; bandwidth by Andrews' rule for an
-    autoregression, channels of one instant together). S is not taken below that of independent
-    residuals. Spare points are those that a window of this width leaves, 3 n/(2 m). The slopes are
-    secants over a standard error.
-    """
-    steps = STEP * problem.sizes
-    rest = problem.rest(x)
-    for _ in range(2):
-        slopes = problem.slopes(x, steps)
-        scaled = slopes * problem.sizes
-        left, singular, right = np.linalg.svd(scaled, full_matrices=False)
-        variance = float(np.sum(rest**2)) / max(rest.size - x.size, 1)
-        errors = np.sqrt(variance) * np.linalg.norm(
-            right.T / np.maximum(singular, 1e-12 * (singular[0] or 1.0)), axis=1
-        )
-        steps = np.clip(errors, STEP, WIDEST) * problem.sizes
-    moments = _by_time(problem, left * rest[:, None])
-    width = _bandwidth(moments)
-    inner = _summed(moments, width)
-    values, turn = np.linalg.eigh(inner)
-    root = turn * np.sqrt(np.maximum(values, variance))
-    whitened = np.linalg.solve(root, singular[:, None] * right) / problem.sizes
-    spare = max(min(rest.size, 1.5 * moments.shape[0] / width) - x.size, 1.0)
-    return known(
-        dict(zip(problem.names, x.tolist(), strict=True)),
-        whitened,
-        np.ones(1) * np.sqrt(spare),
-        problem.sizes,
-        spare=spare,
-    )
-
-
-def _by_time(problem: Problem, rows: Array) -> Array:
-    """Rows of samples, those of one instant added up, in the order of time."""
-    times = np.concatenate([t for t, _ in problem.used.values()])
-    instants, place = np.unique(times, return_inverse=True)
-    found = np.zeros((instants.size, rows.shape[1]))
-    np.add.at(found, place, rows)
-    return found
-
-
-def _bandwidth(moments: Array) -> float:
-    """Samples over which moments hang together, by the correlation of neighbours."""
-    before, after = moments[:-1], moments[1:]
-    power = np.maximum(np.sum(before**2, axis=0), 1e-300)
-    rho = np.clip(np.sum(before * after, axis=0) / power, -STEADIEST, STEADIEST)
-    square = (power / power.size) ** 2
-    above = np.sum(4 * rho**2 * square / ((1 - rho) ** 6 * (1 + rho) ** 2))
-    alpha = float(above / np.sum(square / (1 - rho) ** 4))
-    count = moments.shape[0]
-    return float(np.clip(1.1447 * (alpha * count) ** (1 / 3), 1.0, max(count / WHOLE, 1.0)))
-
-
-def _summed(moments: Array, width: float) -> Array:
-    """Sum of products of moments within a bandwidth, with weights that fall to zero."""
-    total: Array = moments.T @ moments
-    for k in range(1, min(int(np.ceil(width)), moments.shape[0])):
-        product = moments[:-k].T @ moments[k:]
-        total = total + (1 - k / width) * (product + product.T)
-    return total
-
-
 def _natural(one: Entry, told: Known, problem: Problem) -> Parameter:
     """A parameter of its own size from the searched one.
 
-    Bounds of a logarithm are factors while they are below e; wider ones are straight, from zero.
+    Bounds are those of the parameter itself, not of its logarithm: what it does, an air content or
+    a leakage does in proportion; none is below zero.
     """
     x = told.parameters[one.name]
     half = x.upper - x.value
@@ -236,11 +168,8 @@ def _natural(one: Entry, told: Known, problem: Problem) -> Parameter:
     value = float(np.exp(x.value))
     if not np.isfinite(half):
         return Parameter(value, -np.inf, np.inf, np.inf, False)
-    error = value * x.standard_error
-    if half < 1:
-        by = float(np.exp(half))
-        return rated(value, value / by, value * by, error)
-    return rated(value, 0.0, value * (1 + float(half)), error)
+    low, high = value * max(1 - float(half), 0.0), value * (1 + float(half))
+    return rated(value, low, high, value * x.standard_error)
 
 
 def _edge(problem: Problem, x: Array, k: int) -> Literal["lower", "upper"] | None:
@@ -309,7 +238,8 @@ def _missed(after: Overlay, before: Overlay) -> Iterator[str]:
     if missed:
         yield shown(
             f"the simulation misses the record by more than its noise ({'; '.join(missed)}): it "
-            "lacks something, and bounds do not hold by how much that pulls the parameters",
+            "lacks something (or the record was smoothed), and bounds do not hold by how much that "
+            "pulls the parameters",
             400,
         )
 

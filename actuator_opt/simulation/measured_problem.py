@@ -25,10 +25,11 @@ FINE: Final = 4
 samples to the period loses 0.3 % at most)."""
 RELATIVE: Final = 1e-8
 """Tolerance of an integration step: slopes are differences of two runs."""
-STEP: Final = 1e-3
-"""Step of a slope on the way, over a parameter's size (a choice: far above what is integrated)."""
-WIDEST: Final = 0.1
-"""Largest step of the last slopes, which are secants over a standard error (a choice)."""
+STEPS: Final = (1e-3, 0.1)
+"""Least and largest step of a slope over a parameter's size (choices: far above errors of the
+integration, and near enough); between them, the step that moves the residuals by their noise."""
+FIRST: Final = 1e-2
+"""The first one (a choice)."""
 GUESSES: Final = (1 / 3, 3.0)
 """Factors on each start that are tried before the search (a choice)."""
 MISFIT: Final = 3.0
@@ -73,6 +74,7 @@ class Problem:
         self.sizes = np.array([1.0 if one.positive else one.near or apart for one in own])
         duration = scenario.duration
         self.step = float(np.clip(apart / FINE, duration / (FINE * MOST), duration / MOST))
+        self.steps = FIRST * self.sizes
         self.runs = 0
         self._known: tuple[bytes, Array, Mapping[str, Array]] | None = None
         _, signals = self._simulated(self.start)
@@ -163,13 +165,16 @@ class Problem:
         return np.stack(columns, axis=1)
 
     def _slopes(self, x: Array) -> Array:
-        """Derivatives on the way, by differences to one side."""
+        """Derivatives on the way, by differences to one side, of steps that follow them."""
         here, columns = self.rest(x), []
-        for k, size in enumerate(self.sizes):
+        for k, step in enumerate(self.steps):
             row = x.copy()
-            row[k] += STEP * size if x[k] + STEP * size < self.high[k] else -STEP * size
+            row[k] += step if x[k] + step < self.high[k] else -step
             columns.append((self.rest(row) - here) / (row[k] - x[k]))
-        return np.stack(columns, axis=1)
+        found = np.stack(columns, axis=1)
+        moved = np.maximum(np.linalg.norm(found, axis=0) * self.sizes, 1e-300)
+        self.steps = np.clip(1 / moved, *STEPS) * self.sizes
+        return found
 
     def solve(self) -> Array:
         """The best values: a lag and starts that are tried, a search, another one by what is left.

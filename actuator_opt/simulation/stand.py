@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..design.scenario.model import Control, Initial, Load, Scenario
-from ..design.scenario.signals import Force, Position
+from ..design.scenario.signals import Force, Position, Signal
 from ..evaluation.study.plant import Plant
 from ..models.tuning import ControllerGains
 from ..numeric import Array
@@ -66,6 +66,8 @@ class Facts:
     """Share of the time with the spool on the side that extends."""
     pressures: tuple[float, float]
     """Means of the chambers A and B [Pa]."""
+    pulse: float
+    """Half the span of the pressure in chamber A [Pa]."""
     lowest: float
     """Lowest chamber pressure [Pa]."""
     stopped: bool
@@ -129,17 +131,19 @@ class Stand:
         sample_time: float,
         gain: float | None = None,
         ends: str | None = None,
+        signal: float = 0.0,
         reference: Sequence[Position] = (),
         force: Sequence[Force] = (),
         start: Mapping[str, float] | None = None,
     ) -> Record:
-        """One run: closed over a gain, or open with the ports ended and the valve centred.
+        """One run: closed over a gain, or open with the ports ended.
 
         Parameters
         ----------
         duration, sample_time : [s]
         gain : of a proportional position loop [V/m]; None: no loop
         ends : what the ports lead to; None: the valve
+        signal : of the valve without a loop [V]
         reference : beside the stand's position
         force : beside the one that holds
         start : states by name that replace those of the stand
@@ -168,15 +172,17 @@ class Stand:
                 "motor": None,
                 "held_ports": None,
                 "load": Load(force=(holding, *force)),
-                "signal": (),
+                "signal": (Signal(shape="constant", value=signal),) if signal else (),
                 "control": control,
                 "requirements": {},
             }
         )
         gains = None if gain is None else ControllerGains(gain, inf, 0.0)
         circuit = assemble(scenario, self.plant, {}, gains)
-        compiled = circuit.system.compiled()
-        names = [one.name for one in circuit.system.states]
+        system = circuit.system
+        system.states = [one for one in system.states if not one.integral]
+        compiled = system.compiled()
+        names = [one.name for one in system.states]
         if start is not None:
             begin = np.array(
                 [start.get(name, value) for name, value in zip(names, compiled.initial, strict=True)]
@@ -190,14 +196,34 @@ class Stand:
         return Record(found.time, signals, last)
 
     def rest(self) -> Mapping[str, float]:
-        """States in which the loop holds the force; found once."""
+        """States in which the loop holds the force at the stand's place; found once.
+
+        The valve feeds its own leakage and the piston's: the first run, at mid-stroke, finds the
+        error of that, the second one takes it off.
+        """
         if not self.rested:
             duration = SETTLED / self.bandwidth
-            record = self.run(
-                duration=duration, sample_time=duration / 20, gain=self.steady_gain
-            )
-            self.rested.update(record.last)
+            middle = replace(self, position=0.5 * self.plant.stroke)
+            times = {"duration": duration, "sample_time": duration / 20, "gain": self.steady_gain}
+            error = middle.run(**times).last["spool"] / self.steady_gain
+            held = Position(shape="constant", value=error)
+            self.rested.update(self.run(**times, reference=(held,)).last)
         return self.rested
+
+    def held(
+        self, *, ends: str, duration: float, sample_time: float, force: Sequence[Force] = ()
+    ) -> Record:
+        """A run with the ports ended; a valve stays where it held the force."""
+        if ends != "valve" or not self.steady_gain:
+            return self.run(duration=duration, sample_time=sample_time, ends=ends, force=force)
+        state = self.rest()
+        return self.run(
+            duration=duration,
+            sample_time=sample_time,
+            signal=state["spool"],
+            force=force,
+            start=state,
+        )
 
     def closed(
         self,
@@ -239,6 +265,7 @@ class Stand:
             spool=None if spool is None else (float(np.min(spool)), float(np.max(spool))),
             extending=0.5 if spool is None else float(np.mean(spool > 0)),
             pressures=(float(np.mean(chambers[0])), float(np.mean(chambers[1]))),
+            pulse=0.5 * float(np.ptp(chambers[0])),
             lowest=float(min(np.min(one) for one in chambers)),
             stopped=bool(np.any(signals["stop_force"] != 0)),
         )

@@ -8,18 +8,26 @@ follows the sign of a guard.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ..numeric import Array
+from ..models.fluid import ATMOSPHERIC_PRESSURE
+from ..numeric import Array, minimum, where
 from ..quantities import Quantity
-from ..symbolic import Expression, Graph, Symbol, function, jacobian, vectorised
+from ..symbolic import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised
 
 LOOSE = 1e3
 """Tolerance of an integral over its scale: it follows, the states lead."""
+
+
+PRESSURE = 1.0
+"""Error of a pressure that is let pass [Pa]."""
+VACUUM = 1e-6
+"""Least absolute pressure that a start may have, over the atmosphere's."""
 
 
 @dataclass(slots=True)
@@ -71,6 +79,8 @@ class System:
     switches: list[Switch] = field(default_factory=list)
     instants: list[Instant] = field(default_factory=list)
     signals: list[Signal] = field(default_factory=list)
+    curved: dict[int, Symbol] = field(default_factory=dict)
+    """States that stand for a pressure, by the number of that pressure."""
     bends: list[float] = field(default_factory=list)
     """Instants at which a record changes its course: no step is longer than between two."""
     notes: list[str] = field(default_factory=list)
@@ -87,8 +97,27 @@ class System:
         self.states.append(State(name, symbol, float(initial), tolerance))
         return symbol
 
+    def pressure(self, name: str, initial: float) -> Symbol:
+        """A new state that is a gauge pressure and cannot fall below a vacuum.
+
+        The state s is the pressure p above zero and s = p_a ln(1 + p/p_a) below, with p_a of the
+        atmosphere: an error of s is a share of what is left to the vacuum, and there is no end.
+        """
+        air = ATMOSPHERIC_PRESSURE
+        held = max(float(initial), (VACUUM - 1) * air)
+        start = held if held >= 0 else air * math.log1p(held / air)
+        state = self.state(name, start, tolerance=PRESSURE)
+        low = air * Namespace.expm1(minimum(state, 0.0) / air)
+        symbol: Symbol = where(state >= 0, state, low)
+        self.curved[symbol.index] = state
+        return symbol
+
     def rate(self, symbol: Symbol, rate: Expression) -> None:
-        """The time derivative of a state."""
+        """The time derivative of a state, or of a pressure."""
+        state = self.curved.get(symbol.index)
+        if state is not None:
+            slope = Namespace.exp(-minimum(state, 0.0) / ATMOSPHERIC_PRESSURE)
+            symbol, rate = state, where(state >= 0, rate, rate * slope)
         next(s for s in self.states if s.symbol is symbol).rate = rate
 
     def rate_of(self, symbol: Symbol) -> Expression:

@@ -15,6 +15,7 @@ from time import perf_counter
 from typing import Any, Final, Literal
 
 from ..design.scenario.model import Scenario
+from ..errors import InputError, Unsolvable
 from ..evaluation.build import evaluate
 from ..evaluation.kernel import Subject
 from ..evaluation.result import Requirement
@@ -24,7 +25,8 @@ from .linear_tier import LinearTier, Spot
 from .parts.signals import Records
 from .result import Simulation
 from .run import simulate
-from .stand import Facts, Measured, Stand, Tally
+from .stand import Measured, Stand, Tally
+from .verification_reasons import apart, percent, point, seen
 
 LOOPS = ("ultimate_gain", "gain_margin", "phase_margin", "bandwidth")
 HELD = ("dynamic_stiffness", "dynamic_phase", "damping_ratio", "natural_frequency")
@@ -34,6 +36,8 @@ SMALL = 0.02
 """Swings over those of the experiment that count as small (a choice)."""
 AGREE = 0.02
 """Difference below which no reason is sought (a choice)."""
+CENTRED = 1e-3
+"""Share of the full signal within which a spool counts as centred (a choice)."""
 TOLERANCE = 1e-6
 """A margin of at least -TOLERANCE counts as met, as in an evaluation."""
 
@@ -49,7 +53,7 @@ class Row:
     stated: float | None
     """What an evaluation says: the linear tier at its worst."""
     linear: float | None
-    """The same at the place and in the ways of the experiment."""
+    """The same at the place of the experiment, on the side where its spool rests."""
     value: float | None
     """In time."""
     difference: float | None
@@ -186,19 +190,21 @@ class _Bench:
     def row(self, asked: Requirement) -> Row:
         """One requirement of the design in both tiers."""
         spot = self.tier.spot(asked)
-        why = self.tier.unsimulated() or self._impossible(asked.metric, spot)
+        why = self._impossible(asked.metric, spot)
         full = Measured({}, "", why=why) if why else self.measured(asked.metric, spot)
         value = full.values.get(asked.metric)
-        linear = None if why else self.linear(asked.metric, spot, full)
-        difference = _apart(value, linear)
+        linear = None if why else self.linear(asked.metric, spot)
+        difference = apart(value, linear)
         shares: dict[str, float] = {}
-        why = full.why
+        said = [full.why] if full.why else []
         if difference is not None and abs(difference) > AGREE:
-            shares, why = self._reasons(asked.metric, spot, full)
+            shares, more = self._reasons(asked.metric, spot, full)
+            said += more
         elif difference is not None:
-            why = "both agree"
-        if linear is not None and (apart := _apart(linear, asked.value)) and abs(apart) > AGREE:
-            why += "; " * bool(why) + self._moved(spot, asked.metric, full)
+            said.append("both agree")
+        moved = apart(linear, asked.value)
+        if moved is not None and abs(moved) > AGREE:
+            said.append(self._compared(asked.metric, spot))
         return Row(
             "design",
             asked.metric,
@@ -211,16 +217,19 @@ class _Bench:
             _holds(value, asked.sense, asked.limit),
             where=spot.words,
             how=full.how,
-            why=why,
+            why="; ".join(said),
             shares=shares,
         )
 
     def _impossible(self, metric: str, spot: Spot) -> str:
         """Why there is no experiment; empty where there is."""
+        left_out = self.tier.unsimulated()
+        if left_out:
+            return left_out
         if metric not in LOOPS:
             shakes = self.tier.subject.design.load_cases[spot.case].frequency is not None
             asked = metric in ("dynamic_stiffness", "dynamic_phase")
-            return "" if shakes or not asked else "no load case shakes"
+            return "no load case shakes" if asked and not shakes else ""
         stand = self.stand(spot)
         if stand.plant.valve is None:
             return "the design has no valve"
@@ -229,9 +238,14 @@ class _Bench:
         return ""
 
     def stand(self, spot: Spot) -> Stand:
+        """The design at a spot."""
         if spot not in self.stands:
             self.stands[spot] = self.tier.stand(self.scenario, spot, self.tally, self.scale)
         return self.stands[spot]
+
+    def _placed(self, metric: str, spot: Spot) -> Stand:
+        stand = self.stand(spot)
+        return experiments.placed(stand) if metric in LOOPS else experiments.held_place(stand)
 
     def measured(
         self, metric: str, spot: Spot, *, bare: bool = False, small: bool = False
@@ -243,104 +257,93 @@ class _Bench:
             stand = self._placed(metric, spot)
             stand = stand.bare() if bare else stand
             stand = stand.but(scale=SMALL * stand.scale) if small else stand
-            self.made[key] = self._made(name, spot, stand)
+            try:
+                self.made[key] = self._made(name, spot, stand)
+            except (InputError, Unsolvable) as error:
+                self.made[key] = Measured({}, "", why=f"the experiment failed: {error}")
         return self.made[key]
-
-    def _placed(self, metric: str, spot: Spot) -> Stand:
-        stand = self.stand(spot)
-        return experiments.placed(stand) if metric in LOOPS else experiments.held_place(stand)
 
     def _made(self, name: str, spot: Spot, stand: Stand) -> Measured:
         tier, at = self.tier, stand.position
-        if name in ("shaking", "decay"):
-            resonance = tier.resonance(spot.case, at)
-            design = tier.subject.design
-            if name == "decay":
-                return experiments.decay(stand, design.ports.end, resonance)
+        resonance = tier.resonance(spot.case, at)
+        design = tier.subject.design
+        if name == "closed":
+            return experiments.decay(stand, "closed", resonance)
+        if name == "decay":
+            return experiments.decay(stand, design.ports.end, resonance)
+        if name == "shaking":
             frequency = design.load_cases[spot.case].frequency
             assert frequency is not None
             return experiments.dynamic_stiffness(stand, design.ports.end, frequency, resonance)
-        way = bool(spot.extending)
+        way = self._way(spot, stand)
         figures = tier.figures(spot.case, at, way)
         response = tier.response(spot.case, at, way)
         if name == "bandwidth":
             return experiments.bandwidth(stand, figures.bandwidth, response)
         if name == "phase":
-            crossed, peaks = tier.crossings(spot.case, at, way)
+            both = [tier.crossings(spot.case, at, one) for one in (True, False)]
+            crossed, peaks = (sum(parts, ()) for parts in zip(*both, strict=True))
             return experiments.phase_margin(stand, crossed, peaks, response)
         limit, frequency = figures.ultimate_gain, figures.frequency
         if not isfinite(limit):
-            limit, frequency = stand.gain, tier.resonance(spot.case, at)
+            limit, frequency = stand.gain, resonance
         found = experiments.ultimate_gain(stand, limit, frequency)
         gain = found.values["ultimate_gain"]
         margin = None if gain is None else gain / stand.gain
         values = {"ultimate_gain": gain, "gain_margin": margin}
         return Measured(values, found.how, found.facts, found.why)
 
-    def linear(self, metric: str, spot: Spot, found: Measured) -> float | None:
-        """The linear tier at the place and in the ways of an experiment."""
-        at = self._placed(metric, spot).position
+    def _way(self, spot: Spot, stand: Stand) -> bool:
+        """Whether the spool rests on the side that extends; centred, the side of the linear tier."""
+        assert stand.plant.valve is not None
+        spool = stand.rest()["spool"]
+        if abs(spool) < CENTRED * stand.plant.valve.signal:
+            return bool(spot.extending)
+        return spool > 0
+
+    def linear(self, metric: str, spot: Spot) -> float:
+        """The linear tier at the place of an experiment, on the side where its spool rests."""
+        stand = self._placed(metric, spot)
         if metric in HELD:
-            return self.tier.held(spot.case, at)[metric]
-        share = 0.5 if found.facts is None else found.facts.extending
-        share = 0.0 if share < 0.05 else 1.0 if share > 0.95 else share
-        return self.tier.closed(metric, spot.case, at, share)
+            return self.tier.held(spot.case, stand.position)[metric]
+        way = self._way(spot, stand)
+        return self.tier.closed(metric, spot.case, stand.position, way)
 
     def _reasons(
         self, metric: str, spot: Spot, full: Measured
-    ) -> tuple[dict[str, float], str]:
+    ) -> tuple[dict[str, float], list[str]]:
         """Shares of friction, swing and operating point in a difference, with what was seen."""
-        steps: list[tuple[str, Measured]] = [("", full)]
+        steps = [("size of the swing", self.measured(metric, spot, bare=True, small=True))]
         if self.scenario.friction.model != "none":
-            steps.append(("friction", self.measured(metric, spot, bare=True)))
-        steps.append(("size of the swing", self.measured(metric, spot, bare=True, small=True)))
+            steps.insert(0, ("friction", self.measured(metric, spot, bare=True)))
         shares: dict[str, float] = {}
         said: list[str] = []
-        before, after = full, full
-        for name, after in steps[1:]:
-            value, rest = before.values[metric], after.values[metric]
-            if rest is None:
-                return shares, "; ".join([*said, f"{name} decides: without it {after.why}"])
-            ways = self._ways(metric, spot, before, after) if name != "friction" else 1.0
-            share = _apart(value, rest * ways if isfinite(rest) else rest)
-            if share is None:
-                said.append(f"{name}: {_words(before, after, name)}")
-            elif abs(share) > AGREE / 2:
+        before = full
+        for name, without in steps:
+            value, rest = before.values.get(metric), without.values.get(metric)
+            if rest is None or not isfinite(rest):
+                words = without.why or "there is no limit"
+                return shares, [*said, f"{name} decides: without it {words}"]
+            share = apart(value, rest)
+            if share is not None and abs(share) > AGREE / 2:
                 shares[name] = share
-                said.append(f"{name} {_percent(share)} ({_words(before, after, name)})")
-            before = after
-        last = _apart(after.values[metric], self.linear(metric, spot, after))
-        if last is not None and abs(last) > AGREE / 2:
-            shares["operating point"] = last
-            said.append(f"operating point {_percent(last)} ({self._point(spot, after)})")
-        return shares, "; ".join(said)
+                said.append(f"{name} {percent(share)} ({seen(before.facts, name)})")
+            before = without
+        share = apart(before.values.get(metric), self.linear(metric, spot))
+        if share is not None and abs(share) > AGREE / 2:
+            shares["operating point"] = share
+            held = self.tier.stated(spot.case)
+            said.append(f"operating point {percent(share)} ({point(before.facts, held)})")
+        return shares, said
 
-    def _ways(self, metric: str, spot: Spot, one: Measured, other: Measured) -> float:
-        """Linear figure in the ways of one experiment over that in the ways of another."""
-        first, second = (self.linear(metric, spot, found) for found in (one, other))
-        if first is None or second is None or not isfinite(first) or not second:
-            return 1.0
-        return first / second
-
-    def _point(self, spot: Spot, found: Measured) -> str:
-        """Where the loop works, beside what the linear tier takes."""
-        facts = found.facts
-        if facts is None:
-            return ""
-        held = self.tier.stated(spot.case)
-        a, b = (1e-5 * one for one in facts.pressures)
-        words = f"chambers at {a:.0f}/{b:.0f} bar, linear {1e-5 * held[0]:.0f}/{1e-5 * held[1]:.0f}"
-        if facts.spool is not None:
-            words += f", spool about {0.5 * sum(facts.spool):.2g} V"
-        return words
-
-    def _moved(self, spot: Spot, metric: str, found: Measured) -> str:
-        """Why the linear tier is asked elsewhere than at its worst."""
-        at = 1e3 * self._placed(metric, spot).position
-        if metric in HELD or found.facts is None:
-            return f"compared at {at:.3g} mm, off the stop"
-        share = round(100 * found.facts.extending)
-        return f"compared at {at:.3g} mm with both ways of the spool, {share} % extending"
+    def _compared(self, metric: str, spot: Spot) -> str:
+        """Where the linear tier is asked, if not where it is worst."""
+        stand = self._placed(metric, spot)
+        words = f"compared at {1e3 * stand.position:.3g} mm"
+        if metric in HELD:
+            return f"{words}, off the stop"
+        way = "extending" if self._way(spot, stand) else "retracting"
+        return f"{words}, {way}: the spool rests at {stand.rest()['spool']:.2g} V"
 
 
 _EXPERIMENTS = {
@@ -351,44 +354,8 @@ _EXPERIMENTS = {
     "dynamic_stiffness": "shaking",
     "dynamic_phase": "shaking",
     "damping_ratio": "decay",
-    "natural_frequency": "decay",
+    "natural_frequency": "closed",
 }
-
-
-def _apart(value: float | None, other: float | None) -> float | None:
-    """Relative difference; None where there is none."""
-    if value is None or other is None or not isfinite(value) or not isfinite(other) or not other:
-        return None
-    return value / other - 1
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:+.{0 if abs(share) >= 0.095 else 1}f} %"
-
-
-def _words(found: Measured, without: Measured, name: str) -> str:
-    """What the record of an experiment shows of a cause."""
-    facts = found.facts
-    if facts is None:
-        return "no record"
-    if name == "friction":
-        return _seals(facts)
-    if facts.saturated > 0:
-        return f"the signal is at its limit {100 * facts.saturated:.0f} % of the time"
-    if facts.lowest < 0:
-        return f"a chamber falls to {1e-5 * facts.lowest:.2g} bar"
-    if facts.spool is not None:
-        return f"the spool swings from {facts.spool[0]:.2g} to {facts.spool[1]:.2g} V"
-    return f"swing of {1e3 * facts.swing:.2g} mm"
-
-
-def _seals(facts: Facts) -> str:
-    swing, travel = 1e3 * facts.swing, 1e3 * facts.travel
-    if not travel:
-        return f"the seals slide over {swing:.2g} mm"
-    if facts.swing < facts.travel:
-        return f"the seals stick: swing of {swing:.2g} mm, their bristles give {travel:.2g} mm"
-    return f"the seals slip: swing of {swing:.2g} mm, their bristles give {travel:.2g} mm"
 
 
 def _holds(value: float | None, sense: str, limit: float) -> bool:

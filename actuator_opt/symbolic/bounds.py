@@ -46,7 +46,10 @@ def bounds(op: str, args: tuple[Any, ...]) -> Bounds:
 
 
 def _of_function(op: str, args: tuple[Any, ...]) -> Bounds:
-    if op in ("sqrt", "exp"):
+    if op == "sqrt":
+        low, high = (max(one, 0.0) for one in bounds_of(args[0]))
+        return math.sqrt(low), math.sqrt(high)
+    if op == "exp":
         return 0.0, math.inf
     if op == "pow" and bounds_of(args[0])[0] >= 0:
         return 0.0, math.inf

@@ -96,8 +96,8 @@ def _lines(nodes: Sequence[Symbol], outputs: Sequence[Any], many: bool) -> list[
         if plain or (uses[node.index] == 1 and deep < DEEPEST):
             text[node.index], depth[node.index] = code, 0 if plain else deep
         else:
-            lines.append(f" v{node.index} = {code}")
-            text[node.index], depth[node.index] = f"v{node.index}", 0
+            lines.append(f" _{node.index} = {code}")  # no variable is called so
+            text[node.index], depth[node.index] = f"_{node.index}", 0
     lines.append(f" return [{', '.join(said(out) for out in outputs)}]")
     return lines
 

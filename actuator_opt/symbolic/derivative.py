@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
-from .expression import Namespace, Symbol, choose, is_boolean, needed, power
+from .expression import Namespace, Symbol, choose, is_boolean, less, needed, power
 
 xp = Namespace
 
@@ -17,7 +18,8 @@ Slopes: TypeAlias = dict[int, Any]
 def jacobian(outputs: Sequence[Any], variables: Sequence[Symbol]) -> list[list[Any]]:
     """Derivatives of outputs (rows) by variables (columns); 0.0 where there is none.
 
-    A choice has the derivative of the branch taken; flags and looked-up functions have none.
+    A choice has the derivative of the branch taken; flags have none, a looked-up function has the
+    one it was given, and a root at zero, where its slope has no end, counts as level.
     """
     known: dict[int, Slopes] = {one.index: {k: 1.0} for k, one in enumerate(variables)}
     for node in needed(outputs):
@@ -51,17 +53,22 @@ def _scaled(factor: Any) -> Callable[..., Any]:
     return lambda da: factor * da
 
 
+def _steep(value: Any) -> Any:
+    """A root's value in its slope: endless at zero, so that the slope there is none."""
+    return choose(less(0.0, value), value, math.inf)
+
+
 _RULES: dict[str, Callable[..., Callable[..., Any]]] = {
     "add": lambda node, a, b: lambda da, db: da + db,
     "sub": lambda node, a, b: lambda da, db: da - db,
     "mul": lambda node, a, b: lambda da, db: da * b + a * db,
     "div": lambda node, a, b: lambda da, db: (da - node * db) / b,
-    "pow": lambda node, a, b: lambda da, db: b * power(a, b - 1) * da,
+    "pow": lambda node, a, b: lambda da, db: b * power(_steep(a) if 0 < b < 1 else a, b - 1) * da,
     "atan2": lambda node, a, b: lambda da, db: (b * da - a * db) / (a * a + b * b),
     "where": lambda node, c, a, b: lambda dc, da, db: choose(c, da, db),
-    "table": lambda node, k, t: lambda dk, dt: 0.0,
+    "table": lambda node, k, t: lambda dk, dt: node.graph.slope(k, t) * dt,
     "neg": lambda node, a: lambda da: -da,
-    "sqrt": lambda node, a: _scaled(0.5 / node),
+    "sqrt": lambda node, a: _scaled(0.5 / _steep(node)),
     "exp": lambda node, a: _scaled(node),
     "expm1": lambda node, a: _scaled(node + 1.0),
     "log": lambda node, a: _scaled(1.0 / a),

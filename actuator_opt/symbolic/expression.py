@@ -41,6 +41,8 @@ class Graph:
     known: dict[tuple[Any, ...], Symbol] = field(default_factory=dict)
     tables: list[Callable[..., Any]] = field(default_factory=list)
     """Functions of time that are looked up, not traced: measured inputs."""
+    slopes: dict[int, int] = field(default_factory=dict)
+    """Number of the function that is the slope of another."""
 
     def variable(self, name: str) -> Symbol:
         """A free number, as `name` in the code."""
@@ -50,10 +52,24 @@ class Graph:
         """A free truth value that does not change between two restarts of an integration."""
         return self.node("flag", (name,))
 
-    def table(self, function: Callable[..., Any], time: Symbol) -> Symbol:
-        """A looked-up function of time; it works on floats and on NumPy arrays."""
+    def table(
+        self,
+        function: Callable[..., Any],
+        time: Symbol,
+        slope: Callable[..., Any] | None = None,
+    ) -> Symbol:
+        """A looked-up function of time, with its slope; both work on floats and NumPy arrays."""
+        number = len(self.tables)
         self.tables.append(function)
-        return self.node("table", (len(self.tables) - 1, time))
+        if slope is not None:
+            self.slopes[number] = len(self.tables)
+            self.tables.append(slope)
+        return self.node("table", (number, time))
+
+    def slope(self, number: int, time: Symbol) -> Any:
+        """The slope of a looked-up function; zero where none was given."""
+        known = self.slopes.get(number)
+        return 0.0 if known is None else self.node("table", (known, time))
 
     def node(self, op: str, args: tuple[Any, ...]) -> Symbol:
         """The node of an operation; the same one for the same operands."""

@@ -13,10 +13,8 @@ from ...numeric import maximum
 from ...symbolic import Expression, Symbol
 from ..system import System
 
-PRESSURE = 1.0
-"""Error of a pressure that is let pass [Pa]."""
-FLOOR = 1.0
-"""Least absolute pressure of the laws of oil and air [Pa]: below it both are at their limit."""
+FLOOR = 1e-6
+"""Least absolute pressure of the laws of oil and air [Pa]: for their rounding alone."""
 
 
 @dataclass(slots=True)
@@ -40,7 +38,7 @@ class Volumes(NamedTuple):
 
 
 def oil_at(oil: Oil, pressure: Expression) -> Volumes:
-    """Density ratio, bulk modulus and energy density; a vacuum keeps a trace of pressure."""
+    """Density ratio, bulk modulus and energy density at a pressure above vacuum."""
     held = maximum(pressure, FLOOR - ATMOSPHERIC_PRESSURE)
     return Volumes(
         chamber.density_ratio(pressure=held, **oil.law),
@@ -118,13 +116,15 @@ def cylinder(
     dead_b: float,
     walls: Give,
     flexibility: float,
+    power: float,
     of: str = "",
 ) -> Cylinder:
     """Both chambers of a cylinder, coupled by their walls and by the rod's give.
 
     V_A = A_A x + V_0A + W_AA p_A + W_AB p_B, V_B = A_B (s - x) + V_0B + W_BB p_B + W_AB p_A, W(x)
     of the walls plus f a a^T of rod and mount with a = (A_A, -A_B). The force on the piston is
-    a^T p + p^T W' p/2, as the work of the walls asks. A pressure that is a number is held outside.
+    a^T p + p^T W' p/2, as the work of the walls asks. A pressure that is a number is held outside:
+    its port gives what volume, walls and leakage ask for.
     """
     beyond = stroke - position
     w_a = walls.a0 + walls.a1 * position + flexibility * area_a * area_a
@@ -138,14 +138,18 @@ def cylinder(
     c_a, c_b = v_a / law_a.modulus + w_a, v_b / law_b.modulus + w_b
     net_a, net_b = inflow_a - swept_a * speed, inflow_b - swept_b * speed
     moved_a, moved_b = isinstance(pressure_a, Symbol), isinstance(pressure_b, Symbol)
-    if moved_a and moved_b:
-        det = c_a * c_b - w_ab * w_ab
-        system.rate(pressure_a, (c_b * net_a - w_ab * net_b) / det)
-        system.rate(pressure_b, (c_a * net_b - w_ab * net_a) / det)
-    elif moved_a:
-        system.rate(pressure_a, net_a / c_a)
-    elif moved_b:
-        system.rate(pressure_b, net_b / c_b)
+    det = c_a * c_b - (w_ab * w_ab if moved_a and moved_b else 0.0)
+    rate_a = (c_b * net_a - (w_ab * net_b if moved_b else 0.0)) / det if moved_a else 0.0
+    rate_b = (c_a * net_b - (w_ab * net_a if moved_a else 0.0)) / det if moved_b else 0.0
+    for name, pressure, moved, own, asked in (
+        ("a", pressure_a, moved_a, rate_a, w_ab * rate_b - net_a),
+        ("b", pressure_b, moved_b, rate_b, w_ab * rate_a - net_b),
+    ):
+        if moved:
+            system.rate(pressure, own)
+        else:
+            given = system.integral(f"held work {name}", pressure * asked, scale=power)
+            audit.flows.append(("held ports", given, True))
     if moved_a:
         scale = area_a * stroke + dead_a
         _content(system, audit, f"chamber A{of}", law_a, v_a, inflow_a, pressure_a, scale)

@@ -11,7 +11,7 @@ from ...numeric import clip, where
 from ...symbolic import Expression
 from ..system import System
 
-HOLD_BAND = 0.01
+HOLD_BAND = 1e-3
 """Share of the full signal over which the integral part comes to rest before the limit (a choice:
 the integral is held while the signal is saturated and would be pushed further)."""
 RATE_TIME = 1e-4

@@ -35,8 +35,8 @@ def push(
     area = float(forces.annulus_area(bore=stated.bore, rod_diameter=stated.rod_diameter))
     middle = 0.5 * (stated.supply_pressure + stated.return_pressure)
     half = 0.5 * stated.force / area
-    a = system.state(f"{WHOSE}pressure a", middle + half, tolerance=chambers.PRESSURE)
-    b = system.state(f"{WHOSE}pressure b", middle - half, tolerance=chambers.PRESSURE)
+    a = system.pressure(f"{WHOSE}pressure a", middle + half)
+    b = system.pressure(f"{WHOSE}pressure b", middle - half)
     data = _data(stated)
     opening = valve.spool(system, data, signal(system, stated.signal, records), WHOSE)
     flows = valve.edges(
@@ -72,6 +72,7 @@ def push(
         dead_b=dead,
         walls=Give(),
         flexibility=0.0,
+        power=power,
         of=" of the load cylinder",
     )
     pressures = INPUTS["pressure"]

@@ -10,7 +10,7 @@ from ...models import one_way_valve, reducing_valve
 from ...quantities import SCENARIOS
 from ...symbolic import Expression, Symbol
 from ..system import System
-from .chambers import PRESSURE, Audit, node
+from .chambers import Audit, node
 
 FLOW = 1e-12
 """Error of a flow that is let pass [m^3/s]."""
@@ -33,7 +33,8 @@ class Side(NamedTuple):
     """Volume and wall of lines that count to the chamber."""
     lumped_wall: float
     line: Symbol | None
-    outer: Symbol | None
+    outer: Expression | None
+    """Behind the throttle."""
 
 
 def side(system: System, plant: Plant, name: str, ends: str, start: float) -> Side:
@@ -41,7 +42,7 @@ def side(system: System, plant: Plant, name: str, ends: str, start: float) -> Si
 
     A line has inertia where something moves oil through it; behind closed ends it is volume.
     """
-    data, word = plant.lines[name], name.upper()  # type: ignore[index]
+    data = plant.lines[name]  # type: ignore[index]
     throttled = plant.throttle is not None
     shut = ends == "blocked"
     near, wall = data.near_volume, data.near_wall
@@ -49,21 +50,20 @@ def side(system: System, plant: Plant, name: str, ends: str, start: float) -> Si
         if not throttled:
             near, wall = near + data.far_volume, wall + data.far_wall
         held = ends == "constant_pressure"
-        pressure = start if held else system.state(f"pressure {name}", start, tolerance=PRESSURE)
+        pressure = start if held else system.pressure(f"pressure {name}", start)
         return Side(name, pressure, pressure, near, wall, None, None)
-    pressure = system.state(f"pressure {name}", start, tolerance=PRESSURE)
-    outer = None
-    if throttled:
-        outer = system.state(f"behind throttle {name}", start, tolerance=PRESSURE)
+    pressure = system.pressure(f"pressure {name}", start)
+    lined = data.inertance > 0 and ends != "closed"
+    if throttled and ends == "constant_pressure" and not lined:
+        return Side(name, pressure, start, near, wall, None, start)
+    outer = system.pressure(f"behind throttle {name}", start) if throttled else None
     line = None
     end: Expression = outer if outer is not None else pressure
-    if data.inertance > 0 and ends != "closed":
+    if lined:
         line = system.state(f"line {name}", 0.0, tolerance=FLOW)
         end = start
         if ends != "constant_pressure":
-            end = system.state(f"far end {name}", start, tolerance=PRESSURE)
-    elif ends == "constant_pressure":
-        system.notes.append(f"no line holds chamber {word} off its pressure: 1 ml is")
+            end = system.pressure(f"far end {name}", start)
     return Side(name, pressure, end, near, wall, line, outer)
 
 
@@ -124,6 +124,13 @@ def connect(
         f"throttle loss {one.name}", (one.pressure - one.outer) * through, scale=power
     )
     audit.flows.append((f"throttle {word}", lost, False))
+    system.signal(
+        f"flow_throttle_{one.name}", f"flow out of chamber {word}", SCENARIOS["flow_value"], through
+    )
+    if not isinstance(one.outer, Symbol):
+        taken = system.integral(f"held work {one.name}", one.outer * through, scale=power)
+        audit.flows.append(("held ports", taken, False))
+        return -through
     node(
         system,
         audit,
@@ -133,9 +140,6 @@ def connect(
         inflow=into_line + through,
         volume=max(halves * data.far_volume, LEAST_NODE),
         wall=halves * data.far_wall,
-    )
-    system.signal(
-        f"flow_throttle_{one.name}", f"flow out of chamber {word}", SCENARIOS["flow_value"], through
     )
     return -through
 

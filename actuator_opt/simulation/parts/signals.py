@@ -36,7 +36,7 @@ def _part(system: System, part: Part, records: Records) -> Expression:
         time, values = records[part.file, part.column]
         time, values = time + start, part.scale * values
         system.bends += _bends(time, values)
-        return system.graph.table(_between(time, values), t)
+        return system.graph.table(_between(time, values), t, _slope(time, values))
     on = system.after(start)
     if part.shape == "step":
         return where(on, value, 0.0)
@@ -63,6 +63,19 @@ def _between(time: Array, values: Array) -> Callable[[Any], Any]:
     return at
 
 
+def _slope(time: Array, values: Array) -> Callable[[Any], Any]:
+    """Slope between samples, zero outside."""
+    run = np.diff(time)
+    rise = np.divide(np.diff(values), run, out=np.zeros(len(run)), where=run > 0)
+    steps = np.concatenate(([0.0], rise, [0.0]))
+
+    def at(moment: Any) -> Any:
+        found = steps[np.searchsorted(time, moment, side="right")]
+        return float(found) if np.ndim(found) == 0 else found
+
+    return at
+
+
 def _bends(time: Array, values: Array) -> list[float]:
     """Samples at which the course between samples changes its slope, first and last included."""
     rise, run = np.diff(values, prepend=values[:1], append=values[-1:]), np.diff(time)
@@ -73,7 +86,7 @@ def _bends(time: Array, values: Array) -> list[float]:
 
 
 def rate(system: System, expression: Expression) -> Expression:
-    """Time derivative of a signal between its jumps; a record counts as slow."""
+    """Time derivative of a signal between its jumps."""
     return jacobian([expression], [system.time])[0][0]
 
 

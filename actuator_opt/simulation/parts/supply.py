@@ -11,7 +11,7 @@ from ...numeric import clip, where
 from ...quantities import INPUTS, SCENARIOS
 from ...symbolic import Expression, Symbol
 from ..system import System
-from .chambers import PRESSURE, Audit, node
+from .chambers import Audit, node
 
 RATE_BAND = 1e-3
 """Share of the largest flow within which the swash plate comes to rest at its ends (a choice)."""
@@ -36,10 +36,10 @@ class Source:
         stated = scenario.supply
         unit: Expression = plant.supply_pressure
         if stated.type != "constant":
-            unit = system.state("supply", plant.supply_pressure, tolerance=PRESSURE)
+            unit = system.pressure("supply", plant.supply_pressure)
         port = unit
         if stated.line is not None:
-            port = system.state("valve port", plant.supply_pressure, tolerance=PRESSURE)
+            port = system.pressure("valve port", plant.supply_pressure)
         return cls(system, audit, plant, scenario, port, unit)
 
     def feed(self, demand: Expression, tank: Expression, power: float) -> None:

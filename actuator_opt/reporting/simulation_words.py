@@ -1,0 +1,135 @@
+"""What was simulated, in words: signals, loops, what was around the design."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from ..design.scenario.model import Scenario
+from ..quantities import INPUTS, SCENARIOS, Quantity
+from ..simulation.result import Simulation
+from .optimum import sentence
+from .text import trimmed, unit_text, with_unit
+
+MOST_PARTS = 3
+"""Parts of a signal that are told."""
+PRESSURE, LENGTH = INPUTS["pressure"], INPUTS["position"]
+LOOPS: dict[str, tuple[str, Quantity]] = {
+    "position": ("position", LENGTH),
+    "speed": ("speed", SCENARIOS["speed_value"]),
+    "shaft_speed": ("shaft speed", SCENARIOS["shaft_speed_value"]),
+    "shaft_angle": ("shaft angle", SCENARIOS["shaft_angle_value"]),
+}
+"""Each loop in words, with its quantity."""
+FRICTION = {"lugre": "LuGre friction", "stribeck": "Stribeck friction", "none": "no dry friction"}
+SUPPLY = {
+    "constant": "constant supply",
+    "fixed_pump": "fixed pump",
+    "controlled_pump": "controlled pump",
+}
+ENDS = {
+    "closed": "ports closed",
+    "constant_pressure": "ports at constant pressure",
+    "reducing_valve": "ports at reducing valves",
+}
+
+
+_UNITS = r"(?:mm|m|m/s|ms|s|V|bar|k?N|Hz|J|l/min|rpm|rad|N·m|V/m|kN/mm|MPa)(?![\w/])|%|°"
+_TIED = re.compile(rf"(?<=\d) (?={_UNITS})")
+
+
+def tied(words: str) -> str:
+    r"""Words of a page: a number stays on the line of its unit.
+
+    >>> tied("step of 20 mm at 0.5 s, 3 steps")
+    'step of 20\xa0mm at 0.5\xa0s, 3 steps'
+    """
+    return _TIED.sub("\N{NO-BREAK SPACE}", words)
+
+
+def amount(quantity: Quantity, value: float) -> str:
+    """A value that a person wrote, with its unit."""
+    return with_unit(trimmed(quantity.to_display(value)), unit_text(quantity.unit))
+
+
+def _part(part: Any, quantity: Quantity) -> str:
+    """A part of a signal."""
+    if part.shape == "record":
+        return f"record {part.file}, {part.column}"
+    value = amount(quantity, part.value or 0.0)
+    if part.shape == "constant":
+        return value
+    begin = trimmed(part.start)
+    if part.shape == "step":
+        return f"step of {value} at {begin} s"
+    if part.shape == "sine":
+        return f"sine of {value} at {trimmed(part.frequency)} Hz"
+    ramp = "ramp of " if part.shape == "ramp" else ""
+    return f"{ramp}{value} from {begin} to {trimmed(part.end)} s"
+
+
+def parts_words(parts: Sequence[Any], quantity: Quantity) -> str:
+    """A signal in words; empty where it is zero all the time."""
+    told = [one for one in parts if one.shape == "record" or one.value]
+    said = [_part(one, quantity) for one in told[:MOST_PARTS]]
+    more = len(told) - len(said)
+    return ", ".join(said) + (f" and {more} more" if more else "")
+
+
+def what(found: Simulation) -> str:
+    """What was simulated, in a few sentences."""
+    scenario, plant = found.scenario, found.plant
+    said = [f"{plant.design.name}: {_machine(found)}, {trimmed(scenario.duration)} s."]
+    control = scenario.control
+    asked = ""
+    for name, (words, quantity) in LOOPS.items() if control is not None else ():
+        if found_words := parts_words(getattr(control, name), quantity):
+            asked = f"{words}: {found_words}"
+            if name == "position":
+                start = amount(quantity, float(found.signals["position"][0]))
+                asked = f"{words} from {start}: {found_words}"
+    if not asked:
+        signal = parts_words(scenario.signal, SCENARIOS["signal_value"])
+        asked = f"valve signal: {signal}" if signal else ""
+    torque = scenario.load.torque if scenario.motor is None else scenario.motor.torque
+    said += [
+        sentence(words)
+        for words in (
+            asked,
+            _told("load", parts_words(scenario.load.force, SCENARIOS["force_value"])),
+            _told("torque", parts_words(torque, SCENARIOS["torque_value"])),
+            _told("machine outside", _drive(scenario)),
+        )
+        if words
+    ]
+    return " ".join(said)
+
+
+def _told(head: str, words: str) -> str:
+    return f"{head}: {words}" if words else ""
+
+
+def _drive(scenario: Scenario) -> str:
+    drive = scenario.load.drive
+    return "" if drive is None else parts_words(drive.position, LENGTH)
+
+
+def _machine(found: Simulation) -> str:
+    """What was around the design."""
+    scenario, plant = found.scenario, found.plant
+    held = scenario.held_ports
+    words = []
+    if held is not None:
+        ports = " and ".join(amount(PRESSURE, p) for p in (held.pressure_a, held.pressure_b))
+        words.append(f"the valve alone, ports at {ports}")
+    elif scenario.motor is not None:
+        words.append("its valve with a hydraulic motor")
+    elif "flow_supply" not in found.signals:
+        words.append(ENDS.get(scenario.ends or plant.design.ports.end, "no valve"))
+    if "flow_supply" in found.signals:
+        supply = f"{SUPPLY[scenario.supply.type]} {amount(PRESSURE, plant.supply_pressure)}"
+        words.append(f"{supply}, return {amount(PRESSURE, plant.return_pressure)}")
+    if "friction" in found.signals:
+        words.append(FRICTION[scenario.friction.model])
+    return ", ".join(words)

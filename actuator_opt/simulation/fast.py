@@ -1,0 +1,191 @@
+"""CVODES of SUNDIALS through CasADi (extra ``fast``): the same equations, run without Python.
+
+The graph of a system becomes symbols of CasADi, each operation once; CasADi compiles nothing and
+has the exact Jacobian. Where CVODES gives up, another integrator takes that piece and says why.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..errors import Diagnostic, InputError
+from ..numeric import Array
+from ..symbolic import Symbol
+from ..symbolic.expression import needed
+from .integrate import CHUNK, Advance
+from .system import Compiled
+
+SHARPER = 0.1
+"""Absolute tolerance over the stated one (a choice: then as close as LSODA, measured)."""
+_EVEN = 1e-6
+"""Difference of two steps, over the step, that is rounding."""
+_BUFFERED = 1
+"""Number of the memory that CasADi gives a function's first buffer."""
+
+
+def library() -> Any:
+    """The module ``casadi``; one clear line when the extra is not installed.
+
+    Raises
+    ------
+    InputError
+        where CasADi is missing
+    """
+    try:
+        import casadi
+    except ImportError as missing:
+        message = "the method cvodes needs CasADi"
+        raise InputError(Diagnostic(message, 'pip install "actuator-opt[fast]"')) from missing
+    return casadi
+
+
+def translate(outputs: Sequence[Any]) -> tuple[dict[str, Any], list[Any]]:
+    """Expressions in CasADi's symbols.
+
+    Parameters
+    ----------
+    outputs : expressions of one graph
+
+    Returns
+    -------
+    the free symbols by name (variables and flags), and the outputs
+
+    Raises
+    ------
+    InputError
+        for a record, which is looked up and has no formula
+    """
+    casadi = library()
+    free: dict[str, Any] = {}
+    known: dict[int, Any] = {}
+
+    def said(value: Any) -> Any:
+        return known[value.index] if isinstance(value, Symbol) else float(value)
+
+    for node in needed(outputs):
+        if node.op in ("variable", "flag"):
+            known[node.index] = free[node.args[0]] = casadi.SX.sym(node.args[0])
+        elif node.op == "table":
+            message = "the method cvodes cannot look up a record"
+            raise InputError(Diagnostic(message, "leave the method out: LSODA can"))
+        else:
+            known[node.index] = _operation(casadi, node.op, [said(one) for one in node.args])
+    return free, [said(one) for one in outputs]
+
+
+def _operation(casadi: Any, op: str, args: Sequence[Any]) -> Any:
+    """An operation by the number that CasADi gives it: its operators look at shapes, at length."""
+    unary, binary = casadi.SX.unary, casadi.SX.binary
+    if op == "where":
+        condition, yes, no = args
+        taken = binary(casadi.OP_IF_ELSE_ZERO, condition, yes)
+        left = binary(casadi.OP_IF_ELSE_ZERO, unary(casadi.OP_NOT, condition), no)
+        return binary(casadi.OP_ADD, taken, left)
+    number = getattr(casadi, f"OP_{op.upper()}")
+    found = unary(number, *args) if len(args) == 1 else binary(number, *args)
+    if op == "sqrt" or (op == "pow" and 0 < args[1] < 1):  # no slope at zero, as in `symbolic`
+        return binary(casadi.OP_IF_ELSE_ZERO, args[0], found)
+    return found
+
+
+def cvodes(compiled: Compiled, relative: float, counted: list[int], otherwise: Advance) -> Advance:
+    """Integration by CVODES.
+
+    Parameters
+    ----------
+    compiled : the equations
+    relative : relative tolerance of a step
+    counted : evaluations of the rates, counted up
+    otherwise : takes a piece that CVODES cannot pass
+
+    Raises
+    ------
+    InputError
+        where CasADi is missing or a record is looked up
+    """
+    casadi = library()
+    equations = _equations(casadi, compiled)
+    unit = compiled.tolerances
+    built: dict[int, _Integrator] = {}
+
+    def advance(times: Array, y: Array, m: tuple[bool, ...], most: int) -> Array:
+        if most not in built:
+            built[most] = _Integrator(casadi, equations, relative, most)
+        run = built[most]
+        found = np.empty((len(times), len(y)))
+        found[0] = y
+        for begin, end in _even(times):
+            try:
+                states = run(times[begin], times[end], end - begin, found[begin] / unit, m)
+            except RuntimeError:
+                return otherwise(times, y, m, most)
+            counted[0] += run.evaluations()
+            found[begin + 1 : end + 1] = states * unit
+        return found
+
+    return advance
+
+
+class _Integrator:
+    """CVODES over `CHUNK` samples, those that are not asked being of no length."""
+
+    def __init__(self, casadi: Any, equations: dict[str, Any], relative: float, most: int) -> None:
+        options = {
+            "reltol": relative, "abstol": SHARPER, "max_num_steps": most,
+            "disable_internal_warnings": True, "show_eval_warnings": False,
+        }  # fmt: skip
+        ends = np.arange(1.0, CHUNK + 1.0)
+        run = casadi.integrator("states", "cvodes", equations, 0.0, ends, options)
+        self.function = run
+        self.begin, self.parameters = np.zeros(run.nnz_in("x0")), np.zeros(run.nnz_in("p"))
+        self.steps, self.states = np.zeros(CHUNK), np.zeros((CHUNK, run.nnz_in("x0")))
+        self.buffer, self.call = run.buffer()
+        for name, values in (("x0", self.begin), ("p", self.parameters), ("u", self.steps)):
+            self.buffer.set_arg(run.index_in(name), memoryview(values))
+        self.buffer.set_res(run.index_out("xf"), memoryview(self.states))
+
+    def __call__(
+        self, start: float, stop: float, count: int, states: Array, m: tuple[bool, ...]
+    ) -> Array:
+        """States at even samples after the start."""
+        self.begin[:], self.parameters[0], self.parameters[1:] = states, start, m
+        self.steps[:count], self.steps[count:] = (stop - start) / count, 0.0
+        self.call()
+        return self.states[:count]
+
+    def evaluations(self) -> int:
+        """Evaluations of the rates in the last call."""
+        return int(self.function.stats(_BUFFERED)["nfevals"])
+
+
+def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
+    """The rates per sample, in units of each state's tolerance: CVODES takes one for all."""
+    system, unit = compiled.system, compiled.tolerances
+    free, rates = translate([state.rate for state in system.states])
+
+    def symbol(name: str) -> Any:
+        return free.get(name, casadi.SX.sym(name))
+
+    states = casadi.vertcat(*(symbol(str(s.symbol.args[0])) for s in system.states))
+    flags = [symbol(one.flag) for one in (*system.instants, *system.switches)]
+    sample, start, step = (casadi.SX.sym(name) for name in ("sample", "start", "step"))
+    scaled = casadi.SX.sym("x", len(system.states))
+    (ode,) = casadi.substitute(
+        [step * casadi.vertcat(*rates) / unit],
+        [casadi.vertcat(states, symbol("t"))],
+        [casadi.vertcat(scaled * unit, start + step * sample)],
+    )
+    parameters = casadi.vertcat(start, *flags)
+    return {"t": sample, "x": scaled, "p": parameters, "u": step, "ode": ode}
+
+
+def _even(times: Array) -> Iterator[tuple[int, int]]:
+    """First and last sample of every piece with even steps, `CHUNK` steps at most."""
+    steps = np.diff(times)
+    changes = np.flatnonzero(np.abs(np.diff(steps)) > _EVEN * steps[1:]) + 1
+    for first, last in zip([0, *changes], [*changes, len(steps)], strict=True):
+        for begin in range(first, last, CHUNK):
+            yield begin, min(begin + CHUNK, last)

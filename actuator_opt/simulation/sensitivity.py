@@ -1,0 +1,331 @@
+"""Which parameters the results of a scenario are sensitive to: central differences, ranked.
+
+The controller keeps the gains it has; only parameters of `control` change them. A change is told
+for 1 % of the parameter, of a temperature for 1 K. Each difference is repeated with half the step:
+where both do not agree, noise or a jump of the result rules, and the figure is marked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any, Literal, TypeAlias
+
+from ..design import paths
+from ..design.build import with_values
+from ..design.kinds import Fraction, ValueFault
+from ..design.scenario.model import Scenario
+from ..design.structure import Loc, child, child_at, leaves, number_of
+from ..errors import Diagnostic, InputError, Unsolvable
+from ..evaluation.build import prepare
+from ..evaluation.kernel import Subject
+from ..evaluation.study.plant import plant
+from ..quantities import RESULTS, Quantity
+from ..suggest import remedy
+from .gains import Tuned, tune
+from .parts.signals import Records
+from .result import Simulation
+from .run import run
+
+STEP = 0.02
+"""Share of a parameter by which it is moved (a choice: small, well above the integration's error)."""
+AGREE = 0.1
+"""Share within which a difference with half the step must agree."""
+NOTHING = 0.05
+"""Change of a result, in per cent for 1 %, that counts as none (a choice)."""
+DESIGN = (
+    "fluid.air_content", "fluid.temperature", "supply.pressure", "supply.return_pressure",
+    "cylinder.bore", "rod.outer_diameter", "cylinder.dead_volume_a", "cylinder.dead_volume_b",
+    "piston.leakage_conductance", "seals.piston.friction_coefficient",
+    "seals.rod.friction_coefficient", "stiffness.seal_deflection", "valve.rated_flow",
+    "valve.leakage_flow", "valve.natural_frequency", "valve.damping_ratio", "control.gain",
+    "load.mass", "load.inertia",
+)  # fmt: skip
+"""Numbers of a design that are moved where none are named."""
+LEAST = {"hold_drift": 1e-7, "overshoot": 1e-5, "steady_state_ratio": 1e-5, "following_error": 1e-7}
+"""Results below which nothing is left but rounding [SI] (a choice)."""
+_TIMES = ("start", "end", "phase", "frequency")
+_APART = ("duration", "sample_time", "requirements", "analysis", "set")
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """What 1 % of a parameter changes (1 K of a temperature)."""
+
+    percent: float | None
+    """Of the result, per cent; None where the result is zero."""
+    change: float
+    """Of the result [SI]."""
+    reliable: bool
+    """Whether half the step says the same within 10 %."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter with its effects."""
+
+    path: str
+    origin: Literal["design", "scenario"]
+    quantity: Quantity
+    value: float
+    unit: Literal["1 %", "1 K"]
+    effects: Mapping[str, Effect]
+    """By result."""
+
+    @property
+    def largest(self) -> float:
+        """Largest reliable effect on any result [%]."""
+        known = [one for one in self.effects.values() if one.percent is not None and one.reliable]
+        return max((abs(one.percent or 0.0) for one in known), default=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Sensitivities:
+    """All parameters, the most effective first."""
+
+    name: str
+    results: Mapping[str, float]
+    """Results of the scenario as it is."""
+    parameters: tuple[Parameter, ...]
+    skipped: Mapping[str, str]
+    """Parameters without an answer, with the reason."""
+    step: float
+    runs: int
+    seconds: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI."""
+        return {
+            "name": self.name,
+            "results": dict(self.results),
+            "parameters": [
+                {
+                    "path": one.path,
+                    "origin": one.origin,
+                    "value": one.value,
+                    "unit": one.quantity.si_unit,
+                    "per": one.unit,
+                    "largest": one.largest,
+                    "effects": {
+                        name: {
+                            "percent": effect.percent,
+                            "change": effect.change,
+                            "reliable": effect.reliable,
+                        }
+                        for name, effect in one.effects.items()
+                    },
+                }
+                for one in self.parameters
+            ],
+            "skipped": dict(self.skipped),
+            "step": self.step,
+            "runs": self.runs,
+            "seconds": self.seconds,
+        }
+
+
+def sensitivities(
+    scenario: Scenario,
+    subject: Subject,
+    names: Sequence[str] | None = None,
+    *,
+    step: float = STEP,
+    results: Sequence[str] | None = None,
+    records: Records | None = None,
+) -> Sensitivities:
+    """Effects of parameters on the results of a scenario.
+
+    Parameters
+    ----------
+    scenario, subject : what happens, to what
+    names : PATHs of design or scenario; default: `DESIGN` and the numbers that the scenario states
+    step : share of a parameter by which it is moved
+    results : names of `quantities.RESULTS`; default: all that the scenario has
+    records : columns of the files that the scenario's signals name
+
+    Raises
+    ------
+    InputError
+        a PATH that names no number, a result that does not exist, a step that is not positive
+    Unsolvable
+        where the scenario itself has no solution
+    """
+    begin = perf_counter()
+    if not 0 < step < 0.5:
+        message = f"step {step:g} of a parameter"
+        raise InputError(Diagnostic(message, "give a share between 0 and 0.5, such as 0.02"))
+    bench = _Bench.of(scenario, subject, {} if records is None else records)
+    base = bench.base()
+    chosen = _results(base, results)
+    found: list[Parameter] = []
+    skipped: dict[str, str] = {}
+    for one in bench.targets(names):
+        if one.value == 0:
+            skipped[one.path] = "it is 0: a share of it moves nothing"
+            continue
+        try:
+            found.append(bench.parameter(one, chosen, step))
+        except (InputError, Unsolvable) as error:
+            skipped[one.path] = str(error)
+    found.sort(key=lambda one: -one.largest)
+    return Sensitivities(
+        scenario.name, chosen, tuple(found), skipped, step, bench.runs, perf_counter() - begin
+    )
+
+
+def _results(base: Simulation, asked: Sequence[str] | None) -> dict[str, float]:
+    """Results that have a value."""
+    for name in asked or ():
+        if name not in RESULTS:
+            raise InputError(Diagnostic(f"{name}: no such result", remedy(name, RESULTS)))
+    names = RESULTS if asked is None else asked
+    known = {name: base.values.get(name) for name in names}
+    return {name: value for name, value in known.items() if value is not None}
+
+
+@dataclass(frozen=True, slots=True)
+class _Target:
+    """A number of the design or of the scenario."""
+
+    path: str
+    loc: Loc
+    quantity: Quantity
+    value: float
+    origin: Literal["design", "scenario"]
+
+    @property
+    def amount(self) -> float:
+        """1 % of it; of a temperature 1 K."""
+        return 1.0 if _absolute(self.quantity) else 0.01 * abs(self.value)
+
+
+_Slope: TypeAlias = tuple[float | None, float]
+"""Change of a result for one unit of a parameter: in per cent of it, and in SI."""
+
+
+@dataclass(slots=True)
+class _Bench:
+    """A scenario around a design, to be run with other numbers."""
+
+    scenario: Scenario
+    subject: Subject
+    records: Records
+    tuned: Tuned | None
+    runs: int = 0
+
+    @classmethod
+    def of(cls, scenario: Scenario, subject: Subject, records: Records) -> _Bench:
+        """With the gains as they are."""
+        return cls(scenario, subject, records, tune(scenario, plant(subject), records))
+
+    def base(self) -> Simulation:
+        """The scenario as it is."""
+        self.runs += 1
+        return run(self.scenario, plant(self.subject), self.records, self.tuned)
+
+    def targets(self, names: Sequence[str] | None) -> Iterable[_Target]:
+        """What is moved."""
+        if names is not None:
+            yield from (self._target(name) for name in names)
+            return
+        known = paths.numbers(self.subject.design)
+        yield from (self._target(name) for name in DESIGN if name in known)
+        for loc, _, value in leaves(self.scenario, Scenario):
+            stated = _stated(self.scenario, loc)
+            if number_of(value) is None or loc[0] in _APART or loc[-1] in _TIMES or not stated:
+                continue
+            yield self._target(paths.spell(loc, self.scenario))
+
+    def _target(self, name: str) -> _Target:
+        """A number by its PATH: the scenario's, else the design's."""
+        design = self.subject.design
+        try:
+            found = paths.resolve(name, self.scenario, RESULTS, Scenario)
+        except ValueFault:
+            quantity, value = paths.quantity_of(name, design), paths.get(design, name)
+            path, loc = paths.canonical(name, design), ()
+            origin: Literal["design", "scenario"] = "design"
+        else:
+            path, loc, quantity = found.path, found.loc, found.quantity
+            value, origin = number_of(child_at(self.scenario, loc)), "scenario"
+        if quantity is None or not isinstance(value, float):
+            message = "no number is stated here"
+            raise InputError(Diagnostic(message, "name a number that the file states", path=name))
+        return _Target(path, loc, quantity, value, origin)
+
+    def parameter(self, one: _Target, chosen: Mapping[str, float], step: float) -> Parameter:
+        """Effects of one parameter: two runs, and two more where something changes."""
+        whole = self._slopes(one, chosen, step)
+        moves = any(abs(part) > NOTHING for part, _ in whole.values() if part is not None)
+        half = self._slopes(one, chosen, 0.5 * step) if moves else whole
+        effects = {
+            name: Effect(percent, change, name in half and _same(whole[name], half[name]))
+            for name, (percent, change) in whole.items()
+        }
+        per: Literal["1 %", "1 K"] = "1 K" if _absolute(one.quantity) else "1 %"
+        return Parameter(one.path, one.origin, one.quantity, one.value, per, effects)
+
+    def _slopes(self, one: _Target, chosen: Mapping[str, float], step: float) -> dict[str, _Slope]:
+        """Changes of the results for one unit of a parameter, where both sides have them."""
+        units = step / 0.01
+        high, low = (self._values(one, one.value + way * units * one.amount) for way in (1, -1))
+        found: dict[str, _Slope] = {}
+        for name, value in chosen.items():
+            above, below = high.get(name), low.get(name)
+            if above is None or below is None:
+                continue
+            change = (above - below) / (2 * units)
+            zero = abs(value) < LEAST.get(name, 0.0) or value == 0
+            found[name] = (None if zero else 100 * change / abs(value), change)
+        return found
+
+    def _values(self, one: _Target, value: float) -> Mapping[str, float | None]:
+        """Results with another value of a parameter."""
+        self.runs += 1
+        scenario, subject = self.scenario, self.subject
+        if one.origin == "scenario":
+            scenario = _put(scenario, one.loc, value)
+        else:
+            old = paths.get(subject.design, one.path)
+            new = Fraction(value) if isinstance(old, Fraction) else value
+            design = with_values(subject.design, {one.path: new}, metrics=subject.quantities)
+            subject = prepare(design, subject.materials, subject.plugins)
+        own = plant(subject)
+        kept = not one.path.startswith("control.")
+        tuned = self.tuned if kept else tune(scenario, own, self.records)
+        return run(scenario, own, self.records, tuned).values
+
+
+def _same(one: _Slope, other: _Slope) -> bool:
+    """Whether two differences agree, or are both nothing."""
+    index = 1 if one[0] is None else 0
+    first, second = one[index] or 0.0, other[index] or 0.0
+    size = max(abs(first), abs(second))
+    return abs(first - second) <= AGREE * size or (index == 0 and size < NOTHING)
+
+
+def _absolute(quantity: Quantity) -> bool:
+    """Whether the zero of a quantity is far off: a share of it says nothing."""
+    return quantity.dimension == "temperature"
+
+
+def _put(node: Any, loc: Loc, value: float) -> Any:
+    """A section with another number at a place."""
+    key, rest = loc[0], loc[1:]
+    old = child(node, key)
+    new: Any = _put(old, rest, value) if rest else value
+    if not rest and isinstance(old, Fraction):
+        new = Fraction(value)
+    if isinstance(node, tuple):
+        return tuple(new if k == key else item for k, item in enumerate(node))
+    return node.model_copy(update={key: new})
+
+
+def _stated(node: Any, loc: Loc) -> bool:
+    """Whether a file states what stands at a place: no default."""
+    for key in loc:
+        if isinstance(key, str) and key not in node.model_fields_set:
+            return False
+        node = child(node, key)
+    return True
