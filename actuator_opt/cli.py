@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.exceptions import TyperException
@@ -46,6 +46,8 @@ from .version import VERSION
 
 if TYPE_CHECKING:
     from .optimisation.result import Optimisation
+    from .reporting import ExtraTable
+    from .simulation.verification import Verification
 
 app = typer.Typer(
     name="actuator-opt",
@@ -173,6 +175,14 @@ def optimise(
     algorithm: Algorithm = "auto",
     starts: Starts = 6,
     whole_plies: WholePlies = False,
+    verify: Annotated[
+        str | None,
+        typer.Option(
+            "--verify-dynamics",
+            metavar="SCENARIO",
+            help="Simulate the best design in this scenario: does each dynamic requirement hold?",
+        ),
+    ] = None,
     write: Write = None,
     out: Out = REPORTS,
     report: Annotated[
@@ -190,27 +200,47 @@ def optimise(
     reporting = report or not as_json
     check_targets(out if reporting else None, date, write)
     actuator = read_actuator(design, sets, plugin)
+    trial = None if verify is None else verbs.read_scenario(verify)
     result = verbs.optimise(
         actuator, algorithm=algorithm, starts=starts, seed=seed, whole_plies=whole_plies
     )
     good = _outcome(result) == ExitCode.MET
     if write is not None and good:
         verbs.save(result.best, write, source=actuator.source)
-    files = write_report(result, actuator, out, date) if reporting else []
+    timed = None if trial is None else verbs.verify_dynamics(trial, result.best)
+    tables = _dynamics_tables(timed)
+    files = write_report(result, actuator, out, date, tables) if reporting else []
     if as_json:
-        streams.out_json(result.to_dict() | ({"files": files} if files else {}))
+        more: dict[str, Any] = {} if timed is None else {"dynamics_verified": timed.to_dict()}
+        streams.out_json(result.to_dict() | more | ({"files": files} if files else {}))
     elif not quiet:
         from .optimisation.rounding import unrounded
         from .reporting.terminal import optimisation_text
 
         streams.out(optimisation_text(result, **streams.style()), end="")
+        if timed is not None:
+            from .reporting.verification_text import verification_text
+
+            streams.out(verification_text(timed, **streams.style()), end="")
         if remark := unrounded(result):
             streams.err(remark)
         say_files(([{"path": write}] if write is not None and good else []) + files)
     if write is not None and not good:
         why = (result.rounding or result).sentence
         streams.err(f"{write}: not written, there is no design to save: {why}")
-    raise typer.Exit(_outcome(result))
+    outcome = _outcome(result)
+    if outcome == ExitCode.MET and timed is not None and not timed.met:
+        outcome = ExitCode.MISSED
+    raise typer.Exit(outcome)
+
+
+def _dynamics_tables(timed: Verification | None) -> list[ExtraTable]:
+    """What the time domain says of the best design, for its report."""
+    if timed is None:
+        return []
+    from .reporting.verification_rows import verification_rows
+
+    return [*verification_rows(timed)]
 
 
 def _outcome(result: Optimisation) -> ExitCode:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from .evaluation import Evaluation
     from .optimisation.result import Optimisation
     from .quantities import Quantity
+    from .reporting import ExtraTable
     from .verbs import Actuator
 
 
@@ -85,11 +87,15 @@ def write_report(
     actuator: Actuator,
     out: Path,
     date: str | None,
+    tables: Sequence[ExtraTable] = (),
 ) -> list[dict[str, Any]]:
     """Write the report; its files as JSON."""
     from .verbs import report
 
-    files = report(subject, folder=out, actuator=actuator, command=command_line(), date=date)
+    files = report(
+        subject, folder=out, actuator=actuator, command=command_line(), date=date,
+        extra_tables=tables,
+    )  # fmt: skip
     return [file.to_dict() for file in files]
 
 

@@ -10,13 +10,14 @@ import typer
 from . import streams
 from .cli_shared import assignments, check_targets, command_line, say_files
 from .errors import Diagnostic, ExitCode, UsageError
-from .options import REPORTS, Date, Json, Out, Quiet, Report, Seed, Set
+from .options import REPORTS, Date, Json, Out, Quiet, Report, Set
 from .store import require_apart
 
 if TYPE_CHECKING:
     from .simulation import Simulation
     from .simulation.integrate import Method
-    from .verbs import Trial
+    from .simulation.sensitivity import Sensitivities
+    from .verbs import Compared
 
 ScenarioFile = Annotated[
     str, typer.Argument(metavar="SCENARIO", help="Scenario file, or - for stdin.")
@@ -77,11 +78,11 @@ def simulate(
     trial = verbs.read_scenario(scenario, set=assignments(sets))
     method: Method = "cvodes" if fast else "lsoda"
     found = verbs.simulate(trial, verify=verify, method=method)
-    data = found.to_dict()
     overlay = None
     if measured is not None:
-        overlay = verbs.compare_measured(trial, found, measured, fit=fit or ())
-        data["measured"] = overlay.to_dict()
+        overlay = verbs.compare_measured(trial, measured, fit=fit or (), simulation=found)
+        found = overlay.simulation if fit else found
+    data = found.to_dict() | ({} if overlay is None else {"measured": overlay.to_dict()})
     ranked = verbs.servo_sensitivities(trial) if sensitivity else None
     if ranked is not None:
         data["sensitivities"] = ranked.to_dict()
@@ -90,22 +91,33 @@ def simulate(
         files.append(verbs.write_signals(found, csv).to_dict())
     if report:
         pages = verbs.write_simulation(
-            found,
-            trial,
-            measured=overlay,
-            sensitivities=ranked,
-            folder=out,
-            command=command_line(),
-            date=date,
-        )
+            found, trial, measured=overlay, sensitivities=ranked,
+            folder=out, command=command_line(), date=date,
+        )  # fmt: skip
         files += [page.to_dict() for page in pages]
     if files:
         data["files"] = files
     if as_json:
         streams.out_json(data)
     elif not quiet:
-        streams.out(verbs.simulation_text(found, measured=overlay, sensitivities=ranked))
-    if not as_json and not quiet:
+        _say(found, overlay, ranked)
         say_files(files)
     if not found.met:
         raise typer.Exit(ExitCode.MISSED)
+
+
+def _say(found: Simulation, overlay: Compared | None, ranked: Sensitivities | None) -> None:
+    """Everything on the terminal."""
+    from .reporting.simulation_text import simulation_text
+
+    style = streams.style()
+    parts = [simulation_text(found, **style)]
+    if overlay is not None:
+        from .reporting.measured_rows import measured_text
+
+        parts.append(measured_text(overlay.overlay, overlay.fit, **style))
+    if ranked is not None:
+        from .reporting.verification_text import sensitivity_text
+
+        parts.append(sensitivity_text(ranked, **style))
+    streams.out("\n".join(parts), end="")

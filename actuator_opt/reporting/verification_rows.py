@@ -14,8 +14,8 @@ from .text import DASH, number, pretty
 
 HEADS = ("requirement", "limit", "evaluation", "linear", "in time", "difference", "holds")
 MEANING = (
-    "Evaluation: the linear tier at its worst; linear: the same where the experiment stands, on the "
-    "side on which its spool rests; the difference is from that."
+    "Evaluation: the linear tier at its worst; linear: the same where the experiment stands, on "
+    "the side on which its spool rests; the difference is from that."
 )
 UNSURE = "?"
 """Behind an effect that half the step does not confirm."""
@@ -86,17 +86,22 @@ def _percent(value: float) -> str:
     """A change in per cent, with a sign."""
     if abs(value) < 0.05:
         return "0.0 %"
+    if value >= 1000:
+        return f"× {number(1 + value / 100, 3)}"
     return f"{number(value, 2 if abs(value) < 100 else 3, signed=True)} %"
 
 
 def verdict(found: Verification) -> str:
     """What came of it, in a sentence."""
     rows = found.rows
-    missed = [label(row) for row in rows if not row.met]
     if not rows:
         return "No dynamic requirement is stated."
-    held = f"{len(rows) - len(missed)} of {len(rows)} requirements hold in time"
-    return sentence(held + (f"; not {', '.join(missed)}" if missed else ""))
+    met = sum(row.met for row in rows)
+    missed = [label(row) for row in rows if not row.met and row.value is not None]
+    unknown = [label(row) for row in rows if not row.met and row.value is None]
+    words = f"{met} of {len(rows)} requirements hold in time"
+    words += f"; missed: {', '.join(missed)}" if missed else ""
+    return sentence(words + (f"; not known: {', '.join(unknown)}" if unknown else ""))
 
 
 def effort(found: Verification) -> str:
@@ -118,8 +123,8 @@ def verification_rows(found: Verification) -> tuple[ExtraTable, ...]:
     if said:
         heads = ("requirement", "case and place", "experiment", "difference, as seen")
         note = (
-            "Each share is measured: the experiment without sticking friction, then with a fiftieth "
-            "of the swing; what is left is the operating point."
+            "Each share is measured: the experiment without sticking friction, then with a "
+            "fiftieth of the swing; what is left is the operating point."
         )
         tables.append(ExtraTable("Experiments behind them", heads, said, note))
     return tuple(tables)

@@ -7,13 +7,12 @@ friction, all figures depend on them.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import exp, inf, log, pi, radians, sin, sqrt
+from math import exp, inf, log, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from ..design.scenario.signals import Force, Position
-from ..errors import InputError
 from ..numeric import Array
 from .harmonic import dynamic_stiffness_of_record, harmonic_fit
 from .stand import Measured, Record, Stand
@@ -34,8 +33,10 @@ MOST = 16.0
 """Factor on a linear figure within which the nonlinear one is sought (a choice)."""
 LASTING = 1e-3
 """Decay per period below which a swing counts as lasting (a choice)."""
-EARLY, LATE = (12.0, 18.0), (26.0, 32.0)
+EARLY, LATE = (8.0, 12.0), (18.0, 22.0)
 """Windows after a push, in periods, between which a swing grows or decays."""
+UNEVEN = 2.0
+"""Ratio of the lengths of half swings from which they are no decay (a choice)."""
 FADED = 0.05
 """Share of the first swing below which a decay is not read (a choice)."""
 
@@ -234,16 +235,14 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Measured:
         found = {"ultimate_gain": inf if way > 0 else 0.0}
         words = "no swinging up to" if way > 0 else "it swings down to 1 over"
         return Measured(found, how, facts, f"{words} {MOST:g} times the linear one")
-    share = float(brentq(growth, low, high, xtol=EXACT))
+    share = float(brentq(growth, low, high, xtol=2 * EXACT))
     near = min(seen, key=lambda one: abs(one - share))
     facts = stand.facts(seen[near])
     how += f", swing of {1e3 * facts.swing:.2g} mm"
     return Measured({"ultimate_gain": expected * exp(share)}, how, facts)
 
 
-def _growth(
-    stand: Stand, gain: float, frequency: float, push: float
-) -> tuple[float, Record]:
+def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[float, Record]:
     """Growth of the speed's swing per period, and the record of its early window."""
     period = 1 / frequency
     record = stand.closed(
@@ -302,9 +301,14 @@ def decay(stand: Stand, ends: str, resonance: float) -> Measured:
         return Measured(dict.fromkeys(names), how, facts, "the piston creeps onto its stop")
     times, values = _extremes(record.time, record.signals["speed"])
     spans = np.abs(np.diff(values))
-    kept = int(np.argmax(spans < FADED * spans[:1])) if np.any(spans < FADED * spans[:1]) else len(spans)
+    faded = np.flatnonzero(spans < FADED * spans[:1])
+    kept = int(faded[0]) if faded.size else len(spans)
     if kept < 2:
         why = f"overdamped or stuck: it comes to rest after {len(spans)} half swings"
+        return Measured(dict.fromkeys(names), how, facts, why)
+    halves = np.diff(times[: kept + 1])
+    if np.max(halves) > UNEVEN * np.min(halves):
+        why = "it sticks and slips: half swings of uneven length, no decay"
         return Measured(dict.fromkeys(names), how, facts, why)
     decrement = log(spans[0] / spans[kept - 1]) / (kept - 1)
     ratio = decrement / sqrt(pi * pi + decrement * decrement)

@@ -20,7 +20,7 @@ from .system import Compiled
 
 SHARPER = 0.1
 """Absolute tolerance over the stated one (a choice: then as close as LSODA, measured)."""
-_EVEN = 1e-6
+_EVEN = 1e-8
 """Difference of two steps, over the step, that is rounding."""
 _BUFFERED = 1
 """Number of the memory that CasADi gives a function's first buffer."""
@@ -140,12 +140,13 @@ class _Integrator:
         ends = np.arange(1.0, CHUNK + 1.0)
         run = casadi.integrator("states", "cvodes", equations, 0.0, ends, options)
         self.function = run
-        self.begin, self.parameters = np.zeros(run.nnz_in("x0")), np.zeros(run.nnz_in("p"))
-        self.steps, self.states = np.zeros(CHUNK), np.zeros((CHUNK, run.nnz_in("x0")))
+        size: int = run.nnz_in("x0")
+        self.begin, self.parameters = np.zeros(size), np.zeros(run.nnz_in("p"))
+        self.steps, self.states = np.zeros(CHUNK), np.zeros((CHUNK, size))
         self.buffer, self.call = run.buffer()
         for name, values in (("x0", self.begin), ("p", self.parameters), ("u", self.steps)):
-            self.buffer.set_arg(run.index_in(name), memoryview(values))
-        self.buffer.set_res(run.index_out("xf"), memoryview(self.states))
+            self.buffer.set_arg(run.index_in(name), values.data)
+        self.buffer.set_res(run.index_out("xf"), self.states.data)
 
     def __call__(
         self, start: float, stop: float, count: int, states: Array, m: tuple[bool, ...]
@@ -170,7 +171,7 @@ def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
         return free.get(name, casadi.SX.sym(name))
 
     states = casadi.vertcat(*(symbol(str(s.symbol.args[0])) for s in system.states))
-    flags = [symbol(one.flag) for one in (*system.instants, *system.switches)]
+    names = [one.flag for one in system.instants] + [one.flag for one in system.switches]
     sample, start, step = (casadi.SX.sym(name) for name in ("sample", "start", "step"))
     scaled = casadi.SX.sym("x", len(system.states))
     (ode,) = casadi.substitute(
@@ -178,7 +179,7 @@ def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
         [casadi.vertcat(states, symbol("t"))],
         [casadi.vertcat(scaled * unit, start + step * sample)],
     )
-    parameters = casadi.vertcat(start, *flags)
+    parameters = casadi.vertcat(start, *(symbol(name) for name in names))
     return {"t": sample, "x": scaled, "p": parameters, "u": step, "ode": ode}
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isfinite, radians
 
 import numpy as np
@@ -14,17 +13,16 @@ from ..evaluation.study.plant import Plant
 from ..models.tuning import ControllerGains, margin_rules, ziegler_nichols
 from ..numeric import Array
 from .assemble import Loop, assemble, loop_of, start_of
-from .linearise import Linear, Margins, OpenLoop, Ultimate, controller, least, margins
+from .linearise import Law, Linear, Margins, OpenLoop, Ultimate, least, margins
 from .parts.signals import Records, steady_value
 
 MARGIN = {"p": 2.0, "pi": 3.0}
 """Gain margin of tuning by margins (a choice: the P law as the design's default, half the ultimate
 gain; an integral part takes phase)."""
 PHASE = radians(60.0)
-"""Phase margin that the integral part of a speed loop leaves (a choice)."""
+"""Phase margin above which none is missed (a choice)."""
 KEPT = 0.8
-"""Share of the gain margin, and of the phase margin of a position loop without it, that an integral
-part leaves (a choice)."""
+"""Share of the margins of the gain alone that an integral part leaves (a choice)."""
 NO_GAIN = 1e-9
 """Factor that stands for a gain of zero beside an integral or derivative part."""
 UNITS: dict[Loop, str] = {
@@ -82,7 +80,7 @@ def tune(scenario: Scenario, plant: Plant, records: Records) -> Tuned | None:
     else:
         gains, origin, notes = _ruled(control, loop, limit, worst)
     factor, integral = control.gain_factor or NO_GAIN, control.integral_factor
-    shaped = controller(  # each factor on its own part, as `parts.control`
+    shaped = Law(  # each factor on its own part, as `parts.control`
         factor * gains.proportional_gain,
         factor / integral * gains.integral_time if integral else inf,
         control.derivative_factor / factor * gains.derivative_time,
@@ -173,28 +171,20 @@ def _ruled(
         if control.law == "p":
             return gains, origin, ()
         gain, shortest = gains.proportional_gain, gains.integral_time
-        alone = margins(worst, controller(gain, inf, 0.0, control.filter_time)).phase
-        phase = PHASE if alone is None else KEPT * min(alone, PHASE)
     else:
-        gain, shortest, phase = limit.gain / margin, 0.02 * limit.period, PHASE
-    time = _integral_time(worst, limit, gain, control, (margin, phase), shortest)
+        gain, shortest = limit.gain / margin, 0.02 * limit.period
+    time = _integral_time(worst, Law(gain, inf, 0.0, control.filter_time), shortest, limit.period)
     return ControllerGains(gain, time, 0.0), origin, ()
 
 
-def _integral_time(
-    loop: OpenLoop,
-    limit: Ultimate,
-    gain: float,
-    control: Control,
-    wanted: tuple[float, float],
-    shortest: float,
-) -> float:
-    """Shortest integral time that keeps the phase margin and most of the gain margin."""
-    margin, phase = wanted
-    longest = 1e4 * max(limit.period, shortest)
-    for time in np.geomspace(shortest, longest, 140):
-        shaped: Callable[[Array], Array] = controller(gain, float(time), 0.0, control.filter_time)
-        found = margins(loop, shaped)
-        if found.gain >= KEPT * margin and (found.phase is None or found.phase >= phase):
+def _integral_time(loop: OpenLoop, law: Law, shortest: float, period: float) -> float:
+    """Least integral time, from the shortest on, that keeps `KEPT` of the margins without it."""
+    alone = margins(loop, law)
+    phase = KEPT * (PHASE if alone.phase is None else min(alone.phase, PHASE))
+    longest = 1e4 * period
+    for time in np.geomspace(shortest, max(longest, shortest), 140):
+        found = margins(loop, replace(law, integral_time=float(time)))
+        kept = found.phase is None or found.phase >= phase
+        if found.stable and found.gain >= KEPT * alone.gain and kept:
             return float(time)
     return longest

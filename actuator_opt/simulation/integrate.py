@@ -21,7 +21,7 @@ from .system import Compiled
 Method = Literal["lsoda", "radau", "cvodes"]
 RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
 """Relative tolerance of a step; the second opinion is the sharper one."""
-CHUNK = 400
+CHUNK = 200
 """Samples after which the switches are looked at."""
 LOOK = 2e-3
 """Longest time between two samples of a switch [s] (a choice: a half swing of the oil)."""

@@ -22,6 +22,8 @@ from .stand import Stand, Tally
 WEAKEST = "weakest position"
 STEADY = 0.4
 """Largest gain over the ultimate one at which a loop is brought to rest (a choice)."""
+SLOW = 0.05
+"""Bandwidth over the resonance of a loop of which none is known (a choice)."""
 PEAK = 0.5
 """Magnitude from which a resonance of the open loop may make a crossover (a choice)."""
 
@@ -98,7 +100,8 @@ class LinearTier:
         gain = of_case(self.done.computed.metrics["position_gain"][""], spot.case)
         both = [self.figures(spot.case, spot.position, way) for way in (True, False)]
         least = min(one.ultimate_gain for one in both)
-        slow = min(one.bandwidth for one in both)
+        known = [one.bandwidth for one in both if one.bandwidth > 0]
+        slow = min(known, default=SLOW * self.resonance(spot.case, spot.position))
         return stand.but(gain=gain, steady_gain=min(gain, STEADY * least), bandwidth=slow)
 
     def _open_loop(self, position: float, extending: bool) -> loop.OpenLoop:
@@ -189,5 +192,3 @@ class LinearTier:
         if self.subject.design.ports.accumulators:
             return "accumulators at the ports are not simulated"
         return ""
-
-

@@ -15,7 +15,7 @@ from .assemble import Circuit
 TOUCH = 1e-9
 """Position of the spool beside its centre [V]: which pair of edges opens."""
 GROWING = 1e-3
-"""Real part of a growing pole over the largest pole (a choice: below it nothing is lost in a run)."""
+"""Real part of a growing pole over the largest one (a choice: slower growth is creep)."""
 POINTS = 2000
 """Frequencies between two decades below the slowest and one above the fastest pole."""
 
@@ -150,21 +150,65 @@ def _crossings(loop: OpenLoop, response: Callable[[Array], Array]) -> list[tuple
 
 
 @dataclass(frozen=True, slots=True)
+class Law:
+    """C(s) = K [1 + 1/(s T_i) + s T_d/(1 + s T_f)] of a controller."""
+
+    gain: float
+    integral_time: float
+    derivative_time: float
+    filter_time: float
+
+    def at(self, omega: Array) -> Array:
+        """C(i omega)."""
+        s = 1j * np.asarray(omega, dtype=float)
+        part = 1.0 + self.derivative_time * s / (1 + self.filter_time * s)
+        if self.integral_time < inf:
+            part = part + 1 / (s * self.integral_time)
+        return self.gain * part
+
+    def closed(self, loop: OpenLoop) -> Array:
+        """Poles of the closed loop."""
+        size = len(loop.poles)
+        c, ones = loop.residues, np.ones(size)
+        direct = self.gain * (1 + self.derivative_time / self.filter_time)
+        a = np.zeros((size + 2, size + 2), dtype=complex)
+        # u = -K [(1 + T_d/T_f) y + I/T_i - T_d/T_f f], I' = y, f' = (y - f)/T_f
+        a[:size, :size] = np.diag(loop.poles) - direct * np.outer(ones, c)
+        if self.integral_time < inf:
+            a[:size, size] = -self.gain / self.integral_time
+            a[size, :size] = c
+        else:
+            a[size, size] = -1 / self.filter_time
+        a[:size, size + 1] = self.gain * self.derivative_time / self.filter_time
+        a[size + 1, :size] = c / self.filter_time
+        a[size + 1, size + 1] = -1 / self.filter_time
+        return np.asarray(np.linalg.eigvals(a))
+
+
+@dataclass(frozen=True, slots=True)
 class Margins:
     """Margins of a loop with its controller."""
 
     gain: float
+    """Factor on the gain at which it swings: above one where it is stable, else below."""
     phase: float | None
     """[rad]; None where the loop's gain never passes one."""
+    stable: bool
 
 
-def margins(loop: OpenLoop, controller: Callable[[Array], Array]) -> Margins:
-    """Gain and phase margin of L(i omega) C(i omega); a gain margin below one is unstable."""
+def margins(loop: OpenLoop, law: Law) -> Margins:
+    """Gain and phase margin of L(i omega) C(i omega); its closed poles say whether it is stable."""
 
     def response(omega: Array) -> Array:
-        return loop.at(omega) * controller(omega)
+        return loop.at(omega) * law.at(omega)
 
-    above = [-1 / value.real for _, value in _crossings(loop, response)]
+    poles = law.closed(loop)
+    stable = bool(np.max(poles.real) <= GROWING * np.max(np.abs(loop.poles)))
+    factors = [-1 / value.real for _, value in _crossings(loop, response)]
+    if stable:
+        gain = min((one for one in factors if one > 1), default=inf)
+    else:
+        gain = max((one for one in factors if one <= 1), default=0.0)
     omega = loop.frequencies
     value = response(omega)
     size = np.abs(value)
@@ -174,20 +218,7 @@ def margins(loop: OpenLoop, controller: Callable[[Array], Array]) -> Margins:
         here = response(omega[k : k + 1] * (omega[k + 1] / omega[k]) ** share)[0]
         own = float(np.angle(-here))
         phase = own if phase is None or abs(own) < abs(phase) else phase
-    return Margins(min(above, default=inf), phase)
-
-
-def controller(
-    gain: float, integral_time: float, derivative_time: float, filter_time: float
-) -> Callable[[Array], Array]:
-    """C(i omega) = K (1 + 1/(i omega T_i) + i omega T_d/(1 + i omega T_f))."""
-
-    def at(omega: Array) -> Array:
-        s = 1j * np.asarray(omega, dtype=float)
-        part = 1.0 + derivative_time * s / (1 + filter_time * s)
-        return gain * (part + 1 / (s * integral_time) if integral_time < inf else part)
-
-    return at
+    return Margins(gain, phase, stable)
 
 
 def least(loops: Sequence[OpenLoop]) -> tuple[Ultimate, OpenLoop]:

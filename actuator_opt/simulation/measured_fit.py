@@ -19,13 +19,15 @@ from .gains import Tuned, tune
 from .measured import Measured, Overlay, overlay
 from .measured_bounds import bounds
 from .measured_parameters import Entry, entries
-from .measured_problem import MISFIT, Problem
+from .measured_problem import Problem
 from .parts.signals import Records
 from .run import run
 
+MISFIT: Final = 2.0
+"""Residual over noise from which the model misses the record (a choice)."""
 ALIKE: Final = 0.9
 """Correlation from which two parameters are named as not parted (a choice)."""
-EDGE: Final = 1e-3
+EDGE: Final = 0.01
 """Share of a parameter's range within which it lies at its end (a choice)."""
 
 
@@ -75,6 +77,12 @@ class Fit:
     seconds: float
 
     @property
+    def missed(self) -> tuple[str, ...]:
+        """Channels that are left with more than their noise: there the model lacks something."""
+        found = self.after.residuals.items()
+        return tuple(name for name, one in found if one.rms > MISFIT * one.noise)
+
+    @property
     def values(self) -> dict[str, float]:
         """Fitted values by name, SI."""
         return {name: one.parameter.value for name, one in self.parameters.items()}
@@ -89,6 +97,7 @@ class Fit:
             ],
             "before": self.before.to_dict(),
             "after": self.after.to_dict(),
+            "missed": list(self.missed),
             "doubts": list(self.doubts),
             "runs": self.runs,
             "seconds": self.seconds,
@@ -216,14 +225,17 @@ def _parted(
     fitted: Mapping[str, Fitted], correlations: Mapping[tuple[str, str], float]
 ) -> Iterator[str]:
     """Parameters of which one hides in the other."""
-    for (one, other), value in correlations.items():
-        sure = all(fitted[name].parameter.identifiable for name in (one, other))
-        if abs(value) > ALIKE and not sure:
-            how = "together" if value > 0 else "against each other"
-            yield (
-                f"{one} and {other} move {how} (correlation {value:.3f}): their combination is "
-                "better known than either; state one, or measure something that parts them"
-            )
+    found = [
+        f"{one} with {other} ({value:.2f})"
+        for (one, other), value in correlations.items()
+        if abs(value) > ALIKE
+        and not all(fitted[name].parameter.identifiable for name in (one, other))
+    ]
+    if found:
+        yield (
+            f"errors go together: {', '.join(found)}; such a pair is better known than either: "
+            "state one, or measure what parts them"
+        )
 
 
 def _missed(after: Overlay, before: Overlay) -> Iterator[str]:

@@ -32,8 +32,8 @@ FIRST: Final = 1e-2
 """The first one (a choice)."""
 GUESSES: Final = (1 / 3, 3.0)
 """Factors on each start that are tried before the search (a choice)."""
-MISFIT: Final = 3.0
-"""Residual over noise from which the model misses the record (a choice)."""
+ASTRAY: Final = 5.0
+"""Residual over noise from which another start is tried (a choice)."""
 MARGIN: Final = 0.02
 """Range about the lag tried best that is searched, over the simulated time (a choice)."""
 LAGS: Final = 801
@@ -42,6 +42,12 @@ FAR: Final = 10.0
 """Residual of a run that cannot go on, over the largest of the first run (a choice)."""
 PASSES: Final = 40
 """Most steps of a search (a choice)."""
+ROUNDS: Final = 4
+"""Most searches with new weights (a choice)."""
+SETTLED: Final = 0.1
+"""Share by which weights may still change (a choice)."""
+ROUGH, SHARP = 1e-4, 1e-8
+"""Share by which a search ends, on the way and at last: of the cost, and of a step (choices)."""
 
 
 class Problem:
@@ -67,7 +73,7 @@ class Problem:
         self.own, self.names = tuple(own), tuple(one.name for one in own)
         self.late = self.names.index("lag") if "lag" in self.names else None
         self.start, self.low, self.high = (
-            np.array([_searched(one, getattr(one, end)) for one in own])
+            np.array([_scaled(one, getattr(one, end)) for one in own])
             for end in ("start", "lower", "upper")
         )
         apart = min(float(np.median(np.diff(t))) for t, _ in measured.channels.values())
@@ -151,10 +157,6 @@ class Problem:
             return np.full(sum(t.size for t, _ in self.used.values()), self.far)
         return np.concatenate([self.weights[name] * one for name, one in found.items()])
 
-    def cost(self, x: Array) -> float:
-        """Sum of the squares of the residuals."""
-        return float(np.sum(self.rest(x) ** 2))
-
     def slopes(self, x: Array, steps: Array) -> Array:
         """Derivatives of the residuals by central differences, within the range."""
         columns = []
@@ -177,25 +179,51 @@ class Problem:
         return found
 
     def solve(self) -> Array:
-        """The best values: a lag and starts that are tried, a search, another one by what is left.
+        """The best values: starts that are tried, a search, at last a sharp one.
 
-        Where the model misses the record from there, the search begins once more at the start.
+        Where the model misses the record by far, the search begins once more at the start.
         """
         tried = self._guessed(self.start)
-        x = self._descended(tried)
-        if self.missed(x) and not np.array_equal(tried, self.start):
-            other = self._descended(self.start)
-            x = other if self.cost(other) < self.cost(x) else x
-        for name, one in self.apart(x).items():
-            self.weights[name] = 1 / max(self.noise[name], float(np.sqrt(np.mean(one**2))))
-        return self._descended(x)
+        x = self._searched(tried)
+        if self._astray(x) and not np.array_equal(tried, self.start):
+            other = self._searched(self.start)
+            x = min((x, other), key=self._judged)
+        self._weigh(x)
+        return self._descended(x, SHARP)
 
-    def missed(self, x: Array) -> bool:
-        """Whether some channel is left with more than its noise."""
-        return any(
-            np.sqrt(np.mean(one**2)) > MISFIT * self.noise[name]
+    def _searched(self, x: Array) -> Array:
+        """Least squares, every channel weighted by what is left of it, until that settles."""
+        self._weigh(x)
+        for _ in range(ROUNDS):
+            x = self._descended(x, ROUGH)
+            before = dict(self.weights)
+            self._weigh(x)
+            if all(abs(self.weights[name] / one - 1) < SETTLED for name, one in before.items()):
+                break
+        return x
+
+    def left(self, x: Array) -> dict[str, float]:
+        """Root mean square residual of every channel, not less than its noise."""
+        return {
+            name: max(self.noise[name], float(np.sqrt(np.mean(one**2))))
             for name, one in self.apart(x).items()
-        )
+        }
+
+    def _astray(self, x: Array) -> bool:
+        """Whether some channel is left with much more than its noise."""
+        return any(one > ASTRAY * self.noise[name] for name, one in self.left(x).items())
+
+    def _weigh(self, x: Array) -> None:
+        """Weights of the channels by what is left of them."""
+        self.weights = {name: 1 / one for name, one in self.left(x).items()}
+
+    def _judged(self, x: Array) -> float:
+        """Less is likelier: the logarithm of what is left, over all samples."""
+        try:
+            left = self.left(x)
+        except Unsolvable:
+            return np.inf
+        return float(sum(self.used[name][0].size * np.log(one) for name, one in left.items()))
 
     def _aligned(self, measured: Measured, signals: Mapping[str, Array]) -> float:
         """The lag at which the record is nearest to the first run, by the mean of what overlaps."""
@@ -218,16 +246,16 @@ class Problem:
 
     def _guessed(self, x: Array) -> Array:
         """With starts of positive parameters that are better by a factor, one after the other."""
-        best, least = x, self.cost(x)
+        best, least = x, self._judged(x)
         for k, one in enumerate(self.own):
             for by in GUESSES if one.positive else ():
                 row = best.copy()
                 row[k] = np.clip(x[k] + np.log(by), self.low[k], self.high[k])
-                cost = self.cost(row)
-                best, least = (row, cost) if cost < least else (best, least)
+                judged = self._judged(row)
+                best, least = (row, judged) if judged < least else (best, least)
         return best
 
-    def _descended(self, x: Array) -> Array:
+    def _descended(self, x: Array, tolerance: float) -> Array:
         """Least squares within the range."""
         from scipy.optimize import least_squares  # slow to import, rarely needed
 
@@ -238,15 +266,15 @@ class Problem:
             jac=self._slopes,
             bounds=(self.low, self.high),
             x_scale=self.sizes,
-            ftol=1e-8,
-            xtol=1e-8,
+            ftol=tolerance,
+            xtol=tolerance,
             max_nfev=PASSES,
         )
         best: Array = found.x
         return best
 
 
-def _searched(entry: Entry, value: float) -> float:
+def _scaled(entry: Entry, value: float) -> float:
     return float(np.log(value)) if entry.positive else float(value)
 
 

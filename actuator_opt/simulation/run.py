@@ -160,7 +160,7 @@ def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]
     notes = [*circuit.system.notes]
     if tuned is not None:
         notes += tuned.notes
-        if tuned.margins.gain <= 1:
+        if not tuned.margins.stable:
             notes.append(
                 f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}, it swings "
                 "until the valve's limits or the friction hold it"

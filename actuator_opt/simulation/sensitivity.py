@@ -29,7 +29,7 @@ from .result import Simulation
 from .run import run
 
 STEP = 0.02
-"""Share of a parameter by which it is moved (a choice: small, well above the integration's error)."""
+"""Share of a parameter by which it is moved (a choice: well above the error of a run)."""
 AGREE = 0.1
 """Share within which a difference with half the step must agree."""
 NOTHING = 0.05
@@ -244,15 +244,14 @@ class _Bench:
             found = paths.resolve(name, self.scenario, RESULTS, Scenario)
         except ValueFault:
             quantity, value = paths.quantity_of(name, design), paths.get(design, name)
-            path, loc = paths.canonical(name, design), ()
-            origin: Literal["design", "scenario"] = "design"
+            if isinstance(value, float):
+                return _Target(paths.canonical(name, design), (), quantity, value, "design")
         else:
-            path, loc, quantity = found.path, found.loc, found.quantity
-            value, origin = number_of(child_at(self.scenario, loc)), "scenario"
-        if quantity is None or not isinstance(value, float):
-            message = "no number is stated here"
-            raise InputError(Diagnostic(message, "name a number that the file states", path=name))
-        return _Target(path, loc, quantity, value, origin)
+            number = number_of(child_at(self.scenario, found.loc))
+            if number is not None and found.quantity is not None:
+                return _Target(found.path, found.loc, found.quantity, number, "scenario")
+        message = "no number is stated here"
+        raise InputError(Diagnostic(message, "name a number that the file states", path=name))
 
     def parameter(self, one: _Target, chosen: Mapping[str, float], step: float) -> Parameter:
         """Effects of one parameter: two runs, and two more where something changes."""

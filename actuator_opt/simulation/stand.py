@@ -21,10 +21,12 @@ from ..numeric import Array
 from .assemble import assemble
 from .integrate import integrate
 
-RELATIVE = 1e-9
-"""Relative tolerance of a step: a swing of a micrometre shows beside a position of 100 mm."""
+RELATIVE = 1e-7
+"""Relative tolerance of a step, for a swing of full size: small ones need a smaller one."""
+FINEST = 1e-9
+"""Least relative tolerance of a step: 0.1 nm beside a position of 100 mm."""
 SETTLED = 3.0
-"""Periods of the loop's bandwidth after which it counts as at rest (a choice: e^(-6 pi) is left)."""
+"""Periods of the bandwidth after which a loop is at rest (a choice: e^(-6 pi) is left)."""
 
 
 @dataclass(slots=True)
@@ -62,8 +64,6 @@ class Facts:
     """Share of the time with the valve's signal at its limit."""
     spool: tuple[float, float] | None
     """Least and largest position of the spool [V]."""
-    extending: float
-    """Share of the time with the spool on the side that extends."""
     pressures: tuple[float, float]
     """Means of the chambers A and B [Pa]."""
     pulse: float
@@ -149,31 +149,19 @@ class Stand:
         start : states by name that replace those of the stand
         """
         self.tally.runs += 1
-        stated = self.scenario.control
-        control = None
-        if gain is not None:
-            control = Control(
-                position=(*reference, Position(shape="constant", value=0.0)),
-                tuning="stated",
-                position_gain=gain,
-                rate_limit=None if stated is None else stated.rate_limit,
-            )
-        holding = Force(shape="constant", value=self.force)
         scenario = self.scenario.model_copy(
             update={
                 "duration": duration,
                 "sample_time": sample_time,
                 "initial": Initial(
-                    position=self.position,
-                    pressure_a=self.pressure_a,
-                    pressure_b=self.pressure_b,
+                    position=self.position, pressure_a=self.pressure_a, pressure_b=self.pressure_b
                 ),
                 "ends": ends,
                 "motor": None,
                 "held_ports": None,
-                "load": Load(force=(holding, *force)),
+                "load": Load(force=(Force(shape="constant", value=self.force), *force)),
                 "signal": (Signal(shape="constant", value=signal),) if signal else (),
-                "control": control,
+                "control": None if gain is None else self._control(gain, reference),
                 "requirements": {},
             }
         )
@@ -184,16 +172,30 @@ class Stand:
         compiled = system.compiled()
         names = [one.name for one in system.states]
         if start is not None:
-            begin = np.array(
-                [start.get(name, value) for name, value in zip(names, compiled.initial, strict=True)]
-            )
+            own = dict(zip(names, compiled.initial.tolist(), strict=True))
+            begin = np.array([start.get(name, value) for name, value in own.items()])
             compiled = replace(compiled, initial=begin)
-        found = integrate(
-            compiled, duration=duration, sample_time=sample_time, relative=RELATIVE
-        )
+        relative = max(RELATIVE * min(self.scale, 1.0), FINEST)
+        found = integrate(compiled, duration=duration, sample_time=sample_time, relative=relative)
         signals = compiled.signals(found.time, found.states, found.flags)
         last = dict(zip(names, found.states[:, -1].tolist(), strict=True))
         return Record(found.time, signals, last)
+
+    def _control(self, gain: float, reference: Sequence[Position]) -> Control:
+        """A proportional position loop, with the rate limit of the scenario."""
+        stated = self.scenario.control
+        return Control(
+            position=(*reference, Position(shape="constant", value=0.0)),
+            tuning="stated",
+            position_gain=gain,
+            rate_limit=None if stated is None else stated.rate_limit,
+        )
+
+    @property
+    def opening(self) -> float:
+        """Where the spool rests, off its centre [V]; positive extends."""
+        assert self.plant.valve is not None
+        return self.rest()["spool"] - self.plant.valve.offset
 
     def rest(self) -> Mapping[str, float]:
         """States in which the loop holds the force at the stand's place; found once.
@@ -202,12 +204,19 @@ class Stand:
         error of that, the second one takes it off.
         """
         if not self.rested:
-            duration = SETTLED / self.bandwidth
-            middle = replace(self, position=0.5 * self.plant.stroke)
-            times = {"duration": duration, "sample_time": duration / 20, "gain": self.steady_gain}
-            error = middle.run(**times).last["spool"] / self.steady_gain
-            held = Position(shape="constant", value=error)
-            self.rested.update(self.run(**times, reference=(held,)).last)
+            duration = SETTLED / self.bandwidth * self.gain / self.steady_gain
+
+            def held(stand: Stand, error: float) -> Mapping[str, float]:
+                part = Position(shape="constant", value=error)
+                return stand.run(
+                    duration=duration,
+                    sample_time=duration / 20,
+                    gain=self.steady_gain,
+                    reference=(part,),
+                ).last
+
+            middle = held(replace(self, position=0.5 * self.plant.stroke), 0.0)
+            self.rested.update(held(self, middle["spool"] / self.steady_gain))
         return self.rested
 
     def held(
@@ -263,7 +272,6 @@ class Stand:
             travel=self.travel if "bristles" in signals else 0.0,
             saturated=0.0 if signal is None else float(np.mean(np.abs(signal) > 0.999 * full)),
             spool=None if spool is None else (float(np.min(spool)), float(np.max(spool))),
-            extending=0.5 if spool is None else float(np.mean(spool > 0)),
             pressures=(float(np.mean(chambers[0])), float(np.mean(chambers[1]))),
             pulse=0.5 * float(np.ptp(chambers[0])),
             lowest=float(min(np.min(one) for one in chambers)),

@@ -20,8 +20,8 @@ from ..numeric import Array, minimum, where
 from ..quantities import Quantity
 from ..symbolic import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised
 
-LOOSE = 1e3
-"""Tolerance of an integral over its scale: it follows, the states lead."""
+LOOSE = 1e-4
+"""Tolerance of an integral over its scale and one second (a choice): it follows, the states lead."""
 
 
 PRESSURE = 1.0
@@ -169,7 +169,7 @@ class Compiled:
 
     system: System
     rates: Callable[[float, Array, tuple[bool, ...]], list[float]]
-    slopes: Callable[[float, Array, tuple[bool, ...]], list[list[float]]]
+    slopes: Callable[[float, Array, tuple[bool, ...]], Array]
     """Jacobian of the rates, row by row."""
     guards: Callable[[Array, Array, tuple[Array, ...]], list[Array]]
     """Of every switch, at many samples: y is (states, samples)."""
@@ -193,13 +193,15 @@ class Compiled:
         one = {f"{names},": "y.tolist()"} if names else {}
         many = {f"{names},": "y"} if names else {}
         switch = {f"{', '.join(flags)},": "m"} if flags else {}
-        matrix = jacobian(rates, symbols)
-        flat = function("jacobian", "t, y, m", one | switch, [x for row in matrix for x in row])
+        entries = [x for row in jacobian(rates, symbols) for x in row]
+        filled = np.array([k for k, x in enumerate(entries) if isinstance(x, Symbol) or x], int)
+        flat = function("jacobian", "t, y, m", one | switch, [entries[k] for k in filled])
         size = len(symbols)
 
-        def slopes(t: float, y: Array, m: tuple[bool, ...]) -> list[list[float]]:
-            values = flat(t, y, m)
-            return [values[k * size : (k + 1) * size] for k in range(size)]
+        def slopes(t: float, y: Array, m: tuple[bool, ...]) -> Array:
+            found = np.zeros(size * size)
+            found[filled] = flat(t, y, m)
+            return found.reshape(size, size)
 
         return cls(
             system=system,

@@ -279,7 +279,7 @@ class _Bench:
         figures = tier.figures(spot.case, at, way)
         response = tier.response(spot.case, at, way)
         if name == "bandwidth":
-            return experiments.bandwidth(stand, figures.bandwidth, response)
+            return experiments.bandwidth(stand, figures.bandwidth or stand.bandwidth, response)
         if name == "phase":
             both = [tier.crossings(spot.case, at, one) for one in (True, False)]
             crossed, peaks = (sum(parts, ()) for parts in zip(*both, strict=True))
@@ -294,12 +294,11 @@ class _Bench:
         return Measured(values, found.how, found.facts, found.why)
 
     def _way(self, spot: Spot, stand: Stand) -> bool:
-        """Whether the spool rests on the side that extends; centred, the side of the linear tier."""
+        """Whether the spool rests on the side that extends; centred: as the linear tier has it."""
         assert stand.plant.valve is not None
-        spool = stand.rest()["spool"]
-        if abs(spool) < CENTRED * stand.plant.valve.signal:
+        if abs(stand.opening) < CENTRED * stand.plant.valve.signal:
             return bool(spot.extending)
-        return spool > 0
+        return stand.opening > 0
 
     def linear(self, metric: str, spot: Spot) -> float:
         """The linear tier at the place of an experiment, on the side where its spool rests."""
@@ -343,7 +342,7 @@ class _Bench:
         if metric in HELD:
             return f"{words}, off the stop"
         way = "extending" if self._way(spot, stand) else "retracting"
-        return f"{words}, {way}: the spool rests at {stand.rest()['spool']:.2g} V"
+        return f"{words}, {way}: the spool rests {stand.opening:.2g} V off its centre"
 
 
 _EXPERIMENTS = {

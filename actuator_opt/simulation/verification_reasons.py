@@ -6,6 +6,8 @@ from math import isfinite
 
 from .stand import Facts
 
+MANY = 9.0
+"""Change from which a factor says more than per cent (a choice)."""
 STILL = 0.01
 """Share of its opening by which a spool moves that counts as held (a choice)."""
 
@@ -24,9 +26,13 @@ def apart(value: float | None, other: float | None) -> float | None:
 def percent(share: float) -> str:
     """A relative change in per cent.
 
-    >>> percent(0.031), percent(-0.5)
-    ('+3.1 %', '-50 %')
+    >>> percent(0.031), percent(-0.5), percent(19.0), percent(-1.2)
+    ('+3.1 %', '-50 %', 'x 20', 'changes its sign')
     """
+    if share < -1:
+        return "changes its sign"
+    if share >= MANY:
+        return f"x {1 + share:.3g}"
     return f"{100 * share:+.{0 if abs(share) >= 0.095 else 1}f} %"
 
 

@@ -14,15 +14,27 @@ from .records import (
 )
 from .reports import date_from_environment, report, save
 from .seals import seal, with_contact, write_seal
-from .simulations import Trial, read_scenario, simulate, write_signals
+from .simulations import (
+    Compared,
+    Trial,
+    compare_measured,
+    read_scenario,
+    servo_sensitivities,
+    simulate,
+    verify_dynamics,
+    write_signals,
+    write_simulation,
+)
 
 __all__ = [
     "Actuator",
     "Calibrated",
+    "Compared",
     "Trial",
     "bending",
     "calibrate",
     "check",
+    "compare_measured",
     "date_from_environment",
     "evaluate",
     "identify",
@@ -34,11 +46,14 @@ __all__ = [
     "save",
     "seal",
     "sensitivity",
+    "servo_sensitivities",
     "simulate",
+    "verify_dynamics",
     "with_contact",
     "write_calibration",
     "write_identification",
     "write_seal",
     "write_series",
     "write_signals",
+    "write_simulation",
 ]

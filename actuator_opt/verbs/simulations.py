@@ -4,22 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from ..design import Design
 from ..errors import Diagnostic, InputError
+from ..evaluation.study.plant import plant
 from ..numeric import Array
-from .actuator import Actuator
+from .actuator import Actuator, as_actuator
+from .reports import origin
 
 if TYPE_CHECKING:
     from ..design.scenario import LoadedScenario, Scenario
     from ..reporting import ReportFile
     from ..simulation import Simulation
     from ..simulation.integrate import Method
+    from ..simulation.measured import Overlay
+    from ..simulation.measured_fit import Fit
+    from ..simulation.sensitivity import Sensitivities
+    from ..simulation.verification import Verification
 
 MOST_BYTES = 200_000_000
 """Largest file of a recorded input (a choice)."""
+_TABLES = (".csv", ".txt", ".tsv")
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,10 +78,8 @@ def _records(loaded: LoadedScenario) -> dict[tuple[str, str], tuple[Array, Array
         name = str(loaded.folder / file)
         try:
             if file not in texts:
-                kinds = (".csv", ".txt", ".tsv")
-                data = read_bytes(
-                    loaded.folder / file, most=MOST_BYTES + 1, kinds=kinds, what="CSV file"
-                )
+                path_of = loaded.folder / file
+                data = read_bytes(path_of, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
                 texts[file] = decode_record(data, name, most=MOST_BYTES)
             found[file, column] = parse_column(texts[file], column, dimension, name=name)
         except InputError as error:
@@ -158,3 +164,143 @@ def write_signals(simulation: Simulation, path: str | Path) -> ReportFile:
     from ..reporting.simulation_csv import write_signals as write
 
     return write(simulation, Path(path))
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """A simulation under a measured record, with the parameters fitted to it."""
+
+    overlay: Overlay
+    """After the fit, where there is one."""
+    fit: Fit | None = None
+
+    @property
+    def simulation(self) -> Simulation:
+        """What lies under the record."""
+        return self.overlay.simulation
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI."""
+        return self.overlay.to_dict() if self.fit is None else self.fit.to_dict()
+
+
+def compare_measured(
+    scenario: Trial | str | Path,
+    record: str | Path,
+    *,
+    fit: Sequence[str] = (),
+    columns: Mapping[str, str] | None = None,
+    simulation: Simulation | None = None,
+) -> Compared:
+    """A measured record over a scenario: residuals, and parameters fitted to it.
+
+    Parameters
+    ----------
+    scenario : as read, or its path
+    record : CSV file with t and any of p1, p2, x, v, F_L, ...
+    fit : names of parameters, as ``air_content``; see `simulation.measured_parameters`
+    columns : header by channel where it is none of the known names
+    simulation : of the scenario, where it has been run
+
+    Raises
+    ------
+    InputError
+        as `read_scenario`; nothing in common, an unknown parameter
+    """
+    from ..identification import decode_record
+    from ..simulation.measured import overlay, parse_measured
+    from ..simulation.measured_fit import fit as fitted
+    from ..store import read_bytes
+
+    trial = as_trial(scenario)
+    name = str(record)
+    data = read_bytes(record, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
+    text = decode_record(data, name, most=MOST_BYTES)
+    measured = parse_measured(text, name=name, columns=columns)
+    with placed(trial):
+        if not fit:
+            done = simulation if simulation is not None else simulate(trial)
+            return Compared(overlay(done, measured))
+        found = fitted(
+            trial.scenario, plant(trial.actuator.subject()), trial.records, measured, fit
+        )
+    return Compared(found.after, found)
+
+
+def servo_sensitivities(
+    scenario: Trial | str | Path, names: Sequence[str] | None = None
+) -> Sensitivities:
+    """Parameters of a scenario and its design, ranked by what they change in its results.
+
+    Parameters
+    ----------
+    scenario : as read, or its path
+    names : PATHs; default: those that count in a servo
+    """
+    from ..simulation.sensitivity import sensitivities
+
+    trial = as_trial(scenario)
+    with placed(trial):
+        return sensitivities(trial.scenario, trial.actuator.subject(), names, records=trial.records)
+
+
+def verify_dynamics(
+    scenario: Trial | str | Path, design: Actuator | Design | str | Path | None = None
+) -> Verification:
+    """Every dynamic requirement of a design and of a scenario, checked in time.
+
+    Parameters
+    ----------
+    scenario : as read, or its path
+    design : in place of the scenario's own, with the values that the scenario sets
+    """
+    from ..simulation.verification import verify
+
+    trial = as_trial(scenario)
+    actuator = trial.actuator
+    if design is not None:
+        changes = {change.path: change.value for change in trial.loaded.changes}
+        actuator = as_actuator(design)
+        actuator = actuator.changed(changes) if changes else actuator
+    with placed(trial):
+        return verify(trial.scenario, actuator.subject(), records=trial.records)
+
+
+def write_simulation(
+    simulation: Simulation,
+    scenario: Trial,
+    *,
+    measured: Compared | None = None,
+    sensitivities: Sensitivities | None = None,
+    folder: str | Path = "reports",
+    command: str = "",
+    date: str | None = None,
+) -> list[ReportFile]:
+    """Write the page of a simulation (PDF and PNG); the scenario is attached.
+
+    Parameters
+    ----------
+    simulation : what happened
+    scenario : as read
+    measured, sensitivities : what else to show
+    folder : where to; the name is the scenario file's
+    command, date : as `report`
+    """
+    from ..reporting.measured_rows import measured_tables
+    from ..reporting.simulation_document import write_simulation_sheet
+    from ..reporting.tables import extra
+    from ..reporting.verification_rows import sensitivity_rows
+
+    source = scenario.loaded.source
+    page = origin(scenario.actuator.design, scenario.actuator.source, command=command, date=date)
+    name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
+    tables = [] if measured is None else [*measured_tables(measured.overlay, measured.fit)]
+    tables += [] if sensitivities is None else [*sensitivity_rows(sensitivities)]
+    return write_simulation_sheet(
+        simulation,
+        replace(page, source_text=source.text, source_name=name, spec_hash=simulation.spec_hash),
+        folder=Path(folder),
+        stem=Path(name).stem,
+        measured=None if measured is None else measured.overlay.measured.channels,
+        extra=[extra(one) for one in tables],
+    )

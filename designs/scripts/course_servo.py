@@ -25,7 +25,7 @@ import actuator_opt as ao
 from actuator_opt.models.tuning import ziegler_nichols
 from actuator_opt.reporting.blocks import Block, column, figure, notes, table
 from actuator_opt.reporting.simulation_comparison import comparison
-from actuator_opt.reporting.simulation_comparison_figures import comparison_figure
+from actuator_opt.reporting.simulation_comparison_figures import LEAST, comparison_figure
 from actuator_opt.reporting.text import fixed, number
 from actuator_opt.reporting.writer import TEMPLATE, sheets
 from actuator_opt.simulation import Simulation
@@ -45,7 +45,7 @@ SWING, KEPT = 1e-4, 0.9
 the time before (choices)."""
 SHOWN = ("P", "PI", "PID", "own PI")
 """What the figures draw."""
-MOST = 5
+MOST = 7
 """Parameters that a table of sensitivities shows."""
 
 Data = dict[str, Any]
@@ -104,11 +104,33 @@ HINTS: dict[str, dict[str, str]] = {
     },
 }
 """The course's hints on its test case."""
+CYLINDER = (
+    "materials.iso_vg_32.bulk_modulus", "fluid.air_content", "supply.pressure", "cylinder.bore",
+    "rod.outer_diameter", "cylinder.dead_volume_a", "cylinder.dead_volume_b", "valve.rated_flow",
+    "valve.leakage_flow", "valve.natural_frequency", "valve.damping_ratio", "load.mass",
+    "friction.coulomb", "friction.static", "friction.stribeck_speed", "friction.viscous",
+    "stiffness.seal_deflection",
+)  # fmt: skip
+MOTOR = (
+    "materials.iso_vg_32.bulk_modulus", "supply.pressure", "valve.rated_flow",
+    "valve.leakage_flow", "valve.natural_frequency", "motor.machine.displacement",
+    "motor.machine.slip", "motor.machine.coulomb", "motor.machine.viscous", "motor.inertia",
+    "motor.pipe_volume", "motor.torque[0].value",
+)  # fmt: skip
 SENSITIVE = {
-    "open_loop": "Test case without a loop",
-    "position_servo": "Position servo, P",
-    "motor_velocity": "Velocity servo, PI",
+    "open_loop": ("the test case", CYLINDER, ("hold_drift", "peak_pressure")),
+    "position_servo": (
+        "position servo 1, P",
+        CYLINDER,
+        ("rise_time", "settling_time", "steady_state_ratio"),
+    ),
+    "motor_velocity": (
+        "velocity servo, own PI",
+        MOTOR,
+        ("rise_time", "settling_time", "overshoot"),
+    ),
 }
+"""Scenarios with the parameters that are moved and the results that are read."""
 
 
 def scenario(name: str) -> Path:
@@ -222,8 +244,8 @@ def pulse(values: dict[str, str]) -> Data:
 
 def sensitive(name: str) -> list[Data]:
     """The parameters that matter most to a scenario, with what 1 % of each does."""
-    trial = read_scenario(scenario(name))
-    found = sensitivities(trial.scenario, trial.actuator.subject(), records=trial.records)
+    trial, (_, names, results) = read_scenario(scenario(name)), SENSITIVE[name]
+    found = sensitivities(trial.scenario, trial.actuator.subject(), names, results=results)
     return [
         {
             "path": one.path,
@@ -319,12 +341,22 @@ def numbers(study: Study) -> Data:
 # ---- tables ----
 
 
+def all_rows(found: Data) -> dict[str, Data]:
+    """Rows of a loop: by the rule and its variations, then by the rule on the raised gain."""
+    rows: dict[str, Data] = found["tuned"]
+    return rows | {f"{name} by raising": row for name, row in found["swung"].items()}
+
+
 def loop_rows(loop: Loop, rows: dict[str, Data], limit: list[float]) -> list[list[str]]:
     """Heads and rows of a loop's table."""
-    error = {"position": ("mm", 1e3), "shaft_speed": ("rpm", 30 / pi), "shaft_angle": ("°", 180 / pi)}
+    error = {
+        "position": ("mm", 1e3),
+        "shaft_speed": ("rpm", 30 / pi),
+        "shaft_angle": ("°", 180 / pi),
+    }
     unit, size = error[loop.signal]
     heads = [
-        f"by ({number(loop.factor * limit[0], 4)} {loop.unit}, {number(1e3 * limit[1], 3)} ms)",
+        f"rule on {number(loop.factor * limit[0], 4)} {loop.unit}, {number(1e3 * limit[1], 3)} ms",
         f"K, {loop.unit}", "Tᵢ, ms", "T_d, ms", "rise, ms", "overshoot, %", "settles, ms",
         f"error, {unit}", "supply, J", "gain margin",
     ]  # fmt: skip
@@ -358,7 +390,9 @@ def _small(value: float) -> str:
 
 def raised_rows(data: Data) -> list[list[str]]:
     """Heads and rows: ultimate gain of the linear loop, and by raising it."""
-    made = [["loop and step", "linear", "raised", "unit", "ratio", "period linear, ms", "raised, ms"]]
+    made = [
+        ["loop and step", "linear", "raised", "unit", "ratio", "period linear, ms", "raised, ms"]
+    ]
     for name, row in data["raised"].items():
         loop = LOOPS[row["loop"]]
         (gain, time), (most, swing) = row["linear"], row["raised"]
@@ -390,16 +424,19 @@ def pulse_rows(data: Data) -> list[list[str]]:
     return made
 
 
-def sensitive_rows(rows: list[Data]) -> list[list[str]]:
-    """Heads and rows: parameters and what 1 % of each changes, the strongest results first."""
-    results = list(dict.fromkeys(name for row in rows for name in row["effects"]))
-    results.sort(key=lambda name: -max(abs(row["effects"].get(name, 0.0)) for row in rows))
-    results = results[:4]
-    made = [["1 % more of", *(f"{name.replace('_', ' ')}, %" for name in results)]]
+def sensitive_rows(name: str, rows: list[Data]) -> list[list[str]]:
+    """Heads and rows: parameters and what 1 % of each changes."""
+    results = SENSITIVE[name][2]
+    made = [["1 % more of", *(f"{one.replace('_', ' ')}, %" for one in results)]]
     for row in rows:
-        effects = (row["effects"].get(name) for name in results)
-        made.append([row["path"], *("–" if one is None else f"{one:+.2f}" for one in effects)])
+        effects = (row["effects"].get(one) for one in results)
+        made.append([row["path"], *("–" if one is None else _signed(one) for one in effects)])
     return made
+
+
+def _signed(value: float) -> str:
+    """A change with two places."""
+    return "0" if abs(value) < 5e-3 else f"{value:+.2f}".replace("-", "\N{MINUS SIGN}")
 
 
 # ---- what it says ----
@@ -452,16 +489,16 @@ def page(study: Study) -> tuple[bytes, list[bytes]]:
     blocks: list[Block] = []
     for key, loop in LOOPS.items():
         runs = [(name, study.runs[key][name]) for name in SHOWN]
-        blocks.append(figure(loop.title, comparison_figure(comparison(runs, loop.title), 78.0)))
-        rows = dict(data["loops"][key]["tuned"])
-        rows |= {f"{name} by raising": row for name, row in data["loops"][key]["swung"].items()}
-        grid = loop_rows(loop, rows, data["loops"][key]["linear"])
+        blocks.append(figure(loop.title, comparison_figure(comparison(runs, loop.title), LEAST)))
+        grid = loop_rows(loop, all_rows(data["loops"][key]), data["loops"][key]["linear"])
         blocks.append(_table("", grid, note=_NOTE if key == "position" else ""))
-    blocks.append(_table("Ultimate gain: of the linear loop, and by raising it", raised_rows(data)))
-    blocks.append(_table("The test case without a loop, with the slides' hints", pulse_rows(data)))
+        if key == "position":  # what of the other tables has room on its sheet
+            blocks.append(_table(_RAISED, raised_rows(data)))
+            blocks.append(_table(_HINTS, pulse_rows(data)))
     for name, rows in data["sensitive"].items():
-        grid = sensitive_rows(rows)
-        blocks.append(_table(f"What matters most: {SENSITIVE[name]}", grid))
+        blocks.append(
+            _table(f"What matters most to {SENSITIVE[name][0]}", sensitive_rows(name, rows))
+        )
     blocks.append(notes("Hard to specify", HARD))
     shown = {
         "version": data["version"],
@@ -475,6 +512,8 @@ def page(study: Study) -> tuple[bytes, list[bytes]]:
     return sheets(source.encode(), shown, timestamp=0)
 
 
+_RAISED = "Ultimate gain: of the linear loop, and by raising it until the loop swings"
+_HINTS = "The test case without a loop, with the slides' hints"
 _NOTE = (
     "K, Tᵢ and T_d as they act: a factor acts on its part alone, so that more P also stretches Tᵢ."
     " Gain margin of the linear loop, without sticking friction; below 1 it is unstable. Energy of"
@@ -517,12 +556,12 @@ def main() -> None:
     data = numbers(study)
     for key, loop in LOOPS.items():
         found = data["loops"][key]
-        rows = found["tuned"] | {f"{n} by raising": row for n, row in found["swung"].items()}
-        print(loop.title, aligned(loop_rows(loop, rows, found["linear"]), right=range(1, 10)), "", sep="\n")
+        grid = loop_rows(loop, all_rows(found), found["linear"])
+        print(loop.title, aligned(grid, right=range(1, 10)), "", sep="\n")
     print(aligned(raised_rows(data), right=(1, 2, 4, 5, 6)), "", sep="\n")
     print(aligned(pulse_rows(data), right=range(1, 9)), "", sep="\n")
     for name, rows in data["sensitive"].items():
-        print(SENSITIVE[name], aligned(sensitive_rows(rows), right=range(1, 5)), "", sep="\n")
+        print(SENSITIVE[name][0], aligned(sensitive_rows(name, rows), right=(1, 2)), "", sep="\n")
     print(*sentences(data), sep="\n\n")
     if given.out is not None:
         print(write(study, given.out), "sheets")

@@ -1,0 +1,83 @@
+"""How long a servo takes, by each integrator; never gating. Run with `just bench`.
+
+The servo knee follows two steps in 5 s against LuGre friction, told at 2000 samples.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import actuator_opt as ao
+from actuator_opt.design.scenario.model import Scenario
+from actuator_opt.evaluation.study.plant import Plant, plant
+from actuator_opt.models.tuning import ControllerGains
+from actuator_opt.simulation.assemble import assemble
+from actuator_opt.simulation.fast import cvodes
+from actuator_opt.simulation.integrate import METHODS, RELATIVE, integrate
+from actuator_opt.simulation.system import Compiled
+
+KNEE = Path(__file__).parent.parent / "designs" / "servo_knee.yaml"
+GAINS = ControllerGains(700.0, math.inf, 0.0)
+STEPS = [
+    {"shape": "step", "start": 0.5, "value": 0.02},
+    {"shape": "step", "start": 2.5, "value": -0.03},
+]
+SCENE = Scenario.model_validate(
+    {
+        "name": "two steps",
+        "design": "servo_knee.yaml",
+        "duration": 5.0,
+        "control": {"position": STEPS, "position_gain": GAINS.proportional_gain},
+        "load": {"force": [{"shape": "constant", "value": 2000.0}]},
+    }
+)
+RUN = {"duration": SCENE.duration, "sample_time": SCENE.duration / 2000}
+
+
+@pytest.fixture(scope="module")
+def knee() -> Plant:
+    """The plant, read once."""
+    return plant(ao.read(KNEE).subject())
+
+
+@pytest.fixture(scope="module")
+def compiled(knee: Plant) -> Compiled:
+    """Its equations."""
+    return assemble(SCENE, knee, {}, GAINS).system.compiled()
+
+
+def test_tracing_and_compiling(benchmark, knee):
+    """From the models to functions of Python."""
+    benchmark(lambda: assemble(SCENE, knee, {}, GAINS).system.compiled())
+
+
+def test_translating_for_cvodes(benchmark, compiled):
+    """From the graph to CasADi's equations."""
+    pytest.importorskip("casadi")
+    benchmark(lambda: cvodes(compiled, RELATIVE["cvodes"], [0], METHODS["lsoda"]))
+
+
+@pytest.mark.parametrize(("method", "rounds"), [("lsoda", 20), ("cvodes", 20), ("radau", 2)])
+def test_integrating(benchmark, compiled, method, rounds):
+    """Budget 100 ms by LSODA, as a mature peer in C++; CVODES with its translation; Radau."""
+    if method == "cvodes":
+        pytest.importorskip("casadi")
+    found = benchmark.pedantic(
+        integrate, (compiled,), {"method": method} | RUN, rounds=rounds, warmup_rounds=1
+    )
+    benchmark.extra_info["evaluations"] = found.evaluations
+    assert np.ptp(found.states[0]) == pytest.approx(0.03, rel=0.01)
+
+
+def test_running_cvodes_once_built(benchmark, compiled, monkeypatch):
+    """Many runs of the same equations: the target is 10 ms."""
+    pytest.importorskip("casadi")
+    built = METHODS["cvodes"](compiled, RELATIVE["cvodes"], [0])
+    monkeypatch.setitem(METHODS, "cvodes", lambda *_: built)
+    benchmark.pedantic(
+        integrate, (compiled,), {"method": "cvodes"} | RUN, rounds=20, warmup_rounds=1
+    )
