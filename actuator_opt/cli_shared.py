@@ -52,6 +52,10 @@ def leave_by(evaluation: Evaluation) -> None:
         raise typer.Exit(ExitCode.MISSED)
 
 
+_TARGETS = ("--out", "--write", "--csv")
+"""Options that say where to write."""
+
+
 def command_line() -> str:
     """The command line without what does not change the result: same input, same bytes."""
     import shlex
@@ -60,10 +64,10 @@ def command_line() -> str:
     for word in words:
         if skip:
             skip = False
-        elif word in ("--out", "--write"):
+        elif word in _TARGETS:
             skip = True
         elif word not in ("--json", "--report", "--quiet", "-q") and not word.startswith(
-            ("--out=", "--write=")
+            tuple(f"{one}=" for one in _TARGETS)
         ):
             kept.append(word)
     return shlex.join(["actuator-opt", *kept])

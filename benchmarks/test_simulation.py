@@ -74,7 +74,7 @@ def test_integrating(benchmark, compiled, method, rounds):
 
 
 def test_running_cvodes_once_built(benchmark, compiled, monkeypatch):
-    """Many runs of the same equations: the target is 10 ms."""
+    """Many runs of the same equations: about half of LSODA's time."""
     pytest.importorskip("casadi")
     built = METHODS["cvodes"](compiled, RELATIVE["cvodes"], [0])
     monkeypatch.setitem(METHODS, "cvodes", lambda *_: built)

@@ -404,7 +404,7 @@ def test_speed_steps_are_the_second_simulators(law, gain, integral_time, derivat
 
 
 def test_the_pi_of_the_shaft_angle_keeps_its_margin() -> None:
-    """A calm PI keeps four fifths of its margin of 3 and comes to rest, whatever the plant."""
+    """A calm PI keeps nine tenths of its margin of 3 and comes to rest, whatever the plant."""
     one = found("motor_position", control__law="pi")
-    assert one.tuned.margins.gain >= 0.8 * 3
+    assert one.tuned.margins.gain >= 0.9 * 3
     assert one.values["settling_time"] is not None

@@ -1,6 +1,6 @@
-"""The simulation against an oracle written apart from it, and against laws of its own.
+"""The simulation against an oracle written apart from it, and against published check values.
 
-Both get the same numbers; states and energies agree within millionths of their span.
+Both get the same numbers; states, flows and energies agree within two millionths of their span.
 """
 
 from __future__ import annotations
@@ -13,11 +13,25 @@ import pytest
 import servo_oracle as oracle
 import servo_oracle_parts as parts
 from servo_oracle_parts import line, sine, steps
-from simulation_case import AREA_A, AREA_B, BAR, BALANCED, LITRE, MIDDLE, OIL, VALVE, plant, run
-from simulation_case import scenario
+from simulation_case import (
+    AREA_A,
+    AREA_B,
+    BALANCED,
+    BAR,
+    LITRE,
+    MIDDLE,
+    OIL,
+    VALVE,
+    plant,
+    run,
+    scenario,
+)
 
 from actuator_opt.evaluation.study.plant import Plane, SealData
 from actuator_opt.models.tuning import ControllerGains
+from actuator_opt.simulation.assemble import assemble
+from actuator_opt.simulation.gains import tune
+from actuator_opt.simulation.linearise import Linear, ultimate
 
 SHARP = {"sharp": 1e3, "relative": 1e-9}
 HOLD = 70 * BAR * (AREA_A - AREA_B)
@@ -158,9 +172,9 @@ class Case:
     start: dict = None
     events: tuple = ()
 
-    def compared(self):
+    def compared(self, **how):
         """Largest differences over the span, and our run."""
-        ours = run(scenario(**self.scene), self.own, self.gains, **SHARP)
+        ours = run(scenario(**self.scene), self.own, self.gains, **(SHARP | how))
         theirs = oracle.simulate(
             self.circuit, np.unique(ours.time), AT_REST if self.start is None else self.start,
             method="LSODA", rtol=1e-10,
@@ -299,15 +313,91 @@ def motor():
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "case",
-    [
-        pulse, saturated, integral_part, shaken, struck, fixed_pump, controlled_pump, motor,
-    ],
+CASES = (
+    pulse, saturated, integral_part, shaken, struck, fixed_pump, controlled_pump, motor,
 )  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CASES)
 def test_run_is_that_of_the_oracle(case):
-    """States, flows and energies within 2e-6 of their span, at every sample; the same stops."""
+    """States, flows and energies within 2e-6 of their span, 2e-5 behind stops; the same stops."""
     asked = case()
     found, ours = asked.compared()
-    assert max(found.values()) < 2e-6, found
+    assert max(found.values()) < (2e-5 if asked.events else 2e-6), found
     assert tuple(event.name for event in ours.found.events) == asked.events
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_default_tolerances_are_close(case):
+    """At the tolerances that a run has by default, everything is within 1e-4 of its span."""
+    found, _ = case().compared(sharp=1.0, relative=None)
+    assert max(found.values()) < 1e-4, found
+
+
+@pytest.mark.parametrize("case", [saturated, fixed_pump, motor])
+def test_radau_gives_the_same(case):
+    """The second integrator, at its own tolerances, agrees as well."""
+    found, _ = case().compared(sharp=1.0, relative=None, method="radau")
+    assert max(found.values()) < 1e-5, found
+
+
+def test_integral_part_is_held_at_the_limit():
+    """PI that saturates: the soft hold of the integral part is within 0.1 % of a hard one."""
+    asked = looped(
+        SEALED, [(0.02, 0.06), (0.35, -0.11)], parts.Controller(300.0, ki=800.0),
+        {"integral part": lambda both: 800 * both["integral"]}, damping=5e3, friction=FADING,
+    )  # fmt: skip
+    found, ours = asked.compared()
+    assert max(found.values()) < 1e-3, found
+    assert max(found["position"], found["speed"], found["pressure_a"]) < 1e-4
+    assert np.abs(ours.signals["signal"]).max() == 10.0
+
+
+@pytest.mark.parametrize(
+    ("volts", "v", "p_a", "p_b"),
+    [(3.0, 0.393606, 51.942, 43.109), (-3.0, -0.381055, 82.856, 99.424)],
+)
+def test_steady_speed_is_the_check_value(volts, v, p_a, p_b):
+    """A long stroke at constant signal settles on the three equations of the check list."""
+    long = plant(seals=STUCK, stroke=1.0)
+    scene = scenario(
+        duration=0.8, initial=MIDDLE | {"position": 0.1 if v > 0 else 0.9},
+        load={"force": PUSH}, signal=[{"shape": "constant", "value": volts}],
+    )  # fmt: skip
+    found = run(scene, long).signals
+    assert found["speed"][-1] == pytest.approx(v, rel=3e-6)
+    assert found["pressure_a"][-1] / BAR == pytest.approx(p_a, abs=6e-4)
+    assert found["pressure_b"][-1] / BAR == pytest.approx(p_b, abs=6e-4)
+
+
+@pytest.mark.parametrize(
+    ("spool", "gain", "period"), [(250, 416.743, 7.7584), (400, 333.220, 7.6671)]
+)
+def test_ultimate_gain_is_the_check_value(spool, gain, period):
+    """K_u in V/m and T_u in ms of the linear loop, by both ways to it, and of the oracle."""
+    own = plant(valve=replace(VALVE, natural_frequency=float(spool)))
+    control = {"position": [{"shape": "step", "start": 0.5, "value": 0.02}]}
+    scene = scenario(initial=MIDDLE, load={"force": BALANCED}, control=control)
+    loops = Linear.of(assemble(scene, own, {}, None, linear=True)).about(position=0.08)
+    for loop in loops:
+        found = ultimate(loop)
+        assert found.gain == pytest.approx(gain, rel=2e-6)
+        assert found.period == pytest.approx(period * 1e-3, rel=1e-5)
+    circuit = twin(own, reference=steps((0.0, 0.08)), load=steps((0.0, HOLD)))
+    for side, loop in zip((1.0, -1.0), loops, strict=True):
+        theirs = oracle.ultimate_gain_by_swinging(circuit, AT_REST, side)
+        assert theirs == pytest.approx((ultimate(loop).gain, ultimate(loop).period), rel=1e-6)
+    tuned = tune(scene, own, {})
+    assert tuned.ultimate.gain <= gain * (1 + 2e-6)  # the end of the step may swing first
+
+
+def test_ultimate_gain_of_a_motor_is_the_oracles():
+    """Shaft speed over the signal, at rest: the same K_u and T_u as by eigenvalues."""
+    asked = motor()
+    linear = Linear.of(assemble(scenario(**asked.scene), asked.own, {}, None, linear=True))
+    bare = replace(asked.circuit.actuator, dry=0.0, constant_torque=0.0)
+    circuit = replace(asked.circuit, actuator=bare)
+    for side, loop in zip((1.0, -1.0), linear.about(), strict=True):
+        found = ultimate(loop)
+        theirs = oracle.ultimate_gain_by_swinging(circuit, asked.start, side, of="velocity")
+        assert theirs == pytest.approx((found.gain, found.period), rel=1e-5)

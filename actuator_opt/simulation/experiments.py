@@ -7,7 +7,7 @@ friction, all figures depend on them.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import exp, inf, log, pi, sqrt
+from math import cos, exp, inf, log, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -43,8 +43,10 @@ FADED = 0.05
 
 SWINGS = 8.0
 """Periods over which a decay is read (a choice: leakage shifts closed chambers meanwhile)."""
-RINGING = 30.0
-"""Periods of the resonance before a held actuator counts as at rest (a choice)."""
+RINGING = 20.0
+"""Periods of a resonance after which its swing counts as faded (a choice)."""
+SHAPED = 0.6
+"""Frequency over the resonance up to which a force is begun in parts (a choice)."""
 BESIDE = (0.7, 1.0, 1.4)
 """Factors on a crossover of the linear loop among which the nonlinear one is sought."""
 SLIDING = (0.9, 1.0, 1.1)
@@ -184,7 +186,8 @@ def phase_margin(
         frequency = exp(share)
         if share not in seen:
             size = amplitude(stand, frequency, loop(frequency))
-            seen[share] = sine(stand, frequency, size, max(2.0, 0.5 * frequency / stand.bandwidth))
+            cycles = min(max(2.0, 3 * frequency / stand.bandwidth), RINGING)
+            seen[share] = sine(stand, frequency, size, cycles)
         return log(abs(seen[share].opened))
 
     around = STICKING if "bristles" in stand.rest() else SLIDING
@@ -199,11 +202,10 @@ def phase_margin(
         for low, high, one, two in zip(grid, grid[1:], values, values[1:], strict=False)
         if (one > 0) != (two > 0)
     ]
-    swings = next((one for one in seen.values() if _no_sine(one)), None)
-    if swings is not None or not found:
-        one = swings or seen[grid[0]]
-        why = "" if swings is None else _no_sine(one)
-        value = inf if swings is None else None
+    one = next((seen[share] for share in found if _no_sine(seen[share])), seen[grid[0]])
+    why = _no_sine(one)
+    if why or not found:
+        value = None if why else inf
         return Measured({"phase_margin": value}, HOW_PHASE, stand.facts(one.record), why)
     at = min(found, key=lambda share: abs(np.angle(-seen[share].opened)))
     margin = abs(float(np.angle(-seen[at].opened)))
@@ -258,14 +260,25 @@ def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[f
 
 
 def dynamic_stiffness(stand: Stand, ends: str, frequency: float, resonance: float) -> Measured:
-    """Stiffness against a sine of force at the rod, the ports ended."""
+    """Stiffness against a sine of force at the rod, the ports ended.
+
+    Below the resonance the force comes in three parts of 1, 2, 1 quarters, each half a period of
+    the resonance after the other: what one sets ringing, the others take off.
+    """
+    settle, cycles, wait = RINGING / resonance, 10.0, 0.5 / resonance
+    shares = (0.25, 0.5, 0.25) if frequency < SHAPED * resonance else (1.0,)
     swing = 2 * FORCE_SHARE * stand.full_force * stand.scale
-    settle, cycles = RINGING / resonance, 10.0
+    parts = [
+        Force(shape="sine", value=share * swing, frequency=frequency, start=k * wait)
+        for k, share in enumerate(shares)
+    ]
+    if len(shares) > 1:
+        swing *= cos(pi * frequency * wait) ** 2
     record = stand.held(
         duration=settle + cycles / frequency,
         sample_time=1 / (SAMPLES * frequency),
         ends=ends,
-        force=(Force(shape="sine", value=swing, frequency=frequency),),
+        force=parts,
     ).within(settle)
     facts = stand.facts(record)
     how = f"force of {swing:.3g} N at {frequency:.3g} Hz, swing of {1e3 * facts.swing:.2g} mm"

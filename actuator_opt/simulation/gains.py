@@ -21,7 +21,7 @@ MARGIN = {"p": 2.0, "pi": 3.0}
 gain; an integral part takes phase)."""
 PHASE = radians(60.0)
 """Phase margin above which none is missed (a choice)."""
-KEPT = 0.8
+KEPT = 0.9
 """Share of the margins of the gain alone that an integral part leaves (a choice)."""
 NO_GAIN = 1e-9
 """Factor that stands for a gain of zero beside an integral or derivative part."""
@@ -180,7 +180,7 @@ def _ruled(
 def _integral_time(loop: OpenLoop, law: Law, shortest: float, period: float) -> float:
     """Least integral time, from the shortest on, that keeps `KEPT` of the margins without it."""
     alone = margins(loop, law)
-    phase = KEPT * (PHASE if alone.phase is None else min(alone.phase, PHASE))
+    phase = PHASE if alone.phase is None else min(KEPT * alone.phase, PHASE)
     longest = 1e4 * period
     for time in np.geomspace(shortest, max(longest, shortest), 140):
         found = margins(loop, replace(law, integral_time=float(time)))

@@ -14,7 +14,7 @@ from ..numeric import Array
 from ..suggest import shown
 from .result import Simulation, Told
 
-COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L")} | {
+COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L", "T")} | {
     "U": Channel("voltage", "V", "signal of the valve", ("signal", "command")),
     "spool": Channel("voltage", "V", "position of the spool", ("spoolposition",)),
     "pS": Channel("pressure", "bar", "supply pressure", ("pressuresupply", "psupply", "pp")),
@@ -23,7 +23,7 @@ COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L")} 
     "n_shaft": Channel("angular_speed", "rpm", "speed of the shaft", ("shaftspeed", "speed")),
     "phi": Channel("angle", "deg", "angle of the shaft", ("shaftangle",)),
 }
-"""Channels of a record that a simulation can be held against, as a header writes them."""
+"""Channels of a record as a header writes them; its temperature is read past."""
 SIGNALS = {
     "p1": "pressure_a", "p2": "pressure_b", "x": "position", "v": "speed", "F_L": "load_force",
     "U": "signal", "spool": "spool", "pS": "pressure_supply", "qA": "flow_a", "qB": "flow_b",
@@ -77,7 +77,7 @@ class Measured:
                 channels[signal] = time[seen], record[column][seen]
         if not channels:
             message = "no channel that a simulation tells"
-            raise record.fault(message, f"name columns {', '.join(list(COLUMNS)[1:])} with units")
+            raise record.fault(message, f"name columns {', '.join(SIGNALS)} with units")
         return cls(channels, record.name, tuple(notes))
 
     def delayed(self, time: float) -> Measured:
@@ -200,7 +200,8 @@ def overlay(simulation: Simulation, measured: Measured, *, lag: float = 0.0) -> 
     duration = float(time[-1])
     used = inside(measured, signals, duration, lag)
     found = {
-        name: residual(t, y, at(t - lag, time, signals[name])) for name, (t, y) in used.items()
+        name: residual(t, y, beside(t - lag, y, time, signals[name]))
+        for name, (t, y) in used.items()
     }
     notes = [*measured.notes]
     absent = [name for name in measured.channels if name not in signals]
@@ -255,6 +256,19 @@ def at(moment: Array, time: Array, values: Array) -> Array:
     step = time[right] - time[left]
     share = np.clip((moment - time[left]) / np.where(step > 0, step, 1.0), 0.0, 1.0)
     return values[left] + share * (values[right] - values[left])
+
+
+def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
+    """A simulated signal beside measured samples.
+
+    A sample nearer to a jump than its neighbours may show either side of it, or what lies between.
+    """
+    found = at(moment, time, values)
+    half = 0.5 * float(np.median(np.diff(moment)))
+    for k in np.flatnonzero((np.diff(time) == 0) & (np.diff(values) != 0)):
+        near = np.abs(moment - time[k]) <= 1.001 * half
+        found[near] = np.clip(measured[near], *sorted((values[k], values[k + 1])))
+    return found
 
 
 def residual(time: Array, measured: Array, simulated: Array) -> Residual:

@@ -25,6 +25,8 @@ from .run import run
 
 MISFIT: Final = 2.0
 """Residual over noise from which the model misses the record (a choice)."""
+WORSE: Final = 1.05
+"""Residual over that before the fit from which it is worse (a choice)."""
 ALIKE: Final = 0.9
 """Correlation from which two parameters are named as not parted (a choice)."""
 EDGE: Final = 0.01
@@ -61,7 +63,8 @@ class Fit:
     scenario, plant : with the parameters put in
     parameters : by name
     correlations : of the errors of two parameters, by their names
-    before, after : the record over the simulation with the first and with the fitted values
+    before, after : the record over the simulation with the first and with the fitted values, the
+        first with the best lag where that is asked for
     doubts : what the numbers alone do not say
     runs, seconds : what it took
     """
@@ -80,7 +83,7 @@ class Fit:
     def missed(self) -> tuple[str, ...]:
         """Channels that are left with more than their noise: there the model lacks something."""
         found = self.after.residuals.items()
-        return tuple(name for name, one in found if one.rms > MISFIT * one.noise)
+        return tuple(name for name, one in found if one.span and one.rms > MISFIT * one.noise)
 
     @property
     def values(self) -> dict[str, float]:
@@ -139,7 +142,9 @@ def fit(
     gains = tune(scenario, plant, records) if tuned is None else tuned
     problem = Problem(scenario, plant, records, gains, measured, own)
     first = problem.lag(problem.start)
-    before = overlay(run(scenario, plant, records, gains), measured, lag=first)
+    dense = {"sample_time": problem.step}
+    start = run(scenario.model_copy(update=dense), plant, records, gains)
+    before = overlay(start, measured, lag=first)
     x = problem.solve()
     told = bounds(problem, x)
     fitted = {
@@ -148,9 +153,10 @@ def fit(
     }
     correlations = _correlations(told)
     new_scenario, new_plant = problem.put(x)
-    final = run(new_scenario, new_plant, records, gains)
+    final = run(new_scenario.model_copy(update=dense), new_plant, records, gains)
     after = overlay(final, measured, lag=problem.lag(x))
     doubts = (
+        *problem.notes,
         *_unknown(fitted),
         *_parted(fitted, correlations),
         *_missed(after, before),
@@ -242,10 +248,11 @@ def _missed(after: Overlay, before: Overlay) -> Iterator[str]:
     """Channels of which more is left than noise."""
     missed = []
     for name, one in after.residuals.items():
+        if one.span == 0 or one.rms <= MISFIT * one.noise:
+            continue
         quantity = after.simulation.told[name].quantity
-        if one.rms > MISFIT * one.noise:
-            missed.append(f"{name} {quantity.text(one.rms, 2)}, {one.rms / one.noise:.2g} times")
-        if one.rms > 1.05 * before.residuals[name].rms and one.rms > MISFIT * one.noise:
+        missed.append(f"{name} {quantity.text(one.rms, 2)}, {one.rms / one.noise:.2g} times")
+        if one.rms > WORSE * before.residuals[name].rms:
             yield f"{name} fits worse than before: the channels contradict each other"
     if missed:
         yield shown(
@@ -259,6 +266,6 @@ def _missed(after: Overlay, before: Overlay) -> Iterator[str]:
 def _loop(tuned: Tuned | None) -> Iterator[str]:
     if tuned is not None and tuned.origin != "stated":
         yield (
-            f"the controller's gain is that of the design ({tuned.origin}), not of the bench: "
-            "state it in control"
+            f"the controller's gain is the design's ({tuned.origin}): state that of the bench in "
+            "control"
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -14,7 +15,7 @@ from ..numeric import Array
 from .assemble import assemble
 from .gains import Tuned
 from .integrate import integrate
-from .measured import Measured, at, inside, noise
+from .measured import FEWEST, Measured, at, beside, inside, noise
 from .measured_parameters import PARAMETERS, Case, Entry
 from .parts.signals import Records
 
@@ -83,23 +84,14 @@ class Problem:
         self.steps = FIRST * self.sizes
         self.runs = 0
         self._known: tuple[bytes, Array, Mapping[str, Array]] | None = None
-        _, signals = self._simulated(self.start)
         self.noise = {name: noise(y) for name, (_, y) in measured.channels.items()}
-        self.weights = {name: 1 / one for name, one in self.noise.items()}
-        if self.late is not None:
-            middle = self._aligned(measured, signals)
-            self.start[self.late] = middle
-            self.low[self.late] = middle - MARGIN * duration
-            self.high[self.late] = middle + MARGIN * duration
-        kept = inside(measured, signals, duration, self.lag(self.start))
-        if self.late is not None:
-            ends = self.high[self.late], duration + self.low[self.late]
-            kept = {
-                name: (t[within], y[within])
-                for name, (t, y) in kept.items()
-                if np.any(within := (t >= ends[0]) & (t <= ends[1]))
-            }
-        self.used = {name: _thinned(*one) for name, one in kept.items()}
+        still = [name for name, one in self.noise.items() if one == 0]
+        self.notes = [f"{name} stands still in the record: not fitted to" for name in still]
+        moving = {name: one for name, one in measured.channels.items() if name not in still}
+        self.weights = {name: 1 / self.noise[name] for name in moving}
+        _, signals = self._simulated(self.start)
+        used = self._overlapping(replace(measured, channels=moving), signals)
+        self.used = {name: _thinned(*one) for name, one in used.items()}
         self.far = np.inf
         self.far = FAR * float(np.max(np.abs(self.rest(self.start))))
 
@@ -145,7 +137,9 @@ class Problem:
         """Simulated less measured, by channel."""
         time, signals = self._simulated(x)
         late = self.lag(x)
-        return {name: at(t - late, time, signals[name]) - y for name, (t, y) in self.used.items()}
+        return {
+            name: beside(t - late, y, time, signals[name]) - y for name, (t, y) in self.used.items()
+        }
 
     def rest(self, x: Array) -> Array:
         """Weighted residuals; of a run that cannot go on those of a very bad one."""
@@ -224,6 +218,29 @@ class Problem:
         except Unsolvable:
             return np.inf
         return float(sum(self.used[name][0].size * np.log(one) for name, one in left.items()))
+
+    def _overlapping(
+        self, measured: Measured, signals: Mapping[str, Array]
+    ) -> dict[str, tuple[Array, Array]]:
+        """What of a record overlaps the run, at every lag that is searched."""
+        duration = self.scenario.duration
+        if self.late is None:
+            return inside(measured, signals, duration, 0.0)
+        middle = self._aligned(measured, signals)
+        self.start[self.late] = middle
+        low, high = middle - MARGIN * duration, middle + MARGIN * duration
+        self.low[self.late], self.high[self.late] = low, high
+        whole = inside(measured, signals, duration, middle)
+        ends = [(t >= high) & (t <= duration + low) for t, _ in whole.values()]
+        found = {
+            name: (t[kept], y[kept])
+            for kept, (name, (t, y)) in zip(ends, whole.items(), strict=True)
+            if np.count_nonzero(kept) >= FEWEST
+        }
+        if not found:
+            message = "too little of the record overlaps the scenario for a lag to be found"
+            raise measured.fault(message, "measure longer, or state the lag")
+        return found
 
     def _aligned(self, measured: Measured, signals: Mapping[str, Array]) -> float:
         """The lag at which the record is nearest to the first run, by the mean of what overlaps."""

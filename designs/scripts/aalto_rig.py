@@ -35,7 +35,7 @@ from actuator_opt.reporting.ink import BLUE, GREY, RED, WHITE, Ink, text_width
 from actuator_opt.reporting.simulation_axes import names as named_above
 from actuator_opt.reporting.simulation_comparison import comparison
 from actuator_opt.reporting.simulation_comparison_figures import comparison_figure
-from actuator_opt.reporting.text import fixed, number
+from actuator_opt.reporting.text import NARROW, fixed, number
 from actuator_opt.reporting.writer import TEMPLATE, sheets
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.harmonic import harmonic_fit
@@ -62,9 +62,9 @@ CELL = 106e6
 """Load cell [N/m], stated."""
 ONSETS = {10: 188.7, 20: 364.7, 30: 376.2}
 """Hydraulic force at which the thesis sees the velocity kink, going up [N]."""
-PLACES = (0.005, 0.015, 0.035, 0.065, 0.110, 0.145, 0.165, 0.185, 0.205, 0.215)
+PLACES = (0.005, 0.015, 0.035, 0.065, 0.110, 0.165, 0.185, 0.215)
 ALONG = (0.020, 0.065, 0.110, 0.155, 0.200)
-RATCHETS = (0.055, 0.110, 0.165, 0.185)
+RATCHETS = (0.055, 0.110, 0.185)
 OPENINGS = {"0 %": 1.0, "50 %": 0.5, "75 %": 0.25}
 """Throttle of the thesis, and the share of the needle's area left (a choice)."""
 ENDS = ("constant_pressure", "reducing_valve")
@@ -82,6 +82,8 @@ WITHOUT: dict[str, Sets] = {
     "check valves": {"ports.throttle.cracking_pressure": "30 bar"},
 }
 NO_AIR: Sets = {"fluid.air_content": "0 %"}
+FINE = np.linspace(0.045, 0.195, 51)
+"""Places of the closed form [m]."""
 PIECES = 120
 """Samples of a curve that is drawn."""
 
@@ -255,7 +257,7 @@ def moving(quick: bool) -> list[Data]:
         rows.append(driven("reducing_valve", "75 %", hz, way="in"))
     for end in ENDS:
         for throttle in ("0 %", "75 %"):
-            rows += [driven(end, throttle, hz, needle="read back") for hz in (10, 20, 30)]
+            rows += [driven(end, throttle, hz, needle="read back") for hz in tones]
     return rows
 
 
@@ -317,7 +319,7 @@ def laid_over(quick: bool) -> Data:
     strokes = np.linspace(ALONG[0], ALONG[-1], 40)
     static = np.ravel(bench.motion.springs.stiffness(strokes))[: strokes.size]
     both = comparison(runs, "20 Hz, our reducing valve")
-    return comparison_figure(both, 70.0, static=(strokes, static)).data()
+    return comparison_figure(both, 58.0, static=(strokes, static)).data()
 
 
 def along(runs: Sequence[Simulation]) -> Simulation:
@@ -354,6 +356,10 @@ def full_throttle(places: Sequence[float]) -> Data:
                 traces[str(hz)] = [time[thin], found.signals["pressure_b"][at[thin]]]
     return {
         "rows": rows,
+        "form": {
+            str(hz): [ratchet(bare.plant, float(x), force)[1] for x in FINE]
+            for hz, force in FORCES.items()
+        },
         "traces": {hz: [one.tolist() for one in pair] for hz, pair in traces.items()},
         "friction": [
             measured(shaken("aalto_ratcheting", 10, STATED_PLACE, {"friction.coulomb": f}), 10)
@@ -434,8 +440,7 @@ def slip(hz: int, travel: str) -> Data:
 def onset(
     force: np.ndarray, speed: np.ndarray, bristles: np.ndarray, sign: int
 ) -> tuple[float, float]:
-    """Load less its mean where the seals slide, in the direction of motion [N]; part of the"
-    " cycle."""
+    """Load less its mean where the seals slide, in the direction of motion [N]; when [cycles]."""
     begin = int(np.flatnonzero((sign * speed[:-1] < 0) & (sign * speed[1:] >= 0))[0])
     after = np.roll(sign * bristles, -begin)
     slides = int(np.argmax(after > 0.95 * after.max()))
@@ -454,7 +459,7 @@ def compute(*, quick: bool = False) -> Data:
         "linear": linear_rows(),
         "peak": peak_rows(),
         "drawing": laid_over(quick),
-        "throttled": full_throttle(RATCHETS[1::2] if quick else RATCHETS),
+        "throttled": full_throttle(RATCHETS[1:] if quick else RATCHETS),
         "slip": [slip(hz, travel) for travel in ("20 um", "0.1 mm") for hz in FORCES],
     }
     text = json.dumps(study, allow_nan=False)
@@ -556,17 +561,17 @@ def stiffness_of(row: Data) -> float:
 
 def closed_drawing(study: Data) -> Ink:
     """Stiffness, and the lowest pressure of either chamber, along the stroke."""
-    ink, found = Ink(186.0, 54.0), study["closed"]
+    ink, found = Ink(186.0, 48.0), study["closed"]
     rows, across = some(found["rows"], air="0.5 %"), "position, mm"
     linear: Curve = (
         [1e3 * p for p in places_of(study)], [1e-6 * k for k in found["linear"]], THIN, False,
     )  # fmt: skip
     panel(
-        ink, LEFT, 36.0, "Stiffness, kN/mm", across, ((0, 220), (0, 65)),
+        ink, LEFT, 30.0, "Stiffness, kN/mm", across, ((0, 220), (0, 65)),
         [linear, *tones(rows, stiffness_of)], [*NAMED, ("linear", THIN)],
     )  # fmt: skip
     lowest = panel(
-        ink, RIGHT, 36.0, "Lowest pressure, bar", across, ((0, 220), (-5, 25)),
+        ink, RIGHT, 30.0, "Lowest pressure, bar", across, ((0, 220), (-5, 25)),
         tones(rows, lambda row: 1e-5 * min(row["lowest"])), NAMED,
     )  # fmt: skip
     level(lowest, -1.013, "vacuum", below=True)
@@ -580,7 +585,7 @@ def places_of(study: Data) -> list[float]:
 
 def stroke_drawing(study: Data) -> Ink:
     """The moving rig along the stroke: our valve both ways, and lines of constant pressure."""
-    ink = Ink(186.0, 52.0)
+    ink = Ink(186.0, 47.0)
     rows = some(study["moving"], needle="stated", throttle="0 %")
     valve = some(rows, end="reducing_valve")
     for place, title, span, value in (
@@ -592,13 +597,14 @@ def stroke_drawing(study: Data) -> Ink:
             *tones(some(valve, way="in"), value, pen=0.15),
             *tones(some(valve, way="out"), value),
         ]
-        panel(ink, place, 34.0, title, "position, mm", ((0, 220), span), curves, NAMED)
+        entries = NAMED if place is LEFT else ()
+        panel(ink, place, 29.0, title, "position, mm", ((0, 220), span), curves, entries)
     return ink
 
 
 def tone_drawing(study: Data) -> Ink:
     """Stiffness and phase over the frequency at mid-stroke, simulated and linear."""
-    ink, here = Ink(186.0, 54.0), some(study["moving"], place=MIDDLE, way="out")
+    ink, here = Ink(186.0, 47.0), some(study["moving"], place=MIDDLE, way="out")
     entries = [(END_WORDS[end], {"stroke": paint, "pen": 0.35}) for end, paint in PAINTS.items()]
     for place, name, scale, title, span, named in (
         (LEFT, "stiffness", 1e-6, "Stiffness, kN/mm", (-1.1, 1.7), entries),
@@ -617,7 +623,7 @@ def tone_drawing(study: Data) -> Ink:
                     values = [scale * row[name] for row in rows]
                     curves.append(([row["hz"] for row in rows], values, style, marked))
         panel(
-            ink, place, 36.0, title, "frequency, Hz", ((9.0, 31.0), span), curves, named,
+            ink, place, 29.0, title, "frequency, Hz", ((9.0, 31.0), span), curves, named,
             logarithmic=name == "stiffness",
         )  # fmt: skip
     return ink
@@ -625,20 +631,23 @@ def tone_drawing(study: Data) -> Ink:
 
 def ratchet_drawing(study: Data) -> Ink:
     """The rod chamber over time at 185 mm, and its mean along the stroke."""
-    ink, found = Ink(186.0, 54.0), study["throttled"]
+    ink, found = Ink(186.0, 48.0), study["throttled"]
     traces: list[Curve] = [
         ([1e3 * t for t in times], [1e-5 * p for p in pressures], TONES[int(hz)], False)
         for hz, (times, pressures) in found["traces"].items()
     ]
-    forms = tones(found["rows"], lambda row: 1e-5 * row["closed"][1], **THIN)
+    forms: list[Curve] = [
+        ([1e3 * float(x) for x in FINE], [1e-5 * p for p in form], THIN, False)
+        for form in found["form"].values()
+    ]
     means = tones(found["rows"], lambda row: 1e-5 * row["mean"][1])
     for axes in (
         panel(
-            ink, LEFT, 36.0, "At 185 mm, bar", "time, ms", ((0, 300), (30, 120)), traces, NAMED
+            ink, LEFT, 30.0, "At 185 mm, bar", "time, ms", ((0, 300), (30, 120)), traces, NAMED
         ),
         panel(
-            ink, RIGHT, 36.0, "Mean, bar", "position, mm", ((40, 200), (40, 90)),
-            [*((*curve[:3], False) for curve in forms), *means],
+            ink, RIGHT, 30.0, "Mean, bar", "position, mm", ((40, 200), (40, 90)),
+            [*forms, *means],
             [*NAMED, ("closed form", THIN)],
         ),
     ):  # fmt: skip
@@ -648,13 +657,13 @@ def ratchet_drawing(study: Data) -> Ink:
 
 def slip_drawing(study: Data) -> Ink:
     """A cycle of the velocity behind the load cell, for both lengths of the bristles."""
-    ink = Ink(186.0, 48.0)
+    ink = Ink(186.0, 43.0)
     for place, travel in ((LEFT, "20 um"), (RIGHT, "0.1 mm")):
         rows = some(study["slip"], travel=travel)
         force: Curve = (rows[0]["time"], rows[0]["force"], THIN, False)
         curves: list[Curve] = [(r["time"], r["seen"], TONES[r["hz"]], False) for r in rows]
         axes = panel(
-            ink, place, 30.0, f"Bristles of {travel.replace('um', 'µm')}",
+            ink, place, 25.0, f"Bristles of {travel.replace('um', 'µm')}",
             "part of a cycle, from the force's zero going up", ((0, 1), (-1.2, 1.2)),
             [force, *curves], [*NAMED, ("force", THIN)],
         )  # fmt: skip
@@ -693,7 +702,7 @@ def middle_rows(study: Data) -> list[list[str]]:
         cells = [
             f"{stiff(row)} / {stiff(one(linear, hz=hz))}"
             for hz in known
-            for row in some(here, hz=hz) or [{"stiffness": float("nan")}]
+            for row in some(here, hz=hz)
         ]
         cells += [fixed(one(here, hz=hz)["phase"], 0) for hz in FORCES]
         cells += [fixed(100 * share, 0) for share in one(here, hz=10)["open"]]
@@ -704,25 +713,26 @@ def middle_rows(study: Data) -> list[list[str]]:
 def ratchet_rows(study: Data) -> list[list[str]]:
     """Heads and rows: mean pressures of the rod chamber by place and frequency."""
     heads = ["Hz", "place, mm", "p_B closed form", "no friction, no air", "simulated", "highest"]
-    rows = [[*heads, "p_A simulated", "stiffer, %", "stiffer without air, %", "cycles"]]
+    rows = [[*heads, "p_A simulated", "stiffer, %", "stiffer without air, %"]]
     for row in study["throttled"]["rows"]:
         cells = [row["closed"][1], row["bare"][1], row["mean"][1], row["highest"][1]]
         cells = [bar(p) for p in (*cells, row["mean"][0])]
         cells += [fixed(100 * row[name], 1) for name in ("gain", "gain_without_air")]
-        rows.append([str(row["hz"]), fixed(1e3 * row["place"], 0), *cells, str(row["cycles"])])
+        rows.append([str(row["hz"]), fixed(1e3 * row["place"], 0), *cells])
     return rows
 
 
 def slip_rows(study: Data) -> list[list[str]]:
     """Heads and rows: harmonics and onset by frequency and length of the bristles."""
-    heads = ["bristles", "Hz", "velocity, mm/s", "third harmonic, %", "bristles bent, %"]
-    heads += ["onset going up, N", "going down, N", "load over hydraulic", "thesis, N"]
+    heads = ["bristles", "Hz", "v, mm/s", "v₃, %", "bent, %", "up, N", "down, N", "load ratio"]
+    heads += ["thesis, N"]
     rows = [heads]
     for row in study["slip"]:
         cells = [fixed(1e3 * row["speed"], 1), fixed(100 * row["third"], 1)]
         cells += [fixed(100 * row["slides"], 0), *(fixed(f, 0) for f, _ in row["onset"])]
         cells += [fixed(row["ratio"], 2), fixed(ONSETS[row["hz"]], 0)]
-        rows.append([row["travel"].replace("um", "µm"), str(row["hz"]), *cells])
+        travel = row["travel"].replace("um", "µm").replace(" ", NARROW)
+        rows.append([travel, str(row["hz"]), *cells])
     return rows
 
 
@@ -730,12 +740,12 @@ def peak_table(study: Data) -> list[list[str]]:
     """Heads and rows: the 20 Hz peak at mid-stroke, needle read back."""
     own = some(study["linear"], end="reducing_valve", needle="read back", hz=20)
     linear = [one(own, throttle=throttle)["stiffness"] for throttle in ("0 %", "75 %")]
-    cases = [("linear model: neither, needle at 20 mm/s", linear)]
+    cases = [("linear model", linear)]
     cases += [
         (f"without {' and '.join(row['without'])}" if row["without"] else "both", row["stiffness"])
         for row in study["peak"]
     ]
-    rows = [["friction and check valves", "0 %, kN/mm", "75 %, kN/mm", "change, %"]]
+    rows = [["friction, check valves", "0 %, kN/mm", "75 %, kN/mm", "change, %"]]
     for words, (first, second) in cases:
         change = fixed(100 * (second / first - 1), 1)
         rows.append([words, number(1e-6 * first, 3), number(1e-6 * second, 3), change])
@@ -960,7 +970,8 @@ def remarks(study: Data) -> dict[str, str]:
             f" {fixed(min(drifts), 1)} to {fixed(max(drifts), 1)} mm/s."
         ),
         "peak": (
-            "20 Hz, mid-stroke, needle read back, our reducing valve. A check valve lets in what"
+            "20 Hz, mid-stroke, needle read back, our reducing valve. The linear model has"
+            " neither. A check valve lets in what"
             " the"
             " needle holds back; at the peak the piston is half as fast as the linear tangent"
             " assumes."
@@ -979,7 +990,8 @@ def remarks(study: Data) -> dict[str, str]:
             " the load cell's 5 kN."
         ),
         "slip": (
-            "Velocity behind the load cell. Onset: load less its mean in the direction of motion,"
+            "v₃: third harmonic over the first. Bent: most of the bristles' travel. Up, down:"
+            " load less its mean in the direction of motion,"
             " where"
             " the bristles come to 95 % of their largest deflection after the reversal (rings in"
             " the"
@@ -1036,8 +1048,10 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
     columns = [column(heads[0], "left", 0.75), column(heads[1], "left", 1.15), column(heads[2])]
     overlay = {"kind": "figure", "ink": study["drawing"], "title": "20 Hz, our reducing valve"}
     overlay["note"] = "Here the phase counts from the position: 0° a spring, 90° a damper."
+    sides = [[tables["peak"]], [tables["slip"]]]
     blocks = [
         table("What the thesis says, and what ours does", columns, rows),
+        notes("What stays open", OPEN),
         figure("Full throttle: pressure of the rod chamber", ratchet_drawing(study)),
         tables["ratchet"],
         figure("Closed ports along the stroke", closed_drawing(study)),
@@ -1046,15 +1060,13 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
             "Moving, throttle 0 %, our reducing valve; thin: retracting; grey: constant pressure",
             stroke_drawing(study),
         ),
-        overlay,
         figure(
             "Mid-stroke, extending, throttle 0 %; thin: 75 %, needle read back", tone_drawing(study)
         ),
+        overlay,
         tables["middle"],
-        tables["peak"],
         figure("Slip of the seals: velocity behind the load cell", slip_drawing(study)),
-        tables["slip"],
-        notes("What stays open", OPEN),
+        {"kind": "pair", "title": "", "sides": sides, "note": ""},
     ]
     data = {
         "version": study["version"],
