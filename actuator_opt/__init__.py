@@ -5,8 +5,9 @@
 '0.5.0'
 
 The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `seal`, `identify`, `calibrate`,
-`report`, `save`) are the same as in the terminal; `bending` is `identify --span` there. Heavy
-modules load when a verb needs them.
+`simulate`, `report`, `save`) are the same as in the terminal; `bending` is `identify --span` there,
+`compare_measured`, `servo_sensitivities` and `verify_dynamics` are options. Heavy modules load when
+a verb needs them.
 """
 
 from __future__ import annotations
@@ -21,25 +22,35 @@ if TYPE_CHECKING:
     from .errors import ActuatorError, Diagnostic, InputError
     from .evaluation.plugin import constraint, metric
     from .identification import BendingResult, Identification, Record, Specimen
+    from .simulation import Simulation
     from .verbs import (
         Actuator,
         Calibrated,
+        Compared,
+        Trial,
         bending,
         calibrate,
         check,
+        compare_measured,
         evaluate,
         identify,
         optimise,
         read,
         read_record,
+        read_scenario,
         report,
         save,
         seal,
         sensitivity,
+        servo_sensitivities,
+        simulate,
+        verify_dynamics,
         write_calibration,
         write_identification,
         write_seal,
         write_series,
+        write_signals,
+        write_simulation,
     )
 
 __version__ = version.VERSION
@@ -49,14 +60,18 @@ _HOMES = {
     "ActuatorError": "errors",
     "BendingResult": "identification",
     "Calibrated": "verbs",
+    "Compared": "verbs",
     "Diagnostic": "errors",
     "Identification": "identification",
     "InputError": "errors",
     "Record": "identification",
+    "Simulation": "simulation",
     "Specimen": "identification",
+    "Trial": "verbs",
     "bending": "verbs",
     "calibrate": "verbs",
     "check": "verbs",
+    "compare_measured": "verbs",
     "constraint": "evaluation.plugin",
     "evaluate": "verbs",
     "identify": "verbs",
@@ -65,14 +80,20 @@ _HOMES = {
     "optimise": "verbs",
     "read": "verbs",
     "read_record": "verbs",
+    "read_scenario": "verbs",
     "report": "verbs",
     "save": "verbs",
     "seal": "verbs",
     "sensitivity": "verbs",
+    "servo_sensitivities": "verbs",
+    "simulate": "verbs",
+    "verify_dynamics": "verbs",
     "write_calibration": "verbs",
     "write_identification": "verbs",
     "write_seal": "verbs",
     "write_series": "verbs",
+    "write_signals": "verbs",
+    "write_simulation": "verbs",
 }
 
 __all__ = [
@@ -80,15 +101,19 @@ __all__ = [
     "ActuatorError",
     "BendingResult",
     "Calibrated",
+    "Compared",
     "Diagnostic",
     "Identification",
     "InputError",
     "Record",
+    "Simulation",
     "Specimen",
+    "Trial",
     "__version__",
     "bending",
     "calibrate",
     "check",
+    "compare_measured",
     "constraint",
     "evaluate",
     "identify",
@@ -97,14 +122,20 @@ __all__ = [
     "optimise",
     "read",
     "read_record",
+    "read_scenario",
     "report",
     "save",
     "seal",
     "sensitivity",
+    "servo_sensitivities",
+    "simulate",
+    "verify_dynamics",
     "write_calibration",
     "write_identification",
     "write_seal",
     "write_series",
+    "write_signals",
+    "write_simulation",
 ]
 
 

@@ -25,6 +25,12 @@ FORCE_SHARE = 0.05
 """A push, or a swing of force, over supply pressure times piston area (a choice: small)."""
 SAMPLES = 40
 """Samples of a period."""
+FITTED = 4.0
+"""Periods of a sine that are fitted at once."""
+STEADY = 0.01
+"""Change of the open loop from one fit to the next that counts as steady (a choice)."""
+LONGEST = 100.0
+"""Periods after which a sine is taken as it is."""
 HALF = 1 / sqrt(2)
 """Share of the command that is -3 dB."""
 EXACT = 2e-3
@@ -102,18 +108,28 @@ def amplitude(stand: Stand, frequency: float, opened: complex) -> float:
 
 
 def sine(stand: Stand, frequency: float, size: float, cycles: float) -> Sine:
-    """The loop following a sine, after some cycles."""
-    end = (cycles + 4.0) / frequency
+    """The loop following a sine, after some cycles; after more where it is not steady yet."""
     part = Position(shape="sine", value=size, frequency=frequency)
-    record = stand.closed(
-        gain=stand.gain,
-        duration=end,
-        sample_time=1 / (SAMPLES * frequency),
-        reference=(part,),
-    ).within(cycles / frequency)
-    t = record.time
+    while True:
+        record = stand.closed(
+            gain=stand.gain,
+            duration=(cycles + 2 * FITTED) / frequency,
+            sample_time=1 / (SAMPLES * frequency),
+            reference=(part,),
+        )
+        middle = (cycles + FITTED) / frequency
+        first = _fitted(record.within(cycles / frequency, middle), frequency)
+        last = _fitted(record.within(middle), frequency)
+        steady = abs(first.opened / last.opened - 1) < STEADY
+        if steady or _no_sine(last) or cycles > LONGEST:
+            return last
+        cycles *= 2
+
+
+def _fitted(record: Record, frequency: float) -> Sine:
+    """Ratios of a record of whole cycles."""
     asked, found, error = (
-        harmonic_fit(time=t, values=record.signals[name], frequency=frequency)
+        harmonic_fit(time=record.time, values=record.signals[name], frequency=frequency)
         for name in ("reference", "position", "error")
     )
     size = max(abs(found.amplitude), 1e-30)

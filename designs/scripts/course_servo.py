@@ -405,7 +405,7 @@ def raised_rows(data: Data) -> list[list[str]]:
 def pulse_rows(data: Data) -> list[list[str]]:
     """Heads and rows: the test case with the slides' hints."""
     heads = ["test case", "speed, m/s", "p_A, bar", "p_B, bar", "travel, mm", "creep at 0 V, mm/s"]
-    made = [[*heads, "p_A, bar", "p_B, bar", "lowest, bar"]]
+    made = [[*heads, "p_A at 0 V, bar", "p_B at 0 V, bar", "lowest, bar"]]
     for name, row in data["pulse"].items():
         bars = [
             fixed(1e-5 * row[key], 1)
@@ -518,7 +518,8 @@ _NOTE = (
     "K, Tᵢ and T_d as they act: a factor acts on its part alone, so that more P also stretches Tᵢ."
     " Gain margin of the linear loop, without sticking friction; below 1 it is unstable. Energy of"
     " the supply over the whole scenario, leakage included. By raising: the rule on the gain at"
-    " which the loop with friction swings."
+    " which the loop with friction swings. Own: of the tool, by gain margins; its P is the rule's."
+    " A dash: it never gets to 90 %, or does not stay within 2 %."
 )
 HARD = (
     "Not in the slides, so assumed: bore, rod, stroke, pipe volumes, bulk modulus and air, the"
