@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+import shlex
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -77,6 +79,25 @@ def test_a_scenario_of_the_course_adds_up(name) -> None:
     assert one.balance.energy < 1e-6
     assert one.second is not None
     assert one.second.max_difference < 1e-3
+
+
+def _variants() -> list[tuple[str, str]]:
+    """Every variant that the head of a scenario names."""
+    heads = {name: (SCENARIOS / f"{name}.yaml").read_text("utf-8") for name in ALL}
+    return [
+        (name, line)
+        for name, text in heads.items()
+        for line in re.findall(r"^#   (--set .*?)(?:   .*)?$", text, re.MULTILINE)
+    ]
+
+
+@pytest.mark.parametrize(("name", "line"), _variants())
+def test_a_variant_named_in_a_scenario_runs(name, line) -> None:
+    """What its head says to set can be set, and the balances still close."""
+    words = shlex.split(line)
+    assert words[::2] == ["--set"] * (len(words) // 2)
+    one = simulate(SCENARIOS / f"{name}.yaml", set=dict(w.split("=", 1) for w in words[1::2]))
+    assert max(one.balance.mass, one.balance.energy) < 1e-6
 
 
 # ---- circuit 1: the cylinder without a loop ----
@@ -237,6 +258,15 @@ def test_ultimate_gain_of_the_position_loop(place) -> None:
         assert loop.steady_rate == pytest.approx(rate, rel=1e-3)
 
 
+def test_zero_adjustment_leaves_the_ultimate_gain() -> None:
+    """The spool is taken to both sides of where it is centred, not of 0 V."""
+    before, after = (
+        found("position_servo", valve__offset=volts).tuned.ultimate for volts in ("0 V", "0.5 V")
+    )
+    assert after.gain == pytest.approx(before.gain, rel=1e-6)
+    assert after.period == pytest.approx(before.period, rel=1e-6)
+
+
 def test_the_calm_pi_of_the_position_loop() -> None:
     """T_i = 4/(K K_v) with a third of the ultimate gain, K_v by three linear equations."""
     tuned = found("position_servo", control__law="pi").tuned
@@ -347,6 +377,23 @@ def test_the_motor_begins_with_its_load_held() -> None:
     p_a, p_b = one.signals["pressure_a"][0], one.signals["pressure_b"][0]
     assert case.V_R * (p_a - p_b) == pytest.approx(case.LOAD, rel=1e-9)
     assert p_a + p_b == pytest.approx(SUPPLY, rel=1e-9)
+
+
+def test_a_pump_of_the_motors_constants_delivers_what_it_does_not_lose() -> None:
+    """It is V n - C_s V_r p/mu at the pressure that its relief valve holds, 1000 rpm."""
+    lost = {"slip": case.SLIP, "coulomb": case.DRY, "viscous": case.DRAG, "constant_torque": 0.1}
+    pump = {"displacement": 13.3e-6, "shaft_speed": 1000 * RPM} | lost
+    relief = {"pressure": 90 * BAR, "rated_flow": 40 * LITRE}
+    scene = trial("valve_ramp").scenario.model_copy(update={"signal": (), "duration": 2.0})
+    scene = type(scene).model_validate(
+        scene.model_dump()
+        | {"supply": {"type": "fixed_pump", "volume": 1e-3, "pump": pump, "relief": relief}}
+    )
+    one = run(scene, bare("valve_ramp"), {}, None)
+    pressure = one.signals["pressure_supply"][-1]
+    assert 80 * BAR < pressure < 110 * BAR
+    expected = 13.3e-6 * 1000 / 60 - case.SLIP * case.V_R / case.VISCOSITY * pressure
+    assert one.signals["flow_pump"][-1] == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.parametrize(

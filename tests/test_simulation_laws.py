@@ -187,7 +187,7 @@ def scenes(draw, own):
 @settings(max_examples=30)
 @given(data=st.data())
 def test_mass_and_energy_are_kept(data):
-    """What is stored is what came in less what went out: to the tolerances, and sharper with them."""
+    """What is stored is what came in less what went out, and the sharper the tolerances are."""
     own = data.draw(plants())
     scene = scenario(**data.draw(scenes(own)))
     for how, mass, share, least in (({}, 5e-4, 1e-4, 1e-3), (SHARP, 5e-7, 1e-7, 1e-6)):
@@ -240,27 +240,28 @@ def test_integrals_are_exact_where_the_motion_is_simple():
 
 
 def test_an_emptied_chamber_stays_above_vacuum_and_keeps_its_air():
-    """A rod torn out of closed ports: chamber A grows tenfold, n p V^n of its gas stays."""
-    own = plant(oil=replace(OIL, air_content=1e-4), dead_a=1e-6)
+    """A rod torn out of a closed port: the chamber grows fivefold, oil and gas in it stay."""
+    air = 1e-4
+    own = plant(oil=replace(OIL, air_content=air), dead_a=1e-6, area_b=1e-6, dead_b=1e-4)
     scene = scenario(
-        duration=0.3, ends="closed", initial={"position": 0.005, "pressure_a": 0.0, "pressure_b": 0.0},
+        duration=0.3, ends="closed",
+        initial={"position": 0.005, "pressure_a": 0.0, "pressure_b": 0.0},
         load={"force": [{"shape": "constant", "value": -3000.0}], "damping": 3e4},
     )  # fmt: skip
     found = run(scene, own)
-    x, pressure = found.signals["position"], found.signals["pressure_a"]
-    assert x[-1] > 0.05
-    assert VACUUM < pressure.min() < VACUUM + 1.0
+    place, pressure = found.signals["position"], found.signals["pressure_a"]
+    volume = 1e-6 + AREA_A * place
+    assert volume[-1] > 4 * volume[0]
+    assert VACUUM < pressure.min() < VACUUM + 0.1
     assert found.lost_mass() < 1e-4
-    first, volume = 1e-6 + AREA_A * x[0], 1e-6 + AREA_A * x
-    oil = first * np.exp(-pressure / 1.4e9)
-    gas = (volume - oil)[x > 0.02] / (1e-4 * first)
-    # the rest of the volume is gas that was `air_content` of it at the atmosphere's pressure
-    absolute = 101325.0 * gas**-1.4
-    assert pressure[x > 0.02] - VACUUM == pytest.approx(absolute, rel=1e-3)
+    late = volume > 2 * volume[0]
+    # (1 + alpha) V/V_0 = e^(-p/K) + alpha (p_a/P)^(1/n)
+    gas = ((1 + air) * volume / volume[0] - np.exp(-pressure / 1.4e9)) / air
+    assert pressure[late] - VACUUM == pytest.approx(101325.0 * gas[late] ** -1.4, rel=1e-3)
 
 
 def test_pump_that_gives_too_little_does_not_stop_the_run():
-    """The rod draws more than the pump gives: the line falls below the tank, the relief stays shut."""
+    """The rod draws more than the pump gives: the line falls below the tank, the relief is shut."""
     stated = {
         "type": "fixed_pump", "volume": 1e-3, "flow": 5 * LITRE,
         "relief": {"pressure": 140 * BAR, "rated_flow": 40 * LITRE},
@@ -296,10 +297,10 @@ def test_stops_are_met_and_left_to_the_nanosecond(samples):
     mass, stiffness, speed = 30.0, 5e7, -0.4
     own = plant(mass=mass, stop_stiffness=stiffness, oil_damping=0.0)
     scene = scenario(
-        duration=1.8, ends="constant_pressure", friction={"model": "none"},
+        duration=3.0, ends="constant_pressure", friction={"model": "none"},
         initial={"position": 0.05, "speed": speed, "pressure_a": 0.0, "pressure_b": 0.0},
     )  # fmt: skip
-    found = run(scene, own, sample_time=samples, **SHARP)
+    found = run(scene, own, sample_time=samples, sharp=1e4, relative=1e-12)
     swing = sqrt(stiffness / mass)
     damped, decay, turned = swing * sqrt(1 - 0.25**2), 0.25 * swing, 2 * acos(0.25)
     kept = exp(-2 * acos(0.25) * 0.25 / sin(acos(0.25)))
@@ -308,12 +309,11 @@ def test_stops_are_met_and_left_to_the_nanosecond(samples):
         time += left / abs(speed)
         contact = turned / damped
         depth = abs(speed) / damped * exp(-decay * contact) * sin(turned)
-        speed *= kept
-        parted = time + contact + depth / abs(speed)
-        if parted > 1.8:
+        parted = time + contact + depth / abs(kept * speed)
+        if parted > 3.0:
             break
         expected += [time, parted]
-        time, left = parted, 0.16
+        time, left, speed = parted, 0.16, kept * speed
     assert len(expected) >= 6
     events = found.found.events
     assert [event.on for event in events][: len(expected)] == [True, False] * (len(expected) // 2)
@@ -323,14 +323,14 @@ def test_stops_are_met_and_left_to_the_nanosecond(samples):
 
 def test_stop_is_met_where_the_equations_would_end_without_it():
     """At full speed onto the stop: beyond it the chamber has no volume, and nobody goes there."""
-    own = plant(oil=AIRY, dead_a=5e-7)
+    own = plant(oil=AIRY, dead_a=1.2e-6)
     scene = scenario(
         duration=0.2, initial=MIDDLE | {"position": 0.01}, load={"force": BALANCED},
         signal=[{"shape": "constant", "value": -10.0}],
     )  # fmt: skip
     found = run(scene, own, sample_time=2e-3)
     assert found.found.events[0].name == "stop at the cap end"
-    assert -0.5e-3 < found.signals["position"].min() < 0
+    assert -1.2e-3 < found.signals["position"].min() < 0
     assert found.lost_mass() < 1e-5
     fine = run(scene, own, sample_time=1e-5)
     assert found.found.events[0].time == pytest.approx(fine.found.events[0].time, abs=1e-7)
@@ -354,7 +354,8 @@ def test_samples_are_told_once_and_events_twice():
 
 POSITIONED = {
     "position": [
-        {"shape": "step", "start": 0.05, "value": 0.1}, {"shape": "step", "start": 0.3, "value": -0.2}
+        {"shape": "step", "start": 0.05, "value": 0.1},
+        {"shape": "step", "start": 0.3, "value": -0.2},
     ],
     "tuning": "stated", "position_gain": 300.0,
 }  # fmt: skip
@@ -490,7 +491,7 @@ def test_joint_is_that_of_its_own_equation():
     """Constant pressures turn a joint: J theta'' = r F - T, integrated over the angle instead."""
     own = plant(design=joined(0.5), closed_length=0.36, oil_damping=0.0)
     scene = scenario(
-        duration=0.15, ends="constant_pressure", friction={"model": "none"},
+        duration=0.1, ends="constant_pressure", friction={"model": "none"},
         initial={"position": 0.03, "pressure_a": 40 * BAR, "pressure_b": 10 * BAR},
         load={"torque": [{"shape": "constant", "value": 120.0}]},
     )  # fmt: skip
@@ -508,18 +509,18 @@ def test_joint_is_that_of_its_own_equation():
         return [rate, torque / (0.5 + own.mass * arm * arm)]
 
     start = acos((a * a + r * r - 0.39**2) / (2 * a * r))
-    times = np.linspace(0, 0.15, 151)
-    theirs = solve_ivp(rates, (0, 0.15), [start, 0.0], t_eval=times, rtol=1e-11, atol=1e-12)
+    times = np.linspace(0, 0.1, 101)
+    theirs = solve_ivp(rates, (0, 0.1), [start, 0.0], t_eval=times, rtol=1e-11, atol=1e-12)
     assert np.ptp(theirs.y[0]) > 0.2
-    _, first = np.unique(found.time, return_index=True)
-    assert found.signals["joint_angle"][first] == pytest.approx(theirs.y[0], abs=1e-8)
+    angle = np.interp(times, found.time, found.signals["joint_angle"])
+    assert angle == pytest.approx(theirs.y[0], abs=1e-8)
 
 
 def test_held_port_behind_a_throttle_is_held():
     """A throttle at a port of constant pressure: the needle's flow decides, no volume behind it."""
     own = plant(oil=AIRY, throttle=THROTTLE)
     scene = scenario(
-        duration=0.3, ends="constant_pressure",
+        duration=0.1, ends="constant_pressure",
         initial={"position": 0.05, "pressure_a": 40 * BAR, "pressure_b": 40 * BAR},
         load={"force": [{"shape": "constant", "value": 2000.0}]},
     )  # fmt: skip

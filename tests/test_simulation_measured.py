@@ -77,7 +77,8 @@ def bench(seed, **changes):
     """A record as a bench writes it."""
     rng = np.random.default_rng(seed)
     time, signals = measured_signals(**changes)
-    channels = {"position": GRAIN * np.round(signals["position"] / GRAIN)}
+    zero = rng.uniform()  # where the steps of the position lie
+    channels = {"position": GRAIN * (np.round(signals["position"] / GRAIN + zero) - zero)}
     for name in ("pressure_a", "pressure_b"):
         channels[name] = signals[name] + PRESSURE_NOISE * rng.standard_normal(time.size)
     return Measured({name: (time, values) for name, values in channels.items()})
@@ -296,9 +297,11 @@ def test_friction_over_the_pressures_keeps_its_shape():
     own = replace(own, seals=SealData(level, rises, 5e-3, 2.0, 0.0, 1e-4))
     coulomb, static = entries(["coulomb", "static"], scene, own)
     assert (coulomb.start, static.start) == pytest.approx((at_start, 2 * at_start))
-    _, seals = coulomb.put(scene, own, 3 * at_start)[0], coulomb.put(scene, own, 3 * at_start)[1]
-    assert seals.seals.coulomb[:4] == pytest.approx([120.0, 3e-5, 6e-5, 3e-5])
-    assert seals.seals.static[:4] == pytest.approx([240.0, 6e-5, 12e-5, 6e-5])
+    seals = coulomb.put(scene, own, 3 * at_start)[1].seals
+    for plane, first in ((seals.coulomb, level), (seals.static, rises)):
+        assert [plane.constant, plane.difference, plane.rod_side, plane.higher] == pytest.approx(
+            [3 * first.constant, 3 * first.difference, 3 * first.rod_side, 3 * first.higher]
+        )
 
 
 @pytest.mark.parametrize(
@@ -380,7 +383,7 @@ def test_late_uneven_records_with_gaps_are_fitted():
         kept = (t < 0.25) | (t > 0.3)
         scatter = 3e-6 if name == "position" else PRESSURE_NOISE
         channels[name] = t[kept] + 0.04, (y + scatter * rng.standard_normal(y.size))[kept]
-    found = fit(*case(**GUESS, **{}), {}, Measured(channels), ("lag", *ASKED))
+    found = fit(*case(**GUESS), {}, Measured(channels), ("lag", *ASKED))
     lag = found.parameters["lag"].parameter
     assert lag.value == pytest.approx(0.04, abs=1e-4)
     assert lag.identifiable

@@ -107,8 +107,10 @@ def row(found, metric):
     ],
 )
 def test_both_tiers_agree_in_the_linear_limit(metric, tolerance):
-    """Without friction, with small swings and a spool at rest in its centre, time and frequency
-    tell the same of the same design: two independent sets of equations."""
+    """Without friction, with small swings about a centred spool, time tells what the tier does.
+
+    They are two independent sets of equations of one design.
+    """
     found = row(small(), metric)
     assert found.value == pytest.approx(found.linear, rel=tolerance)
     assert found.difference == pytest.approx(found.value / found.linear - 1)
@@ -116,11 +118,10 @@ def test_both_tiers_agree_in_the_linear_limit(metric, tolerance):
 
 
 def test_the_phase_margin_of_a_resonance_is_seen():
-    """With more gain the open loop passes one at its resonance too, where the spool has turned
-    the phase: that crossover is found, and its margin agrees."""
+    """With more gain the open loop passes one at its resonance too, and that crossover is found."""
     found = row(small(1200), "phase_margin")
     assert found.linear < 1.0
-    assert found.value == pytest.approx(found.linear, rel=0.05)
+    assert found.value == pytest.approx(found.linear, rel=0.02)
     assert float(found.how.split(": ")[1].split(" Hz")[0]) > 100
 
 
@@ -185,12 +186,12 @@ def test_a_decay_has_frequency_and_damping_of_the_check_list(ends, ratio):
 
 
 def test_sticking_friction_raises_the_ultimate_gain():
-    """Bristles hold the piston: the loop takes more gain than without them, and the reason
-    says so with the swing that was seen."""
+    """Bristles hold the piston: the loop takes more gain, and the reason tells the swing seen."""
     found = row(sticking(), "ultimate_gain")
     assert found.shares["friction"] > 0.5
     assert found.value > 1.5 * found.linear
-    assert "the seals" in found.why and "swing of" in found.how
+    assert "the seals" in found.why
+    assert "swing of" in found.how
 
 
 def test_the_bristles_of_sticking_seals_are_a_spring_beside_the_oil():
@@ -220,8 +221,7 @@ def test_shares_make_up_the_difference():
 
 
 def test_the_spool_that_feeds_leakage_is_seen():
-    """Where the load parts the pressures, the spool rests open and its edges conduct: swings of
-    the held actuator die faster than with the centred valve of the linear tier."""
+    """Under load the spool rests open: its edges conduct more than centred ones, and damp."""
     found = row(sticking(), "damping_ratio")
     assert found.shares["operating point"] > 0.5
     assert "spool about" in found.why
@@ -234,8 +234,9 @@ def test_every_dynamic_requirement_and_the_scenario_have_a_row():
     assert set(LIMITS) == set(DYNAMIC)
     rise = row(found, "rise_time")
     assert rise.value == found.simulation.values["rise_time"]
-    assert rise.origin == "scenario" and rise.linear is None
-    assert not rise.met and not found.met
+    assert (rise.origin, rise.linear) == ("scenario", None)
+    assert not rise.met
+    assert not found.met
     assert found.runs > len(found.rows)
 
 
@@ -248,8 +249,10 @@ def test_without_a_valve_there_is_no_loop_to_test():
     force = {"force": [{"shape": "step", "start": 0.1, "value": 100.0}]}
     found = verify(scenario("none", control=None, requirements={}, load=force), prepare(design))
     loop, held = row(found, "bandwidth"), row(found, "natural_frequency")
-    assert loop.value is None and not loop.met and "no valve" in loop.why
-    assert held.value == pytest.approx(held.linear, rel=0.02) and held.met
+    assert (loop.value, loop.met) == (None, False)
+    assert "no valve" in loop.why
+    assert held.value == pytest.approx(held.linear, rel=0.02)
+    assert held.met
 
 
 def test_verification_reads_as_tables():
@@ -259,9 +262,10 @@ def test_verification_reads_as_tables():
         plain = verification_text(found, width=width, unicode=False)
         assert plain.isascii()
         assert max(map(len, plain.splitlines())) <= width
-    assert "7 of 10" in verification_text(found) or "hold in time" in verification_text(found)
+    held = sum(one.met for one in found.rows)
+    assert f"{held} of {len(found.rows)} requirements hold in time" in verification_text(found)
     tables = verification_rows(found)
-    assert [len(table.rows) for table in tables][0] == len(found.rows)
+    assert len(tables[0].rows) == len(found.rows)
     for table in tables:
         assert extra(table)["rows"]
     json.dumps(found.to_dict(), allow_nan=False)
@@ -269,8 +273,10 @@ def test_verification_reads_as_tables():
 
 @cache
 def followed():
-    """A slow proportional loop without friction at equal pressures, which the leakage holds: the
-    step opens the valve by less than its centred edges already are."""
+    """A slow proportional loop without friction, at equal pressures.
+
+    The step opens the valve by less than its centred edges are: leakage holds the pressures.
+    """
     changes = {"control.gain": "30 V/m", "valve.leakage_flow": "1 l/min"}
     step = {"shape": "step", "start": 0.1, "value": 2e-3}
     held = {"shape": "constant", "value": MIDDLE * pi * 0.013**2 / 4}
@@ -316,7 +322,7 @@ def test_parameters_are_ranked_and_what_cannot_be_moved_is_told():
     assert found.parameters[0].path in ("control.gain", "valve.rated_flow")
     assert "load.inertia" in found.skipped
     units = {one.path: one.unit for one in found.parameters}
-    assert units["fluid.temperature"] == "1 K" and units["load.mass"] == "1 %"
+    assert (units["fluid.temperature"], units["load.mass"]) == ("1 K", "1 %")
     json.dumps(found.to_dict(), allow_nan=False)
 
 
@@ -358,7 +364,8 @@ def test_what_is_asked_wrongly_is_said_in_one_line(arguments, words):
     """Unknown PATH, text, unknown result, no step: what and the remedy."""
     with pytest.raises(InputError) as caught:
         sensitivities(scenario(duration=0.15), knee(), **arguments)
-    assert words in str(caught.value) and "\n" not in str(caught.value)
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
 
 
 def test_sensitivities_read_as_a_table():
@@ -366,7 +373,8 @@ def test_sensitivities_read_as_a_table():
     found = followed()
     for width in (50, 100):
         plain = sensitivity_text(found, width=width, unicode=False)
-        assert plain.isascii() and max(map(len, plain.splitlines())) <= width
+        assert plain.isascii()
+        assert max(map(len, plain.splitlines())) <= width
     (table,) = sensitivity_rows(found)
     assert len(table.rows) == len(found.parameters)
     assert extra(table)["rows"]

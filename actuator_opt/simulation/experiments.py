@@ -39,11 +39,11 @@ MOST = 16.0
 """Factor on a linear figure within which the nonlinear one is sought (a choice)."""
 LASTING = 1e-3
 """Decay per period below which a swing counts as lasting (a choice)."""
-EARLY, LATE = (8.0, 12.0), (18.0, 22.0)
+FIRST, EARLY, LATE = (0.0, 4.0), (8.0, 12.0), (18.0, 22.0)
 """Windows after a push, in periods, between which a swing grows or decays."""
 UNEVEN = 2.0
 """Ratio of the lengths of half swings from which they are no decay (a choice)."""
-FADED = 0.05
+FADED = 0.01
 """Share of the first swing below which a decay is not read (a choice)."""
 
 
@@ -261,7 +261,10 @@ def ultimate_gain(stand: Stand, expected: float, frequency: float) -> Measured:
 
 
 def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[float, Record]:
-    """Growth of the speed's swing per period, and the record of its early window."""
+    """Growth of the speed's swing per period, and the record of its early window.
+
+    What swings more in the end than just after the push lasts, however unevenly.
+    """
     period = 1 / frequency
     record = stand.closed(
         gain=gain,
@@ -269,10 +272,12 @@ def _growth(stand: Stand, gain: float, frequency: float, push: float) -> tuple[f
         sample_time=period / SAMPLES,
         force=(Force(shape="pulse", value=push, start=0.0, end=0.5 * period),),
     )
-    early, late = (record.within(a * period, b * period) for a, b in (EARLY, LATE))
-    before, after = (max(float(np.ptp(one.signals["speed"])), 1e-15) for one in (early, late))
-    apart = LATE[0] - EARLY[0]
-    return max(log(after / before) / apart, -1.0), early
+    first, early, late = (record.within(a * period, b * period) for a, b in (FIRST, EARLY, LATE))
+    pushed, before, after = (
+        max(float(np.ptp(one.signals["speed"])), 1e-15) for one in (first, early, late)
+    )
+    rate = max(log(after / before) / (LATE[0] - EARLY[0]), -1.0)
+    return max(rate, LASTING) if after >= pushed else rate, early
 
 
 def dynamic_stiffness(stand: Stand, ends: str, frequency: float, resonance: float) -> Measured:
@@ -314,7 +319,7 @@ def decay(stand: Stand, ends: str, resonance: float) -> Measured:
     """Natural frequency and damping ratio of the swing after a step of force, ports ended.
 
     Of successive extremes of the speed, D_i their spans: zeta from the logarithmic decrement
-    ln(D_0/D_n)/n over half periods, down to a twentieth; f = f_d/sqrt(1 - zeta^2).
+    ln(D_0/D_n)/n over half periods, down to a hundredth; f = f_d/sqrt(1 - zeta^2).
     """
     push = FORCE_SHARE * stand.full_force * stand.scale
     record = stand.held(

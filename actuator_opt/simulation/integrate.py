@@ -27,6 +27,8 @@ LOOK = 2e-3
 """Longest time between two samples of a switch [s] (a choice: a half swing of the oil)."""
 MOST_TURNS = 20_000
 """Turns of switches before a run counts as chattering (a choice)."""
+APART = 1e-9
+"""Instants that are nearer to one another are one [s] (a choice)."""
 FEW, MOST = 2_000, 100_000
 """Steps between two samples: of a first try, which may run past a switch, and at most."""
 PARTS, LEVELS = 16, 5
@@ -118,11 +120,14 @@ def integrate(
     looks = math.ceil(sample_time / LOOK) if compiled.system.switches else 1
     grid = np.linspace(0.0, duration, looks * count + 1)
     told = np.arange(looks * count + 1) % looks == 0
-    stops = sorted({t for t in compiled.instants if 0 < t < duration} | {duration})
+    stops = [0.0]
+    for moment in sorted(compiled.instants):
+        if stops[-1] + APART < moment < duration - APART:
+            stops.append(moment)
     near = 1e-6 * sample_time / looks  # a sample beside an instant is that instant
     t, y = 0.0, compiled.initial.copy()
     m = _flags(compiled, t, y, ())
-    for stop in stops:
+    for stop in (*stops[1:], duration):
         inside = (grid > t + near) & (grid < stop - near)
         times = np.concatenate(([t], grid[inside], [stop]))
         y, m = _segment(run, times, np.concatenate(([True], told[inside], [True])), y, m)
@@ -140,7 +145,7 @@ def integrate(
 
 def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> tuple[bool, ...]:
     """Flags at an instant; switches keep what they had."""
-    instants = tuple(t >= one for one in compiled.instants)
+    instants = tuple(t + APART >= one for one in compiled.instants)
     if before:
         return instants + before[len(instants) :]
     return instants + tuple(_guards(compiled, np.array([t]), y[None])[:, 0] > 0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from math import comb, sqrt
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,8 @@ FEWEST = 10
 """Samples of a channel that say something (a choice)."""
 FINEST = 1e-4
 """Least noise of a sensor over the span of its record (a choice: no sensor is better)."""
+ORDERS = (3, 6)
+"""Orders of the differences that show noise (a choice: the higher one bears a faster course)."""
 ROBUST = 1.4826
 """Standard deviation over the median distance from zero, of a normal distribution."""
 APART = 0.02
@@ -233,7 +236,8 @@ def inside(
         raise measured.fault(message, shown(f"give some of {known}", 200))
     found = {}
     for name, (t, y) in common.items():
-        within = (t - lag >= 0) & (t - lag <= duration)
+        room = 1e-9 * duration
+        within = (t - lag >= -room) & (t - lag <= duration + room)
         if np.count_nonzero(within) >= FEWEST:
             found[name] = t[within], y[within]
     if not found:
@@ -289,9 +293,9 @@ def residual(time: Array, measured: Array, simulated: Array) -> Residual:
 def noise(values: Array) -> float:
     """Standard deviation of a sensor's noise, from differences of neighbouring samples.
 
-    The median size of third differences, whose variance is 20 that of a sample, leaves out jumps
-    and whatever is smooth over four samples; steps of the sensor count as theirs, step/sqrt(12);
-    not less than `FINEST` of the span.
+    The median size of differences of an order n, whose variance is (2n)!/n!^2 that of a sample,
+    leaves out jumps and whatever is smooth over n + 1 samples; the least over `ORDERS` counts. Steps
+    of the sensor count as theirs, step/sqrt(12); not less than `FINEST` of the span.
 
     Parameters
     ----------
@@ -305,7 +309,9 @@ def noise(values: Array) -> float:
     steps = np.abs(np.diff(values))
     steps = steps[steps > 1e-9 * span]
     grain = float(np.min(steps)) if steps.size else 0.0
-    rough = float(ROBUST * np.median(np.abs(np.diff(values, 3))) / np.sqrt(20.0))
+    rough = min(
+        ROBUST * float(np.median(np.abs(np.diff(values, n)))) / sqrt(comb(2 * n, n)) for n in ORDERS
+    )
     return max(rough, float(grain / np.sqrt(12.0)), FINEST * span)
 
 

@@ -243,23 +243,23 @@ class Problem:
         return found
 
     def _aligned(self, measured: Measured, signals: Mapping[str, Array]) -> float:
-        """The lag at which the record is nearest to the first run, by the mean of what overlaps."""
+        """The lag at which the first run is likeliest, by what overlaps."""
         assert self.late is not None
         time, _ = self._simulated(self.start)
         lags = np.linspace(self.low[self.late], self.high[self.late], LAGS)
-        total, count = np.zeros(LAGS), np.zeros(LAGS)
+        judged, count = np.zeros(LAGS), np.zeros(LAGS)
         for name, channel in measured.channels.items():
             if name not in signals:
                 continue
             t, y = _thinned(*channel)
             for k, lag in enumerate(lags):
                 within = (t >= lag) & (t <= lag + time[-1])
-                off = self.weights[name] * (at(t[within] - lag, time, signals[name]) - y[within])
-                total[k] += np.sum(off**2)
+                off = at(t[within] - lag, time, signals[name]) - y[within]
+                square = float(np.mean(off**2)) if off.size else np.inf
+                judged[k] += t.size * np.log(max(square, self.noise[name] ** 2))
                 count[k] += off.size
         enough = count >= max(0.5 * float(np.max(count)), 1.0)
-        mean = np.where(enough, total / np.maximum(count, 1.0), np.inf)
-        return float(lags[int(np.argmin(mean))]) if enough.any() else 0.0
+        return float(lags[int(np.argmin(np.where(enough, judged, np.inf)))])
 
     def _guessed(self, x: Array) -> Array:
         """With starts of positive parameters that are better by a factor, one after the other."""
