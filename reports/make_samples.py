@@ -11,7 +11,7 @@ from pathlib import Path
 import actuator_opt as ao
 
 ROOT = Path(__file__).resolve().parent.parent
-STUDIES = ("knee_materials", "knee_dynamics", "knee_seals", "course_servo")
+STUDIES = ("aalto_rig", "knee_materials", "knee_dynamics", "knee_seals", "course_servo")
 
 
 def main() -> None:

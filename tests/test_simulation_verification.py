@@ -227,6 +227,14 @@ def test_the_spool_that_feeds_leakage_is_seen():
     assert "spool about" in found.why
 
 
+def test_what_only_friction_holds_is_told():
+    """A stiffness between that of sliding and that of sticking seals: it holds, with a warning."""
+    limit = {"dynamic_stiffness": Limit(min=11.5e6)}
+    (found,) = verify(scenario("lugre", requirements={}), knee(requirements=limit)).rows
+    assert found.met
+    assert "only friction holds it: without it 10" in found.why
+
+
 def test_every_dynamic_requirement_and_the_scenario_have_a_row():
     """Requirements of the scenario come from its own run, and a miss there counts."""
     found = sticking()

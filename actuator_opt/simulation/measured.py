@@ -251,15 +251,37 @@ def inside(
     return found
 
 
-def at(moment: Array, time: Array, values: Array) -> Array:
-    """A simulated signal at other times, linear between samples and across no jump."""
-    if time.size == 1:
-        return np.full(np.shape(moment), values[0])
-    right = np.clip(np.searchsorted(time, moment, side="right"), 1, time.size - 1)
-    left = right - 1
-    step = time[right] - time[left]
-    share = np.clip((moment - time[left]) / np.where(step > 0, step, 1.0), 0.0, 1.0)
-    return values[left] + share * (values[right] - values[left])
+class Course:
+    """A simulated signal at any time: cubic between samples, across no jump, still beyond its ends.
+
+    Slopes are those of the parabola through a sample and its neighbours on the same side of a jump.
+    """
+
+    def __init__(self, time: Array, values: Array) -> None:
+        self.time, self.values = time, values
+        step = np.diff(time)
+        rise = np.divide(np.diff(values), step, out=np.zeros(step.size), where=step > 0)
+        before, after = np.append(0.0, step), np.append(step, 0.0)
+        left, right = np.append(0.0, rise), np.append(rise, 0.0)
+        inner = (before > 0) & (after > 0)
+        whole = np.where(inner, before + after, 1.0)
+        middle = (after * left + before * right) / whole
+        self.slopes = np.where(inner, middle, left + right)
+        begins = np.flatnonzero(~inner[:-1] & inner[1:] & (step > 0))
+        finishes = np.flatnonzero(inner[:-1] & ~inner[1:] & (step > 0))
+        self.slopes[begins] = 2 * rise[begins] - middle[begins + 1]
+        self.slopes[finishes + 1] = 2 * rise[finishes] - middle[finishes]
+
+    def __call__(self, moment: Array) -> Array:
+        """Values at times; at a jump what follows it."""
+        t, y, m = self.time, self.values, self.slopes
+        right = np.clip(np.searchsorted(t, moment, side="right"), 1, t.size - 1)
+        left = right - 1
+        step = t[right] - t[left]
+        s = np.clip((moment - t[left]) / np.where(step > 0, step, 1.0), 0.0, 1.0)
+        a, b = y[left], y[right]
+        bent = (1 - s) * m[left] - s * m[right]
+        return a + s * (b - a) + s * (1 - s) * (step * bent - (1 - 2 * s) * (b - a))
 
 
 def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
@@ -267,7 +289,7 @@ def beside(moment: Array, measured: Array, time: Array, values: Array) -> Array:
 
     A sample nearer to a jump than its neighbours may show either side of it, or what lies between.
     """
-    found = at(moment, time, values)
+    found = Course(time, values)(moment)
     half = 0.5 * float(np.median(np.diff(moment)))
     for k in np.flatnonzero((np.diff(time) == 0) & (np.diff(values) != 0)):
         near = np.abs(moment - time[k]) <= 1.001 * half
@@ -294,8 +316,8 @@ def noise(values: Array) -> float:
     """Standard deviation of a sensor's noise, from differences of neighbouring samples.
 
     The median size of differences of an order n, whose variance is (2n)!/n!^2 that of a sample,
-    leaves out jumps and whatever is smooth over n + 1 samples; the least over `ORDERS` counts. Steps
-    of the sensor count as theirs, step/sqrt(12); not less than `FINEST` of the span.
+    leaves out jumps and whatever is smooth over n + 1 samples; the least over `ORDERS` counts.
+    Steps of the sensor count as theirs, step/sqrt(12); not less than `FINEST` of the span.
 
     Parameters
     ----------

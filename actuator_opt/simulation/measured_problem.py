@@ -15,15 +15,16 @@ from ..numeric import Array
 from .assemble import assemble
 from .gains import Tuned
 from .integrate import integrate
-from .measured import FEWEST, Measured, at, beside, inside, noise
+from .measured import FEWEST, Course, Measured, beside, inside, noise
 from .measured_parameters import PARAMETERS, Case, Entry
 from .parts.signals import Records
 
 MOST: Final = 4000
 """Largest number of samples of a channel in a fit (a choice: what is denser is thinned evenly)."""
 FINE: Final = 4
-"""Samples of the simulation to one of the record (a choice: straight between them, a swing of ten
-samples to the period loses 0.3 % at most)."""
+"""Samples of the simulation to one of the record (a choice)."""
+COARSEST: Final = 2000
+"""Least number of samples of the simulation (a choice)."""
 RELATIVE: Final = 1e-8
 """Tolerance of an integration step: slopes are differences of two runs."""
 STEPS: Final = (1e-3, 0.1)
@@ -80,7 +81,7 @@ class Problem:
         apart = min(float(np.median(np.diff(t))) for t, _ in measured.channels.values())
         self.sizes = np.array([1.0 if one.positive else one.near or apart for one in own])
         duration = scenario.duration
-        self.step = float(np.clip(apart / FINE, duration / (FINE * MOST), duration / MOST))
+        self.step = min(max(apart, duration / MOST) / FINE, duration / COARSEST)
         self.steps = FIRST * self.sizes
         self.runs = 0
         self._known: tuple[bytes, Array, Mapping[str, Array]] | None = None
@@ -252,9 +253,10 @@ class Problem:
             if name not in signals:
                 continue
             t, y = _thinned(*channel)
+            course = Course(time, signals[name])
             for k, lag in enumerate(lags):
                 within = (t >= lag) & (t <= lag + time[-1])
-                off = at(t[within] - lag, time, signals[name]) - y[within]
+                off = course(t[within] - lag) - y[within]
                 square = float(np.mean(off**2)) if off.size else np.inf
                 judged[k] += t.size * np.log(max(square, self.noise[name] ** 2))
                 count[k] += off.size

@@ -215,6 +215,7 @@ class Simulation:
             "ultimate_period": _finite(tuned.ultimate.period),
             "gain_margin": _finite(tuned.margins.gain),
             "phase_margin": tuned.margins.phase,
+            "stable": tuned.margins.stable,
         }
 
     def _shaken(self) -> dict[str, Any] | None:

@@ -19,6 +19,7 @@ from ..errors import InputError, Unsolvable
 from ..evaluation.build import evaluate
 from ..evaluation.kernel import Subject
 from ..evaluation.result import Requirement
+from ..quantities import METRICS
 from . import experiments
 from .assemble import loop_of
 from .linear_tier import LinearTier, Spot
@@ -199,7 +200,7 @@ class _Bench:
         said = [full.why] if full.why else []
         if difference is not None and abs(difference) > AGREE:
             shares, more = self._reasons(asked.metric, spot, full)
-            said += more
+            said += [*more, *self._by_friction(asked, spot, value)]
         elif difference is not None:
             said.append("both agree")
         moved = apart(linear, asked.value)
@@ -220,6 +221,16 @@ class _Bench:
             why="; ".join(said),
             shares=shares,
         )
+
+    def _by_friction(self, asked: Requirement, spot: Spot, value: float | None) -> list[str]:
+        """A warning where a requirement holds only as the seals stick."""
+        if self.scenario.friction.model == "none":
+            return []
+        bare = self.measured(asked.metric, spot, bare=True).values.get(asked.metric)
+        held = _holds(value, asked.sense, asked.limit)
+        if bare is None or not held or _holds(bare, asked.sense, asked.limit):
+            return []
+        return [f"only friction holds it: without it {METRICS[asked.metric].text(bare)}"]
 
     def _impossible(self, metric: str, spot: Spot) -> str:
         """Why there is no experiment; empty where there is."""

@@ -804,15 +804,14 @@ def said_of_the_peak(study: Data) -> list[list[str]]:
             "Moving: a peak at 20 Hz, more than twice what is expected",
             f"{number(ratio[20], 2)} times static with our reducing valve, which was found so;"
             f" {joined(rest, 1, 'times')} with lines that hold their pressure: the line ends"
-            " decide,"
-            " and the thesis gives no number of them",
+            " decide, and the thesis gives no number of them",
             KIND,
         ],
         [
             "Throttling lowers the peak",
             f"{fixed(100 * (shut['stiffness'] / first['stiffness'] - 1), 1)} % from 0 to 75 % with"
-            " the"
-            f" needle as stated, {all_of_it[3]} % with that read back (linear model {linear[3]} %)",
+            f" the needle as stated, {all_of_it[3]} % with that read back (linear model"
+            f" {linear[3]} %)",
             NO,
         ],
         [
@@ -820,8 +819,7 @@ def said_of_the_peak(study: Data) -> list[list[str]]:
             " inconsequential",
             f"{', '.join(number(ratio[hz], 2) for hz in ratio if hz != 20)} times static at"
             f" {', '.join(str(hz) for hz in ratio if hz != 20)} Hz; at 30 Hz {stiff(fast[0])}"
-            " kN/mm at"
-            f" 0 %, {stiff(fast[1])} at 75 %",
+            f" kN/mm at 0 %, {stiff(fast[1])} at 75 %",
             KIND,
         ],
         [
@@ -851,8 +849,7 @@ def said_of_the_rig(study: Data) -> list[list[str]]:
         [
             "Chambers in opposite phase, save at 20 Hz near the ends",
             f"{joined(apart[20], 0, '°')} off at 7, 92, 204 mm and 20 Hz,"
-            f" {joined(apart[10], 0, '°')}"
-            " at 5, 64, 172 mm and 10 Hz",
+            f" {joined(apart[10], 0, '°')} at 5, 64, 172 mm and 10 Hz (our reducing valve)",
             YES,
         ],
         [
@@ -890,15 +887,16 @@ def said_of_the_rest(study: Data) -> list[list[str]]:
         [
             "Stiffer than the model in the middle at 10 and 20 Hz, since the pressure is higher",
             f"{joined((100 * r['gain'] for r in mid), 0, '%')} stiffer than with closed ports: air"
-            f" pressed together; without air"
+            " pressed together; without air"
             f" {fixed(max(100 * r['gain_without_air'] for r in mid), 1)} % at most",
             KIND,
         ],
         [
             "The velocity has a kink soon after the force passes zero, later at higher frequency,"
             " going up only",
-            f"bristles of 20 µm slide at {joined(up, 0, 'N')} of load, going up, so later, but"
-            f" before zero at 10 Hz; going down at {joined(down, 0, 'N')}; with 0.1 mm no kink",
+            f"bristles of 20 µm slide at {joined(up, 0, 'N')} of load going up, later with the"
+            f" frequency, at 10 Hz before zero; at {joined(down, 0, 'N')} going down; with 0.1 mm"
+            " no kink",
             KIND,
         ],
         [
@@ -924,15 +922,14 @@ def lead(study: Data) -> list[str]:
         f"Of {len(verdicts)} statements that the thesis makes in words, the simulation reproduces"
         f" {count[YES]}, {count[KIND]} in kind, and {count[NO]} not. Its curves of stiffness and"
         " phase are lost in the copy read and cannot be compared. Friction (400 N), air (0.5 %),"
-        " the"
-        " load cylinder's supply and everything beyond the hoses are assumed.",
+        " the load cylinder's supply and everything beyond the hoses are assumed.",
         "What the time domain adds to the linear model: check valves and friction, which take most"
-        " of the throttle's effect; chambers that pump themselves up behind shut needles, by closed"
-        " form and as measured; a chamber torn empty near the ends at 10 Hz; stiffness that falls"
-        " with the force. What stays open is the ends of the lines: with constant pressure nothing"
-        " peaks, with our reducing valve 20 Hz does, and that valve was found, not given.",
-        "Phases count from the velocity, as in the thesis: the force at 0° is a damper's, at −90° a"
-        " spring's, above 0° inertia's. From the position the force is 90° more.",
+        " of the throttle's effect; chambers that pump themselves up behind shut needles, by"
+        " closed form and as measured; a chamber torn empty near the ends at 10 Hz; stiffness that"
+        " falls with the force. What stays open is the ends of the lines: with constant pressure"
+        " nothing peaks, with our reducing valve 20 Hz does, and that valve was found, not given.",
+        "Phases count from the velocity, as in the thesis: the force at 0° is a damper's, at −90°"
+        " a spring's, above 0° inertia's. From the position the force is 90° more.",
     ]
 
 
@@ -948,52 +945,37 @@ def remarks(study: Data) -> dict[str, str]:
     return {
         "closed": (
             "kN/mm behind the load cell, with 0.5 % of air or none, 400 N of friction; linear: 20"
-            " Hz,"
-            " 0.5 % of air, no friction, small swings. Phases"
-            f" {fixed(min(phases), 0)} to {fixed(max(phases), 0)}°. Cavitates: time below −0.5 bar"
-            " at"
-            f" 10 Hz. The head chamber bears at most {fixed(most[0], 2)} kN that pull, the rod"
-            " chamber"
-            f" {fixed(most[1], 2)} kN that push, before it is empty; the thesis states the forces"
-            " at"
-            " 185 mm only."
+            f" Hz, 0.5 % of air, no friction, small swings. Phases {fixed(min(phases), 0)} to"
+            f" {fixed(max(phases), 0)}°. Cavitates: time below −0.5 bar at 10 Hz. The head chamber"
+            f" bears at most {fixed(most[0], 2)} kN that pull, the rod chamber {fixed(most[1], 2)}"
+            " kN that push, before it is empty; the thesis states the forces at 185 mm only."
         ),
         "middle": (
             "kN/mm, simulated / linear; open: time of the check valves at 10 Hz. Throttle as the"
-            " share"
-            " of the needle's area; read back: 0.044 cm², which drops 0.4 bar at 20 mm/s. Linear:"
-            " tangent of the needle at 20 mm/s, no friction, no check valves. With constant"
-            " pressure"
-            " nearly all of the simulated stiffness is friction. Mean speeds"
+            " share of the needle's area; read back: 0.044 cm², which drops 0.4 bar at 20 mm/s."
+            " Linear: tangent of the needle at 20 mm/s, no friction, no check valves. With constant"
+            " pressure nearly all of the simulated stiffness is friction. Mean speeds"
             f" {fixed(min(drifts), 1)} to {fixed(max(drifts), 1)} mm/s."
         ),
         "peak": (
-            "20 Hz, mid-stroke, needle read back, our reducing valve. The linear model has"
-            " neither. A check valve lets in what"
-            " the"
-            " needle holds back; at the peak the piston is half as fast as the linear tangent"
-            " assumes."
+            "20 Hz, mid-stroke, needle read back, our reducing valve. The linear model has neither."
+            " A check valve lets in what the needle holds back; at the peak the piston is half as"
+            " fast as the linear tangent assumes."
         ),
         "ratchet": (
             "Mean pressures in bar. Closed form: the minimum of each chamber stands at its line"
-            " less"
-            " 0.4 bar or above, the means hold 640 N. What the run without friction and air has"
-            " more is"
-            " the oil in the hoses, which flows on when the check valve should close. Stiffer: than"
-            f" with closed ports. Friction of 200 or 800 N: {low} or {high} bar at 185 mm and 10"
-            " Hz. Had"
-            f" the load held the mean position: {bar(held['mean'][1])} bar, but a mean force of"
-            f" {fixed(1e-3 * held['load'], 1)} kN and a peak of {fixed(1e-3 * held['peak'], 1)}"
-            " kN, beyond"
-            " the load cell's 5 kN."
+            " less 0.4 bar or above, the means hold 640 N. What the run without friction and air"
+            " has more is the oil in the hoses, which flows on when the check valve should close."
+            f" Stiffer: than with closed ports. Friction of 200 or 800 N: {low} or {high} bar at"
+            f" 185 mm and 10 Hz. Had the load held the mean position: {bar(held['mean'][1])} bar,"
+            f" but a mean force of {fixed(1e-3 * held['load'], 1)} kN and a peak of"
+            f" {fixed(1e-3 * held['peak'], 1)} kN, beyond the load cell's 5 kN."
         ),
         "slip": (
-            "v₃: third harmonic over the first. Bent: most of the bristles' travel. Up, down:"
-            " load less its mean in the direction of motion,"
-            " where"
-            " the bristles come to 95 % of their largest deflection after the reversal (rings in"
-            " the"
-            " figure). The thesis' forces are hydraulic, their zero is not stated."
+            "v₃: third harmonic over the first. Bent: most of the bristles' travel. Up, down: load"
+            " less its mean in the direction of motion, where the bristles come to 95 % of their"
+            " largest deflection after the reversal (rings in the figure). The thesis' forces are"
+            " hydraulic, their zero is not stated."
         ),
     }  # fmt: skip
 
@@ -1004,14 +986,12 @@ OPEN = (
     "Needle: at 20 mm/s the stated 0.22 cm² drops 0.02 bar, not the 0.4 bar that opened the check"
     " valves; flow, area and pressure of the thesis do not fit each other.",
     "Load cylinder: supply, capacity, leakage, lines and air are assumed, and at every place it"
-    " begins"
-    " at its own mid-stroke.",
-    "Friction: no pressure changes it. The position is behind the load cell, and there the friction"
-    " acts too, save in the slip of the seals, where the cell is added by hand.",
+    " begins at its own mid-stroke.",
+    "Friction: no pressure changes it. The position is behind the load cell, and there the"
+    " friction acts too, save in the slip of the seals, where the cell is added by hand.",
     "Shortened: 10 or 15 cycles a run, the last 5 read; closed ports take 4 s in the thesis, the"
-    " way"
-    " along the stroke 70 to 105 s. Not modelled: lag of load cell and spool, pump ripple, drift of"
-    " the temperature, air that is released or dissolved, the check valve's 1 ms.",
+    " way along the stroke 70 to 105 s. Not modelled: lag of load cell and spool, pump ripple,"
+    " drift of the temperature, air that is released or dissolved, the check valve's 1 ms.",
 )
 """What is open, in words."""
 TITLES = {
