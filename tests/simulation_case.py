@@ -17,8 +17,9 @@ from actuator_opt.evaluation.springs import Give
 from actuator_opt.evaluation.study import plant as plants
 from actuator_opt.evaluation.study.plant import LineData, Oil, Plane, Plant, SealData, ValveData
 from actuator_opt.models.tuning import ControllerGains
-from actuator_opt.simulation.assemble import Circuit, assemble
+from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.integrate import Trajectory, integrate
+from actuator_opt.simulation.parts.circuit import Circuit
 from actuator_opt.simulation.system import Compiled
 from actuator_opt.symbolic import vectorised
 

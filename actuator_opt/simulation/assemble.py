@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from math import pi
-from typing import Literal
 
 from ..design.kinds import position_at
-from ..design.scenario.model import Control, Scenario
+from ..design.scenario.model import Control, HeldPorts, Scenario
 from ..design.scenario.signals import Part
 from ..errors import Diagnostic, InputError
 from ..evaluation.study.plant import Plant
@@ -16,14 +14,13 @@ from ..models.stiffness import holding_pressures
 from ..models.tuning import ControllerGains
 from ..quantities import INPUTS, SCENARIOS, Quantity
 from ..symbolic import Expression, Symbol
-from .parts import chambers, friction, load_cylinder, motion, motor, ports, signals, valve
-from .parts.chambers import Audit
+from .parts import chambers, friction, load_cylinder, motion, motor, ports, valve
+from .parts.circuit import Circuit, Loop, Start
 from .parts.control import Measured, command, inner
 from .parts.signals import Records
 from .parts.supply import Source
 from .system import System
 
-Loop = Literal["position", "speed", "shaft_speed", "shaft_angle"]
 LOOPS: tuple[Loop, ...] = ("position", "speed", "shaft_speed", "shaft_angle")
 QUANTITIES: dict[Loop, Quantity] = {
     "position": INPUTS["position"],
@@ -38,29 +35,6 @@ TYPICAL: dict[Loop, float] = {
 LEAST_DEAD = 0.5e-3
 """Least dead volume of a chamber over its area [m] (a choice): none would have no compliance."""
 PRESSURES = INPUTS["pressure"]
-
-
-@dataclass(frozen=True, slots=True)
-class Start:
-    """Where a run begins."""
-
-    position: float
-    pressure_a: float
-    pressure_b: float
-
-
-@dataclass(slots=True)
-class Circuit:
-    """A system with what its balance and its results are read from."""
-
-    system: System
-    audit: Audit
-    start: Start
-    loop: Loop | None = None
-    measured: Expression = 0.0
-    centre: float = 0.0
-    """Signal that centres the spool [V]."""
-    notes: list[str] = field(default_factory=list)
 
 
 def loop_of(control: Control | None) -> Loop | None:
@@ -123,133 +97,85 @@ def assemble(
     linear : leave the controller open at a free variable ``u``, and sticking friction out
     start : where it begins; default: as the scenario says
     """
-    system = System()
-    audit = Audit([], [], [])
-    begin = start_of(scenario, plant) if start is None else start
-    power = plant.supply_pressure * 1e-4
-    circuit = Circuit(system, audit, begin, loop_of(scenario.control))
+    circuit = Circuit(
+        scenario=scenario,
+        plant=plant,
+        records=records,
+        start=start_of(scenario, plant) if start is None else start,
+        gains=gains,
+        loop=loop_of(scenario.control),
+        linear=linear,
+    )
     if scenario.held_ports is not None:
-        _valve_bench(circuit, scenario, plant, records, power)
+        _valve_bench(circuit, scenario.held_ports)
     elif scenario.motor is not None:
-        _motor(circuit, scenario, plant, records, gains, linear, power)
+        _motor(circuit)
     else:
-        _cylinder(circuit, scenario, plant, records, gains, linear, power)
+        _cylinder(circuit)
     return circuit
 
 
-def _command(
-    circuit: Circuit,
-    scenario: Scenario,
-    plant: Plant,
-    records: Records,
-    gains: ControllerGains | None,
-    measured: Measured,
-    linear: bool,
-) -> Expression:
+def _command(circuit: Circuit, measured: Measured) -> Expression:
     """Signal to the valve: free, stated over time, or the controller's."""
-    system, loop = circuit.system, circuit.loop
+    system, loop, control = circuit.system, circuit.loop, circuit.scenario.control
     circuit.measured = measured.value
-    if linear:
-        free = system.graph.variable("u")
-        return free if scenario.control is None else inner(system, scenario.control, free, measured)
-    if loop is None or scenario.control is None:
-        return signals.signal(system, scenario.signal, records)
-    assert gains is not None
-    assert plant.valve is not None
+    if circuit.linear:
+        return inner(circuit, system.graph.variable("u"), measured)
+    if loop is None or control is None:
+        return circuit.course(circuit.scenario.signal)
     base = circuit.start.position if loop == "position" else 0.0
-    wanted = base + signals.signal(system, getattr(scenario.control, loop), records)
+    wanted = base + circuit.course(getattr(control, loop))
     system.signal("reference", "reference", QUANTITIES[loop], wanted)
     system.signal("error", "error of the loop", QUANTITIES[loop], wanted - measured.value)
-    return command(
-        system,
-        scenario.control,
-        gains,
-        reference=wanted,
-        measured=measured,
-        full_signal=plant.valve.signal,
-        scale=TYPICAL[loop],
-    )
+    return command(circuit, wanted, measured, TYPICAL[loop])
 
 
 def _driven(
-    circuit: Circuit,
-    scenario: Scenario,
-    plant: Plant,
-    wish: Expression,
-    pressures: tuple[Expression, Expression],
-    power: float,
+    circuit: Circuit, wish: Expression, pressures: tuple[Expression, Expression]
 ) -> valve.Port:
     """Valve with its supply between two far ends."""
-    if plant.valve is None:
+    data = circuit.plant.valve
+    if data is None:
         message = "the design has no valve"
         raise InputError(Diagnostic(message, 'add a block "valve" to the design', path="valve"))
-    system, audit = circuit.system, circuit.audit
-    source = Source.of(system, audit, plant, scenario)
-    circuit.centre = plant.valve.offset
-    opening = valve.spool(system, plant.valve, wish)
+    source = Source.of(circuit)
+    circuit.centre = data.offset
     flows = valve.edges(
-        system,
-        audit,
-        plant.valve,
-        opening=opening,
+        circuit,
+        data,
+        opening=valve.spool(circuit, data, wish),
         supply_pressure=source.pressure,
-        return_pressure=plant.return_pressure,
+        return_pressure=circuit.plant.return_pressure,
         pressure_a=pressures[0],
         pressure_b=pressures[1],
-        power=power,
     )
-    source.feed(flows.supply, flows.tank, power)
+    source.feed(flows.supply, flows.tank)
     return flows
 
 
-def _valve_bench(
-    circuit: Circuit, scenario: Scenario, plant: Plant, records: Records, power: float
-) -> None:
-    held = scenario.held_ports
-    assert held is not None
-    system = circuit.system
-    wish = signals.signal(system, scenario.signal, records)
-    pressures = (held.pressure_a, held.pressure_b)
-    flows = _driven(circuit, scenario, plant, wish, pressures, power)
+def _valve_bench(circuit: Circuit, held: HeldPorts) -> None:
+    wish = circuit.course(circuit.scenario.signal)
+    flows = _driven(circuit, wish, (held.pressure_a, held.pressure_b))
     work = held.pressure_a * flows.into_a + held.pressure_b * flows.into_b
-    done = system.integral("work on the bench", work, scale=power)
-    circuit.audit.flows.append(("held ports", done, False))
+    circuit.door("held ports", work, state="work on the bench")
 
 
-def _motor(
-    circuit: Circuit,
-    scenario: Scenario,
-    plant: Plant,
-    records: Records,
-    gains: ControllerGains | None,
-    linear: bool,
-    power: float,
-) -> None:
-    assert scenario.motor is not None
-    system, audit, begin = circuit.system, circuit.audit, circuit.start
-    a, b = (
-        system.pressure(f"pressure {name}", value)
-        for name, value in (("a", begin.pressure_a), ("b", begin.pressure_b))
-    )
+def _motor(circuit: Circuit) -> None:
+    system, begin = circuit.system, circuit.start
+    a = system.pressure("pressure a", begin.pressure_a)
+    b = system.pressure("pressure b", begin.pressure_b)
     shaft = motor.shaft(system)
-    measured = Measured(
-        shaft.angle if circuit.loop == "shaft_angle" else shaft.speed, shaft.speed, a - b
-    )
-    wish = _command(circuit, scenario, plant, records, gains, measured, linear)
-    flows = _driven(circuit, scenario, plant, wish, (a, b), power)
+    value = shaft.angle if circuit.loop == "shaft_angle" else shaft.speed
+    across = begin.pressure_a - begin.pressure_b
+    wish = _command(circuit, Measured(value, shaft.speed, a - b, across))
+    flows = _driven(circuit, wish, (a, b))
     motor.turn(
-        system,
-        audit,
-        plant,
-        scenario.motor,
-        records,
+        circuit,
         shaft,
         pressure_a=a,
         pressure_b=b,
         inflow_a=flows.into_a,
         inflow_b=flows.into_b,
-        smooth=linear,
-        power=power,
     )
     _pressures(system, a, b)
 
@@ -259,96 +185,60 @@ def _pressures(system: System, a: Expression, b: Expression) -> None:
     system.signal("pressure_b", "pressure in chamber B", PRESSURES, b)
 
 
-def _cylinder(
-    circuit: Circuit,
-    scenario: Scenario,
-    plant: Plant,
-    records: Records,
-    gains: ControllerGains | None,
-    linear: bool,
-    power: float,
-) -> None:
-    system, audit, begin = circuit.system, circuit.audit, circuit.start
+def _cylinder(circuit: Circuit) -> None:
+    system, plant, begin = circuit.system, circuit.plant, circuit.start
+    scenario = circuit.scenario
     ends = ends_of(scenario, plant)
     position = system.state("position", begin.position, tolerance=motion.POSITION)
     speed = system.state("speed", scenario.initial.speed, tolerance=motion.SPEED)
-    sides = {
-        name: ports.side(system, plant, name, ends, value)
-        for name, value in (("a", begin.pressure_a), ("b", begin.pressure_b))
-    }
-    a, b = sides["a"], sides["b"]
+    a = ports.side(circuit, "a", ends, begin.pressure_a)
+    b = ports.side(circuit, "b", ends, begin.pressure_b)
     feed: tuple[Expression, Expression] = (0.0, 0.0)
     if ends == "valve":
-        load_pressure = a.pressure - (plant.area_b / plant.area_a) * b.pressure
-        value = speed if circuit.loop == "speed" else position
-        start = begin.pressure_a - (plant.area_b / plant.area_a) * begin.pressure_b
-        measured = Measured(value, speed, load_pressure, start)
-        wish = _command(circuit, scenario, plant, records, gains, measured, linear)
-        flows = _driven(circuit, scenario, plant, wish, (a.end, b.end), power)
-        feed = flows.into_a, flows.into_b
-    inflow = {
-        name: ports.connect(system, audit, plant, side, ends, gives, held=held, power=power)
-        for name, side, gives, held in (
-            ("a", a, feed[0], begin.pressure_a),
-            ("b", b, feed[1], begin.pressure_b),
+        ratio = plant.area_b / plant.area_a
+        measured = Measured(
+            speed if circuit.loop == "speed" else position,
+            speed,
+            a.pressure - ratio * b.pressure,
+            begin.pressure_a - ratio * begin.pressure_b,
         )
-    }
+        flows = _driven(circuit, _command(circuit, measured), (a.end, b.end))
+        feed = flows.into_a, flows.into_b
+    into_a = ports.connect(circuit, a, ends, feed[0], held=begin.pressure_a)
+    into_b = ports.connect(circuit, b, ends, feed[1], held=begin.pressure_b)
     across = plant.leakage * (a.pressure - b.pressure)
     if plant.leakage:
-        lost = system.integral("leakage loss", across * (a.pressure - b.pressure), scale=power)
-        audit.flows.append(("leakage across the piston", lost, False))
+        lost = across * (a.pressure - b.pressure)
+        circuit.door("leakage across the piston", lost, state="leakage loss")
         system.signal("flow_leakage", "leakage across the piston", SCENARIOS["flow_value"], across)
-    net = inflow["a"] - across, inflow["b"] + across
-    pressed = _chambers(circuit, plant, (a, b), net, position, speed, power)
-    stated = scenario.friction.model_copy(update={"model": "none"}) if linear else scenario.friction
+    pressed = _chambers(circuit, (a, b), (into_a - across, into_b + across), position, speed)
     own = friction.law(plant, scenario.friction, (begin.pressure_a, begin.pressure_b))
-    force = friction.resist(
-        system, stated, own, speed=speed, pressure_a=a.pressure, pressure_b=b.pressure
-    )
-    outside: Expression = 0.0
-    if scenario.load.cylinder is not None:
-        outside = load_cylinder.push(
-            system,
-            audit,
-            plant,
-            scenario.load.cylinder,
-            records,
-            position=position,
-            start=begin.position,
-            speed=speed,
-            power=power,
-        )
+    force = friction.resist(circuit, own, speed=speed, pressure_a=a.pressure, pressure_b=b.pressure)
+    bench = scenario.load.cylinder
     motion.move(
-        system,
-        audit,
-        plant,
-        scenario,
-        records,
+        circuit,
         position=position,
         speed=speed,
         pressure_force=pressed,
         friction=force,
-        pulled=outside,
-        power=power,
+        pulled=0.0
+        if bench is None
+        else load_cylinder.push(circuit, bench, position=position, speed=speed),
     )
     _pressures(system, a.pressure, b.pressure)
 
 
 def _chambers(
     circuit: Circuit,
-    plant: Plant,
     sides: tuple[ports.Side, ports.Side],
     inflow: tuple[Expression, Expression],
     position: Symbol,
     speed: Symbol,
-    power: float,
 ) -> Expression:
     """Both chambers with what of their lines counts to them; the force of their pressures."""
-    a, b = sides
-    found = chambers.cylinder(
-        circuit.system,
-        circuit.audit,
-        plant.oil,
+    plant, (a, b) = circuit.plant, sides
+    return chambers.cylinder(
+        circuit,
         pressure_a=a.pressure,
         pressure_b=b.pressure,
         inflow_a=inflow[0],
@@ -364,9 +254,7 @@ def _chambers(
             a0=plant.walls.a0 + a.lumped_wall, b0=plant.walls.b0 + b.lumped_wall
         ),
         flexibility=plant.flexibility,
-        power=power,
     )
-    return found.force
 
 
 def _dead(circuit: Circuit, volume: float, area: float, word: str) -> float:

@@ -6,8 +6,8 @@ import numpy as np
 
 from ..numeric import Array
 from ..symbolic import vectorised
-from .assemble import Circuit
 from .integrate import Trajectory
+from .parts.circuit import Circuit
 from .result import Balance, Flow
 from .system import System
 

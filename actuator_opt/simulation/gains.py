@@ -12,8 +12,9 @@ from ..errors import Diagnostic, InputError
 from ..evaluation.study.plant import Plant
 from ..models.tuning import ControllerGains, margin_rules, ziegler_nichols
 from ..numeric import Array
-from .assemble import Loop, assemble, loop_of, start_of
+from .assemble import assemble, loop_of, start_of
 from .linearise import Law, Linear, Margins, OpenLoop, Ultimate, least, margins
+from .parts.circuit import Loop
 from .parts.signals import Records, steady_value
 
 MARGIN = {"p": 2.0, "pi": 3.0}

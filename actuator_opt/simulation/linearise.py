@@ -10,7 +10,7 @@ import numpy as np
 
 from ..numeric import Array
 from ..symbolic import function, jacobian
-from .assemble import Circuit
+from .parts.circuit import Circuit
 
 TOUCH = 1e-9
 """Position of the spool beside its centre [V]: which pair of edges opens."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..least_squares import Known, known
 from ..numeric import Array
-from .measured_problem import FIRST, STEPS, Problem
+from .measured_problem import STEPS, Problem
 
 STEADIEST: Final = 0.97
 """Largest correlation of neighbouring samples that the bandwidth counts, as is usual."""
@@ -29,14 +29,11 @@ def bounds(problem: Problem, x: Array) -> Known:
     secants over a standard error.
     """
     rest = problem.rest(x)
-    steps = FIRST * problem.sizes
-    for _ in range(2):
-        scaled = problem.slopes(x, steps) * problem.sizes
-        left, singular, right = np.linalg.svd(scaled, full_matrices=False)
-        variance = float(np.sum(rest**2)) / max(rest.size - x.size, 1)
-        least = 1e-12 * max(float(singular[0]), 1e-300)
-        errors = np.linalg.norm(right.T / np.maximum(singular, least), axis=1)
-        steps = np.clip(np.sqrt(variance) * errors, *STEPS) * problem.sizes
+    variance = float(np.sum(rest**2)) / max(rest.size - x.size, 1)
+    _, singular, right = _parts(problem.slopes_on_the_way(x) * problem.sizes)
+    errors = np.sqrt(variance) * np.linalg.norm(right.T / singular, axis=1)
+    steps = np.clip(errors, *STEPS) * problem.sizes
+    left, singular, right = _parts(problem.slopes(x, steps) * problem.sizes)
     moments = _by_time(problem, left * rest[:, None])
     width = _bandwidth(moments)
     inner = _larger(variance * np.eye(x.size), _coloured(problem, left, rest))
@@ -51,6 +48,12 @@ def bounds(problem: Problem, x: Array) -> Known:
         problem.sizes,
         spare=max(points - x.size, 1.0),
     )
+
+
+def _parts(slopes: Array) -> tuple[Array, Array, Array]:
+    """Singular vectors and values, none of these zero."""
+    left, singular, right = np.linalg.svd(slopes, full_matrices=False)
+    return left, np.maximum(singular, 1e-12 * max(float(singular[0]), 1e-300)), right
 
 
 def _larger(first: Array, second: Array) -> Array:

@@ -13,9 +13,10 @@ from ..evaluation.study.plant import Plant
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array
 from ..quantities import RESULTS
-from .assemble import LOOPS, Loop
+from .assemble import LOOPS
 from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import Event
+from .parts.circuit import Loop
 from .parts.signals import frequencies
 from .result import Balance, Row, Servo, Shaken, Window
 from .step_response import step_metrics

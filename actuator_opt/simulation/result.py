@@ -12,9 +12,9 @@ from ..design.scenario.model import Scenario
 from ..evaluation.study.plant import Plant
 from ..numeric import Array
 from ..quantities import RESULTS, Quantity
-from .assemble import Loop
 from .gains import Tuned
 from .integrate import Event
+from .parts.circuit import Loop
 from .step_response import StepMetrics
 
 

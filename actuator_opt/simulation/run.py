@@ -16,10 +16,11 @@ from ..evaluation.kernel import Subject
 from ..evaluation.study.plant import Plant, plant
 from ..numeric import Array
 from . import reading
-from .assemble import Circuit, assemble
+from .assemble import assemble
 from .balance import balance
 from .gains import Tuned, tune
 from .integrate import Method, Trajectory, integrate
+from .parts.circuit import Circuit
 from .parts.signals import Records
 from .result import Second, Simulation, Told
 from .system import Compiled

@@ -21,7 +21,7 @@ from ..quantities import Quantity
 from ..symbolic import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised
 
 LOOSE = 1e-4
-"""Tolerance of an integral over its scale and one second (a choice): it follows, the states lead."""
+"""Tolerance of an integral over its scale (a choice): it follows, the states lead."""
 
 
 PRESSURE = 1.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...evaluation.springs import Give
@@ -11,22 +10,10 @@ from ...models import chamber, oil_energy
 from ...models.fluid import ATMOSPHERIC_PRESSURE
 from ...numeric import maximum
 from ...symbolic import Expression, Symbol
-from ..system import System
+from .circuit import Circuit
 
 FLOOR = 1e-6
 """Least absolute pressure of the laws of oil and air [Pa]: for their rounding alone."""
-
-
-@dataclass(slots=True)
-class Audit:
-    """What the balance of a run adds up."""
-
-    mass: list[tuple[str, Expression, Symbol]]
-    """Name, content at reference density [m^3], and the integral of what flowed in."""
-    stored: list[tuple[str, Expression]]
-    """Energy as a function of the states [J]."""
-    flows: list[tuple[str, Symbol, bool]]
-    """Energy that went in (True) or out [J]."""
 
 
 class Volumes(NamedTuple):
@@ -48,10 +35,8 @@ def oil_at(oil: Oil, pressure: Expression) -> Volumes:
 
 
 def node(
-    system: System,
-    audit: Audit,
+    circuit: Circuit,
     name: str,
-    oil: Oil,
     pressure: Symbol,
     *,
     inflow: Expression,
@@ -59,29 +44,28 @@ def node(
     wall: float = 0.0,
 ) -> None:
     """A rigid volume with an elastic wall: its pressure follows the net inflow."""
-    law = oil_at(oil, pressure)
+    law = oil_at(circuit.plant.oil, pressure)
     whole = volume + wall * pressure
-    system.rate(
+    circuit.system.rate(
         pressure,
         chamber.pressure_rate(
             flow=inflow, volume=whole, volume_rate=0.0, bulk_modulus=law.modulus, compliance=wall
         ),
     )
-    _content(system, audit, name, law, whole, inflow, pressure, volume)
-    audit.stored.append((f"walls of {name}", 0.5 * wall * pressure * pressure))
+    _content(circuit, name, law, whole, inflow, volume)
+    circuit.audit.stored.append((f"walls of {name}", 0.5 * wall * pressure * pressure))
 
 
 def _content(
-    system: System,
-    audit: Audit,
+    circuit: Circuit,
     name: str,
     law: Volumes,
     volume: Expression,
     inflow: Expression,
-    pressure: Expression,
     scale: float,
 ) -> None:
-    """Count mass and energy of a volume."""
+    """Count mass and energy of a volume; what flows in brings its elastic energy along."""
+    system, audit = circuit.system, circuit.audit
     mass = system.integral(f"inflow of {name}", law.ratio * inflow, scale=1e-3 * scale)
     audit.mass.append((name, law.ratio * volume, mass))
     audit.stored.append((f"oil of {name}", law.energy * volume))
@@ -89,19 +73,8 @@ def _content(
     audit.flows.append(("carried by the oil", carried, True))
 
 
-class Cylinder(NamedTuple):
-    """The two chambers of a cylinder."""
-
-    force: Expression
-    """Of the pressures on the piston [N]."""
-    volume_a: Expression
-    volume_b: Expression
-
-
 def cylinder(
-    system: System,
-    audit: Audit,
-    oil: Oil,
+    circuit: Circuit,
     *,
     pressure_a: Expression,
     pressure_b: Expression,
@@ -116,16 +89,16 @@ def cylinder(
     dead_b: float,
     walls: Give,
     flexibility: float,
-    power: float,
     of: str = "",
-) -> Cylinder:
-    """Both chambers of a cylinder, coupled by their walls and by the rod's give.
+) -> Expression:
+    """Both chambers of a cylinder, coupled by their walls and the rod's give; their force [N].
 
     V_A = A_A x + V_0A + W_AA p_A + W_AB p_B, V_B = A_B (s - x) + V_0B + W_BB p_B + W_AB p_A, W(x)
     of the walls plus f a a^T of rod and mount with a = (A_A, -A_B). The force on the piston is
     a^T p + p^T W' p/2, as the work of the walls asks. A pressure that is a number is held outside:
     its port gives what volume, walls and leakage ask for.
     """
+    system, audit, oil = circuit.system, circuit.audit, circuit.plant.oil
     beyond = stroke - position
     w_a = walls.a0 + walls.a1 * position + flexibility * area_a * area_a
     w_b = walls.b0 + walls.b1 * beyond + flexibility * area_b * area_b
@@ -148,14 +121,13 @@ def cylinder(
         if moved:
             system.rate(pressure, own)
         else:
-            given = system.integral(f"held work {name}", pressure * asked, scale=power)
-            audit.flows.append(("held ports", given, True))
+            circuit.door("held ports", pressure * asked, state=f"held work {name}", into=True)
     if moved_a:
         scale = area_a * stroke + dead_a
-        _content(system, audit, f"chamber A{of}", law_a, v_a, inflow_a, pressure_a, scale)
+        _content(circuit, f"chamber A{of}", law_a, v_a, inflow_a, scale)
     if moved_b:
         scale = area_b * stroke + dead_b
-        _content(system, audit, f"chamber B{of}", law_b, v_b, inflow_b, pressure_b, scale)
+        _content(circuit, f"chamber B{of}", law_b, v_b, inflow_b, scale)
     energy = 0.5 * (
         w_a * pressure_a * pressure_a
         + w_b * pressure_b * pressure_b
@@ -167,4 +139,4 @@ def cylinder(
         - walls.b1 * pressure_b * pressure_b
         + 2 * walls.c1 * pressure_a * pressure_b
     )
-    return Cylinder(area_a * pressure_a - area_b * pressure_b + bent, v_a, v_b)
+    return area_a * pressure_a - area_b * pressure_b + bent

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
-from ...design.scenario.model import Control
-from ...models.tuning import ControllerGains
 from ...numeric import clip, where
 from ...symbolic import Expression
-from ..system import System
+from .circuit import Circuit
 
 HOLD_BAND = 1e-3
 """Share of the full signal over which the integral part comes to rest before the limit (a choice:
@@ -30,8 +28,11 @@ class Measured:
     load_pressure_start: float = 0.0
 
 
-def inner(system: System, stated: Control, wish: Expression, measured: Measured) -> Expression:
+def inner(circuit: Circuit, wish: Expression, measured: Measured) -> Expression:
     """A wish less what the inner loops take off it: speed, and changes of the load pressure."""
+    system, stated = circuit.system, circuit.scenario.control
+    if stated is None:
+        return wish
     wish = wish - stated.speed_feedback * measured.speed
     if stated.pressure_feedback:
         start = measured.load_pressure_start
@@ -42,16 +43,14 @@ def inner(system: System, stated: Control, wish: Expression, measured: Measured)
 
 
 def command(
-    system: System,
-    stated: Control,
-    gains: ControllerGains,
-    *,
-    reference: Expression,
-    measured: Measured,
-    full_signal: float,
-    scale: float,
+    circuit: Circuit, reference: Expression, measured: Measured, scale: float
 ) -> Expression:
     """Signal to the valve; `scale` is a typical error of the loop, for tolerances."""
+    system, stated, gains = circuit.system, circuit.scenario.control, circuit.gains
+    assert stated is not None
+    assert gains is not None
+    assert circuit.plant.valve is not None
+    full_signal = circuit.plant.valve.signal
     gain = stated.gain_factor * gains.proportional_gain
     error = reference - measured.value
     wish: Expression = gain * error
@@ -61,7 +60,7 @@ def command(
         system.rate(slow, change)
         factor = stated.derivative_factor * gains.proportional_gain
         wish = wish + factor * gains.derivative_time * change
-    wish = inner(system, stated, wish, measured)
+    wish = inner(circuit, wish, measured)
     if gains.integral_time < inf:
         part = system.state("integral part", 0.0, tolerance=1e-7 * full_signal)
         wish = wish + part

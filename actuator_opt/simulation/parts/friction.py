@@ -10,7 +10,7 @@ from ...models import friction, lugre
 from ...numeric import absolute, maximum
 from ...quantities import SCENARIOS
 from ...symbolic import Expression
-from ..system import System
+from .circuit import Circuit
 
 LEAST = 1e-3
 """Least level of the friction [N]: bristles without any have no length."""
@@ -76,8 +76,7 @@ def _at(plane: Plane, pressure_a: Expression, pressure_b: Expression) -> Express
 
 
 def resist(
-    system: System,
-    stated: Stated,
+    circuit: Circuit,
     own: Law,
     *,
     speed: Expression,
@@ -85,13 +84,14 @@ def resist(
     pressure_b: Expression,
 ) -> Expression:
     """Friction force on the piston, with the sign of the speed [N]."""
-    if stated.model == "none":
+    system, model = circuit.system, circuit.scenario.friction.model
+    if model == "none" or circuit.linear:
         return own.viscous * speed
     coulomb = maximum(_at(own.coulomb, pressure_a, pressure_b), LEAST)
     static = coulomb
     if own.static is not own.coulomb:
         static = maximum(_at(own.static, pressure_a, pressure_b), coulomb)
-    if stated.model == "stribeck":
+    if model == "stribeck":
         return friction.stribeck(
             speed=speed,
             coulomb=coulomb,

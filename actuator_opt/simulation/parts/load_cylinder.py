@@ -4,66 +4,49 @@ from __future__ import annotations
 
 from ...design.scenario.model import LoadCylinder
 from ...evaluation.springs import Give
-from ...evaluation.study.plant import Plant, ValveData
+from ...evaluation.study.plant import ValveData
 from ...models import forces
 from ...models.valve import edge_coefficient
 from ...quantities import INPUTS, SCENARIOS
 from ...symbolic import Expression, Symbol
-from ..system import System
 from . import chambers, valve
-from .chambers import Audit
-from .signals import Records, signal
+from .circuit import Circuit
 
 WHOSE = "load_"
 LEAST_DEAD = 0.5e-3
 """Least dead volume over the area [m] (a choice), as of the actuator's own chambers."""
 
 
-def push(
-    system: System,
-    audit: Audit,
-    plant: Plant,
-    stated: LoadCylinder,
-    records: Records,
-    *,
-    position: Symbol,
-    start: float,
-    speed: Symbol,
-    power: float,
-) -> Expression:
+def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Symbol) -> Expression:
     """Force of the load cylinder on the rod, outwards [N]; its rod moves with the actuator's."""
+    system = circuit.system
     area = float(forces.annulus_area(bore=stated.bore, rod_diameter=stated.rod_diameter))
     middle = 0.5 * (stated.supply_pressure + stated.return_pressure)
     half = 0.5 * stated.force / area
     a = system.pressure(f"{WHOSE}pressure a", middle + half)
     b = system.pressure(f"{WHOSE}pressure b", middle - half)
     data = _data(stated)
-    opening = valve.spool(system, data, signal(system, stated.signal, records), WHOSE)
+    opening = valve.spool(circuit, data, circuit.course(stated.signal), WHOSE)
     flows = valve.edges(
-        system,
-        audit,
+        circuit,
         data,
         opening=opening,
         supply_pressure=stated.supply_pressure,
         return_pressure=stated.return_pressure,
         pressure_a=a,
         pressure_b=b,
-        power=power,
         whose=WHOSE,
     )
     given = stated.supply_pressure * flows.supply - stated.return_pressure * flows.tank
-    work = system.integral(f"{WHOSE}supply work", given, scale=power)
-    audit.flows.append(("supply of the load cylinder", work, True))
+    circuit.door("supply of the load cylinder", given, state=f"{WHOSE}supply work", into=True)
     dead = max(stated.dead_volume, LEAST_DEAD * area)
-    found = chambers.cylinder(
-        system,
-        audit,
-        plant.oil,
+    pushed = chambers.cylinder(
+        circuit,
         pressure_a=a,
         pressure_b=b,
         inflow_a=flows.into_a,
         inflow_b=flows.into_b,
-        position=position + (0.5 * stated.stroke - start),
+        position=position + (0.5 * stated.stroke - circuit.start.position),
         speed=speed,
         area_a=area,
         area_b=area,
@@ -72,15 +55,14 @@ def push(
         dead_b=dead,
         walls=Give(),
         flexibility=0.0,
-        power=power,
         of=" of the load cylinder",
     )
     pressures = INPUTS["pressure"]
     system.signal(f"{WHOSE}pressure_a", "pressure of the load cylinder, side A", pressures, a)
     system.signal(f"{WHOSE}pressure_b", "pressure of the load cylinder, side B", pressures, b)
     force = SCENARIOS["force_value"]
-    system.signal("load_cylinder_force", "force of the load cylinder", force, found.force)
-    return found.force
+    system.signal("load_cylinder_force", "force of the load cylinder", force, pushed)
+    return pushed
 
 
 def _data(stated: LoadCylinder) -> ValveData:

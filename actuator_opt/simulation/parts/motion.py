@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from ...design.scenario.model import Cushion, Scenario
-from ...evaluation.study.plant import Plant
+from ...design.linkage import Linkage
 from ...models import end_stop, linkage
 from ...numeric import where
 from ...quantities import INPUTS, SCENARIOS
 from ...symbolic import Expression, Symbol
-from ..system import System
-from .chambers import Audit
-from .signals import Records, rate, signal
+from .circuit import Circuit
+from .signals import rate
 
 POSITION = 1e-10
 SPEED = 1e-9
@@ -18,12 +16,11 @@ SPEED = 1e-9
 _FORCE = SCENARIOS["force_value"]
 
 
-def stops(
-    system: System, plant: Plant, scenario: Scenario, position: Symbol, speed: Symbol
-) -> Expression:
+def stops(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
     """Force of the end stops; contact is located, since the force jumps there."""
+    system, plant = circuit.system, circuit.plant
     damping = end_stop.stop_damping(
-        stiffness=plant.stop_stiffness, mass=plant.mass, factor=scenario.stops.damping
+        stiffness=plant.stop_stiffness, mass=plant.mass, factor=circuit.scenario.stops.damping
     )
     law = {"stiffness": plant.stop_stiffness, "damping": float(damping)}
     at_cap = system.switch("stop at the cap end", -position)
@@ -33,8 +30,9 @@ def stops(
     return where(at_cap, cap, 0.0) - where(at_rod, rod, 0.0)
 
 
-def cushions(plant: Plant, cushion: Cushion | None, position: Symbol, speed: Symbol) -> Expression:
+def cushions(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
     """Force of the oil driven past the spears; each chamber's whole area takes part."""
+    plant, cushion = circuit.plant, circuit.scenario.stops.cushion
     if cushion is None:
         return 0.0
     total: Expression = 0.0
@@ -64,84 +62,65 @@ def cushions(plant: Plant, cushion: Cushion | None, position: Symbol, speed: Sym
 
 
 def move(
-    system: System,
-    audit: Audit,
-    plant: Plant,
-    scenario: Scenario,
-    records: Records,
+    circuit: Circuit,
     *,
     position: Symbol,
     speed: Symbol,
     pressure_force: Expression,
     friction: Expression,
     pulled: Expression = 0.0,
-    power: float,
 ) -> None:
     """Equation of motion, m a = F_p - F_fr - b v + F_stop + F_cushion - F_L, and its balance."""
-    load = scenario.load
+    system, plant, load = circuit.system, circuit.plant, circuit.scenario.load
 
     def spent(name: str, force: Expression) -> None:
-        done = system.integral(f"work on {name}", force * speed, scale=power)
-        audit.flows.append((name, done, False))
+        circuit.door(name, force * speed, state=f"work on {name}")
 
     sheared = plant.oil_damping * speed
-    stopping = stops(system, plant, scenario, position, speed)
-    braking = cushions(plant, scenario.stops.cushion, position, speed)
-    outside = signal(system, load.force, records)
-    held = outside + load.stiffness * (position - _start(system, position)) + load.damping * speed
+    stopping = stops(circuit, position, speed)
+    braking = cushions(circuit, position, speed)
+    begin = circuit.start.position
+    held = circuit.course(load.force) + load.stiffness * (position - begin) + load.damping * speed
     total = pressure_force - friction - sheared + stopping + braking - held + pulled
     mass: Expression = plant.mass
-    audit.stored.append(("motion", 0.5 * plant.mass * speed * speed))
+    circuit.audit.stored.append(("motion", 0.5 * plant.mass * speed * speed))
     spent("friction of the seals", friction)
     if plant.oil_damping:
         spent("shear of the oil", sheared)
     spent("stops", -stopping)
-    if scenario.stops.cushion is not None:
+    if circuit.scenario.stops.cushion is not None:
         spent("cushions", -braking)
+        system.signal("cushion_force", "force of the cushions", _FORCE, braking)
     spent("load", held)
     held = held - pulled
     if load.drive is not None:
-        where_to = signal(system, load.drive.position, records) + _start(system, position)
+        where_to = circuit.course(load.drive.position) + begin
         moved = rate(system, where_to)
         pull = load.drive.stiffness * (where_to - position) + load.drive.damping * (moved - speed)
-        total = total + pull
+        total, held = total + pull, held - pull
         spent("machine outside", -pull)
-        held = held - pull
         system.signal("drive_position", "position of the machine", INPUTS["position"], where_to)
     if plant.design.linkage is not None:
-        mass, more = _joint(system, audit, plant, scenario, records, position, speed, power)
+        mass, more = _joint(circuit, plant.design.linkage, position, speed)
         total, held = total - more, held + more
-    acceleration = total / mass
     system.rate(position, speed)
-    system.rate(speed, acceleration)
-    system.signal("position", "position of the piston", INPUTS["position"], position)
-    system.signal("speed", "speed of the piston", SCENARIOS["speed_value"], speed)
-    system.signal("load_force", "force of the load", _FORCE, held)
-    system.signal("friction", "friction of the seals", _FORCE, friction)
-    system.signal("stop_force", "force of the end stops", _FORCE, stopping)
-    system.signal("pressure_force", "force of the pressures", _FORCE, pressure_force)
-    if scenario.stops.cushion is not None:
-        system.signal("cushion_force", "force of the cushions", _FORCE, braking)
-
-
-def _start(system: System, position: Symbol) -> float:
-    """Where a state begins."""
-    return next(one.initial for one in system.states if one.symbol is position)
+    system.rate(speed, total / mass)
+    for name, words, quantity, value in (
+        ("position", "position of the piston", INPUTS["position"], position),
+        ("speed", "speed of the piston", SCENARIOS["speed_value"], speed),
+        ("load_force", "force of the load", _FORCE, held),
+        ("friction", "friction of the seals", _FORCE, friction),
+        ("stop_force", "force of the end stops", _FORCE, stopping),
+        ("pressure_force", "force of the pressures", _FORCE, pressure_force),
+    ):
+        system.signal(name, words, quantity, value)
 
 
 def _joint(
-    system: System,
-    audit: Audit,
-    plant: Plant,
-    scenario: Scenario,
-    records: Records,
-    position: Symbol,
-    speed: Symbol,
-    power: float,
+    circuit: Circuit, pivots: Linkage, position: Symbol, speed: Symbol
 ) -> tuple[Expression, Expression]:
     """Mass at the rod with the joint's inertia, and the force of joint torque and inertia."""
-    pivots = plant.design.linkage
-    assert pivots is not None
+    system, plant = circuit.system, circuit.plant
     size = {
         "base_radius": pivots.base_radius,
         "crank_radius": pivots.crank_radius,
@@ -152,11 +131,10 @@ def _joint(
     felt = linkage.reflected_inertia(
         inertia=plant.design.load.inertia, lever_arm=arm.lever_arm, lever_slope=arm.lever_slope
     )
-    torque = signal(system, scenario.load.torque, records)
+    torque = circuit.course(circuit.scenario.load.torque)
     force = linkage.actuator_force(torque=torque, lever_arm=arm.lever_arm)
-    done = system.integral("work on the joint", force * speed, scale=power)
-    audit.flows.append(("joint", done, False))
-    audit.stored.append(("motion of the joint", 0.5 * felt.mass * speed * speed))
+    circuit.door("joint", force * speed, state="work on the joint")
+    circuit.audit.stored.append(("motion of the joint", 0.5 * felt.mass * speed * speed))
     system.signal("joint_angle", "joint angle", SCENARIOS["shaft_angle_value"], angle)
     system.signal("joint_torque", "torque on the joint", SCENARIOS["torque_value"], torque)
     return plant.mass + felt.mass, force + felt.velocity_factor * speed * speed

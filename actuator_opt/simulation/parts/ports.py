@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
-from ...evaluation.study.plant import LineData, Plant
+from ...evaluation.circuit import Chamber
 from ...models import one_way_valve, reducing_valve
 from ...quantities import SCENARIOS
 from ...symbolic import Expression, Symbol
-from ..system import System
-from .chambers import Audit, node
+from .chambers import node
+from .circuit import Circuit
 
 FLOW = 1e-12
 """Error of a flow that is let pass [m^3/s]."""
@@ -23,8 +22,7 @@ REDUCING_FLOW = 20 / 60000
 class Side(NamedTuple):
     """A chamber as its port sees it."""
 
-    name: str
-    """"a" or "b"."""
+    name: Chamber
     pressure: Expression
     """Of the chamber."""
     end: Expression
@@ -37,16 +35,15 @@ class Side(NamedTuple):
     """Behind the throttle."""
 
 
-def side(system: System, plant: Plant, name: str, ends: str, start: float) -> Side:
+def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> Side:
     """States of a chamber and of what lies before its end.
 
     A line has inertia where something moves oil through it; behind closed ends it is volume.
     """
-    data = plant.lines[name]  # type: ignore[index]
-    throttled = plant.throttle is not None
-    shut = ends == "blocked"
+    system, data = circuit.system, circuit.plant.lines[name]
+    throttled = circuit.plant.throttle is not None
     near, wall = data.near_volume, data.near_wall
-    if shut or (not throttled and (ends == "closed" or data.inertance == 0)):
+    if ends == "blocked" or (not throttled and (ends == "closed" or data.inertance == 0)):
         if not throttled:
             near, wall = near + data.far_volume, wall + data.far_wall
         held = ends == "constant_pressure"
@@ -67,88 +64,71 @@ def side(system: System, plant: Plant, name: str, ends: str, start: float) -> Si
     return Side(name, pressure, end, near, wall, line, outer)
 
 
-def connect(
-    system: System,
-    audit: Audit,
-    plant: Plant,
-    one: Side,
-    ends: str,
-    feed: Expression,
-    *,
-    held: float,
-    power: float,
-) -> Expression:
+def connect(circuit: Circuit, one: Side, ends: str, feed: Expression, *, held: float) -> Expression:
     """Flow into the chamber; `feed` is what the end gives, `held` the pressure it holds."""
-    data: LineData = plant.lines[one.name]  # type: ignore[index]
-    word = one.name.upper()
     if ends == "reducing_valve":
-        feed = _reducing(system, audit, plant, one, held, power)
+        feed = _reducing(circuit, one, held)
     elif ends in ("closed", "blocked"):
         feed = 0.0
-    if one.line is None and one.outer is None:
-        return feed
-    throttled = one.outer is not None
-    inner: Expression = one.outer if one.outer is not None else one.pressure
-    halves = 0.5 if throttled and one.line is not None else 1.0
-    into_line = feed
     if one.line is not None:
-        flow = one.line
-        system.rate(flow, (one.end - inner - data.resistance * flow) / data.inertance)
-        lost = system.integral(f"line loss {one.name}", data.resistance * flow * flow, scale=power)
-        audit.flows.append((f"line {word}", lost, False))
-        motion = 0.5 * data.inertance * flow * flow
-        audit.stored.append((f"oil in motion in line {word}", motion))
-        if isinstance(one.end, Symbol):
-            node(
-                system,
-                audit,
-                f"far end {word}",
-                plant.oil,
-                one.end,
-                inflow=feed - flow,
-                volume=max(halves * data.far_volume, LEAST_NODE),
-                wall=halves * data.far_wall,
-            )
-        else:
-            work = system.integral(f"held work {one.name}", one.end * flow, scale=power)
-            audit.flows.append(("held ports", work, True))
-        into_line = flow
-    if not throttled:
-        return into_line
-    assert plant.throttle is not None
-    assert one.outer is not None
-    through = one_way_valve.one_way_flow(
-        pressure_difference=one.pressure - one.outer, **plant.throttle
-    )
-    lost = system.integral(
-        f"throttle loss {one.name}", (one.pressure - one.outer) * through, scale=power
-    )
-    audit.flows.append((f"throttle {word}", lost, False))
-    system.signal(
-        f"flow_throttle_{one.name}", f"flow out of chamber {word}", SCENARIOS["flow_value"], through
-    )
-    if not isinstance(one.outer, Symbol):
-        taken = system.integral(f"held work {one.name}", one.outer * through, scale=power)
-        audit.flows.append(("held ports", taken, False))
-        return -through
-    node(
-        system,
-        audit,
-        f"behind throttle {word}",
-        plant.oil,
-        one.outer,
-        inflow=into_line + through,
-        volume=max(halves * data.far_volume, LEAST_NODE),
-        wall=halves * data.far_wall,
-    )
-    return -through
+        feed = _through_line(circuit, one, one.line, feed)
+    if one.outer is not None:
+        return -_through_throttle(circuit, one, one.outer, feed)
+    return feed
 
 
-def _reducing(
-    system: System, audit: Audit, plant: Plant, one: Side, held: float, power: float
+def _through_line(circuit: Circuit, one: Side, flow: Symbol, feed: Expression) -> Expression:
+    """Flow of the line towards the chamber."""
+    data, word = circuit.plant.lines[one.name], one.name.upper()
+    inner = one.pressure if one.outer is None else one.outer
+    lost = data.resistance * flow
+    circuit.system.rate(flow, (one.end - inner - lost) / data.inertance)
+    circuit.door(f"line {word}", lost * flow, state=f"line loss {one.name}")
+    motion = 0.5 * data.inertance * flow * flow
+    circuit.audit.stored.append((f"oil in motion in line {word}", motion))
+    if isinstance(one.end, Symbol):
+        _far(circuit, one, f"far end {word}", one.end, feed - flow)
+    else:
+        circuit.door("held ports", one.end * flow, state=f"held work {one.name}", into=True)
+    return flow
+
+
+def _through_throttle(
+    circuit: Circuit, one: Side, outer: Expression, feed: Expression
 ) -> Expression:
+    """Flow of the one-way valve out of the chamber."""
+    word = one.name.upper()
+    assert circuit.plant.throttle is not None
+    drop = one.pressure - outer
+    flow = one_way_valve.one_way_flow(pressure_difference=drop, **circuit.plant.throttle)
+    circuit.door(f"throttle {word}", drop * flow, state=f"throttle loss {one.name}")
+    circuit.system.signal(
+        f"flow_throttle_{one.name}", f"flow out of chamber {word}", SCENARIOS["flow_value"], flow
+    )
+    if isinstance(outer, Symbol):
+        _far(circuit, one, f"behind throttle {word}", outer, feed + flow)
+    else:
+        circuit.door("held ports", outer * flow, state=f"held work {one.name}")
+    return flow
+
+
+def _far(circuit: Circuit, one: Side, name: str, pressure: Symbol, inflow: Expression) -> None:
+    """What of the lines lies beyond: half of it on each side of a line behind a throttle."""
+    data = circuit.plant.lines[one.name]
+    share = 0.5 if one.outer is not None and one.line is not None else 1.0
+    node(
+        circuit,
+        name,
+        pressure,
+        inflow=inflow,
+        volume=max(share * data.far_volume, LEAST_NODE),
+        wall=share * data.far_wall,
+    )
+
+
+def _reducing(circuit: Circuit, one: Side, held: float) -> Expression:
     """Flow of the reducing valve into the line."""
-    data = plant.reducing_valve
+    system, data = circuit.system, circuit.plant.reducing_valve
     assert data is not None
     regulated = system.state(f"reducing valve {one.name}", 0.0, tolerance=FLOW)
     rate = system.state(f"reducing valve rate {one.name}", 0.0, tolerance=100 * FLOW)
@@ -172,9 +152,5 @@ def _reducing(
         largest_flow=REDUCING_FLOW,
         passive_conductance=data["passive_conductance"],
     )
-    work = system.integral(f"reducing work {one.name}", one.end * flow, scale=power)
-    audit.flows.append(("held ports", work, True))
+    circuit.door("held ports", one.end * flow, state=f"reducing work {one.name}", into=True)
     return flow
-
-
-Feed = Callable[[Expression, Expression], tuple[Expression, Expression]]

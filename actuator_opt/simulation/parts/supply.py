@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ...design.scenario.model import Scenario
-from ...evaluation.study.plant import Plant
 from ...models import accumulator, elements, lines, supply, wilson
 from ...numeric import clip, where
 from ...quantities import INPUTS, SCENARIOS
 from ...symbolic import Expression, Symbol
-from ..system import System
-from .chambers import Audit, node
+from .chambers import node
+from .circuit import Circuit
 
 RATE_BAND = 1e-3
 """Share of the largest flow within which the swash plate comes to rest at its ends (a choice)."""
@@ -21,99 +19,81 @@ RATE_BAND = 1e-3
 class Source:
     """The supply under construction: its pressures first, its demand when it is known."""
 
-    system: System
-    audit: Audit
-    plant: Plant
-    scenario: Scenario
+    circuit: Circuit
     pressure: Expression
     """At the valve."""
     unit: Expression
     """At the pump or accumulator."""
 
     @classmethod
-    def of(cls, system: System, audit: Audit, plant: Plant, scenario: Scenario) -> Source:
+    def of(cls, circuit: Circuit) -> Source:
         """The pressures; a pipe between pump and valve parts them."""
-        stated = scenario.supply
-        unit: Expression = plant.supply_pressure
+        stated, system = circuit.scenario.supply, circuit.system
+        unit: Expression = circuit.plant.supply_pressure
         if stated.type != "constant":
-            unit = system.pressure("supply", plant.supply_pressure)
+            unit = system.pressure("supply", circuit.plant.supply_pressure)
         port = unit
         if stated.line is not None:
-            port = system.pressure("valve port", plant.supply_pressure)
-        return cls(system, audit, plant, scenario, port, unit)
+            port = system.pressure("valve port", circuit.plant.supply_pressure)
+        return cls(circuit, port, unit)
 
-    def feed(self, demand: Expression, tank: Expression, power: float) -> None:
+    def feed(self, demand: Expression, tank: Expression) -> None:
         """Close the supply with the flow that the valve takes; `tank` is what it returns."""
-        plant, system = self.plant, self.system
-        low = plant.return_pressure
-        returned = system.integral("return work", low * tank, scale=power)
-        self.audit.flows.append(("return line", returned, False))
-        system.signal("pressure_supply", "supply pressure", INPUTS["pressure"], self.pressure)
-        taken = self._through_line(demand, power)
-        if self.scenario.supply.type == "constant":
-            work = system.integral("supply work", self.unit * taken, scale=power)
-            self.audit.flows.append(("supply", work, True))
-            return
-        self._pumped(taken, power)
+        circuit = self.circuit
+        circuit.door("return line", circuit.plant.return_pressure * tank, state="return work")
+        circuit.system.signal(
+            "pressure_supply", "supply pressure", INPUTS["pressure"], self.pressure
+        )
+        taken = self._through_line(demand)
+        if circuit.scenario.supply.type == "constant":
+            circuit.door("supply", self.unit * taken, state="supply work", into=True)
+        else:
+            self._pumped(taken)
 
-    def _through_line(self, demand: Expression, power: float) -> Expression:
+    def _through_line(self, demand: Expression) -> Expression:
         """Flow out of the pump's side of the supply pipe; its oil springs at the valve."""
-        line = self.scenario.supply.line
+        circuit, line = self.circuit, self.circuit.scenario.supply.line
         if line is None:
             return demand
-        system, oil = self.system, self.plant.oil
+        system, oil = circuit.system, circuit.plant.oil
         size = {"inner_diameter": line.inner_diameter, "length": line.length}
         resistance = elements.resistance(**size, dynamic_viscosity=oil.dynamic_viscosity)
         inertance = elements.inertance(**size, density=oil.density)
         flow = system.state("supply pipe", 0.0, tolerance=1e-12)
         system.rate(flow, (self.unit - self.pressure - resistance * flow) / inertance)
-        lost = system.integral("supply pipe loss", resistance * flow * flow, scale=power)
-        self.audit.flows.append(("supply pipe", lost, False))
-        self.audit.stored.append(
-            ("oil in motion in the supply pipe", 0.5 * inertance * flow * flow)
-        )
+        circuit.door("supply pipe", resistance * flow * flow, state="supply pipe loss")
+        motion = 0.5 * inertance * flow * flow
+        circuit.audit.stored.append(("oil in motion in the supply pipe", motion))
         volume = float(lines.line_volume(**size))
         assert isinstance(self.pressure, Symbol)
-        node(
-            system, self.audit, "supply pipe", oil, self.pressure,
-            inflow=flow - demand, volume=volume,
-        )  # fmt: skip
+        node(circuit, "supply pipe", self.pressure, inflow=flow - demand, volume=volume)
         return flow
 
-    def _pumped(self, demand: Expression, power: float) -> None:
-        unit, system, plant = self.scenario.supply, self.system, self.plant
+    def _pumped(self, demand: Expression) -> None:
+        circuit, unit = self.circuit, self.circuit.scenario.supply
         assert unit.volume is not None
         delivered = self._delivery()
         pressure = self.unit
-        work = system.integral("supply work", pressure * delivered, scale=power)
-        self.audit.flows.append(("supply", work, True))
+        circuit.door("supply", pressure * delivered, state="supply work", into=True)
         relieved: Expression = 0.0
         if unit.relief is not None:
             relieved = supply.relief_flow(
-                pressure_difference=pressure - plant.return_pressure,
+                pressure_difference=pressure - circuit.plant.return_pressure,
                 cracking_pressure=unit.relief.pressure,
                 override=unit.relief.override,
                 rated_flow=unit.relief.rated_flow,
             )
-            lost = system.integral("relief loss", pressure * relieved, scale=power)
-            self.audit.flows.append(("relief valve", lost, False))
-            system.signal("flow_relief", "flow of the relief valve", _FLOW, relieved)
+            circuit.door("relief valve", pressure * relieved, state="relief loss")
+            circuit.system.signal("flow_relief", "flow of the relief valve", _FLOW, relieved)
         stored = self._accumulator()
-        system.signal("flow_pump", "flow of the pump", _FLOW, delivered)
+        circuit.system.signal("flow_pump", "flow of the pump", _FLOW, delivered)
         assert isinstance(pressure, Symbol)
-        node(
-            system,
-            self.audit,
-            "supply line",
-            plant.oil,
-            pressure,
-            inflow=delivered - relieved - demand - stored,
-            volume=unit.volume,
-        )
+        inflow = delivered - relieved - demand - stored
+        node(circuit, "supply line", pressure, inflow=inflow, volume=unit.volume)
 
     def _delivery(self) -> Expression:
         """Flow of the pump into the line."""
-        unit, system, plant = self.scenario.supply, self.system, self.plant
+        unit, system, plant = self.circuit.scenario.supply, self.circuit.system, self.circuit.plant
         if unit.type == "fixed_pump":
             if unit.pump is None:
                 assert unit.flow is not None
@@ -154,10 +134,10 @@ class Source:
 
     def _accumulator(self) -> Expression:
         """Flow into the accumulator on the line."""
-        one = self.scenario.supply.accumulator
+        circuit, one = self.circuit, self.circuit.scenario.supply.accumulator
         if one is None:
             return 0.0
-        system, plant = self.system, self.plant
+        system, plant = circuit.system, circuit.plant
         law = {
             "precharge_pressure": one.precharge,
             "gas_volume": one.gas_volume,
@@ -173,10 +153,8 @@ class Source:
         full = clip((one.gas_volume - gas) / (1e-4 * one.gas_volume), 0.0, 1.0)
         flow = where(flow < 0, flow * full, flow)
         system.rate(gas, -flow)
-        lost = system.integral("neck loss", (self.unit - held) * flow, scale=1.0)
-        self.audit.flows.append(("accumulator neck", lost, False))
-        energy = system.integral("accumulator", held * flow, scale=1.0)
-        self.audit.flows.append(("accumulator", energy, False))
+        circuit.door("accumulator neck", (self.unit - held) * flow, state="neck loss")
+        circuit.door("accumulator", held * flow)
         system.signal(
             "pressure_accumulator", "gas pressure of the accumulator", INPUTS["pressure"], held
         )

@@ -10,8 +10,7 @@ from ...models.spool import spool_acceleration
 from ...numeric import clip
 from ...quantities import SCENARIOS
 from ...symbolic import Expression
-from ..system import System
-from .chambers import Audit
+from .circuit import Circuit
 
 SPOOL = 1e-7
 """Error of the spool's position that is let pass [V]."""
@@ -26,8 +25,9 @@ class Port(NamedTuple):
     tank: Expression
 
 
-def spool(system: System, data: ValveData, command: Expression, whose: str = "") -> Expression:
+def spool(circuit: Circuit, data: ValveData, command: Expression, whose: str = "") -> Expression:
     """Position of the spool under a command, in volts; `whose` begins the names of its signals."""
+    system = circuit.system
     opening = system.state(f"{whose}spool", 0.0, tolerance=SPOOL)
     speed = system.state(f"{whose}spool rate", 0.0, tolerance=SPOOL * 6 * data.natural_frequency)
     limited = clip(command, -data.signal, data.signal)
@@ -50,8 +50,7 @@ def spool(system: System, data: ValveData, command: Expression, whose: str = "")
 
 
 def edges(
-    system: System,
-    audit: Audit,
+    circuit: Circuit,
     data: ValveData,
     *,
     opening: Expression,
@@ -59,10 +58,9 @@ def edges(
     return_pressure: float,
     pressure_a: Expression,
     pressure_b: Expression,
-    power: float,
     whose: str = "",
 ) -> Port:
-    """Flows through the four edges, and what they lose; `power` is the scale of that [W]."""
+    """Flows through the four edges, and what they lose."""
     flows = valve.valve_flows(
         signal=opening - data.offset,
         rated_coefficient=data.rated,
@@ -81,15 +79,14 @@ def edges(
         + (pressure_b - return_pressure) * flows.b_tank
     )
     of = " of the load cylinder" if whose else ""
-    loss = system.integral(f"{whose}valve loss", lost, scale=power)
-    audit.flows.append((f"valve edges{of}", loss, False))
+    circuit.door(f"valve edges{of}", lost, state=f"{whose}valve loss")
     for name, words, value in (
         ("a", "into port A", flows.into_a),
         ("b", "into port B", flows.into_b),
         ("supply", "from the supply", flows.supply),
         ("tank", "into the tank", flows.tank),
     ):
-        system.signal(f"{whose}flow_{name}", f"flow {words}{of}", _FLOW, value)
+        circuit.system.signal(f"{whose}flow_{name}", f"flow {words}{of}", _FLOW, value)
     return Port(flows.into_a, flows.into_b, flows.supply, flows.tank)
 
 

@@ -1,0 +1,70 @@
+"""A circuit under construction: what its parts share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from ...design.scenario.model import Scenario
+from ...design.scenario.signals import Part
+from ...evaluation.study.plant import Plant
+from ...models.tuning import ControllerGains
+from ...symbolic import Expression, Symbol
+from ..system import System
+from . import signals
+
+Loop = Literal["position", "speed", "shaft_speed", "shaft_angle"]
+FLOW = 1e-4
+"""Flow whose power at supply pressure is the scale of an energy [m^3/s], 6 l/min (a choice)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Where a run begins."""
+
+    position: float
+    pressure_a: float
+    pressure_b: float
+
+
+@dataclass(slots=True)
+class Audit:
+    """What the balance of a run adds up."""
+
+    mass: list[tuple[str, Expression, Symbol]] = field(default_factory=list)
+    """Name, content at reference density [m^3], and the integral of what flowed in."""
+    stored: list[tuple[str, Expression]] = field(default_factory=list)
+    """Energy as a function of the states [J]."""
+    flows: list[tuple[str, Symbol, bool]] = field(default_factory=list)
+    """Energy that went in (True) or out [J]."""
+
+
+@dataclass(slots=True)
+class Circuit:
+    """A system of equations with what its parts, its balance and its results are read from."""
+
+    scenario: Scenario
+    plant: Plant
+    records: signals.Records
+    start: Start
+    gains: ControllerGains | None = None
+    loop: Loop | None = None
+    linear: bool = False
+    """Whether the controller is left open at a free variable ``u``, without sticking friction."""
+    system: System = field(default_factory=System)
+    audit: Audit = field(default_factory=Audit)
+    measured: Expression = 0.0
+    """What the loop measures."""
+    centre: float = 0.0
+    """Signal that centres the spool [V]."""
+
+    def course(self, parts: Sequence[Part]) -> Expression:
+        """A signal of the scenario over time."""
+        return signals.signal(self.system, parts, self.records)
+
+    def door(self, name: str, power: Expression, *, state: str = "", into: bool = False) -> None:
+        """Count energy that goes out, or comes `into` the circuit; `state` names its integral."""
+        scale = self.plant.supply_pressure * FLOW
+        work = self.system.integral(state or name, power, scale=scale)
+        self.audit.flows.append((name, work, into))
