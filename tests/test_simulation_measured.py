@@ -358,15 +358,15 @@ def test_a_fit_finds_the_cylinder_of_the_record():
 
 
 def test_bounds_hold_the_truth_as_often_as_they_say():
-    """Of 24 bounds of 95 % at least 20 hold; by chance fewer would once in 200 times."""
+    """Of 16 bounds of 95 % at least 13 hold; by chance fewer would once in 140 times."""
     held = []
-    for seed in range(6):
+    for seed in range(4):
         found = fit(*case(), {}, bench(100 + seed), KNOWN)
         held += [
             one.parameter.lower <= TRUE[name] <= one.parameter.upper
             for name, one in found.parameters.items()
         ]
-    assert sum(held) >= 20
+    assert sum(held) >= 13
 
 
 def test_late_uneven_records_with_gaps_are_fitted():

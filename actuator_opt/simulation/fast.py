@@ -15,7 +15,7 @@ import numpy as np
 from ..errors import Diagnostic, InputError
 from ..numeric import Array
 from ..symbolic import Symbol
-from ..symbolic.expression import needed
+from ..symbolic.order import needed
 from .integrate import CHUNK, Advance
 from .system import Compiled
 

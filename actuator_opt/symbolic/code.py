@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from .expression import Symbol, needed
+from .expression import Symbol
+from .order import needed
 
 DEEPEST = 12
 """Operations in one another in a line of code; deeper ones get a line of their own."""

@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
-from .expression import Namespace, Symbol, choose, is_boolean, less, needed, power
+from .expression import Namespace, Symbol, choose, less, power
+from .order import is_boolean, needed
 
 xp = Namespace
 

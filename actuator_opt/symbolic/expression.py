@@ -8,7 +8,7 @@ decide comparisons, so that the guards of a model cost nothing where they cannot
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from types import SimpleNamespace
@@ -19,7 +19,6 @@ from .bounds import Bounds, bounds, bounds_of
 Expression: TypeAlias = Any
 """A symbol, or the number it is known to be."""
 
-_BOOLEAN = {"lt", "le", "and", "or", "not", "flag"}
 _FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sqrt": math.sqrt,
     "exp": math.exp,
@@ -382,22 +381,3 @@ Namespace = SimpleNamespace(
     **{name: partial(apply, name) for name in _FUNCTIONS},
 )
 """What of the array-API standard the models use."""
-
-
-def is_boolean(symbol: Symbol) -> bool:
-    """Whether a symbol stands for a truth value."""
-    return symbol.op in _BOOLEAN
-
-
-def needed(outputs: Sequence[Any]) -> list[Symbol]:
-    """The nodes that some outputs need, operands before results."""
-    seen: set[int] = set()
-    found: list[Symbol] = []
-    stack = [out for out in outputs if isinstance(out, Symbol)]
-    while stack:
-        node = stack.pop()
-        if node.index not in seen:
-            seen.add(node.index)
-            found.append(node)
-            stack.extend(node.operands)
-    return sorted(found, key=lambda node: node.index)
