@@ -1,20 +1,23 @@
-"""Write the committed reports into reports/samples: of shipped designs, studies, the test record.
+"""Write the committed reports into reports/samples: designs, scenarios, studies, the test record.
 
-Run from the root of the checkout; the same input gives the same bytes.
+Run from the root of the checkout, all of them or those named (``designs scenarios studies record``);
+the same input gives the same bytes.
 """
 
 from __future__ import annotations
 
 import runpy
+import sys
 from pathlib import Path
 
 import actuator_opt as ao
 
 ROOT = Path(__file__).resolve().parent.parent
+SAMPLES = ROOT / "reports" / "samples"
 STUDIES = ("aalto_rig", "knee_materials", "knee_dynamics", "knee_seals", "course_servo")
 
 
-def main() -> None:
+def designs() -> None:
     """Optimise the designs that have variables, evaluate the others, write each report."""
     for path in sorted((ROOT / "designs").glob("*.yaml")):
         actuator = ao.read(path)
@@ -26,21 +29,38 @@ def main() -> None:
             command += " --whole-plies" if plies else ""
         else:
             subject = ao.evaluate(actuator)
-        files = ao.report(
-            subject, folder=ROOT / "reports" / "samples", actuator=actuator, command=command
-        )
+        files = ao.report(subject, folder=SAMPLES, actuator=actuator, command=command)
         for file in files[1:]:
             if file.path.stem != path.stem:  # the PDF holds every sheet; one PNG is enough here
                 file.path.unlink()
         print(files[0].path.relative_to(ROOT), files[0].pages, "sheets")
+
+
+def scenarios() -> None:
+    """Simulate every scenario by two integrators."""
+    for path in sorted((ROOT / "designs" / "scenarios").glob("*.yaml")):
+        trial = ao.read_scenario(path)
+        found = ao.simulate(trial, verify=True)
+        command = f"actuator-opt simulate designs/scenarios/{path.name} --verify"
+        files = ao.write_simulation(found, trial, folder=SAMPLES, command=command)
+        print(files[0].path.relative_to(ROOT), files[0].pages, "sheets")
+
+
+def studies() -> None:
+    """Run the design scripts that write pages."""
     for name in STUDIES:
         study = runpy.run_path(str(ROOT / "designs" / "scripts" / f"{name}.py"))
-        sheets = study["write"](study["compute"](), ROOT / "reports" / "samples")
+        sheets = study["write"](study["compute"](), SAMPLES)
         print(f"reports/samples/{name}.pdf", sheets, "sheets")
+
+
+def record() -> None:
+    """Identify and calibrate with the test record."""
     example = runpy.run_path(str(ROOT / "designs" / "scripts" / "knee_calibration.py"))
-    for path in example["pages"](ROOT / "reports" / "samples"):
+    for path in example["pages"](SAMPLES):
         print(path.relative_to(ROOT))
 
 
 if __name__ == "__main__":
-    main()
+    for part in sys.argv[1:] or ("designs", "scenarios", "studies", "record"):
+        {"designs": designs, "scenarios": scenarios, "studies": studies, "record": record}[part]()

@@ -336,6 +336,22 @@ def test_stop_is_met_where_the_equations_would_end_without_it():
     assert found.found.events[0].time == pytest.approx(fine.found.events[0].time, abs=1e-7)
 
 
+@pytest.mark.parametrize("mass", [30.0, 100.0])
+def test_hard_blow_on_a_stop_leaves_some_oil(mass):
+    """Further into a stop than its dead volume is long: mass and energy stay what they were."""
+    own = plant(oil=AIRY, dead_a=0.5e-3 * AREA_A, mass=mass)
+    scene = scenario(
+        duration=0.3, initial=MIDDLE | {"position": 0.05}, load={"force": BALANCED},
+        signal=[{"shape": "constant", "value": -10.0}],
+    )  # fmt: skip
+    for how, limit in (({}, 1e-5), (SHARP, 1e-8)):
+        found = run(scene, own, **how)
+        assert found.signals["speed"].min() < -1.2
+        assert found.signals["position"].min() < -0.5e-3
+        assert found.lost_mass() < limit
+        assert found.lost_energy() < limit * found.turnover()
+
+
 def test_samples_are_told_once_and_events_twice():
     """Of 1001 samples each stands once; the two instants and every event stand twice."""
     scene = scenario(

@@ -31,6 +31,8 @@ APART = 1e-9
 """Instants that are nearer to one another are one [s] (a choice)."""
 FEW, MOST = 2_000, 100_000
 """Steps between two samples: of a first try, which may run past a switch, and at most."""
+TRIES = 12
+"""Shorter and shorter pieces up to where the equations end, in search of a turn before."""
 PARTS, LEVELS = 16, 5
 """An interval in which a switch may turn is looked at in so many parts, and these again."""
 _LOCATED = 1e-12
@@ -217,19 +219,23 @@ def _ahead(
     """States at some times and the first turn; without that turn the equations may end early."""
     try:
         found = run.advance(times, y, m, FEW)
+        return times, found, _first_turn(run, times, found, m)
     except _Stuck as stuck:
-        near = times[0] + 0.99 * (stuck.time - times[0])
-        if run.compiled.system.switches and near > times[0]:
-            short = np.append(times[times < near], near)
-            try:
-                found = run.advance(short, y, m, FEW)
-            except _Stuck:
-                pass
-            else:
-                turn = _first_turn(run, short, found, m)
-                if turn is not None:
-                    return short, found, turn
-        found = run.advance(times, y, m, MOST)
+        good, bad = float(times[0]), min(stuck.time, float(times[-1]))
+    near = good + 0.99 * (bad - good)
+    for _ in range(TRIES if run.compiled.system.switches else 0):
+        short = np.append(times[times < near], near)
+        try:
+            found = run.advance(short, y, m, FEW)
+        except _Stuck:
+            bad = near
+        else:
+            turn = _first_turn(run, short, found, m)
+            if turn is not None:
+                return short, found, turn
+            good = near
+        near = 0.5 * (good + bad)
+    found = run.advance(times, y, m, MOST)
     return times, found, _first_turn(run, times, found, m)
 
 
@@ -317,14 +323,17 @@ def _why(error: Exception) -> str:
 def _longest(compiled: Compiled, times: Array) -> float:
     """Longest step that does not miss what a record does in some time; 0 without a limit."""
     bends = compiled.bends
-    inside = bends[(bends >= times[0]) & (bends <= times[-1])]
-    return float(np.min(np.diff(inside, append=times[-1] + 1.0))) if len(inside) else 0.0
+    first, last = np.searchsorted(bends, times[0]), np.searchsorted(bends, times[-1], "right")
+    if first == last:
+        return 0.0
+    return float(np.min(np.diff(bends[max(first - 1, 0) : last + 1]), initial=np.inf))
 
 
 def _lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
     from scipy.integrate import ODEintWarning, odeint
 
     reached = [0.0]
+    stiff = _radau(compiled, relative, counted)
 
     def rates(t: float, y: Array, m: tuple[bool, ...]) -> list[float]:
         reached[0] = t
@@ -338,12 +347,14 @@ def _lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
                 found, report = odeint(
                     rates, y, times, args=(m,), Dfun=compiled.slopes, tfirst=True,
                     rtol=relative, atol=compiled.tolerances, mxstep=most, full_output=True,
-                    hmax=_longest(compiled, times),
+                    hmax=_longest(compiled, times), tcrit=times[-1:],
                 )  # fmt: skip
             except (ArithmeticError, ValueError) as error:
                 raise _Stuck(reached[0], _why(error), _REMEDY) from None
         if report["message"] != "Integration successful.":
-            raise _Stuck(reached[0], "no step is small enough", _REMEDY)
+            if most < MOST:
+                raise _Stuck(reached[0], "no step is small enough", _REMEDY)
+            return stiff(times, y, m, most)  # near rest LSODA may not see that they are stiff
         counted[0] += int(report["nfe"][-1])
         return _checked(times, found)
 
@@ -361,12 +372,13 @@ def _radau(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
             return compiled.rates(t, y, m)
 
         try:
-            found = solve_ivp(
-                rates, (times[0], times[-1]), y, method="Radau",
-                t_eval=times, rtol=relative, atol=0.01 * compiled.tolerances,
-                jac=lambda t, y: np.array(compiled.slopes(t, y, m)),
-                max_step=_longest(compiled, times) or np.inf,
-            )  # fmt: skip
+            with np.errstate(all="ignore"):
+                found = solve_ivp(
+                    rates, (times[0], times[-1]), y, method="Radau", t_eval=times,
+                    rtol=relative, atol=0.01 * compiled.tolerances,
+                    jac=lambda t, y: compiled.slopes(t, y, m),
+                    max_step=_longest(compiled, times) or np.inf,
+                )  # fmt: skip
         except (ArithmeticError, ValueError) as error:
             raise _Stuck(reached[0], _why(error), _REMEDY) from None
         counted[0] += int(found.nfev)

@@ -30,10 +30,12 @@ def bounds(problem: Problem, x: Array) -> Known:
     """
     rest = problem.rest(x)
     variance = float(np.sum(rest**2)) / max(rest.size - x.size, 1)
-    _, singular, right = _parts(problem.slopes_on_the_way(x) * problem.sizes)
-    errors = np.sqrt(variance) * np.linalg.norm(right.T / singular, axis=1)
+    first = problem.slopes_on_the_way(x) * problem.sizes
+    errors = np.sqrt(variance * np.diag(np.linalg.pinv(first.T @ first, hermitian=True)))
+    errors[np.linalg.norm(first, axis=0) == 0] = np.inf
     steps = np.clip(errors, *STEPS) * problem.sizes
-    left, singular, right = _parts(problem.slopes(x, steps) * problem.sizes)
+    scaled = problem.slopes(x, steps) * problem.sizes
+    left, singular, right = np.linalg.svd(scaled, full_matrices=False)
     moments = _by_time(problem, left * rest[:, None])
     width = _bandwidth(moments)
     inner = _larger(variance * np.eye(x.size), _coloured(problem, left, rest))
@@ -48,12 +50,6 @@ def bounds(problem: Problem, x: Array) -> Known:
         problem.sizes,
         spare=max(points - x.size, 1.0),
     )
-
-
-def _parts(slopes: Array) -> tuple[Array, Array, Array]:
-    """Singular vectors and values, none of these zero."""
-    left, singular, right = np.linalg.svd(slopes, full_matrices=False)
-    return left, np.maximum(singular, 1e-12 * max(float(singular[0]), 1e-300)), right
 
 
 def _larger(first: Array, second: Array) -> Array:
@@ -79,7 +75,7 @@ def _bandwidth(moments: Array) -> float:
     rho = np.clip(np.sum(before * after, axis=0) / power, -STEADIEST, STEADIEST)
     square = (power / power.size) ** 2
     above = np.sum(4 * rho**2 * square / ((1 - rho) ** 6 * (1 + rho) ** 2))
-    alpha = float(above / np.sum(square / (1 - rho) ** 4))
+    alpha = float(above / max(np.sum(square / (1 - rho) ** 4), 1e-300))
     count = moments.shape[0]
     return float(np.clip(1.1447 * (alpha * count) ** (1 / 3), 1.0, max(count / WHOLE, 1.0)))
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..models.fluid import ATMOSPHERIC_PRESSURE
-from ..numeric import Array, minimum, where
+from ..numeric import Array, clip, where
 from ..quantities import Quantity
 from ..symbolic import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised
 
@@ -26,6 +26,8 @@ LOOSE = 1e-4
 
 PRESSURE = 1.0
 """Error of a pressure that is let pass [Pa]."""
+EMPTY = -40.0
+"""State of a pressure over the atmosphere's at which no digit is left to the vacuum."""
 VACUUM = 1e-6
 """Least absolute pressure that a start may have, over the atmosphere's."""
 
@@ -107,7 +109,7 @@ class System:
         held = max(float(initial), (VACUUM - 1) * air)
         start = held if held >= 0 else air * math.log1p(held / air)
         state = self.state(name, start, tolerance=PRESSURE)
-        low = air * Namespace.expm1(minimum(state, 0.0) / air)
+        low = air * Namespace.expm1(_below(state) / air)
         symbol: Symbol = where(state >= 0, state, low)
         self.curved[symbol.index] = state
         return symbol
@@ -116,7 +118,7 @@ class System:
         """The time derivative of a state, or of a pressure."""
         state = self.curved.get(symbol.index)
         if state is not None:
-            slope = Namespace.exp(-minimum(state, 0.0) / ATMOSPHERIC_PRESSURE)
+            slope = Namespace.exp(-_below(state) / ATMOSPHERIC_PRESSURE)
             symbol, rate = state, where(state >= 0, rate, rate * slope)
         next(s for s in self.states if s.symbol is symbol).rate = rate
 
@@ -228,6 +230,11 @@ class Compiled:
             one.name: np.broadcast_to(np.asarray(value, dtype=float), np.shape(t)).copy()
             for one, value in zip(self.system.signals, values, strict=True)
         }
+
+
+def _below(state: Symbol) -> Expression:
+    """A pressure's state where it is below zero, down to where no pressure is left."""
+    return clip(state, EMPTY * ATMOSPHERIC_PRESSURE, 0.0)
 
 
 def _along(system: System) -> list[Expression]:

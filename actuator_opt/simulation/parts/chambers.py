@@ -8,10 +8,12 @@ from ...evaluation.springs import Give
 from ...evaluation.study.plant import Oil
 from ...models import chamber, oil_energy
 from ...models.fluid import ATMOSPHERIC_PRESSURE
-from ...numeric import maximum
-from ...symbolic import Expression, Symbol
+from ...numeric import clip, maximum, where
+from ...symbolic import Expression, Namespace, Symbol
 from .circuit import Circuit
 
+DEEPEST = -12.0
+"""Travel into a stop over half the dead volume's length at which 6e-6 of it is left (a choice)."""
 FLOOR = 1e-6
 """Least absolute pressure of the laws of oil and air [Pa]: for their rounding alone."""
 
@@ -73,6 +75,19 @@ def _content(
     audit.flows.append(("carried by the oil", carried, True))
 
 
+def _left(travel: Expression, film: float) -> tuple[Expression, Expression]:
+    """Length of the oil over that of the dead volume, and its slope over the travel.
+
+    The travel itself, also beyond the stop; once half the dead volume is used up there the piston
+    meets the end over more and more of its area, and what is left shrinks.
+    """
+    half = 0.5 * film
+    deep = clip((travel + half) / half, DEEPEST, 0.0)
+    met = travel < -half
+    left = where(met, half * Namespace.expm1(deep) - half, travel)
+    return left, where(met, Namespace.exp(deep), 1.0)
+
+
 def cylinder(
     circuit: Circuit,
     *,
@@ -96,17 +111,20 @@ def cylinder(
     V_A = A_A x + V_0A + W_AA p_A + W_AB p_B, V_B = A_B (s - x) + V_0B + W_BB p_B + W_AB p_A, W(x)
     of the walls plus f a a^T of rod and mount with a = (A_A, -A_B). The force on the piston is
     a^T p + p^T W' p/2, as the work of the walls asks. A pressure that is a number is held outside:
-    its port gives what volume, walls and leakage ask for.
+    its port gives what volume, walls and leakage ask for. Deep in a stop x is that of `_left`.
     """
     system, audit, oil = circuit.system, circuit.audit, circuit.plant.oil
     beyond = stroke - position
     w_a = walls.a0 + walls.a1 * position + flexibility * area_a * area_a
     w_b = walls.b0 + walls.b1 * beyond + flexibility * area_b * area_b
     w_ab = walls.c0 + walls.c1 * position - flexibility * area_a * area_b
-    v_a = area_a * position + dead_a + w_a * pressure_a + w_ab * pressure_b
-    v_b = area_b * beyond + dead_b + w_b * pressure_b + w_ab * pressure_a
-    swept_a = area_a + walls.a1 * pressure_a + walls.c1 * pressure_b
-    swept_b = -area_b - walls.b1 * pressure_b + walls.c1 * pressure_a
+    (left_a, free_a), (left_b, free_b) = (
+        _left(position, dead_a / area_a), _left(beyond, dead_b / area_b),
+    )  # fmt: skip
+    v_a = area_a * left_a + dead_a + w_a * pressure_a + w_ab * pressure_b
+    v_b = area_b * left_b + dead_b + w_b * pressure_b + w_ab * pressure_a
+    swept_a = area_a * free_a + walls.a1 * pressure_a + walls.c1 * pressure_b
+    swept_b = -area_b * free_b - walls.b1 * pressure_b + walls.c1 * pressure_a
     law_a, law_b = oil_at(oil, pressure_a), oil_at(oil, pressure_b)
     c_a, c_b = v_a / law_a.modulus + w_a, v_b / law_b.modulus + w_b
     net_a, net_b = inflow_a - swept_a * speed, inflow_b - swept_b * speed
@@ -139,4 +157,4 @@ def cylinder(
         - walls.b1 * pressure_b * pressure_b
         + 2 * walls.c1 * pressure_a * pressure_b
     )
-    return area_a * pressure_a - area_b * pressure_b + bent
+    return area_a * free_a * pressure_a - area_b * free_b * pressure_b + bent

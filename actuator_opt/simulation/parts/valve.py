@@ -79,7 +79,8 @@ def edges(
         + (pressure_b - return_pressure) * flows.b_tank
     )
     of = " of the load cylinder" if whose else ""
-    circuit.door(f"valve edges{of}", lost, state=f"{whose}valve loss")
+    name = "load cylinder's valve" if whose else "valve edges"
+    circuit.door(name, lost, state=f"{whose}valve loss")
     for name, words, value in (
         ("a", "into port A", flows.into_a),
         ("b", "into port B", flows.into_b),
