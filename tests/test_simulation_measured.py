@@ -377,15 +377,15 @@ def test_a_fit_finds_the_cylinder_of_the_record():
 
 
 def test_bounds_hold_the_truth_as_often_as_they_say():
-    """Of 12 bounds of 95 % at least 10 hold; by chance fewer would once in 50 times."""
+    """Of 9 bounds of 95 % at least 7 hold; by chance fewer would once in 120 times."""
     held = []
-    for seed in range(4):
+    for seed in range(3):
         found = fit(*case(), {}, bench(100 + seed), KNOWN)
         held += [
             one.parameter.lower <= TRUE[name] <= one.parameter.upper
             for name, one in found.parameters.items()
         ]
-    assert sum(held) >= 10
+    assert sum(held) >= 7
 
 
 def test_late_uneven_records_with_gaps_are_fitted():

@@ -20,10 +20,10 @@ from actuator_opt.evaluation.study.plant import Plane, SealData, ValveData, plan
 from actuator_opt.reporting.tables import extra
 from actuator_opt.reporting.verification_rows import sensitivity_rows, verification_rows
 from actuator_opt.reporting.verification_text import sensitivity_text, verification_text
-from actuator_opt.simulation import experiments, sensitivity
+from actuator_opt.simulation import sensitivity
 from actuator_opt.simulation.sensitivity import sensitivities
-from actuator_opt.simulation.stand import Stand
-from actuator_opt.simulation.verification import DYNAMIC, verify
+from actuator_opt.simulation.verification import DYNAMIC, experiments, verify
+from actuator_opt.simulation.verification.stand import Stand
 
 KNEE = Path(__file__).parents[1] / "designs" / "servo_knee.yaml"
 BAR = 1e5

@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..design.scenario.signals import Force, Position
-from ..numeric import Array
-from .harmonic import dynamic_stiffness_of_record, harmonic_fit
+from ...design.scenario.signals import Force, Position
+from ...numeric import Array
+from ..harmonic import dynamic_stiffness_of_record, harmonic_fit
 from .stand import Measured, Record, Stand
 
 STROKE_SHARE = 0.05

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from ..design.scenario.model import Control, Initial, Load, Scenario
-from ..design.scenario.signals import Force, Position, Signal
-from ..evaluation.study.plant import Plant
-from ..models.tuning import ControllerGains
-from ..numeric import Array
-from .assemble import assemble
-from .integrate import integrate
+from ...design.scenario.model import Control, Initial, Load, Scenario
+from ...design.scenario.signals import Force, Position, Signal
+from ...evaluation.study.plant import Plant
+from ...models.tuning import ControllerGains
+from ...numeric import Array
+from ..assemble import assemble
+from ..integrate import integrate
 
 RELATIVE = 1e-7
 """Relative tolerance of a step, for a swing of full size: small ones need a smaller one."""

@@ -14,20 +14,20 @@ from math import inf, isfinite, isnan
 from time import perf_counter
 from typing import Any, Final, Literal
 
-from ..design.scenario.model import Scenario
-from ..errors import InputError, Unsolvable
-from ..evaluation.build import evaluate
-from ..evaluation.kernel import Subject
-from ..evaluation.result import Requirement
-from ..quantities import METRICS
+from ...design.scenario.model import Scenario
+from ...errors import InputError, Unsolvable
+from ...evaluation.build import evaluate
+from ...evaluation.kernel import Subject
+from ...evaluation.result import Requirement
+from ...quantities import METRICS
+from ..assemble import loop_of
+from ..parts.signals import Records
+from ..result import Simulation
+from ..run import simulate
 from . import experiments
-from .assemble import loop_of
 from .linear_tier import LinearTier, Spot
-from .parts.signals import Records
-from .result import Simulation
-from .run import simulate
+from .reasons import apart, percent, point, seen
 from .stand import Measured, Stand, Tally
-from .verification_reasons import apart, percent, point, seen
 
 LOOPS = ("ultimate_gain", "gain_margin", "phase_margin", "bandwidth")
 HELD = ("dynamic_stiffness", "dynamic_phase", "damping_ratio", "natural_frequency")
