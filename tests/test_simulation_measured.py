@@ -21,9 +21,9 @@ from simulation_case import VALVE as FAST
 from actuator_opt.errors import InputError
 from actuator_opt.evaluation.study.plant import Plane, SealData
 from actuator_opt.simulation.gains import tune
-from actuator_opt.simulation.measured import Course, Measured, noise, overlay, parse_measured
-from actuator_opt.simulation.measured_fit import fit
-from actuator_opt.simulation.measured_parameters import PARAMETERS, entries
+from actuator_opt.simulation.measured.fit import fit
+from actuator_opt.simulation.measured.parameters import PARAMETERS, entries
+from actuator_opt.simulation.measured.record import Course, Measured, noise, overlay, parse_measured
 from actuator_opt.simulation.run import run
 
 VALVE = replace(FAST, natural_frequency=80.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..simulation.measured import Overlay
-from ..simulation.measured_fit import Fit
+from ..simulation.measured.fit import Fit
 from .blocks import ExtraTable
 from .console import Column, Console
 from .text import DASH, pretty
@@ -37,11 +37,14 @@ def residual_rows(found: Overlay) -> list[tuple[str, ...]]:
 
 def parameter_rows(found: Fit) -> list[tuple[str, ...]]:
     """A row for every fitted parameter, in its own unit."""
+    fit_misses = bool(found.missed)
     rows: list[tuple[str, ...]] = []
     for name, one in found.parameters.items():
         own, quantity = one.parameter, one.entry.quantity
         bounds = [quantity.text(x, 3) if abs(x) < 1e300 else DASH for x in (own.lower, own.upper)]
         verdict = "identified" if own.identifiable else "not identifiable here"
+        if fit_misses and own.identifiable:
+            verdict = "if the model were right"
         if one.at_bound is not None:
             verdict = f"at its {one.at_bound} end"
         start = quantity.text(one.entry.start, 3)

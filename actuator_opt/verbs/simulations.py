@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..simulation import Simulation
     from ..simulation.integrate import Method
     from ..simulation.measured import Overlay
-    from ..simulation.measured_fit import Fit
+    from ..simulation.measured.fit import Fit
     from ..simulation.sensitivity import Sensitivities
     from ..simulation.verification import Verification
 
@@ -198,7 +198,7 @@ def compare_measured(
     ----------
     scenario : as read, or its path
     record : CSV file with t and any of p1, p2, x, v, F_L, ...
-    fit : names of parameters, as ``air_content``; see `simulation.measured_parameters`
+    fit : names of parameters, as ``air_content``; see `simulation.measured.parameters`
     columns : header by channel where it is none of the known names
     simulation : of the scenario, where it has been run
 
@@ -209,7 +209,7 @@ def compare_measured(
     """
     from ..identification import decode_record
     from ..simulation.measured import overlay, parse_measured
-    from ..simulation.measured_fit import fit as fitted
+    from ..simulation.measured.fit import fit as fitted
     from ..store import read_bytes
 
     trial = as_trial(scenario)

@@ -10,18 +10,18 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
-from ..design.scenario.model import Scenario
-from ..evaluation.study.plant import Plant
-from ..least_squares import WEAK, Known, Parameter, rated
-from ..numeric import Array
-from ..suggest import shown
-from .gains import Tuned, tune
-from .measured import Measured, Overlay, overlay
-from .measured_bounds import bounds
-from .measured_parameters import Entry, entries
-from .measured_problem import Problem
-from .parts.signals import Records
-from .run import run
+from ...design.scenario.model import Scenario
+from ...evaluation.study.plant import Plant
+from ...least_squares import WEAK, Known, Parameter, rated
+from ...numeric import Array
+from ...suggest import shown
+from ..gains import Tuned, tune
+from ..parts.signals import Records
+from ..run import run
+from .bounds import bounds
+from .parameters import Entry, entries
+from .problem import Problem
+from .record import Measured, Overlay, overlay
 
 MISFIT: Final = 2.0
 """Residual over noise from which the model misses the record (a choice)."""
@@ -118,7 +118,7 @@ def fit(
 ) -> Fit:
     """Fit named parameters of a design or scenario to a measured record.
 
-    Least squares over all channels, each weighted by the noise of its sensor (`measured.noise`),
+    Least squares over all channels, each weighted by the noise of its sensor (`record.noise`),
     then by what is left over where that is more. Bounds hold 95 %, by the slopes at the solution
     and by residuals that hang together over time.
 
@@ -127,7 +127,7 @@ def fit(
     scenario, plant : what was measured, as far as known
     records : columns of the files that the scenario's signals name
     measured : on the scenario's time
-    names : of `measured_parameters.PARAMETERS`, and "lag"
+    names : of `parameters.PARAMETERS`, and "lag"
     tuned : gains of the controller, which the fit leaves alone; default: as the scenario says
 
     Raises

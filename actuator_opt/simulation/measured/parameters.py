@@ -6,13 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
-from ..design.scenario.model import Scenario
-from ..design.scenario.signals import Force
-from ..errors import Diagnostic, InputError
-from ..evaluation.study.plant import LEAST_AIR, Plane, Plant
-from ..quantities import INPUTS, MATERIAL_PROPERTIES, RECORDS, SCENARIOS, Quantity
-from ..suggest import remedy, shown
-from .assemble import LEAST_DEAD, ends_of, start_of
+from ...design.scenario.model import Scenario
+from ...design.scenario.signals import Force
+from ...errors import Diagnostic, InputError
+from ...evaluation.study.plant import LEAST_AIR, Plane, Plant
+from ...quantities import INPUTS, MATERIAL_PROPERTIES, RECORDS, SCENARIOS, Quantity
+from ...suggest import remedy, shown
+from ..assemble import LEAST_DEAD, ends_of, start_of
 
 Case: TypeAlias = tuple[Scenario, Plant]
 Put: TypeAlias = Callable[[Scenario, Plant, float], Case]

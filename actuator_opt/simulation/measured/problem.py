@@ -9,16 +9,16 @@ from typing import Final
 
 import numpy as np
 
-from ..design.scenario.model import Scenario
-from ..errors import Unsolvable
-from ..evaluation.study.plant import Plant
-from ..numeric import Array
-from .assemble import assemble
-from .gains import Tuned
-from .integrate import integrate
-from .measured import FEWEST, Course, Measured, beside, inside, noise
-from .measured_parameters import PARAMETERS, Case, Entry
-from .parts.signals import Records
+from ...design.scenario.model import Scenario
+from ...errors import Unsolvable
+from ...evaluation.study.plant import Plant
+from ...numeric import Array
+from ..assemble import assemble
+from ..gains import Tuned
+from ..integrate import integrate
+from ..parts.signals import Records
+from .parameters import PARAMETERS, Case, Entry
+from .record import FEWEST, Course, Measured, beside, inside, noise
 
 MOST: Final = 4000
 """Largest number of samples of a channel in a fit (a choice: what is denser is thinned evenly)."""

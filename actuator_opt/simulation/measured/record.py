@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
-from ..identification.record import CHANNELS, Channel, Record, parse_record
-from ..numeric import Array
-from ..suggest import shown
-from .result import Simulation, Told
+from ...errors import Diagnostic, InputError
+from ...identification.record import CHANNELS, Channel, Record, parse_record
+from ...numeric import Array
+from ...suggest import shown
+from ..result import Simulation, Told
 
 COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L", "T")} | {
     "U": Channel("voltage", "V", "signal of the valve", ("signal", "command")),

@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from ..least_squares import Known, known
-from ..numeric import Array
-from .measured_problem import STEPS, Problem
+from ...least_squares import Known, known
+from ...numeric import Array
+from .problem import STEPS, Problem
 
 STEADIEST: Final = 0.97
 """Largest correlation of neighbouring samples that the bandwidth counts, as is usual."""

@@ -1,0 +1,7 @@
+"""Measured records over a simulation: residuals, and parameters fitted with bounds."""
+
+from .fit import Fit, fit
+from .parameters import PARAMETERS
+from .record import Measured, Overlay, overlay, parse_measured
+
+__all__ = ["PARAMETERS", "Fit", "Measured", "Overlay", "fit", "overlay", "parse_measured"]
