@@ -1,6 +1,6 @@
 """Write the committed reports into reports/samples: designs, scenarios, studies, the test record.
 
-Run from the root of the checkout, all of them or those named (``designs scenarios studies record``);
+Run from the root of the checkout: all, or those named (``designs scenarios studies record``);
 the same input gives the same bytes.
 """
 
