@@ -221,7 +221,7 @@ def optimise(
         if timed is not None:
             from .reporting.verification_text import verification_text
 
-            streams.out(verification_text(timed, **streams.style()), end="")
+            streams.out("\n" + verification_text(timed, **streams.style()), end="")
         if remark := unrounded(result):
             streams.err(remark)
         say_files(([{"path": write}] if write is not None and good else []) + files)

@@ -35,6 +35,8 @@ class ExtraTable:
     rows: Sequence[Sequence[object]]
     note: str = ""
     drawing: Block | None = None
+    widths: Sequence[float] = ()
+    """Of the columns, over one another; default: all alike."""
 
 
 def clean(text: str) -> str:

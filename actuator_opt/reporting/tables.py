@@ -214,8 +214,9 @@ def extra(given: ExtraTable) -> Block:
         bool(given.rows) and all(isinstance(row[k], (int, float)) for row in given.rows)
         for k in range(len(given.columns))
     ]
+    widths = given.widths or [1.0] * len(given.columns)
     columns = [
-        column(clean(head), "right" if right else "left", 1.0)
-        for head, right in zip(given.columns, numeric, strict=True)
+        column(clean(head), "right" if right else "left", width)
+        for head, right, width in zip(given.columns, numeric, widths, strict=True)
     ]
     return table(given.title, columns, rows, note=given.note)

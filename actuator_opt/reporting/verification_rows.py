@@ -126,7 +126,9 @@ def verification_rows(found: Verification) -> tuple[ExtraTable, ...]:
             "Each share is measured: the experiment without sticking friction, then with a "
             "fiftieth of the swing; what is left is the operating point."
         )
-        tables.append(ExtraTable("Experiments behind them", heads, said, note))
+        tables.append(
+            ExtraTable("Experiments behind them", heads, said, note, widths=(1, 1.2, 1.5, 3.5))
+        )
     return tuple(tables)
 
 

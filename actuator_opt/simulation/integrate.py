@@ -150,12 +150,8 @@ def _flags(compiled: Compiled, t: float, y: Array, before: tuple[bool, ...]) -> 
     instants = tuple(t + APART >= one for one in compiled.instants)
     if before:
         return instants + before[len(instants) :]
-    return instants + tuple(_guards(compiled, np.array([t]), y[None])[:, 0] > 0)
-
-
-def _guards(compiled: Compiled, t: Array, states: Array) -> Array:
-    """Guards at samples, (switches, samples)."""
-    return _each(compiled, compiled.guards, t, states, ())
+    guards = _each(compiled, compiled.guards, np.array([t]), y[None], ())
+    return instants + tuple(guards[:, 0] > 0)
 
 
 def _margins(run: _Run, t: Array, states: Array, m: tuple[bool, ...]) -> tuple[Array, Array]:
@@ -172,6 +168,7 @@ def _each(
     states: Array,
     m: tuple[bool, ...],
 ) -> Array:
+    """A function of every switch at samples, (switches, samples)."""
     count = len(compiled.system.switches)
     if not count:
         return np.empty((0, len(t)))
@@ -326,7 +323,8 @@ def _longest(compiled: Compiled, times: Array) -> float:
     first, last = np.searchsorted(bends, times[0]), np.searchsorted(bends, times[-1], "right")
     if first == last:
         return 0.0
-    return float(np.min(np.diff(bends[max(first - 1, 0) : last + 1]), initial=np.inf))
+    shortest = float(np.min(np.diff(bends[max(first - 1, 0) : last + 1]), initial=np.inf))
+    return max(shortest, float(times[-1] - times[0]) / MOST)
 
 
 def _lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
