@@ -34,6 +34,7 @@ MACHINE = {
     "viscous": 1e5,
     "constant_torque": 0.1,
 }
+LINE = {"length": 3.0, "inner_diameter": 0.008}
 SHAKE = [{"shape": "sine", "value": 500.0, "frequency": 20.0}]
 SCENARIOS = {
     "step": STEP,
@@ -63,6 +64,22 @@ SCENARIOS = {
             "volume": 5e-4,
             "relief": {"pressure": 200e5, "rated_flow": 10 / 60000},
             "accumulator": {"gas_volume": 2e-4, "precharge": 120e5},
+        },
+        "signal": [{"shape": "sine", "start": 0.1, "frequency": 4.0, "value": 6.0}],
+    },
+    "line": {
+        "duration": 0.5,
+        "supply": {"line": LINE},
+        "signal": [{"shape": "sine", "start": 0.1, "frequency": 4.0, "value": 6.0}],
+    },
+    "pump line": {
+        "duration": 0.5,
+        "supply": {
+            "type": "fixed_pump",
+            "flow": 8 / 60000,
+            "volume": 5e-4,
+            "relief": {"pressure": 200e5, "rated_flow": 10 / 60000},
+            "line": LINE,
         },
         "signal": [{"shape": "sine", "start": 0.1, "frequency": 4.0, "value": 6.0}],
     },

@@ -9,12 +9,15 @@ import json
 import math
 import re
 from dataclasses import replace
+from typing import get_args
 
 import numpy as np
 import pytest
 import simulation_report_case as case
 from test_report_identification import agrees, printed, words_of
 
+from actuator_opt.design.scenario.model import Scenario
+from actuator_opt.design.scenario.words import Ends
 from actuator_opt.errors import InputError
 from actuator_opt.reporting import (
     read_attachment,
@@ -159,6 +162,8 @@ def test_the_valves_bench_tells_its_flows():
 
 # ---- energy ----
 
+LEAKED = "leakage across the piston"
+
 
 @pytest.mark.parametrize("kind", case.KINDS)
 def test_shares_add_up(kind):
@@ -176,16 +181,39 @@ def test_shares_add_up(kind):
         assert names[0] == "supply"
 
 
+VALVE = {"supply", "valve edges", "return line"}
+ROD = {"load", "friction of the seals"}
+TOLD = {
+    **dict.fromkeys(("step", "down", "sine", "speed", "open"), VALVE | ROD | {LEAKED}),
+    **dict.fromkeys(("pump", "pump line"), VALVE | ROD | {LEAKED, "relief valve"}),
+    "line": VALVE | ROD | {LEAKED},
+    **dict.fromkeys(("closed", "stroke"), ROD),
+    "motor": VALVE | {"load", "losses of the motor"},
+    "bench": VALVE,
+}
+"""Doors of each kind whose power the signals tell."""
+UNTOLD = {"stroke": {"load"}}
+"""Doors through which more goes than the signals tell: the machine outside moves the rod."""
+
+
 @pytest.mark.parametrize("kind", case.KINDS)
 def test_energies_over_time_end_at_their_doors(kind):
-    """Each curve begins at nothing and comes to what the balance tells of its door."""
+    """Every power that the signals tell comes to its door; the curves that are left are these."""
     found = case.simulated(kind)
     doors = {one.name: one.energy for one in found.balance.flows}
-    most = max(abs(energy) for energy in doors.values())
-    for name, curve in simulation_energy.over_time(found).items():
-        assert curve[0] == 0
+    throughput = max(sum(abs(e) for e in doors.values() if (e > 0) == way) for way in (True, False))
+    summed, off = simulation_energy._summed(found)
+    assert set(summed) == set(off) == TOLD[kind]
+    for name, curve in summed.items():
         way = 1 if name == "supply" else -1
-        assert curve[-1] == pytest.approx(way * doors[name], abs=0.03 * most)
+        ends = pytest.approx(way * doors[name], abs=1e-3 * throughput)
+        assert curve[0] == 0
+        assert (curve[-1] == ends) == (name not in UNTOLD.get(kind, ())), name
+    shown = simulation_energy.over_time(found)
+    assert shown
+    assert set(shown) <= TOLD[kind] - UNTOLD.get(kind, set())
+    assert ("supply" in shown) == ("supply" in doors)
+    assert simulation_energy.doubts(found) == []
 
 
 def test_energies_that_powers_do_not_confirm_are_doubted():
@@ -241,7 +269,32 @@ def test_scenarios_are_told_in_words():
     pulse = found.scenario.signal[0]
     many = found.scenario.model_copy(update={"signal": (pulse,) * 7})
     assert simulation_words.what(replace(found, scenario=many)).endswith("and 4 more.")
-    assert "closed" in simulation_words.what(case.simulated("closed"))
+    assert "ports closed" in simulation_words.what(case.simulated("closed"))
+
+
+def test_blocked_ports_and_a_load_cylinder_are_told():
+    """Ports shut at the cylinder by their name; of a load cylinder bore, rod and signal."""
+    found = case.simulated("closed")
+    signal = [{"shape": "sine", "value": 2.0, "frequency": 5.0}]
+    cylinder = {
+        "bore": 0.063,
+        "rod_diameter": 0.036,
+        "stroke": 0.3,
+        "supply_pressure": 160e5,
+        "valve": {"rated_flow": 2.5e-4, "natural_frequency": 100.0},
+        "signal": signal,
+    }
+    stated = {"name": "rig", "design": "x.yaml", "duration": 1.0, "ends": "blocked"}
+    for own, words in (
+        (cylinder, "Load cylinder of bore 63 mm and rod 36 mm, valve signal: sine of 2 V at 5 Hz."),
+        (cylinder | {"signal": []}, "and rod 36 mm, no signal at its valve."),
+    ):
+        scenario = Scenario.model_validate(stated | {"load": {"cylinder": own}})
+        said = simulation_words.what(replace(found, scenario=scenario))
+        assert "ports blocked" in said
+        assert words in said
+    literal = get_args(get_args(Ends)[0])[0]
+    assert {*simulation_words.ENDS, "valve"} == set(get_args(literal))
 
 
 def test_trust_tells_the_second_integrator():

@@ -12,7 +12,7 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.design.model import Limit
-from actuator_opt.design.scenario.model import Scenario
+from actuator_opt.design.scenario.model import Load, Scenario
 from actuator_opt.errors import InputError
 from actuator_opt.evaluation.build import prepare
 from actuator_opt.evaluation.springs import Give
@@ -24,6 +24,7 @@ from actuator_opt.simulation import sensitivity
 from actuator_opt.simulation.sensitivity import sensitivities
 from actuator_opt.simulation.verification import DYNAMIC, experiments, verify
 from actuator_opt.simulation.verification.stand import Stand
+from actuator_opt.simulation.verification.verify import _left_out
 
 KNEE = Path(__file__).parents[1] / "designs" / "servo_knee.yaml"
 BAR = 1e5
@@ -346,6 +347,47 @@ def test_a_jump_of_the_result_is_marked(monkeypatch):
     assert mass.effects["rise_time"].reliable
     assert not mass.effects["settling_time"].reliable
     assert mass.largest == abs(mass.effects["rise_time"].percent)
+
+
+@pytest.mark.parametrize(
+    ("overshoot", "reliable", "runs"),
+    [
+        (lambda more: 0.1 if more > 0.2 else 0.0, False, 5),
+        (lambda more: 0.01 * more, True, 5),
+        (lambda more: 1e-7 * more, True, 3),
+        (lambda more: 0.0, True, 3),
+    ],
+)
+def test_a_zero_result_that_moves_is_compared_too(monkeypatch, overshoot, reliable, runs):
+    """No share of nothing: its change itself must agree over half the step; rounding need not."""
+    mass = plant(knee()).mass
+
+    def zero(scenario, plant, records, tuned):
+        return SimpleNamespace(values={"overshoot": overshoot(plant.mass - mass)})
+
+    monkeypatch.setattr(sensitivity, "run", zero)
+    found = sensitivities(scenario(), knee(), ["load.mass"])
+    effect = found.parameters[0].effects["overshoot"]
+    assert effect.percent is None
+    assert (effect.reliable, found.runs) == (reliable, runs)
+
+
+def test_what_is_left_out_of_the_experiments_is_named():
+    """All that a scenario states at the load, and nothing else."""
+    drive = {"position": [{"shape": "constant", "value": 0.0}], "stiffness": 1e5}
+    rig = {
+        "bore": 0.04, "rod_diameter": 0.02, "stroke": 0.25, "supply_pressure": 1e7,
+        "valve": {"rated_flow": 2.5e-4, "natural_frequency": 100.0},
+    }  # fmt: skip
+    part = [{"shape": "constant", "value": 5.0}]
+    full = {"force": part, "torque": part, "stiffness": 1.0, "damping": 1.0, "drive": drive}
+    words = ("force of the load", "torque on the joint", "spring", "damper", "machine outside",
+             "load cylinder")  # fmt: skip
+    for (name, value), word in zip((full | {"cylinder": rig}).items(), words, strict=True):
+        assert _left_out(Load.model_validate({name: value})) == word
+    assert _left_out(Load.model_validate(full)) == ", ".join(words[:-1])
+    nothing = Load.model_validate({"force": [{"shape": "constant", "value": 0.0}]})
+    assert _left_out(nothing) == ""
 
 
 def test_numbers_of_the_scenario_are_moved_by_default():

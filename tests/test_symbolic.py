@@ -43,6 +43,8 @@ NOT_TRACED = {
     "tube_elements.layered_tube": "a matrix of layers",
 }
 """Models beyond what symbols are for: formulas of the elementary functions."""
+TRACED_EVEN_SO = {"chamber.chamber_pressure-0"}
+"""Samples of those models that need nothing of the kind: oil without air."""
 CASES = [
     pytest.param(model, sample, id=label)
     for label, model, sample in cases()
@@ -104,15 +106,21 @@ def test_models_of_the_parts_are_traced():
 
 
 def test_models_that_cannot_be_traced_say_so():
-    """Where symbols do not do, a model fails at once: it never gives a wrong formula."""
+    """Just the models listed fail, at once; a sample of theirs that does not is their numbers."""
+    raised, done = set(), set()
     for label, model, sample in cases():
-        if label.rsplit("-", 1)[0] in NOT_TRACED:
-            try:
-                inputs, numbers, outputs = traced(model, sample)
-            except (TypeError, AttributeError):
-                continue
+        name = label.rsplit("-", 1)[0]
+        try:
+            inputs, numbers, outputs = traced(model, sample)
+        except (TypeError, AttributeError):
+            raised.add(name)
+            continue
+        if name in NOT_TRACED:
+            done.add(label)
             found = function("f", "x", unpacked(inputs), outputs)(numbers)
             assert found == pytest.approx(called(model, sample, numbers, 0), rel=1e-12), label
+    assert raised == set(NOT_TRACED)
+    assert done == TRACED_EVEN_SO
 
 
 @pytest.mark.parametrize(("model", "sample"), CASES)

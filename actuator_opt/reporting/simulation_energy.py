@@ -170,9 +170,15 @@ def _load(found: Simulation) -> Array | None:
     return _product(found, "load_force", "speed") if work is None else work
 
 
+def _at_unit(found: Simulation) -> str:
+    """Signal of the pressure at pump or accumulator: a pipe parts it from the valve's."""
+    return "pressure_unit" if "pressure_unit" in found.signals else "pressure_supply"
+
+
 def _supply(found: Simulation) -> Array | None:
-    pumped = "flow_pump" if "flow_pump" in found.signals else "flow_supply"
-    return _product(found, "pressure_supply", pumped)
+    flows = ("flow_pump", "flow_unit", "flow_supply")
+    given = next((name for name in flows if name in found.signals), "flow_supply")
+    return _product(found, _at_unit(found), given)
 
 
 def _returned(found: Simulation) -> Array | None:
@@ -183,7 +189,7 @@ def _returned(found: Simulation) -> Array | None:
 POWERS: dict[str, Callable[[Simulation], Array | None]] = {
     "supply": _supply,
     "valve edges": _valve,
-    "relief valve": lambda found: _product(found, "pressure_supply", "flow_relief"),
+    "relief valve": lambda found: _product(found, _at_unit(found), "flow_relief"),
     "return line": _returned,
     "load": _load,
     "friction of the seals": lambda found: _product(found, "friction", "speed"),

@@ -152,6 +152,9 @@ def controller(found: Simulation) -> list[tuple[str, str]]:
     if swings:
         rows.append(("ultimate period", duration(limit.period)))
     rows.append(("gain margin", gain_margin(tuned.margins.gain)))
+    if not tuned.margins.stable:
+        rows.append(("linear loop", "unstable"))
+        return rows
     phase = tuned.margins.phase
     rows.append(("phase margin", DASH if phase is None else f"{number(math.degrees(phase), 3)}°"))
     return rows

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..design.scenario.model import Scenario
 from ..quantities import INPUTS, SCENARIOS, Quantity
+from ..simulation.assemble import ends_of
 from ..simulation.result import Simulation
 from .optimum import sentence
 from .text import trimmed, unit_text, with_unit
@@ -30,6 +31,7 @@ SUPPLY = {
 }
 ENDS = {
     "closed": "ports closed",
+    "blocked": "ports blocked",
     "constant_pressure": "ports at constant pressure",
     "reducing_valve": "ports at reducing valves",
 }
@@ -100,6 +102,7 @@ def what(found: Simulation) -> str:
             _told("load", parts_words(scenario.load.force, SCENARIOS["force_value"])),
             _told("torque", parts_words(torque, SCENARIOS["torque_value"])),
             _told("machine outside", _drive(scenario)),
+            _load_cylinder(scenario),
         )
         if words
     ]
@@ -115,6 +118,17 @@ def _drive(scenario: Scenario) -> str:
     return "" if drive is None else parts_words(drive.position, LENGTH)
 
 
+def _load_cylinder(scenario: Scenario) -> str:
+    """Bore and rod of the load cylinder, with its signal."""
+    one = scenario.load.cylinder
+    if one is None:
+        return ""
+    bore, rod = (amount(LENGTH, value) for value in (one.bore, one.rod_diameter))
+    signal = parts_words(one.signal, SCENARIOS["signal_value"])
+    said = f"valve signal: {signal}" if signal else "no signal at its valve"
+    return f"load cylinder of bore {bore} and rod {rod}, {said}"
+
+
 def _machine(found: Simulation) -> str:
     """What was around the design."""
     scenario, plant = found.scenario, found.plant
@@ -126,7 +140,7 @@ def _machine(found: Simulation) -> str:
     elif scenario.motor is not None:
         words.append("its valve with a hydraulic motor")
     elif "flow_supply" not in found.signals:
-        words.append(ENDS.get(scenario.ends or plant.design.ports.end, "no valve"))
+        words.append(ENDS[ends_of(scenario, plant)])
     if "flow_supply" in found.signals:
         supply = f"{SUPPLY[scenario.supply.type]} {amount(PRESSURE, plant.supply_pressure)}"
         words.append(f"{supply}, return {amount(PRESSURE, plant.return_pressure)}")

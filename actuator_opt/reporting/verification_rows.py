@@ -13,9 +13,12 @@ from .optimum import sentence
 from .text import DASH, number, pretty
 
 HEADS = ("requirement", "limit", "evaluation", "linear", "in time", "difference", "holds")
+BESIDE = 0.02
+"""Difference of the linear tier at its worst and where the experiment stands that is told."""
 MEANING = (
     "Evaluation: the linear tier at its worst; linear: the same where the experiment stands, on "
-    "the side on which its spool rests; the difference is from that."
+    "the side on which its spool rests; the difference is from that. Beside: the linear tier is "
+    "worse where the spool never rests, and no experiment can stand there."
 )
 UNSURE = "?"
 """Behind an effect that half the step does not confirm."""
@@ -70,9 +73,19 @@ def line(row: Row) -> Line:
         text.value_text(known, row.linear),
         text.value_text(known, row.value),
         DASH if row.difference is None else _percent(100 * row.difference),
-        {"met": "yes", "missed": "no", "not_checked": "not known"}[state],
+        "yes, beside" if row.met and _beside(row) else _HOLDS[state],
     )
     return Line(cells, state, _said(row))
+
+
+_HOLDS = {"met": "yes", "missed": "no", "not_checked": "not known"}
+
+
+def _beside(row: Row) -> bool:
+    """Whether the linear tier is clearly worse where no experiment can stand."""
+    if row.stated is None or row.linear is None:
+        return False
+    return abs(row.stated - row.linear) > BESIDE * abs(row.stated)
 
 
 def _said(row: Row) -> str:
@@ -178,7 +191,8 @@ def cells(one: Parameter, results: list[str]) -> tuple[str, ...]:
 def sensitivity_notes(found: Sensitivities) -> list[str]:
     """What the numbers mean, and what was left out."""
     notes = [
-        "Change of each result in per cent for the change stated of the parameter, largest first; "
+        "Change of each result in per cent for 1 % more of the parameter, or for the change stated "
+        "beside it, largest first; "
         f"central differences of {number(100 * found.step, 2)} %. "
         f"A {UNSURE} marks what half the step does not confirm within 10 %."
     ]

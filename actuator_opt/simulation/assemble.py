@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import pi
 
 from ..design.kinds import position_at
 from ..design.scenario.model import Control, HeldPorts, Scenario
-from ..design.scenario.signals import Part
 from ..errors import Diagnostic, InputError
 from ..evaluation.study.plant import Plant
+from ..models import linkage
 from ..models.stiffness import holding_pressures
 from ..models.tuning import ControllerGains
 from ..quantities import INPUTS, SCENARIOS, Quantity
 from ..symbolic import Expression, Symbol
-from .parts import chambers, friction, load_cylinder, motion, motor, ports, valve
+from .parts import chambers, friction, load_cylinder, motion, motor, ports, signals, valve
 from .parts.circuit import Circuit, Loop, Start
 from .parts.control import Measured, command, inner
 from .parts.signals import Records
@@ -32,8 +31,6 @@ TYPICAL: dict[Loop, float] = {
     "position": 1e-2, "speed": 0.1, "shaft_speed": 10.0, "shaft_angle": 1.0,
 }  # fmt: skip
 """A typical error of each loop, for tolerances (SI)."""
-LEAST_DEAD = 0.5e-3
-"""Least dead volume of a chamber over its area [m] (a choice): none would have no compliance."""
 PRESSURES = INPUTS["pressure"]
 
 
@@ -51,28 +48,31 @@ def ends_of(scenario: Scenario, plant: Plant) -> str:
     return "valve" if plant.valve is not None else plant.design.ports.end
 
 
-def start_of(scenario: Scenario, plant: Plant) -> Start:
+def start_of(scenario: Scenario, plant: Plant, records: Records) -> Start:
     """Position and pressures of the start: the load held by a valve that has closed."""
-    stated = scenario.initial
+    stated, turned, load = scenario.initial, scenario.motor, scenario.load
     place = None if stated.position is None else position_at(stated.position, plant.stroke)
-    turned, areas = scenario.motor, (plant.area_a, plant.area_b)
-    parts: Sequence[Part] = scenario.load.force
+    position = 0.5 * plant.stroke if place is None else float(place)
+    areas = plant.area_a, plant.area_b
     if turned is not None:  # volume per radian and torque, as area and force
-        parts = turned.torque
         areas = 2 * (turned.machine.setting * turned.machine.displacement / (2 * pi),)
+        force = signals.at_start(turned.torque, records)
+    else:
+        force = signals.at_start(load.force, records)
+        force -= 0.0 if load.cylinder is None else load.cylinder.force
+        joint = plant.joint(position)
+        if joint is not None:
+            torque = signals.at_start(load.torque, records)
+            force += float(linkage.actuator_force(torque=torque, lever_arm=joint[0].lever_arm))
     held = holding_pressures(
-        force=sum(
-            getattr(part, "value", None) or 0.0
-            for part in parts
-            if part.shape == "constant" or (part.shape == "step" and part.start <= 0)
-        ),
+        force=force,
         supply_pressure=plant.supply_pressure,
         return_pressure=plant.return_pressure,
         area_a=areas[0],
         area_b=areas[1],
     )
     return Start(
-        0.5 * plant.stroke if place is None else float(place),
+        position,
         float(held[0]) if stated.pressure_a is None else stated.pressure_a,
         float(held[1]) if stated.pressure_b is None else stated.pressure_b,
     )
@@ -85,7 +85,6 @@ def assemble(
     gains: ControllerGains | None,
     *,
     linear: bool = False,
-    start: Start | None = None,
 ) -> Circuit:
     """The equations of a scenario.
 
@@ -95,13 +94,12 @@ def assemble(
     records : columns of the files that signals name
     gains : of the controller, None where there is none
     linear : leave the controller open at a free variable ``u``, and sticking friction out
-    start : where it begins; default: as the scenario says
     """
     circuit = Circuit(
         scenario=scenario,
         plant=plant,
         records=records,
-        start=start_of(scenario, plant) if start is None else start,
+        start=start_of(scenario, plant, records),
         gains=gains,
         loop=loop_of(scenario.control),
         linear=linear,
@@ -177,12 +175,12 @@ def _motor(circuit: Circuit) -> None:
         inflow_a=flows.into_a,
         inflow_b=flows.into_b,
     )
-    _pressures(system, a, b)
+    _pressures(system, a, b, "pipe")
 
 
-def _pressures(system: System, a: Expression, b: Expression) -> None:
-    system.signal("pressure_a", "pressure in chamber A", PRESSURES, a)
-    system.signal("pressure_b", "pressure in chamber B", PRESSURES, b)
+def _pressures(system: System, a: Expression, b: Expression, where: str = "chamber") -> None:
+    system.signal("pressure_a", f"pressure in {where} A", PRESSURES, a)
+    system.signal("pressure_b", f"pressure in {where} B", PRESSURES, b)
 
 
 def _cylinder(circuit: Circuit) -> None:
@@ -212,7 +210,7 @@ def _cylinder(circuit: Circuit) -> None:
         circuit.door("leakage across the piston", lost, state="leakage loss")
         system.signal("flow_leakage", "leakage across the piston", SCENARIOS["flow_value"], across)
     pressed = _chambers(circuit, (a, b), (into_a - across, into_b + across), position, speed)
-    own = friction.law(plant, scenario.friction, (begin.pressure_a, begin.pressure_b))
+    own = friction.law(plant, scenario.friction, begin)
     force = friction.resist(circuit, own, speed=speed, pressure_a=a.pressure, pressure_b=b.pressure)
     bench = scenario.load.cylinder
     motion.move(
@@ -248,21 +246,10 @@ def _chambers(
         area_a=plant.area_a,
         area_b=plant.area_b,
         stroke=plant.stroke,
-        dead_a=_dead(circuit, plant.dead_a + a.lumped, plant.area_a, "A"),
-        dead_b=_dead(circuit, plant.dead_b + b.lumped, plant.area_b, "B"),
+        dead_a=chambers.dead_volume(circuit, plant.dead_a + a.lumped, plant.area_a, "chamber A"),
+        dead_b=chambers.dead_volume(circuit, plant.dead_b + b.lumped, plant.area_b, "chamber B"),
         walls=plant.walls._replace(
             a0=plant.walls.a0 + a.lumped_wall, b0=plant.walls.b0 + b.lumped_wall
         ),
         flexibility=plant.flexibility,
     )
-
-
-def _dead(circuit: Circuit, volume: float, area: float, word: str) -> float:
-    """Dead volume of a chamber, not less than a film's."""
-    least = LEAST_DEAD * area
-    if volume >= least:
-        return volume
-    circuit.system.notes.append(
-        f"chamber {word}: dead volume taken as {least * 1e6:.2g} ml, 0.5 mm of its area"
-    )
-    return least

@@ -12,7 +12,7 @@ from ..errors import Diagnostic, InputError
 from ..evaluation.study.plant import Plant
 from ..models.tuning import ControllerGains, margin_rules, ziegler_nichols
 from ..numeric import Array
-from .assemble import assemble, loop_of, start_of
+from .assemble import assemble, loop_of
 from .linearise import Law, Linear, Margins, OpenLoop, Ultimate, least, margins
 from .parts.circuit import Loop
 from .parts.signals import Records, steady_value
@@ -44,8 +44,10 @@ class Tuned:
     notes: tuple[str, ...] = ()
 
 
-def tune(scenario: Scenario, plant: Plant, records: Records) -> Tuned | None:
-    """Gains of a scenario's controller; None without one.
+def tune(
+    scenario: Scenario, plant: Plant, records: Records, *, held: Tuned | None = None
+) -> Tuned | None:
+    """Gains of a scenario's controller; None without one. `held` keeps gains, with new margins.
 
     The loop is taken without sticking friction, at the start and at every end of the reference, the
     spool to either side; a speed loop also where it runs steadily. The least ultimate gain counts.
@@ -64,7 +66,9 @@ def tune(scenario: Scenario, plant: Plant, records: Records) -> Tuned | None:
     stated = getattr(control, f"{loop}_gain")
     design = plant.design.control
     notes: tuple[str, ...] = ()
-    if stated is not None:
+    if held is not None:
+        gains, origin, notes = held.gains, held.origin, held.notes
+    elif stated is not None:
         gains = ControllerGains(
             stated, control.integral_time or inf, control.derivative_time or 0.0
         )
@@ -97,22 +101,24 @@ def _loops(
     end = steady_value(getattr(control, loop))
     if loop in ("shaft_speed", "shaft_angle"):
         found = linear.about()
-        if loop == "shaft_speed" and end:
-            found += _running(linear, "shaft speed", end)
-        return found
-    begin = start_of(scenario, plant).position
+        return found + (_running(linear, "shaft speed", end) if loop == "shaft_speed" else [])
+    if loop == "speed":
+        return linear.about() + _running(linear, "speed", end)
+    begin = linear.circuit.start.position
     places = {begin}
-    if loop == "position":
-        reached = begin
-        for part in control.position:
-            reached += part.value or 0.0 if part.shape in ("step", "ramp", "constant") else 0.0
-            places.add(min(max(reached, 0.0), plant.stroke))
+    reached = begin
+    for part in control.position:
+        reached += part.value or 0.0 if part.shape in ("step", "ramp", "constant") else 0.0
+        places.add(min(max(reached, 0.0), plant.stroke))
     return [one for place in sorted(places) for one in linear.about(position=place)]
 
 
 def _running(linear: Linear, name: str, value: float) -> list[OpenLoop]:
-    """The open loop where the actuator runs steadily at a speed."""
+    """The open loop where the actuator runs steadily at a speed; none where it cannot."""
     from scipy.optimize import root
+
+    if value == 0:
+        return []
 
     names = linear.names
     y = linear.initial.copy()

@@ -14,8 +14,11 @@ from .parts.circuit import Circuit
 
 TOUCH = 1e-9
 """Position of the spool beside its centre [V]: which pair of edges opens."""
-GROWING = 1e-3
-"""Real part of a growing pole over the largest one (a choice: slower growth is creep)."""
+CREEP = 1e-3
+"""Rate of a growing pole that does not swing, over the slowest swing, that counts as creep (a
+choice: beside a point of rest the load drifts a little)."""
+ROUNDING = 1e-6
+"""Real part over the size of a swinging pole that is rounding."""
 POINTS = 2000
 """Frequencies between two decades below the slowest and one above the fastest pole."""
 
@@ -44,7 +47,7 @@ class OpenLoop:
     @property
     def swings(self) -> bool:
         """Whether a pole grows, apart from creep that any hold suppresses."""
-        return bool(np.max(self.poles.real) > GROWING * np.max(np.abs(self.poles)))
+        return _grow(self.poles)
 
     @property
     def steady_rate(self) -> float:
@@ -196,14 +199,22 @@ class Margins:
     stable: bool
 
 
+def _grow(poles: Array) -> bool:
+    """Whether a pole grows: any that swings, and a real one faster than creep."""
+    size = np.abs(poles)
+    swings = np.abs(poles.imag) > 1e-3 * size
+    slowest = np.min(size[swings]) if swings.any() else np.max(size)
+    limit = np.where(swings, ROUNDING * size, CREEP * slowest)
+    return bool(np.any(poles.real > limit))
+
+
 def margins(loop: OpenLoop, law: Law) -> Margins:
     """Gain and phase margin of L(i omega) C(i omega); its closed poles say whether it is stable."""
 
     def response(omega: Array) -> Array:
         return loop.at(omega) * law.at(omega)
 
-    poles = law.closed(loop)
-    stable = bool(np.max(poles.real) <= GROWING * np.max(np.abs(loop.poles)))
+    stable = not _grow(law.closed(loop))
     factors = [-1 / value.real for _, value in _crossings(loop, response)]
     if stable:
         gain = min((one for one in factors if one > 1), default=inf)

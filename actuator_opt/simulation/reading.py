@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -13,7 +14,7 @@ from ..evaluation.study.plant import Plant
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array
 from ..quantities import RESULTS
-from .assemble import LOOPS
+from .assemble import loop_of
 from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import Event
 from .parts.circuit import Loop
@@ -28,12 +29,8 @@ _STEP = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 
 def reference(scenario: Scenario) -> tuple[Loop | None, Sequence[Part]]:
     """The loop of a scenario and the parts of its reference."""
-    control = scenario.control
-    for loop in LOOPS if control is not None else ():
-        parts: Sequence[Part] = getattr(control, loop)
-        if parts:
-            return loop, parts
-    return None, ()
+    loop = loop_of(scenario.control)
+    return loop, () if loop is None else getattr(scenario.control, loop)
 
 
 def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Servo | None:
@@ -61,17 +58,20 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
     return Servo(loop, first.start, start, target, found)
 
 
-def shaken(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Shaken | None:
-    """Dynamic stiffness along the stroke where sines of one frequency shake the rod."""
+def shaken(
+    scenario: Scenario, time: Array, signals: Mapping[str, Array]
+) -> tuple[Shaken | None, str]:
+    """Dynamic stiffness along the stroke where sines of one frequency shake the rod, or why not."""
+    none = "no sine shakes the rod"
     if "position" not in signals:
-        return None
+        return None, none
     load = scenario.load
     parts: list[Part] = [*load.force, *(load.drive.position if load.drive is not None else ())]
     parts += load.cylinder.signal if load.cylinder is not None else ()
     sines = [part for part in parts if part.shape == "sine"]
     tones = set(frequencies(sines))
     if len(tones) != 1:
-        return None
+        return None, none if not tones else "sines of several frequencies shake the rod"
     tone = tones.pop()
     begin = max(part.start for part in sines)
     end = min(part.end or scenario.duration for part in sines)
@@ -82,9 +82,9 @@ def shaken(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Sha
     try:
         pieces = windows(time=t, frequency=tone, cycles=cycles)
         found = tuple(_window(t[one], x[one], -force[one], tone) for one in pieces)
-    except InputError:
-        return None
-    return Shaken(tone, found)
+    except InputError as error:
+        return None, error.diagnostics[0].message
+    return Shaken(tone, found), ""
 
 
 def _window(time: Array, position: Array, force: Array, frequency: float) -> Window:
@@ -103,6 +103,7 @@ def values(
     events: Sequence[Event],
     step: Servo | None,
     dynamic: Shaken | None,
+    still: str,
 ) -> tuple[dict[str, float | None], dict[str, str]]:
     """Every result of `quantities.RESULTS`, None with a reason where it does not apply."""
     found: dict[str, float | None] = dict.fromkeys(RESULTS)
@@ -142,11 +143,14 @@ def values(
         net = came["supply"] + came.get("return line", 0.0)
         found["efficiency"] = work / net if work > 0 and net > 0 else None
         why["efficiency"] = "the load took no work"
+        if scenario.load.cylinder is not None or scenario.load.drive is not None:
+            why["efficiency"] = "what a machine outside takes is not counted"
     if dynamic is not None:
-        worst = min(dynamic.windows, key=lambda one: abs(one.stiffness))
+        settled = dynamic.windows[1:] or dynamic.windows  # the first one holds the start
+        worst = min(settled, key=lambda one: abs(one.stiffness))
         found["dynamic_stiffness"] = abs(worst.stiffness)
         found["dynamic_phase"] = float(np.angle(worst.stiffness))
-    why |= dict.fromkeys(("dynamic_stiffness", "dynamic_phase"), "no sine shakes the rod")
+    why |= dict.fromkeys(("dynamic_stiffness", "dynamic_phase"), still)
     return found, {name: reason for name, reason in why.items() if found[name] is None}
 
 
@@ -160,19 +164,30 @@ def _settled_from(parts: Sequence[Part], duration: float) -> float:
 def _drift(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> float | None:
     """Mean speed over the last part, where nothing asks for motion."""
     begin = (1 - LAST) * scenario.duration
-    late = time >= begin
-    for name in ("reference", "signal"):
-        if name in signals and name == "reference" and np.ptp(signals[name][late]) > 0:
-            return None
-    _, parts = reference(scenario)
+    loop, parts = reference(scenario)
     load = scenario.load
-    moving = [*load.force, *load.torque, *(load.drive.position if load.drive else ()), *parts]
-    moving += load.cylinder.signal if load.cylinder is not None else ()
-    moving += [] if parts else scenario.signal
-    if any(part.shape in ("sine", "record") and (part.end or 1e9) > begin for part in moving):
+    acting = [*load.force, *load.torque, *(load.drive.position if load.drive else ()), *parts]
+    acting += load.cylinder.signal if load.cylinder is not None else ()
+    acting += () if parts else scenario.signal
+    if any(_acts(part, begin) for part in acting):
+        return None
+    late = time >= begin
+    open_loop = loop is None and "signal" in signals and np.any(signals["signal"][late] != 0)
+    if open_loop or (loop == "speed" and np.any(signals["reference"][late] != 0)):
         return None
     t, x = time[late], signals["position"][late]
     return float(abs(x[-1] - x[0]) / (t[-1] - t[0]))
+
+
+def _acts(part: Part, begin: float) -> bool:
+    """Whether a part of a signal changes from an instant on."""
+    end = math.inf if part.end is None else part.end
+    if part.shape in ("sine", "record"):
+        return end > begin
+    edges = {"step": (part.start,), "ramp": (part.start, end), "pulse": (part.start, end)}
+    if part.shape == "ramp" and part.start < begin < end:
+        return True
+    return any(begin < edge < math.inf for edge in edges.get(part.shape, ()))
 
 
 def _stop_speed(time: Array, speed: Array, events: Sequence[Event]) -> float | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -132,16 +132,27 @@ class Simulation:
     second: Second | None = None
     evaluations: int = 0
     seconds: float = 0.0
-    extra: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def met(self) -> bool:
         """Whether every requirement holds."""
         return all(row.met for row in self.requirements)
 
+    def __str__(self) -> str:
+        """The results as a table."""
+        lines = [f"{self.scenario.name}: {self.plant.design.name}, {self.scenario.duration:g} s"]
+        for name, value in self.values.items():
+            if value is not None:
+                lines.append(f"  {name:20s} {RESULTS[name].text(value)}")
+        for row in self.requirements:
+            limit = RESULTS[row.metric].text(row.limit)
+            lines.append(f"  {row.metric} {row.sense} {limit}: {'met' if row.met else 'missed'}")
+        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
+
+    __repr__ = __str__
+
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI; without the samples."""
-        servo = self.servo
         return {
             "name": self.scenario.name,
             "design": self.plant.design.name,
@@ -156,15 +167,7 @@ class Simulation:
                 }
                 for name, values in self.signals.items()
             },
-            "servo": None
-            if servo is None
-            else {
-                "loop": servo.loop,
-                "time": servo.time,
-                "start": servo.start,
-                "target": servo.target,
-                **servo.metrics._asdict(),
-            },
+            "servo": self._servo(),
             "controller": self._controller(),
             "results": {
                 name: {
@@ -187,18 +190,34 @@ class Simulation:
             },
             "dynamic_stiffness": self._shaken(),
             "events": [{"name": one.name, "time": one.time, "on": one.on} for one in self.events],
-            "second_integrator": None
-            if self.second is None
-            else {
-                "method": self.second.method,
-                "max_difference": self.second.max_difference,
-                "signal": self.second.signal,
-                "time": self.second.time,
-                "differences": dict(self.second.differences),
-            },
+            "second_integrator": self._second(),
             "notes": list(self.notes),
             "evaluations": self.evaluations,
             "seconds": self.seconds,
+        }
+
+    def _servo(self) -> dict[str, Any] | None:
+        servo = self.servo
+        if servo is None:
+            return None
+        return {
+            "loop": servo.loop,
+            "time": servo.time,
+            "start": servo.start,
+            "target": servo.target,
+            **servo.metrics._asdict(),
+        }
+
+    def _second(self) -> dict[str, Any] | None:
+        second = self.second
+        if second is None:
+            return None
+        return {
+            "method": second.method,
+            "max_difference": second.max_difference,
+            "signal": second.signal,
+            "time": second.time,
+            "differences": dict(second.differences),
         }
 
     def _controller(self) -> dict[str, Any] | None:

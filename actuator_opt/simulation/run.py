@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from time import perf_counter
 from typing import Final
 
 import numpy as np
 
-from ..design.scenario.model import Scenario
+from ..design.scenario.model import SAMPLES, Scenario
 from ..evaluation.build import spec_hash
 from ..evaluation.kernel import Subject
 from ..evaluation.study.plant import Plant, plant
 from ..numeric import Array
+from ..quantities import INPUTS
 from . import reading
 from .assemble import assemble
 from .balance import balance
@@ -25,9 +27,8 @@ from .parts.signals import Records
 from .result import Second, Simulation, Told
 from .system import Compiled
 
-SAMPLES = 2000
-"""Samples of a run whose sample time is not stated."""
-SECOND: Final[Method] = "radau"
+SECOND: Final[dict[Method, Method]] = {"lsoda": "radau", "cvodes": "radau", "radau": "lsoda"}
+"""Second opinion on each method."""
 COMPARED = (
     "position", "speed", "pressure_a", "pressure_b", "shaft_speed", "shaft_angle", "spool",
     "flow_a", "flow_b",
@@ -92,9 +93,9 @@ def run(
     signals = compiled.signals(found.time, found.states, found.flags)
     added = balance(circuit, found)
     followed = reading.servo(scenario, found.time, signals)
-    dynamic = reading.shaken(scenario, found.time, signals)
+    dynamic, still = reading.shaken(scenario, found.time, signals)
     values, why = reading.values(
-        scenario, own, found.time, signals, added, found.events, followed, dynamic
+        scenario, own, found.time, signals, added, found.events, followed, dynamic, still
     )
     result = Simulation(
         scenario=scenario,
@@ -111,13 +112,14 @@ def run(
         servo=followed,
         shaken=dynamic,
         events=found.events,
-        notes=_notes(circuit, own, tuned),
+        notes=(*_notes(circuit, own, tuned), *_reach(own, signals)),
         evaluations=found.evaluations,
         seconds=perf_counter() - begin,
     )
     if not verify:
         return result
-    return replace(result, second=_second(compiled, scenario, step, found, signals))
+    second = _second(compiled, scenario, step, found, signals, SECOND[method])
+    return replace(result, second=second)
 
 
 def _second(
@@ -126,9 +128,10 @@ def _second(
     step: float,
     first: Trajectory,
     signals: dict[str, Array],
+    method: Method,
 ) -> Second:
     """The same equations by another integrator: largest differences over each signal's span."""
-    other = integrate(compiled, duration=scenario.duration, sample_time=step, method=SECOND)
+    other = integrate(compiled, duration=scenario.duration, sample_time=step, method=method)
     again = compiled.signals(other.time, other.states, other.flags)
     grid, at = _single(first.time)
     times, there = _single(other.time)
@@ -145,8 +148,8 @@ def _second(
         differences[name], where[name] = float(apart[worst]) / span, float(grid[worst])
     name = max(differences, key=lambda one: differences[one], default="")
     if not name:
-        return Second(SECOND, 0.0, "", 0.0, {})
-    return Second(SECOND, differences[name], name, where[name], differences)
+        return Second(method, 0.0, "", 0.0, {})
+    return Second(method, differences[name], name, where[name], differences)
 
 
 def _single(time: Array) -> tuple[Array, Array]:
@@ -166,11 +169,35 @@ def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]
                 f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}, it swings "
                 "until the valve's limits or the friction hold it"
             )
-    if own.seals.coulomb.error > WARN_PLANE:
-        notes.append(
-            f"friction over the pressures is fitted within {100 * own.seals.coulomb.error:.1f} %"
-        )
+    stated, seals = circuit.scenario.friction, own.seals
+    if stated.coulomb is None and stated.model != "none" and circuit.scenario.motor is None:
+        error = max(seals.coulomb.error, seals.static.error)
+        if error > WARN_PLANE:
+            notes.append(f"friction over the pressures is fitted within {100 * error:.1f} %")
+        films = [one for one in ("piston", "rod") if own.films[one]]
+        if films:
+            notes.append(
+                f"the {' and '.join(films)} seal's oil film is simulated as dry friction by its "
+                "coefficient: state friction.coulomb and viscous for its running friction"
+            )
+    if own.design.ports.accumulators:
+        notes.append("accumulators at the ports (ports.accumulators) are not simulated")
     return tuple(notes)
+
+
+def _reach(own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
+    """A reference that the stroke does not hold."""
+    if "reference" not in signals or "position" not in signals:
+        return
+    asked = signals["reference"]
+    low, high = float(np.min(asked)), float(np.max(asked))
+    follows = np.allclose(asked - signals["error"], signals["position"])
+    if follows and (low < 0 or high > own.stroke):
+        length = INPUTS["position"].text
+        yield (
+            f"the reference goes from {length(low)} to {length(high)}, the stroke ends at "
+            f"{length(own.stroke)}"
+        )
 
 
 def _spec(subject: Subject, scenario: Scenario) -> str:

@@ -58,7 +58,7 @@ class Effect:
     change: float
     """Of the result [SI]."""
     reliable: bool
-    """Whether half the step says the same within 10 %."""
+    """Whether half the step says the same within 10 %; where nothing moves, only that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,11 +256,11 @@ class _Bench:
     def parameter(self, one: _Target, chosen: Mapping[str, float], step: float) -> Parameter:
         """Effects of one parameter: two runs, and two more where something changes."""
         whole = self._slopes(one, chosen, step)
-        moves = any(abs(part) > NOTHING for part, _ in whole.values() if part is not None)
+        moves = {name for name, slope in whole.items() if _moves(slope, _least(name, step))}
         half = self._slopes(one, chosen, 0.5 * step) if moves else whole
         effects = {
-            name: Effect(percent, change, name in half and _same(whole[name], half[name]))
-            for name, (percent, change) in whole.items()
+            name: Effect(*slope, name in half and _same(slope, half[name], _least(name, step)))
+            for name, slope in whole.items()
         }
         per: Literal["1 %", "1 K"] = "1 K" if _absolute(one.quantity) else "1 %"
         return Parameter(one.path, one.origin, one.quantity, one.value, per, effects)
@@ -296,12 +296,24 @@ class _Bench:
         return run(scenario, own, self.records, tuned).values
 
 
-def _same(one: _Slope, other: _Slope) -> bool:
+def _least(name: str, step: float) -> float:
+    """Change of a result for one unit of a parameter that is rounding [SI]."""
+    return LEAST.get(name, 0.0) * 0.01 / step
+
+
+def _moves(one: _Slope, least: float) -> bool:
+    """Whether a result changes at all; one that is zero by more than rounding."""
+    percent, change = one
+    return abs(change) > least if percent is None else abs(percent) > NOTHING
+
+
+def _same(one: _Slope, other: _Slope, least: float) -> bool:
     """Whether two differences agree, or are both nothing."""
+    if not (_moves(one, least) or _moves(other, least)):
+        return True
     index = 1 if one[0] is None else 0
     first, second = one[index] or 0.0, other[index] or 0.0
-    size = max(abs(first), abs(second))
-    return abs(first - second) <= AGREE * size or (index == 0 and size < NOTHING)
+    return abs(first - second) <= AGREE * max(abs(first), abs(second))
 
 
 def _absolute(quantity: Quantity) -> bool:

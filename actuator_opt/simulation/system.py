@@ -122,10 +122,6 @@ class System:
             symbol, rate = state, where(state >= 0, rate, rate * slope)
         next(s for s in self.states if s.symbol is symbol).rate = rate
 
-    def rate_of(self, symbol: Symbol) -> Expression:
-        """The time derivative that a state was given."""
-        return next(s for s in self.states if s.symbol is symbol).rate
-
     def integral(self, name: str, rate: Expression, *, scale: float) -> Symbol:
         """The integral of an expression over time, from zero; it does not steer the steps."""
         symbol = self.state(name, 0.0, tolerance=LOOSE * scale)
@@ -152,10 +148,6 @@ class System:
         """Tell a value under a name; a later one of the same name replaces it."""
         self.signals = [one for one in self.signals if one.name != name]
         self.signals.append(Signal(name, label, quantity, value))
-
-    def value_of(self, name: str) -> Expression:
-        """The expression of a signal."""
-        return next(one.value for one in self.signals if one.name == name)
 
     def compiled(self) -> Compiled:
         """The equations as functions of time, states and flags."""

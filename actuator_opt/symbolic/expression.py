@@ -258,7 +258,7 @@ def divide(first: Any, second: Any) -> Any:
 
 
 def power(base: Any, exponent: Any) -> Any:
-    """Power with a known exponent."""
+    """Power; an exponent that is a symbol needs a positive base."""
     base, exponent = _number(base), _number(exponent)
     if isinstance(exponent, Symbol):
         return Namespace.exp(exponent * Namespace.log(base))

@@ -106,9 +106,15 @@ def simulate(
     Parameters
     ----------
     scenario : as read, or its path
-    set : as `read_scenario`
+    set : values to replace, by PATH of the scenario, else of its design; a bare number is SI
     verify : integrate again by another method and tell the difference
     method : "lsoda"; "cvodes" is faster (extra ``fast``); "radau"
+
+    Returns
+    -------
+    what happened, SI: `time` and `signals` by name over it, `told` (label and quantity of each),
+    `values` by the names of `quantities.RESULTS` (None with a reason in `why`), `requirements`,
+    `servo`, `balance`, `events`, `notes`; printed, a table
 
     Raises
     ------
@@ -293,12 +299,18 @@ def write_simulation(
 
     source = scenario.loaded.source
     page = origin(scenario.actuator.design, scenario.actuator.source, command=command, date=date)
+    spec = simulation.spec_hash or page.spec_hash
     name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
     tables = [] if measured is None else [*measured_tables(measured.overlay, measured.fit)]
     tables += [] if sensitivities is None else [*sensitivity_rows(sensitivities)]
     return write_simulation_sheet(
         simulation,
-        replace(page, source_text=source.text, source_name=name, spec_hash=simulation.spec_hash),
+        replace(
+            page,
+            source_text=source.text,
+            source_name=name,
+            spec_hash=simulation.spec_hash or page.spec_hash,
+        ),
         folder=Path(folder),
         stem=Path(name).stem,
         measured=None if measured is None else measured.overlay.measured.channels,

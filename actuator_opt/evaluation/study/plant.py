@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from ...design.model import Design
-from ...models import end_stop, lines
-from ...numeric import Array
+from ...models import end_stop, lines, linkage
+from ...numeric import Array, absolute, maximum
 from .. import circuit, oil
 from ..allow import Stock
 from ..circuit import CHAMBERS, Chamber
@@ -89,6 +89,13 @@ class Plane:
     error: float = 0.0
     """Largest difference from the seals' own law, over its largest value."""
 
+    def at(self, pressure_a: Array, pressure_b: Array) -> Array:
+        """The force at chamber pressures [Pa]."""
+        higher = maximum(pressure_a, pressure_b) if self.higher else 0.0
+        across = absolute(pressure_a - pressure_b) if self.difference else 0.0
+        rest = self.rod_side * pressure_b + self.higher * higher
+        return self.constant + self.difference * across + rest
+
 
 @dataclass(frozen=True, slots=True)
 class SealData:
@@ -97,7 +104,6 @@ class SealData:
     coulomb: Plane
     static: Plane
     stribeck_speed: float
-    exponent: float
     viscous: float
     bristle_travel: float
 
@@ -132,19 +138,51 @@ class Plant:
     """What the functions of `models.one_way_valve` take beside the pressures."""
     reducing_valve: dict[str, float] | None
     seals: SealData
+    films: dict[str, bool]
+    """Whether the seal of piston and rod runs on an oil film in the design."""
     oil_damping: float
     """Shear of the oil in gaps, at the piston [N s/m]."""
     stop_stiffness: float
     closed_length: float
 
+    def joint(self, position: Array) -> tuple[linkage.Linkage, linkage.ReflectedInertia] | None:
+        """The linkage at a position, with the joint's inertia as the rod feels it."""
+        pivots = self.design.linkage
+        if pivots is None:
+            return None
+        size = {
+            "base_radius": pivots.base_radius,
+            "crank_radius": pivots.crank_radius,
+            "angle_offset": pivots.angle_offset,
+        }
+        angle = linkage.linkage_angle(length=self.closed_length + position, **size)
+        arm = linkage.linkage(joint_angle=angle, **size)
+        felt = linkage.reflected_inertia(
+            inertia=self.design.load.inertia, lever_arm=arm.lever_arm, lever_slope=arm.lever_slope
+        )
+        return arm, felt
+
+    def joint_angle(self, position: Array) -> Array:
+        """Angle of the joint at a position [rad]; of a design with a linkage."""
+        pivots = self.design.linkage
+        assert pivots is not None
+        return linkage.linkage_angle(
+            length=self.closed_length + position,
+            base_radius=pivots.base_radius,
+            crank_radius=pivots.crank_radius,
+            angle_offset=pivots.angle_offset,
+        )
+
+    def moving_mass(self, position: float) -> float:
+        """Everything the rod moves, a joint's inertia included [kg]."""
+        joint = self.joint(position)
+        return self.mass + (0.0 if joint is None else float(joint[1].mass))
+
 
 def plant(subject: Subject) -> Plant:
     """The plant of a design, at the temperature of its first load case.
 
-    Raises
-    ------
-    InputError
-        nothing here; friction of an oil film is taken as dry by its coefficient
+    Friction of an oil film is taken as dry, by its coefficient.
     """
     v = subject.values()
     done = compute(subject, v)
@@ -173,6 +211,7 @@ def plant(subject: Subject) -> Plant:
         throttle=_throttle(v, design, done),
         reducing_valve=_numbers(v, design.ports.reducing_valve, "ports.reducing_valve."),
         seals=_seals(v, own, supply),
+        films={one: getattr(design.seals, one).friction == "film" for one in ("piston", "rod")},
         oil_damping=_one(
             done.computed.metrics["damping_pipe"][""] + done.computed.metrics["damping_annular"][""]
         ),
@@ -295,7 +334,6 @@ def _seals(v: Values, own: Bench, supply: float) -> SealData:
         coulomb=_plane(p_a, p_b, coulomb),
         static=_plane(p_a, p_b, static),
         stribeck_speed=float(np.average(speeds, weights=weights)) if falling else 1e-3,
-        exponent=2.0,
         viscous=sum(float(ring["viscous_friction"]) for ring, _ in loads),
         bristle_travel=float(v["stiffness.seal_deflection"]),
     )

@@ -153,7 +153,8 @@ def fit(
     }
     correlations = _correlations(told)
     new_scenario, new_plant = problem.put(x)
-    final = run(new_scenario.model_copy(update=dense), new_plant, records, gains)
+    after_gains = tune(new_scenario, new_plant, records, held=gains)
+    final = run(new_scenario.model_copy(update=dense), new_plant, records, after_gains)
     after = overlay(final, measured, lag=problem.lag(x))
     doubts = (
         *problem.notes,

@@ -12,7 +12,8 @@ from ...errors import Diagnostic, InputError
 from ...evaluation.study.plant import LEAST_AIR, Plane, Plant
 from ...quantities import INPUTS, MATERIAL_PROPERTIES, RECORDS, SCENARIOS, Quantity
 from ...suggest import remedy, shown
-from ..assemble import LEAST_DEAD, ends_of, start_of
+from ..assemble import ends_of, start_of
+from ..parts.chambers import LEAST_DEAD
 
 Case: TypeAlias = tuple[Scenario, Plant]
 Put: TypeAlias = Callable[[Scenario, Plant, float], Case]
@@ -178,14 +179,8 @@ def _leakage(scenario: Scenario, plant: Plant) -> Entry:
 
 def _level(plane: Plane, scenario: Scenario, plant: Plant) -> float:
     """Friction of a plane at the pressures of the start."""
-    begin = start_of(scenario, plant)
-    a, b = begin.pressure_a, begin.pressure_b
-    return (
-        plane.constant
-        + plane.difference * abs(a - b)
-        + plane.rod_side * b
-        + plane.higher * max(a, b)
-    )
+    begin = start_of(scenario, plant, {})
+    return float(plane.at(begin.pressure_a, begin.pressure_b))
 
 
 def _scaled(plane: Plane, scenario: Scenario, plant: Plant, value: float) -> Plane:

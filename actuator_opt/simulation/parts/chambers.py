@@ -18,6 +18,10 @@ FLOOR = 1e-6
 """Least absolute pressure of the laws of oil and air [Pa]: for their rounding alone."""
 
 
+LEAST_DEAD = 0.5e-3
+"""Least dead volume of a chamber over its area [m] (a choice): none would have no compliance."""
+
+
 class Volumes(NamedTuple):
     """The oil law at a pressure."""
 
@@ -158,3 +162,14 @@ def cylinder(
         + 2 * walls.c1 * pressure_a * pressure_b
     )
     return area_a * free_a * pressure_a - area_b * free_b * pressure_b + bent
+
+
+def dead_volume(circuit: Circuit, volume: float, area: float, chamber: str) -> float:
+    """Dead volume of a chamber, not less than that of a short end of it."""
+    least = LEAST_DEAD * area
+    if volume >= least:
+        return volume
+    circuit.system.notes.append(
+        f"{chamber}: dead volume taken as {least * 1e6:.2g} ml, 0.5 mm of its area"
+    )
+    return least

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from ...design.scenario.model import Friction as Stated
 from ...evaluation.study.plant import Plane, Plant
 from ...models import friction, lugre
-from ...numeric import absolute, maximum
+from ...numeric import maximum
 from ...quantities import SCENARIOS
 from ...symbolic import Expression
-from .circuit import Circuit
+from .circuit import Circuit, Start
 
 LEAST = 1e-3
 """Least level of the friction [N]: bristles without any have no length."""
@@ -34,9 +34,9 @@ class Law:
     taper_speed: float
 
 
-def law(plant: Plant, stated: Stated, pressures: tuple[float, float]) -> Law:
+def law(plant: Plant, stated: Stated, start: Start) -> Law:
     """The design's friction, or the stated one; bristles at the pressures of the start."""
-    seals = plant.seals
+    seals, pressures = plant.seals, (start.pressure_a, start.pressure_b)
     coulomb, static = seals.coulomb, seals.static
     speed = seals.stribeck_speed
     viscous = seals.viscous
@@ -49,29 +49,22 @@ def law(plant: Plant, stated: Stated, pressures: tuple[float, float]) -> Law:
         viscous = 0.0
     if stated.viscous is not None:
         viscous = stated.viscous
-    level = max(float(_at(coulomb, *pressures)), LEAST)
-    breakaway = max(float(_at(static, *pressures)), level)
+    level = max(float(coulomb.at(*pressures)), LEAST)
+    breakaway = max(float(static.at(*pressures)), level)
     travel = stated.bristle_travel or seals.bristle_travel
     stiffness = float(lugre.lugre_bristle_stiffness(static=breakaway, largest_deflection=travel))
     damping = stated.bristle_damping
     if damping is None:
-        damping = float(lugre.lugre_bristle_damping(bristle_stiffness=stiffness, mass=plant.mass))
+        damping = float(
+            lugre.lugre_bristle_damping(
+                bristle_stiffness=stiffness, mass=plant.moving_mass(start.position)
+            )
+        )
     passive = lugre.lugre_passive_speed(
         level=level, bristle_damping=max(damping, 1e-9), viscous=viscous
     )
     return Law(
         coulomb, static, speed, stated.exponent, viscous, stiffness, damping, 0.5 * float(passive)
-    )
-
-
-def _at(plane: Plane, pressure_a: Expression, pressure_b: Expression) -> Expression:
-    higher = maximum(pressure_a, pressure_b) if plane.higher else 0.0
-    across = absolute(pressure_a - pressure_b) if plane.difference else 0.0
-    return (
-        plane.constant
-        + plane.difference * across
-        + plane.rod_side * pressure_b
-        + plane.higher * higher
     )
 
 
@@ -87,10 +80,10 @@ def resist(
     system, model = circuit.system, circuit.scenario.friction.model
     if model == "none" or circuit.linear:
         return own.viscous * speed
-    coulomb = maximum(_at(own.coulomb, pressure_a, pressure_b), LEAST)
+    coulomb = maximum(own.coulomb.at(pressure_a, pressure_b), LEAST)
     static = coulomb
     if own.static is not own.coulomb:
-        static = maximum(_at(own.static, pressure_a, pressure_b), coulomb)
+        static = maximum(own.static.at(pressure_a, pressure_b), coulomb)
     if model == "stribeck":
         return friction.stribeck(
             speed=speed,

@@ -13,8 +13,6 @@ from . import chambers, valve
 from .circuit import Circuit
 
 WHOSE = "load_"
-LEAST_DEAD = 0.5e-3
-"""Least dead volume over the area [m] (a choice), as of the actuator's own chambers."""
 
 
 def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Symbol) -> Expression:
@@ -39,7 +37,7 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
     )
     given = stated.supply_pressure * flows.supply - stated.return_pressure * flows.tank
     circuit.door("supply of the load cylinder", given, state=f"{WHOSE}supply work", into=True)
-    dead = max(stated.dead_volume, LEAST_DEAD * area)
+    dead = chambers.dead_volume(circuit, stated.dead_volume, area, "load cylinder")
     pushed = chambers.cylinder(
         circuit,
         pressure_a=a,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ...design.linkage import Linkage
 from ...models import end_stop, linkage
 from ...numeric import where
 from ...quantities import INPUTS, SCENARIOS
@@ -20,7 +19,9 @@ def stops(circuit: Circuit, position: Symbol, speed: Symbol) -> Expression:
     """Force of the end stops; contact is located, since the force jumps there."""
     system, plant = circuit.system, circuit.plant
     damping = end_stop.stop_damping(
-        stiffness=plant.stop_stiffness, mass=plant.mass, factor=circuit.scenario.stops.damping
+        stiffness=plant.stop_stiffness,
+        mass=plant.moving_mass(circuit.start.position),
+        factor=circuit.scenario.stops.damping,
     )
     law = {"stiffness": plant.stop_stiffness, "damping": float(damping)}
     at_cap = system.switch("stop at the cap end", -position)
@@ -101,7 +102,7 @@ def move(
         spent("machine outside", -pull)
         system.signal("drive_position", "position of the machine", INPUTS["position"], where_to)
     if plant.design.linkage is not None:
-        mass, more = _joint(circuit, plant.design.linkage, position, speed)
+        mass, more = _joint(circuit, position, speed)
         total, held = total - more, held + more
     system.rate(position, speed)
     system.rate(speed, total / mass)
@@ -116,25 +117,17 @@ def move(
         system.signal(name, words, quantity, value)
 
 
-def _joint(
-    circuit: Circuit, pivots: Linkage, position: Symbol, speed: Symbol
-) -> tuple[Expression, Expression]:
+def _joint(circuit: Circuit, position: Symbol, speed: Symbol) -> tuple[Expression, Expression]:
     """Mass at the rod with the joint's inertia, and the force of joint torque and inertia."""
     system, plant = circuit.system, circuit.plant
-    size = {
-        "base_radius": pivots.base_radius,
-        "crank_radius": pivots.crank_radius,
-        "angle_offset": pivots.angle_offset,
-    }
-    angle = linkage.linkage_angle(length=plant.closed_length + position, **size)
-    arm = linkage.linkage(joint_angle=angle, **size)
-    felt = linkage.reflected_inertia(
-        inertia=plant.design.load.inertia, lever_arm=arm.lever_arm, lever_slope=arm.lever_slope
-    )
+    joint = plant.joint(position)
+    assert joint is not None
+    arm, felt = joint
     torque = circuit.course(circuit.scenario.load.torque)
     force = linkage.actuator_force(torque=torque, lever_arm=arm.lever_arm)
     circuit.door("joint", force * speed, state="work on the joint")
     circuit.audit.stored.append(("motion of the joint", 0.5 * felt.mass * speed * speed))
+    angle = plant.joint_angle(position)
     system.signal("joint_angle", "joint angle", SCENARIOS["shaft_angle_value"], angle)
     system.signal("joint_torque", "torque on the joint", SCENARIOS["torque_value"], torque)
     return plant.mass + felt.mass, force + felt.velocity_factor * speed * speed

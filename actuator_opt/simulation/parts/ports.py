@@ -116,6 +116,8 @@ def _far(circuit: Circuit, one: Side, name: str, pressure: Symbol, inflow: Expre
     """What of the lines lies beyond: half of it on each side of a line behind a throttle."""
     data = circuit.plant.lines[one.name]
     share = 0.5 if one.outer is not None and one.line is not None else 1.0
+    if share * data.far_volume < LEAST_NODE:
+        circuit.system.notes.append(f"{name}: volume taken as {LEAST_NODE * 1e6:.2g} ml")
     node(
         circuit,
         name,

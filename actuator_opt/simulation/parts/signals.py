@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from math import pi
 from typing import Any
@@ -96,10 +97,22 @@ def steady_value(parts: Sequence[Part]) -> float:
     return sum(getattr(part, "value", None) or 0.0 for part in parts if part.shape in kept)
 
 
-def single_step(parts: Sequence[Part]) -> Part | None:
-    """The step of a signal that has no other course; None where there is not just one."""
-    moving = [part for part in parts if part.shape != "constant"]
-    return moving[0] if len(moving) == 1 and moving[0].shape == "step" else None
+def at_start(parts: Sequence[Part], records: Records) -> float:
+    """Value of a signal as the time begins; a record that is not given counts as nothing."""
+    total = 0.0
+    for part in parts:
+        value: float = getattr(part, "value", None) or 0.0
+        if part.shape == "record":
+            known = records.get((part.file or "", part.column or ""))
+            if known is None:
+                continue
+            time, values = known
+            total += part.scale * float(np.interp(-part.start, time, values))
+        elif part.shape == "constant" or (part.shape in ("step", "pulse") and part.start <= 0):
+            total += value
+        elif part.shape == "sine" and part.start <= 0:
+            total += value * math.sin(part.phase)
+    return total
 
 
 def frequencies(parts: Sequence[Part]) -> tuple[float, ...]:

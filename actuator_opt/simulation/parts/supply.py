@@ -64,6 +64,8 @@ class Source:
         circuit.door("supply pipe", resistance * flow * flow, state="supply pipe loss")
         motion = 0.5 * inertance * flow * flow
         circuit.audit.stored.append(("oil in motion in the supply pipe", motion))
+        system.signal("pressure_unit", "pressure at the pump", INPUTS["pressure"], self.unit)
+        system.signal("flow_unit", "flow into the supply pipe", _FLOW, flow)
         volume = float(lines.line_volume(**size))
         assert isinstance(self.pressure, Symbol)
         node(circuit, "supply pipe", self.pressure, inflow=flow - demand, volume=volume)
@@ -138,14 +140,19 @@ class Source:
         if one is None:
             return 0.0
         system, plant = circuit.system, circuit.plant
-        law = {
-            "precharge_pressure": one.precharge,
-            "gas_volume": one.gas_volume,
-            "polytropic_index": plant.oil.polytropic_index,
-        }
-        start = accumulator.gas_volume_at(pressure=plant.supply_pressure, **law)
-        gas = system.state("gas volume", float(start), tolerance=1e-9 * one.gas_volume)
-        held = accumulator.gas_pressure(volume=gas, **law)
+        filled = accumulator.gas_volume_at(  # slowly, then it works fast about that
+            pressure=plant.supply_pressure,
+            precharge_pressure=one.precharge,
+            gas_volume=one.gas_volume,
+        )
+        begin = max(plant.supply_pressure, one.precharge)
+        gas = system.state("gas volume", float(filled), tolerance=1e-9 * one.gas_volume)
+        held = accumulator.gas_pressure(
+            volume=gas,
+            precharge_pressure=begin,
+            gas_volume=float(filled),
+            polytropic_index=plant.oil.polytropic_index,
+        )
         neck = elements.resistance(
             inner_diameter=NECK, length=NECK, dynamic_viscosity=plant.oil.dynamic_viscosity
         )

@@ -103,7 +103,8 @@ def amplitude(stand: Stand, frequency: float, opened: complex) -> float:
     errs = 1 / max(abs(1 + opened), 1e-3)
     signal = SIGNAL_SHARE * plant.valve.signal / (stand.gain * errs)
     inertia = 2 * FORCE_SHARE * plant.supply_pressure * plant.area_b
-    swing = inertia / (plant.mass * (2 * pi * frequency) ** 2 * abs(opened) * errs)
+    moved = plant.moving_mass(stand.position)
+    swing = inertia / (moved * (2 * pi * frequency) ** 2 * abs(opened) * errs)
     return stand.scale * min(STROKE_SHARE * plant.stroke, signal, swing)
 
 

@@ -97,7 +97,7 @@ class LinearTier:
         )
         if own.valve is None:
             return stand
-        gain = of_case(self.done.computed.metrics["position_gain"][""], spot.case)
+        gain = self._gain(spot.case)
         both = [self.figures(spot.case, spot.position, way) for way in (True, False)]
         least = min(one.ultimate_gain for one in both)
         known = [one.bandwidth for one in both if one.bandwidth > 0]

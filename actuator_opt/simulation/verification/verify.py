@@ -14,7 +14,7 @@ from math import inf, isfinite, isnan
 from time import perf_counter
 from typing import Any, Final, Literal
 
-from ...design.scenario.model import Scenario
+from ...design.scenario.model import Load, Scenario
 from ...errors import InputError, Unsolvable
 from ...evaluation.build import evaluate
 from ...evaluation.kernel import Subject
@@ -171,10 +171,25 @@ def _notes(scenario: Scenario, asked: bool) -> tuple[str, ...]:
             "the scenario has a controller of its own: requirements of the design are those of its "
             "proportional position loop"
         )
-    load = scenario.load
-    if load.stiffness or load.damping or load.drive is not None:
-        notes.append("spring, damper and machine at the load are left out of the experiments")
+    left = _left_out(scenario.load)
+    if left:
+        notes.append(
+            f"the experiments hold the load with a constant force; left out of them: {left}"
+        )
     return tuple(notes)
+
+
+def _left_out(load: Load) -> str:
+    """What a scenario states at the load and no experiment has."""
+    stated = {
+        "force of the load": any(one.shape == "record" or one.value for one in load.force),
+        "torque on the joint": any(one.shape == "record" or one.value for one in load.torque),
+        "spring": load.stiffness,
+        "damper": load.damping,
+        "machine outside": load.drive is not None,
+        "load cylinder": load.cylinder is not None,
+    }
+    return ", ".join(name for name, there in stated.items() if there)
 
 
 @dataclass(slots=True)
