@@ -33,7 +33,7 @@ OIL = Oil(
     temperature=313.0, bulk_modulus=1.4e9, slope=0.0, air_content=0.0, polytropic_index=1.4,
     density=870.0, dynamic_viscosity=32e-6 * 870, kinematic_viscosity=32e-6, vapour_pressure=0.0,
 )  # fmt: skip
-NO_SEALS = SealData(Plane(0.0), Plane(0.0), 1e-3, 2.0, 0.0, 1e-4)
+NO_SEALS = SealData(Plane(0.0), Plane(0.0), 1e-3, 0.0, 1e-4)
 MIDDLE = {"position": 0.08, "pressure_a": 70 * BAR, "pressure_b": 70 * BAR}
 BALANCED = [{"shape": "constant", "value": 70 * BAR * (AREA_A - AREA_B)}]
 """Load that holds the piston with 70 bar in both chambers."""

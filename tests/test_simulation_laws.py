@@ -52,7 +52,7 @@ PUMP = {
 }  # fmt: skip
 RELIEF = {"pressure": 135 * BAR, "rated_flow": 60 * LITRE}
 SEALS = SealData(
-    Plane(100.0, 1e-5, 2e-5, 1e-5), Plane(300.0, 2e-5, 2e-5, 1e-5), 0.01, 2.0, 50.0, 1e-4
+    Plane(100.0, 1e-5, 2e-5, 1e-5), Plane(300.0, 2e-5, 2e-5, 1e-5), 0.01, 50.0, 1e-4
 )
 WALLS = Give(2e-14, 3e-13, 1e-14, 2e-13, 1e-15, -2e-14)
 CRANK = Linkage(base_radius=0.46, crank_radius=0.12)
@@ -397,7 +397,7 @@ def test_mirrored_cylinder_moves_the_other_way():
     """Equal areas: signal and load with the other sign move B as A moved before."""
     own = plant(
         oil=AIRY, area_b=AREA_A, seals=SealData(
-            Plane(100.0, 1e-5, 0.0, 1e-5), Plane(200.0, 1e-5, 0.0, 1e-5), 0.01, 2.0, 50.0, 1e-4
+            Plane(100.0, 1e-5, 0.0, 1e-5), Plane(200.0, 1e-5, 0.0, 1e-5), 0.01, 50.0, 1e-4
         ), leakage=1e-12, lines={"a": LINE, "b": LINE},
     )  # fmt: skip
     runs = []
@@ -435,7 +435,7 @@ def test_two_cylinders_side_by_side_move_as_one():
                 Plane(2 * one.constant, 2 * one.difference, 2 * one.rod_side, 2 * one.higher)
                 for one in (SEALS.coulomb, SEALS.static)
             ),
-            0.01, 2.0, 100.0, 1e-4,
+            0.01, 100.0, 1e-4,
         ),
     )  # fmt: skip
     runs = []

@@ -309,7 +309,7 @@ def test_friction_over_the_pressures_keeps_its_shape():
     level = Plane(40.0, 1e-5, 2e-5, 1e-5)
     at_start = 40.0 + (2e-5 + 1e-5) * 70 * BAR
     rises = Plane(80.0, 2e-5, 4e-5, 2e-5)
-    own = replace(own, seals=SealData(level, rises, 5e-3, 2.0, 0.0, 1e-4))
+    own = replace(own, seals=SealData(level, rises, 5e-3, 0.0, 1e-4))
     coulomb, static = entries(["coulomb", "static"], scene, own)
     assert (coulomb.start, static.start) == pytest.approx((at_start, 2 * at_start))
     seals = coulomb.put(scene, own, 3 * at_start)[1].seals

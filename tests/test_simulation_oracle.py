@@ -36,7 +36,7 @@ from actuator_opt.simulation.linearise import Linear, ultimate
 SHARP = {"sharp": 1e3, "relative": 1e-9}
 HOLD = 70 * BAR * (AREA_A - AREA_B)
 AIRY = replace(OIL, air_content=0.01)
-STUCK = SealData(Plane(150.0), Plane(200.0), 0.01, 2.0, 0.0, 2e-4)
+STUCK = SealData(Plane(150.0), Plane(200.0), 0.01, 0.0, 2e-4)
 
 
 @dataclass(frozen=True)

@@ -131,7 +131,7 @@ def published(**valve):
     area_a = pi * 0.032**2 / 4
     full, leak = 40 / 60000 / sqrt(35 * BAR), 0.45 / 60000 / sqrt(50 * BAR)
     own = plant(knee())
-    no_seals = SealData(Plane(0.0), Plane(0.0), 1e-3, 2.0, 0.0, 1e-4)
+    no_seals = SealData(Plane(0.0), Plane(0.0), 1e-3, 0.0, 1e-4)
     oil = replace(own.oil, bulk_modulus=1.4e9, slope=0.0, air_content=1e-9)
     spool = {"signal": 10.0, "natural_frequency": 250.0, "damping_ratio": 0.7} | valve
     cylinder = replace(

@@ -309,7 +309,7 @@ def write_simulation(
             page,
             source_text=source.text,
             source_name=name,
-            spec_hash=simulation.spec_hash or page.spec_hash,
+            spec_hash=spec,
         ),
         folder=Path(folder),
         stem=Path(name).stem,
