@@ -1,0 +1,164 @@
+"""Claims about `simulate`, and scenarios in `check`, `schema` and `optimise`, at the terminal."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from cli_runner import DESIGNS, run
+
+import actuator_opt as ao
+
+STEP = DESIGNS / "scenarios" / "knee_step.yaml"
+SHORT = f"""\
+name: short
+design: {DESIGNS / "servo_knee.yaml"}
+duration: 0.2 s
+control:
+  position:
+    - shape: step
+      value: 2 mm
+      start: 0.02 s
+requirements:
+  overshoot:
+    max: 5 %
+"""
+
+
+@pytest.fixture
+def short(tmp_path):
+    """A short scenario in a folder of its own."""
+    file = tmp_path / "short.yaml"
+    file.write_text(SHORT, encoding="utf-8")
+    return file
+
+
+def test_json_has_the_keys_of_the_contract():
+    """Signals, servo, balance and second integrator; numbers only, SI."""
+    result = run("simulate", str(STEP), "--verify", "--json")
+    assert result.code == 0
+    found = json.loads(result.out, parse_constant=pytest.fail)
+    assert all(set(one) >= {"final", "min", "max"} for one in found["signals"].values())
+    assert set(found["servo"]) >= {
+        "rise_time", "settling_time", "overshoot", "steady_state_error",
+    }  # fmt: skip
+    assert set(found["balance"]) >= {"mass", "energy"}
+    assert found["balance"]["mass"] < 1e-6
+    assert found["balance"]["energy"] < 1e-6
+    assert found["second_integrator"]["method"] == "radau"
+    assert found["second_integrator"]["max_difference"] < 1e-4
+
+
+def test_exit_codes_follow_the_requirements(short):
+    """Met 0, missed 1, bad input 3; the file's line is told."""
+    assert run("simulate", str(short), "--quiet").code == 0
+    missed = run("simulate", str(short), "--set", "requirements.overshoot.max=0", "--set",
+                 "control.law=pi")  # fmt: skip
+    assert missed.code == 1
+    assert "MISSED" in missed.out.upper()
+    bad = run("simulate", str(short), "--set", "duration=-1 s")
+    assert bad.code == 3
+    assert "duration" in bad.err
+
+
+def test_signals_go_to_csv(short, tmp_path):
+    """Every signal with its unit, on even times; reading back gives the run."""
+    file = tmp_path / "out.csv"
+    run("simulate", str(short), "--csv", str(file), "--quiet")
+    heads = file.read_text(encoding="utf-8").splitlines()[0].split(",")
+    table = np.loadtxt(file, delimiter=",", skiprows=1)
+    assert heads[0] == "t [s]"
+    assert np.ptp(np.diff(table[:, 0])) < 1e-9
+    own = ao.simulate(short)
+    x = table[:, heads.index("position [mm]")]
+    assert x[-1] == pytest.approx(1e3 * own.signals["position"][-1], rel=1e-5)
+
+
+def test_the_scenario_is_not_overwritten(short):
+    """--csv onto the scenario is refused, and the scenario stays."""
+    before = short.read_bytes()
+    assert run("simulate", str(short), "--csv", str(short)).code in (2, 3)
+    assert short.read_bytes() == before
+
+
+def test_a_record_is_laid_over_and_fitted(short, tmp_path):
+    """A run with other oil and valve, written as a record, gives both back within their bounds."""
+    made = ao.simulate(short, set={"fluid.air_content": 0.012, "valve.rated_flow": "8 l/min"})
+    time, first = np.unique(made.time, return_index=True)
+    rows = [
+        f"{t:.6f},{p1 / 1e5:.4f},{p2 / 1e5:.4f},{1e3 * x:.5f}"
+        for t, p1, p2, x in zip(
+            time, *(made.signals[n][first] for n in ("pressure_a", "pressure_b", "position")),
+            strict=True,
+        )
+    ]  # fmt: skip
+    file = tmp_path / "bench.csv"
+    file.write_text("t [s],p1 [bar],p2 [bar],x [mm]\n" + "\n".join(rows), encoding="utf-8")
+    plain = json.loads(run("simulate", str(short), "--measured", str(file), "--json").out)
+    assert plain["measured"]["residuals"]["position"]["rms"] > 1e-5
+    found = json.loads(
+        run("simulate", str(short), "--measured", str(file), "--fit", "air_content", "--fit",
+            "valve_capacity", "--json").out
+    )["measured"]["parameters"]  # fmt: skip
+    assert found["air_content"]["value"] == pytest.approx(0.012, rel=0.05)
+    assert found["valve_capacity"]["value"] == pytest.approx(0.8, rel=0.01)
+    assert run("simulate", str(short), "--fit", "air_content").code == 2
+
+
+def test_pages_carry_the_scenario(short, tmp_path):
+    """PDF and PNG are written, with the scenario inside."""
+    pytest.importorskip("typst")
+    out = tmp_path / "out"
+    result = run("simulate", str(short), "--report", "--out", str(out))
+    assert {p.name for p in out.iterdir()} == {"short.pdf", "short.png"}
+    assert result.err.count("wrote ") == 2
+    from actuator_opt.reporting.writer import read_attachment
+
+    assert read_attachment(out / "short.pdf").source == SHORT
+
+
+def test_check_and_schema_know_scenarios(short):
+    """A good scenario has no faults, a bad one its line; the schema names its keys."""
+    assert run("check", str(short)).code == 0
+    short.write_text(SHORT.replace("duration", "duratoin"), encoding="utf-8")
+    bad = run("check", str(short))
+    assert bad.code == 3
+    assert "short.yaml:3:1" in bad.err
+    assert 'did you mean "duration"' in bad.err
+    assert "duration" in json.loads(run("schema", "--scenario").out)["properties"]
+
+
+def test_the_best_design_is_verified_in_time(short, tmp_path):
+    """`optimise --verify-dynamics` tells both tiers of every dynamic requirement."""
+    text = (DESIGNS / "servo_knee.yaml").read_text(encoding="utf-8")
+    head, _, rest = text.partition("variables:\n")
+    _, _, wishes = rest.partition("\n# The knee's requirements")
+    wishes = wishes.partition("requirements:\n")[2]
+    design = tmp_path / "gain.yaml"
+    design.write_text(
+        f"{head}variables:\n  control.gain:\n    lower: 100 V/m\n    upper: 1500 V/m\n\n"
+        "requirements:\n  gain_margin:\n    min: 2\n  bandwidth:\n    min: 5 Hz\n\n"
+        f"waivers:\n{wishes.partition('waivers:')[2].partition('objective:')[0]}\n"
+        "objective:\n  maximise: bandwidth\n",
+        encoding="utf-8",
+    )
+    result = run("optimise", str(design), "--starts", "1", "--verify-dynamics", str(short),
+                 "--json")  # fmt: skip
+    found = json.loads(result.out)["dynamics_verified"]
+    rows = {row["metric"]: row for row in found["rows"]}
+    assert set(rows) == {"gain_margin", "bandwidth", "overshoot"}
+    for name in ("gain_margin", "bandwidth"):
+        assert rows[name]["linear"] is not None
+        assert rows[name]["value"] is not None
+    assert result.code == (
+        0 if found["met"] and json.loads(result.out)["status"] == "optimal" else 1
+    )
+
+
+def test_sensitivities_are_ranked(short):
+    """The most effective parameter leads, and every effect says whether it is sure."""
+    found = json.loads(run("simulate", str(short), "--sensitivity", "--json").out)["sensitivities"]
+    sizes = [one["largest"] for one in found["parameters"]]
+    assert sizes == sorted(sizes, reverse=True)
+    assert {"control.gain", "valve.rated_flow"} & {one["path"] for one in found["parameters"][:6]}
