@@ -2,7 +2,7 @@
 
 >>> import actuator_opt as ao
 >>> ao.__version__
-'0.5.0'
+'0.6.0'
 
 The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `seal`, `identify`, `calibrate`,
 `simulate`, `report`, `save`) are the same as in the terminal; `bending` is `identify --span` there,

@@ -119,7 +119,7 @@ def check(
     out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> None:
-    """Name every fault of design and scenario files, each at its place."""
+    """Name every fault of design and scenario files."""
     from . import verbs
 
     pairs = assignments(sets)
@@ -325,7 +325,7 @@ def schema(
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="As always: it is JSON.")] = False,
 ) -> None:
-    """Print the JSON Schema of design (or scenario) files, for editors."""
+    """Print the JSON Schema of design or scenario files."""
     from .design.materials import load_library
     from .design.schema import json_schema
     from .quantities import METRICS, RESULTS

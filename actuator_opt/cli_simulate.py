@@ -67,7 +67,7 @@ def simulate(
     quiet: Quiet = False,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> None:
-    """A scenario around its design over time: servo, pressures, energy, dynamic stiffness."""
+    """A scenario over time: servo, pressures, energy."""
     from . import verbs
 
     check_targets(out if report else None, date, csv)
