@@ -76,6 +76,8 @@ def simulate(
     if fit and measured is None:
         raise UsageError(Diagnostic("--fit: only with --measured", "name the record"))
     trial = verbs.read_scenario(scenario, set=assignments(sets))
+    if csv is not None:
+        require_apart(csv, *map(str, trial.files))
     method: Method = "cvodes" if fast else "lsoda"
     found = verbs.simulate(trial, verify=verify, method=method)
     overlay = None

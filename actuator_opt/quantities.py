@@ -336,7 +336,8 @@ SCENARIOS = _table("""
  shaft_speed_gain     | K_p    | angular_speed_gain | V*s/rad | 0 | 1e9 | gain on the speed of the shaft
  pressure_gain        | K_d    | pressure_gain | V/bar | 0    | 1e6    | gain on the load pressure
  margin               | A_m    | ratio       | -      | 1.01  | 100    | gain margin
- inertia              | I      | inertia     | kg*m^2 | 0     | 1e8    | moment of inertia
+ inertia              | I      | inertia     | kg*m^2 | 1e-9  | 1e8    | moment of inertia
+ oil_volume           | V      | volume      | ml     | 0.01  | 1e6    | oil volume
  load_damping         | b      | damping     | N*s/m  | 0     | 1e9    | damping of the load
  load_stiffness       | k      | stiffness   | N/mm   | 0     | 1e9    | stiffness of the load
  shaft_damping        | b      | angular_damping | N*m*s/rad | 0 | 1e6 | damping of the shaft's load

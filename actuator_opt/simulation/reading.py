@@ -208,6 +208,8 @@ def requirements(
             if bound is None:
                 continue
             value = found.get(metric)
+            if value is None and metric == "stop_speed" and sense == "max":
+                value = 0.0  # no stop is met
             if value is None:
                 rows.append(Row(metric, sense, bound, None, None, False, why.get(metric, "")))
                 continue

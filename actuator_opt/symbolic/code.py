@@ -110,7 +110,8 @@ def _literal(value: Any) -> str:
         return "_nan"
     if math.isinf(value):
         return "_inf" if value > 0 else "(-_inf)"
-    return repr(value) if value >= 0 else f"({value!r})"
+    number = repr(float(value))  # NumPy's own say so in their text
+    return number if value >= 0 else f"({number})"
 
 
 def _code(node: Symbol, said: Callable[[Any], str], many: bool) -> str:

@@ -247,9 +247,9 @@ def divide(first: Any, second: Any) -> Any:
     """Quotient."""
     a, b = _number(first), _number(second)
     if not isinstance(b, Symbol):
-        if isinstance(a, Symbol):
-            return multiply(1 / b, a)
-        return a / b
+        if b == 0:
+            return math.nan if not isinstance(a, Symbol) and a == 0 else math.inf * a
+        return multiply(1 / b, a) if isinstance(a, Symbol) else a / b
     if not isinstance(a, Symbol) and a == 0:
         return 0.0
     if a is b:

@@ -39,6 +39,12 @@ class Trial:
     records: Mapping[tuple[str, str], tuple[Array, Array]]
     loaded: LoadedScenario
 
+    @property
+    def files(self) -> list[Path]:
+        """The design and the records it reads."""
+        records = [self.loaded.folder / file for file, _ in self.records]
+        return [self.loaded.design_file, *records]
+
 
 def read_scenario(
     source: str | Path, *, set: Mapping[str, str | float] | Sequence[tuple[str, str]] = ()
@@ -83,7 +89,8 @@ def _records(loaded: LoadedScenario) -> dict[tuple[str, str], tuple[Array, Array
                 texts[file] = decode_record(data, name, most=MOST_BYTES)
             found[file, column] = parse_column(texts[file], column, dimension, name=name)
         except InputError as error:
-            raise InputError([_where(fault, path, loaded) for fault in error.diagnostics]) from None
+            at = path if file in texts else f"{path.removesuffix('column')}file"
+            raise InputError([_where(fault, at, loaded) for fault in error.diagnostics]) from None
     return found
 
 

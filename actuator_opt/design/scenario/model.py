@@ -76,7 +76,7 @@ class Supply(Section):
     """What feeds the valve; the design's supply pressure is the set pressure."""
 
     type: words.Supply = "constant"
-    volume: Annotated[float | None, Of("volume", "oil volume of the supply line")] = None
+    volume: Annotated[float | None, Of("oil_volume", "oil volume of the supply line")] = None
     flow: Annotated[float | None, Of("rated_flow", "flow of a fixed pump, or largest one")] = None
     pump: PumpMachine | None = None
     """In place of `flow`: a Wilson pump."""
@@ -127,7 +127,7 @@ class Motor(Section):
 
     machine: Machine
     inertia: Annotated[float, Of("inertia", "of motor and load")]
-    pipe_volume: Annotated[float, Of("volume", "oil volume of each pipe")]
+    pipe_volume: Annotated[float, Of("oil_volume", "oil volume of each pipe")]
     damping: Annotated[float, Of("shaft_damping", "of the load")] = 0.0
     torque: Annotated[tuple[signals.Torque, ...], Field(max_length=100)] = ()
 
