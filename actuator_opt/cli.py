@@ -201,6 +201,8 @@ def optimise(
     check_targets(out if reporting else None, date, write)
     actuator = read_actuator(design, sets, plugin)
     trial = None if verify is None else verbs.read_scenario(verify)
+    if trial is not None:
+        verbs.fitting(trial, actuator)
     result = verbs.optimise(
         actuator, algorithm=algorithm, starts=starts, seed=seed, whole_plies=whole_plies
     )

@@ -329,6 +329,7 @@ SCENARIOS = _table("""
  shaft_angle_value    | phi    | angle       | deg    | -1e6  | 1e6    | angle of the shaft
  phase                | phi    | angle       | deg    | -360  | 360    | phase
  factor               | k      | ratio       | -      | -1e6  | 1e6    | factor
+ part_factor          | k      | ratio       | -      | 0     | 1e6    | factor on a part of the controller
  signal_rate          | dU/dt  | signal_rate | V/s    | 0.001 | 1e9    | largest rate of the signal
  position_gain        | K_p    | signal_gain | V/m    | 0     | 1e9    | gain on the position
  speed_gain           | K_v    | speed_gain  | V*s/m  | 0     | 1e9    | gain on the speed

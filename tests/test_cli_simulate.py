@@ -162,3 +162,76 @@ def test_sensitivities_are_ranked(short):
     sizes = [one["largest"] for one in found["parameters"]]
     assert sizes == sorted(sizes, reverse=True)
     assert {"control.gain", "valve.rated_flow"} & {one["path"] for one in found["parameters"][:6]}
+
+
+@pytest.mark.parametrize(
+    ("scenario", "design", "said"),
+    [
+        ("course_open_loop.yaml", "knee.yaml", "valve"),
+        ("course_motor_velocity.yaml", "servo_knee.yaml", "in the place of the cylinder"),
+        ("course_valve_ramp.yaml", "servo_knee.yaml", "in the place of the cylinder"),
+        ("aalto_closed_ports.yaml", "servo_knee.yaml", "stroke"),
+    ],
+)
+def test_a_scenario_that_a_design_cannot_do_is_refused_before_the_search(scenario, design, said):
+    """One line at the scenario's place, exit 3, and no search is begun."""
+    result = run("optimise", str(DESIGNS / design), "--verify-dynamics",
+                 str(DESIGNS / "scenarios" / scenario))  # fmt: skip
+    assert result.code == 3
+    assert said in result.err
+    assert result.out == ""
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (["control.gain_factor=-1"], "must be >= 0"),
+        (["stops.cushion.length=10 mm", "stops.cushion.open_area=1 cm^2",
+          "stops.cushion.end_area=0 mm^2"], "never reach its stop"),
+    ],
+)  # fmt: skip
+def test_values_without_sense_are_refused(short, changes, said):
+    """What would turn the loop round or shut a cushion for good has one line."""
+    result = run("simulate", str(short), *(f"--set={one}" for one in changes))
+    assert result.code == 3
+    assert said in result.err
+
+
+def test_a_load_cylinder_needs_an_area():
+    """A rod as thick as the bore, and a return above the supply, are named."""
+    rig = DESIGNS / "scenarios" / "aalto_one_way_rig.yaml"
+    for change, said in (("rod_diameter=40 mm", "not smaller than bore"),
+                         ("return_pressure=500 bar", "not below supply_pressure")):  # fmt: skip
+        result = run("simulate", str(rig), f"--set=load.cylinder.{change}")
+        assert result.code == 3
+        assert said in result.err
+
+
+def test_the_unit_of_a_column_is_that_of_its_header(tmp_path):
+    """A column in kN asked for in N is refused, not taken for N."""
+    (tmp_path / "pull.csv").write_text("t [s],force [kN]\n0,2\n1,2\n")
+    file = tmp_path / "a.yaml"
+    file.write_text(SHORT + "load:\n  force:\n    - shape: record\n      file: pull.csv\n"
+                    '      column: "force [N]"\n')  # fmt: skip
+    result = run("simulate", str(file))
+    assert result.code == 3
+    assert "is in kN, not N" in result.err
+
+
+def test_nothing_that_is_read_is_written_over(short, tmp_path):
+    """The design a scenario names stays when --csv names it."""
+    design = tmp_path / "knee.yaml"
+    design.write_bytes((DESIGNS / "servo_knee.yaml").read_bytes())
+    short.write_text(SHORT.replace(str(DESIGNS / "servo_knee.yaml"), "knee.yaml"))
+    before = design.read_bytes()
+    assert run("simulate", str(short), "--csv", str(design)).code == 3
+    assert design.read_bytes() == before
+
+
+def test_a_valve_between_empty_ports_runs():
+    """Nothing flows over edges without a pressure drop; no traceback."""
+    ramp = DESIGNS / "scenarios" / "course_valve_ramp.yaml"
+    changes = ["held_ports.pressure_a=0 bar", "held_ports.pressure_b=0 bar"]
+    result = run("simulate", str(ramp), *(f"--set={one}" for one in changes), "--json")
+    found = json.loads(result.out)["signals"]
+    assert found["flow_tank"]["max"] == pytest.approx(0.0, abs=1e-12)

@@ -130,3 +130,31 @@ def test_oil_films_are_said_to_run_dry():
 
     notes = run(scenario(duration=0.01), own, {}, None).notes
     assert any("rod seal's oil film" in note for note in notes)
+
+
+def test_two_steps_at_once_are_one():
+    """10 and 5 mm at the same instant read as a step of 15 mm."""
+    two = "control:\n  position:\n" + "".join(
+        f"    - {{shape: step, value: {size} mm}}\n" for size in (10, 5)
+    )
+    one = "control:\n  position:\n    - {shape: step, value: 15 mm}\n"
+    found = [ao.simulate(KNEE + text).servo for text in (two, one)]
+    assert found[0].start == pytest.approx(found[1].start)
+    assert found[0].metrics.rise_time == pytest.approx(found[1].metrics.rise_time, rel=1e-6)
+
+
+def test_a_step_on_a_ramp_has_no_figures():
+    """No target stands while the reference moves on."""
+    text = (
+        "control:\n  position:\n    - {shape: ramp, value: 9 mm, end: 0.2 s}\n"
+        "    - {shape: step, value: 5 mm, start: 0.1 s}\n"
+    )
+    assert ao.simulate(KNEE + text).servo is None
+
+
+def test_torn_oil_is_said():
+    """A load that pulls a chamber to vacuum leaves a note."""
+    text = (
+        KNEE + "ends: closed\nload:\n  force:\n    - {shape: step, value: -30 kN, start: 0.01 s}\n"
+    )
+    assert any("torn" in note for note in ao.simulate(text).notes)

@@ -52,7 +52,7 @@ EXAMPLES = {
     "displacement": "13.3 ml", "displacement_setting": "1", "slip_coefficient": "1.5e-7",
     "coulomb_coefficient": "0.16", "viscous_coefficient": "1e5", "drive_speed": "1500 rpm",
     "pump_gain": "2 l/min/bar", "coulomb_force": "80 N", "static_force": "120 N",
-    "oil_volume": "80 ml", "inertia": "0.013 kg*m^2",
+    "part_factor": "0.5", "oil_volume": "80 ml", "inertia": "0.013 kg*m^2",
     "stribeck_exponent": "2", "margin": "2", "cycles_per_window": "5",
 }  # fmt: skip
 """One good value of every input quantity, for messages, the schema and the start file."""

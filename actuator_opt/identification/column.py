@@ -45,6 +45,10 @@ def parse_column(text: str, header: str, dimension: str, *, name: str) -> tuple[
     except LookupError:
         remedy = shown(remedy_for(header, names), 200)
         raise fault(f'no column "{shown(header)}"', remedy) from None
+    own = cells[place][1]
+    if own and unit and own != unit and header.strip() != sheet.header[place].strip():
+        message = f'column "{shown(sheet.header[place])}" is in {shown(own)}, not {shown(unit)}'
+        raise fault(message, f'name it "{shown(cells[place][0])} [{shown(own)}]"')
     clock = next((k for k, (one, _) in enumerate(cells) if one.strip().lower() in _TIMES), None)
     if clock is None:
         raise fault("no column t", 'add one with its unit, "t [s]"')

@@ -108,6 +108,8 @@ class Linear:
     def about(self, **states: float) -> list[OpenLoop]:
         """Open loops at the start with some states changed, the spool a touch to either side."""
         y = self.initial.copy()
+        if "speed" in self.names:
+            y[self.names.index("speed")] = 0.0
         for name, value in states.items():
             y[self.names.index(name.replace("_", " "))] = value
         found = []

@@ -40,6 +40,9 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
     if loop is None or not steps or any(part.shape in ("sine", "record") for part in parts):
         return None
     first = min(steps, key=lambda part: part.start)
+    ramps = [part for part in parts if part.shape == "ramp"]
+    if any(one.start <= first.start < (one.end or 0.0) for one in ramps):  # no target stands
+        return None
     changes = [t for part in parts for t in (part.start, part.end) if t is not None]
     end = min((t for t in changes if t > first.start), default=scenario.duration)
     value = signals[loop]
@@ -51,7 +54,7 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
         return None
     asked = signals["reference"]
     target = float(asked[inside[1]])
-    start = float(asked[inside[0] - 1]) if inside[0] > 0 else target - (getattr(first, "value", 0))
+    start = float(asked[inside[0] - 1]) if inside[0] > 0 else float(value[0])
     if start == target:
         return None
     found = step_metrics(time=time[inside], response=value[inside], start=start, target=target)
@@ -143,6 +146,9 @@ def values(
         net = came["supply"] + came.get("return line", 0.0)
         found["efficiency"] = work / net if work > 0 and net > 0 else None
         why["efficiency"] = "the load took no work"
+        if scenario.supply.accumulator is not None:
+            found["efficiency"] = None
+            why["efficiency"] = "the accumulator gives work of its own"
         if scenario.load.cylinder is not None or scenario.load.drive is not None:
             why["efficiency"] = "what a machine outside takes is not counted"
     if dynamic is not None:

@@ -34,6 +34,10 @@ COMPARED = (
     "flow_a", "flow_b",
 )  # fmt: skip
 """Signals on which two integrators are compared."""
+TORN = -0.8e5
+"""Gauge pressure below which oil is told to be torn [Pa] (a choice: air comes out before)."""
+COARSE = 5e-3
+"""Sample time above which peaks of the oil's swing may be missed [s] (a choice)."""
 WARN_PLANE = 0.02
 """Error of the friction's fit over the pressures that is told."""
 
@@ -112,7 +116,12 @@ def run(
         servo=followed,
         shaken=dynamic,
         events=found.events,
-        notes=(*_notes(circuit, own, tuned), *_reach(own, signals)),
+        notes=(
+            *_notes(circuit, own, tuned),
+            *_reach(own, signals),
+            *_limits(scenario, signals),
+            *_coarse(step, signals),
+        ),
         evaluations=found.evaluations,
         seconds=perf_counter() - begin,
     )
@@ -183,6 +192,25 @@ def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]
     if own.design.ports.accumulators:
         notes.append("accumulators at the ports (ports.accumulators) are not simulated")
     return tuple(notes)
+
+
+def _limits(scenario: Scenario, signals: Mapping[str, Array]) -> Iterator[str]:
+    """A chamber near vacuum, a load cylinder beyond its stroke: the equations go on, a rig not."""
+    for name in ("pressure_a", "pressure_b"):
+        lowest = float(np.min(signals[name])) if name in signals else 0.0
+        if lowest < TORN:
+            yield f"the oil of chamber {name[-1].upper()} is torn: {lowest / 1e5:.2f} bar gauge"
+    bench = scenario.load.cylinder
+    if bench is not None and "position" in signals:
+        x = signals["position"]
+        if float(np.max(np.abs(x - x[0]))) > 0.5 * bench.stroke:
+            yield "the load cylinder leaves its stroke: it begins in its middle and has no stops"
+
+
+def _coarse(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
+    """Samples that may miss a peak."""
+    if step > COARSE and "pressure_a" in signals:
+        yield f"peaks are read at samples, {1e3 * step:.3g} ms apart: state a shorter sample_time"
 
 
 def _reach(own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:

@@ -270,13 +270,33 @@ def verify_dynamics(
     from ..simulation.verification import verify
 
     trial = as_trial(scenario)
-    actuator = trial.actuator
-    if design is not None:
-        changes = {change.path: change.value for change in trial.loaded.changes}
-        actuator = as_actuator(design)
-        actuator = actuator.changed(changes) if changes else actuator
+    actuator = trial.actuator if design is None else fitting(trial, design)
     with placed(trial):
         return verify(trial.scenario, actuator.subject(), records=trial.records)
+
+
+def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
+    """Another design in a scenario's place, with the values that the scenario sets.
+
+    Raises
+    ------
+    InputError
+        a scenario that this design cannot do, or that has no cylinder to verify
+    """
+    from ..design.scenario import design_faults
+
+    scenario, source = trial.scenario, trial.loaded.source
+    for key in ("motor", "held_ports"):
+        if getattr(scenario, key) is not None:
+            fault = trial.loaded.diagnostic(key, "stands in the place of the cylinder")
+            raise InputError(replace(fault, remedy="verify a design with a scenario without it"))
+    changes = {change.path: change.value for change in trial.loaded.changes}
+    actuator = as_actuator(design)
+    actuator = actuator.changed(changes) if changes else actuator
+    found = sorted(design_faults(scenario, actuator.design), key=source.place)
+    if found:
+        raise InputError([source.at(fault) for fault in found])
+    return actuator
 
 
 def write_simulation(

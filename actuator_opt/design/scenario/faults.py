@@ -56,6 +56,23 @@ def cushion(view: View) -> Iterator[Fault]:
     if opened is not None and closed is not None and closed >= opened:
         message = f"{_area(closed)}: not smaller than open_area ({_area(opened)})"
         yield Fault((*loc, "end_area"), message, f"write less than {_area(opened)}")
+    elif closed == 0:
+        message = f"{_area(closed)}: the piston would never reach its stop"
+        yield Fault((*loc, "end_area"), message, "write the area of the gap that is left")
+
+
+def load_cylinder(view: View) -> Iterator[Fault]:
+    """A load cylinder has an area, and its supply drives it."""
+    loc = ("load", "cylinder")
+    bore, rod = view.number(*loc, "bore"), view.number(*loc, "rod_diameter")
+    if bore is not None and rod is not None and rod >= bore:
+        message = f"{length_text(rod)}: not smaller than bore ({length_text(bore)})"
+        yield Fault((*loc, "rod_diameter"), message, f"write less than {length_text(bore)}")
+    high, low = view.number(*loc, "supply_pressure"), view.number(*loc, "return_pressure")
+    if high is not None and low is not None and low >= high:
+        text = quantities.INPUTS["pressure"].text
+        message = f"{text(low)}: not below supply_pressure ({text(high)})"
+        yield Fault((*loc, "return_pressure"), message, f"write less than {text(high)}")
 
 
 def friction(view: View) -> Iterator[Fault]:
@@ -117,6 +134,7 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     *control_faults.CHECKS,
     supply,
     cushion,
+    load_cylinder,
     friction,
     motor,
     held_ports,

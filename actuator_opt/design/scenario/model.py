@@ -194,9 +194,9 @@ class Control(Section):
     speed_gain: Annotated[float | None, Of("speed_gain", "of a speed loop")] = None
     shaft_speed_gain: Annotated[float | None, Of("shaft_speed_gain", "of a shaft's speed")] = None
     shaft_angle_gain: Annotated[float | None, Of("shaft_angle_gain", "of a shaft's angle")] = None
-    gain_factor: Annotated[float, Of("factor", "on the gain, tuned or stated")] = 1.0
-    integral_factor: Annotated[float, Of("factor", "on the integral part")] = 1.0
-    derivative_factor: Annotated[float, Of("factor", "on the derivative part")] = 1.0
+    gain_factor: Annotated[float, Of("part_factor", "on the gain, tuned or stated")] = 1.0
+    integral_factor: Annotated[float, Of("part_factor", "on the integral part")] = 1.0
+    derivative_factor: Annotated[float, Of("part_factor", "on the derivative part")] = 1.0
     integral_time: Annotated[float | None, Of("time_constant", "T_i")] = None
     derivative_time: Annotated[float | None, Of("time_constant", "T_d")] = None
     filter_time: Annotated[float, Of("time_constant", "T_f of the rate")] = 1e-3
