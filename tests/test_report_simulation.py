@@ -139,7 +139,11 @@ def test_the_controller_is_that_of_the_json():
         assert agrees(shown["gain margin"], told["gain_margin"])
         decibel = printed(shown["gain margin"].partition(", ")[2])[0]
         assert decibel == pytest.approx(20 * math.log10(told["gain_margin"]), abs=0.06)
-        assert agrees(shown["phase margin"], math.degrees(told["phase_margin"]))
+        if not run.tuned.margins.stable:
+            assert shown["linear loop"] == "unstable"
+            assert "phase margin" not in shown
+        else:
+            assert agrees(shown["phase margin"], math.degrees(told["phase_margin"]))
         for words in ("integral time", "derivative time"):
             name = words.replace(" ", "_")
             if told[name]:
