@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 from actuator_opt.models import reducing_valve, spool, tuning, valve
 from actuator_opt.models.line_ends import LineEnd, end_admittance, reducing_valve_end
@@ -92,21 +93,28 @@ def test_the_valve_only_takes_power(signal, supply, pressure_a, pressure_b):
     assert lost >= -1e-12 * supply * abs(found.supply)
 
 
-@given(st.floats(1e5, 1.39e7), st.floats(1e5, 1.39e7), st.booleans())
-def test_slopes_at_the_centre_are_those_of_the_linear_valve(pressure_a, pressure_b, extending):
-    """Flow per signal and per pressure about 0 V equal `valve_slopes`, by complex step."""
-    numbers = {"pressure_a": pressure_a, "pressure_b": pressure_b, "supply_pressure": 140e5}
+@given(st.floats(1e5, 1.39e7), st.booleans(), st.floats(0, 1e-12))
+def test_slopes_of_the_valve_that_holds_are_those_of_the_linear_valve(pressure_a, extending, past):
+    """At p_A + p_B = p_S one signal feeds both chambers; slopes there equal `valve_slopes`."""
+    supply = 140e5
+    pressure_b = supply - pressure_a
     slopes = valve.valve_slopes(
         rated_coefficient=RATED, leakage_coefficient=LEAKAGE, signal=10.0, return_pressure=0.0,
-        extending=extending, **numbers,
+        extending=extending, supply_pressure=supply, pressure_a=pressure_a, pressure_b=pressure_b,
+        piston_leakage=past,
     )  # fmt: skip
     side = 1e-9 if extending else -1e-9  # a share of a volt to the side that opens
-    moved = flows(side + 1e-30j, 140e5, pressure_a, pressure_b)
+    moved = flows(side + 1e-30j, supply, pressure_a, pressure_b)
     assert moved.into_a.imag / 1e-30 == pytest.approx(slopes.gain_a, rel=1e-6)
     assert moved.into_b.imag / 1e-30 == pytest.approx(-slopes.gain_b, rel=1e-6)
-    pressed = flows(0.0, 140e5, pressure_a + 1e-20j, pressure_b + 1e-20j)
-    assert pressed.into_a.imag / 1e-20 == pytest.approx(-slopes.conductance_a, rel=1e-9)
-    assert pressed.into_b.imag / 1e-20 == pytest.approx(-slopes.conductance_b, rel=1e-9)
+    lost = past * (pressure_a - pressure_b)
+    rest = brentq(
+        lambda u: flows(u, supply, pressure_a, pressure_b).into_a - lost, -10, 10, xtol=1e-14
+    )
+    assert flows(rest, supply, pressure_a, pressure_b).into_b == pytest.approx(-lost, abs=1e-14)
+    pressed = flows(rest, supply, pressure_a + 1e-20j, pressure_b + 1e-20j)
+    assert pressed.into_a.imag / 1e-20 == pytest.approx(-slopes.conductance_a, rel=1e-8)
+    assert pressed.into_b.imag / 1e-20 == pytest.approx(-slopes.conductance_b, rel=1e-8)
 
 
 def test_edge_opening_runs_from_leakage_to_rated():

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 from actuator_opt.models import valve
 
@@ -96,7 +97,7 @@ def test_edges_follow_the_square_root_beyond_a_bar():
 
 @given(st.floats(1e5, 3.4e7), st.floats(1e5, 3.4e7), st.booleans())
 def test_slopes_are_the_derivatives_of_the_whole_valve(pressure_a, pressure_b, extending):
-    """Gains and conductances equal differences of the four-edge valve about its centre."""
+    """Gains equal differences about the centre, conductances where a chamber gains no oil."""
     supply, h, sign = 35e6, 1e3, 1 if extending else -1
     slopes = valve.valve_slopes(
         rated_coefficient=RATED, leakage_coefficient=LEAKAGE, signal=10.0, supply_pressure=supply,
@@ -107,12 +108,36 @@ def test_slopes_are_the_derivatives_of_the_whole_valve(pressure_a, pressure_b, e
     per_volt = [(b - a) / (sign * 0.01) / 60000 for a, b in zip(rest, moved, strict=True)]
     assert slopes.gain_a == pytest.approx(per_volt[0], rel=1e-6)
     assert -slopes.gain_b == pytest.approx(per_volt[1], rel=1e-6)
-    lost = [
-        (whole_valve(0, supply, pressure_a - h * a, pressure_b - h * b)[i]
-         - whole_valve(0, supply, pressure_a + h * a, pressure_b + h * b)[i]) / (2 * h) / 60000
-        for i, (a, b) in enumerate(((1, 0), (0, 1)))
-    ]  # fmt: skip
-    assert (slopes.conductance_a, slopes.conductance_b) == pytest.approx(lost, rel=1e-4)
+    for i, (a, b) in enumerate(((1, 0), (0, 1))):
+        fed = brentq(lambda u, i=i: whole_valve(u, supply, pressure_a, pressure_b)[i], -10, 10)
+        less, more = (
+            whole_valve(fed, supply, pressure_a + way * h * a, pressure_b + way * h * b)[i]
+            for way in (-1, 1)
+        )
+        lost = (less - more) / (2 * h) / 60000
+        assert (slopes.conductance_a, slopes.conductance_b)[i] == pytest.approx(lost, rel=1e-4)
+
+
+@given(
+    st.floats(-1e6, 3.6e7), st.floats(1.0, 20.0), st.floats(1.0, 20.0), st.floats(-1e-5, 1e-5)
+)
+def test_feeding_edges_close_the_balance(pressure, more_supply, more_tank, lost):
+    """What leaks is fed: neither edge below its leakage nor above its capacity, one at it."""
+    supply, leaks = 35e6, (more_supply * LEAKAGE, more_tank * LEAKAGE)
+    into, out = supply - pressure, pressure
+    edges = valve.feeding_edges(
+        rated_coefficient=RATED, leakage_supply=leaks[0], leakage_tank=leaks[1], into=into, out=out,
+        lost=lost,
+    )  # fmt: skip
+    assert leaks[0] <= edges.supply * (1 + 1e-15) and leaks[1] <= edges.tank * (1 + 1e-15)
+    assert max(edges) <= RATED
+    if max(edges) < RATED:
+        assert min(edges.supply / leaks[0], edges.tank / leaks[1]) == pytest.approx(1, rel=1e-14)
+        fed, drained = (
+            valve.edge_flow(coefficient=k, pressure_drop=p)
+            for k, p in ((edges.supply, into), (edges.tank, out))
+        )
+        assert fed == pytest.approx(drained + lost, rel=1e-11, abs=1e-18)
 
 
 def test_an_edge_without_pressure_gives_no_flow():

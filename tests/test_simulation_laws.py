@@ -51,9 +51,7 @@ PUMP = {
     "constant_torque": 0.1, "shaft_speed": 150.0,
 }  # fmt: skip
 RELIEF = {"pressure": 135 * BAR, "rated_flow": 60 * LITRE}
-SEALS = SealData(
-    Plane(100.0, 1e-5, 2e-5, 1e-5), Plane(300.0, 2e-5, 2e-5, 1e-5), 0.01, 50.0, 1e-4
-)
+SEALS = SealData(Plane(100.0, 1e-5, 2e-5, 1e-5), Plane(300.0, 2e-5, 2e-5, 1e-5), 0.01, 50.0, 1e-4)
 WALLS = Give(2e-14, 3e-13, 1e-14, 2e-13, 1e-15, -2e-14)
 CRANK = Linkage(base_radius=0.46, crank_radius=0.12)
 

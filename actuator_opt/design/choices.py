@@ -150,7 +150,7 @@ End: TypeAlias = Annotated[
     Literal["closed", "valve", "constant_pressure", "reducing_valve"],
     Choice(
         "what ends both lines while the load shakes the actuator; closed: blocked; "
-        "valve: the valve of this file, its spool centred; "
+        "valve: the valve of this file, its spool where it holds the load; "
         "constant_pressure: a port that holds its pressure; "
         "reducing_valve: a pressure reducing valve, as ports.reducing_valve states it"
     ),

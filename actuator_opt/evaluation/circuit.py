@@ -89,8 +89,8 @@ class Ways(NamedTuple):
         return where(extending, self.extending, self.retracting)
 
 
-class CentredValve(NamedTuple):
-    """The valve linearised at its centre; both empty without one."""
+class HoldingValve(NamedTuple):
+    """The valve linearised where it holds the load; both empty without one."""
 
     gains: dict[Chamber, Ways]
     """Flow gains K_q into the lines, A +, B - [m^3/s/V]."""
@@ -129,10 +129,10 @@ def valve_edges(v: Values, design: Design, state: State) -> Edges:
     )
 
 
-def centred_valve(v: Values, design: Design, state: State) -> CentredValve:
-    """Valve at its centre with the held pressures."""
+def holding_valve(v: Values, design: Design, state: State, leakage: Array) -> HoldingValve:
+    """Valve at the held pressures, its spool where it feeds its own leakage and the piston's."""
     if design.valve is None:
-        return CentredValve({}, {})
+        return HoldingValve({}, {})
     edges = valve_edges(v, design, state)
     out, back = (
         valve.valve_slopes(
@@ -145,11 +145,12 @@ def centred_valve(v: Values, design: Design, state: State) -> CentredValve:
             pressure_a=state.holding_a,
             pressure_b=state.holding_b,
             extending=extending,
+            piston_leakage=leakage,
         )
         for extending in (True, False)
     )
     tight = design.valve.leakage_flow == 0 and "valve.leakage_flow" not in v.varied
-    return CentredValve(
+    return HoldingValve(
         {"a": Ways(out.gain_a, back.gain_a), "b": Ways(-out.gain_b, -back.gain_b)},
         {
             "a": line_ends.CLOSED if tight else LineEnd((out.conductance_a,)),
@@ -189,7 +190,7 @@ def throttle_conductances(
 def line_end(
     v: Values,
     design: Design,
-    centred: dict[Chamber, LineEnd],
+    holding: dict[Chamber, LineEnd],
     accumulators: tuple[LineEnd, ...],
     chamber: Chamber,
 ) -> LineEnd:
@@ -197,7 +198,7 @@ def line_end(
     ends = list(accumulators)
     kind = design.ports.end
     if kind == "valve":
-        ends.append(centred[chamber])
+        ends.append(holding[chamber])
     elif kind == "constant_pressure":
         return line_ends.CONSTANT_PRESSURE
     elif kind == "reducing_valve":

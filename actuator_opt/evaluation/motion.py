@@ -117,7 +117,7 @@ def derive(
     leakage: Array,
 ) -> Motion:
     """The linear model's numbers in every load case."""
-    centred = circuit.centred_valve(v, design, state)
+    holding = circuit.holding_valve(v, design, state, leakage)
     accumulators = {
         chamber: circuit.accumulator_ends(v, design, state, chamber) for chamber in CHAMBERS
     }
@@ -130,14 +130,14 @@ def derive(
         throttles=circuit.throttle_conductances(v, design, state, springs.geometry),
         push=state.push,
         held={
-            chamber: circuit.line_end(v, design, centred.ends, accumulators[chamber], chamber)
+            chamber: circuit.line_end(v, design, holding.ends, accumulators[chamber], chamber)
             for chamber in CHAMBERS
         },
         driven={
             chamber: line_ends.parallel_ends(end, *accumulators[chamber])
-            for chamber, end in centred.ends.items()
+            for chamber, end in holding.ends.items()
         },
-        gains=centred.gains,
+        gains=holding.gains,
         spool=(v["valve.natural_frequency"], v["valve.damping_ratio"]) if design.valve else None,
     )
 

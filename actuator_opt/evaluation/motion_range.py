@@ -84,7 +84,7 @@ def _loop(v: Values, motion: Motion, out: Computed) -> Iterable[tuple[str, str]]
         yield (
             "ultimate_gain",
             "no gain is stable: the load grows by itself, or leakage across the piston "
-            "outweighs the centred valve's; give the valve leakage or the load damping",
+            "outweighs the valve's; give the valve leakage or the load damping",
         )
 
 
@@ -95,7 +95,7 @@ def _ports(v: Values, design: Design, motion: Motion, state: State) -> Iterable[
             yield (
                 metric,
                 "ports.end is closed: damping ratio and dynamic stiffness leave out the leakage of "
-                "the centred valve; write end: valve to count it",
+                "the valve that holds; write end: valve to count it",
             )
     slow = np.ravel(np.real(state.speed)) == 0
     shaken = [case.frequency is not None for case in design.load_cases]

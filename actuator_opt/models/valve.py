@@ -104,15 +104,76 @@ def edge_conductance(*, coefficient: Array, pressure_drop: Array) -> Array:
     return coefficient * (0.5 * square + small) / (whole * sqrt(sqrt(whole)))
 
 
+class FeedingEdges(NamedTuple):
+    """Coefficients of the two edges of a chamber while the valve holds it [m^3/s/sqrt(Pa)]."""
+
+    supply: Array
+    tank: Array
+
+
+def feeding_edges(
+    *,
+    rated_coefficient: Array,
+    leakage_supply: Array,
+    leakage_tank: Array,
+    into: Array,
+    out: Array,
+    lost: Array = 0.0,
+) -> FeedingEdges:
+    """Edges of a chamber at rest: one leaks, the other opens until oil in and oil out balance.
+
+    Q_S = max(K0s sqrt(into), K0t sqrt(out) + q), Q_T = Q_S - q; K = Q/sqrt(dp), K10 at most.
+
+    Parameters
+    ----------
+    rated_coefficient : K10 [m^3/s/sqrt(Pa)]
+    leakage_supply, leakage_tank : K0 of the edges to both lines [m^3/s/sqrt(Pa)]
+    into, out : pressure drops p_S - p and p - p_T [Pa]
+    lost : flow q that leaves the chamber past the piston [m^3/s]
+
+    Returns
+    -------
+    K of both edges [m^3/s/sqrt(Pa)]; K10 where an edge has no pressure drop to feed with
+
+    Notes
+    -----
+    Valid: a load held still by the valve.
+
+    One signal balances both chambers of matched edges at p_A + p_B = p_S + p_T, whatever leaks
+    past the piston: the pressures of `stiffness.holding_pressures` stay exact.
+
+    References
+    ----------
+    [derived] continuity of a chamber at rest; [MECE5005] model for a control edge
+
+    Examples
+    --------
+    >>> found = feeding_edges(rated_coefficient=3.6e-7, leakage_supply=1e-9, leakage_tank=1e-9,
+    ...                       into=1e6, out=9e6)
+    >>> print(f"{found.supply:.3e} {found.tank:.3e}")
+    3.000e-09 1.000e-09
+    """
+    unit_in = edge_flow(coefficient=1.0, pressure_drop=into)
+    unit_out = edge_flow(coefficient=1.0, pressure_drop=out)
+    supplied = maximum(leakage_supply * unit_in, leakage_tank * unit_out + lost)
+
+    def opened(flow: Array, unit: Array) -> Array:
+        feeds = real(unit) > 0
+        wanted = flow / where(feeds, unit, 1.0)
+        return where(feeds, minimum(rated_coefficient, wanted), rated_coefficient)
+
+    return FeedingEdges(opened(supplied, unit_in), opened(supplied - lost, unit_out))
+
+
 class ValveSlopes(NamedTuple):
-    """Valve linearised at the centre: into chamber A dq_A = G_A du - C_A dp_A, out of B G_B du."""
+    """Valve that holds a load: into chamber A dq_A = G_A du - C_A dp_A, out of B G_B du."""
 
     gain_a: Array
     """Flow into chamber A per signal [m^3/s/V]."""
     gain_b: Array
     """Flow out of chamber B per signal [m^3/s/V]."""
     conductance_a: Array
-    """Flow out of chamber A through the centred edges per its pressure [m^3/s/Pa]."""
+    """Flow out of chamber A through both its edges per its pressure [m^3/s/Pa]."""
     conductance_b: Array
 
 
@@ -127,12 +188,14 @@ def valve_slopes(
     pressure_b: Array,
     extending: Array,
     leakage_tank: Array | None = None,
+    piston_leakage: Array = 0.0,
 ) -> ValveSlopes:
-    """Small-signal model of the centred valve; flow gains differ by direction.
+    """Small-signal model of a valve that holds a load; flow gains differ by direction.
 
     K(U) = K0 + (K10 - K0)|U|/U_max on opening edges, so G = ((K10 - K0)/U_max) sqrt(dp) of the
     edge that opens: P-A and B-T extending, A-T and P-B retracting. Each chamber's conductance is
-    that of both its edges at K0.
+    that of both its edges, the spool moved until they feed what leaks (`feeding_edges`): on alike
+    edges without load that is the centre, under load it is more.
 
     Parameters
     ----------
@@ -141,6 +204,7 @@ def valve_slopes(
     supply_pressure, return_pressure, pressure_a, pressure_b : gauge [Pa]
     extending : True for U > 0 (P to A, B to T) [-]
     leakage_tank : K0 of A-T and B-T where it is another [m^3/s/sqrt(Pa)]
+    piston_leakage : conductance from A to B [m^3/s/Pa]
 
     Returns
     -------
@@ -148,7 +212,7 @@ def valve_slopes(
 
     Notes
     -----
-    Valid: spool near its centre, alike edges, no overlap; laminar leakage damps twice as much.
+    Valid: spool near its centre, no overlap; laminar leakage damps twice as much.
 
     References
     ----------
@@ -173,14 +237,26 @@ def valve_slopes(
     def gain(slope: Array, drop: Array) -> Array:
         return edge_flow(coefficient=slope, pressure_drop=where(real(drop) > 0, drop, 0 * drop))
 
-    def leaks(coefficient: Array, drop: Array) -> Array:
-        return edge_conductance(coefficient=coefficient, pressure_drop=drop)
+    past = piston_leakage * (pressure_a - pressure_b)
+
+    def conductance(into: Array, out: Array, lost: Array) -> Array:
+        edges = feeding_edges(
+            rated_coefficient=rated_coefficient,
+            leakage_supply=leakage_coefficient,
+            leakage_tank=tank,
+            into=into,
+            out=out,
+            lost=lost,
+        )
+        return edge_conductance(coefficient=edges.supply, pressure_drop=into) + edge_conductance(
+            coefficient=edges.tank, pressure_drop=out
+        )
 
     return ValveSlopes(
         gain(where(extending, slope_supply, slope_tank), drop_a),
         gain(where(extending, slope_tank, slope_supply), drop_b),
-        leaks(leakage_coefficient, into_a) + leaks(tank, from_a),
-        leaks(leakage_coefficient, into_b) + leaks(tank, from_b),
+        conductance(into_a, from_a, past),
+        conductance(into_b, from_b, -past),
     )
 
 

@@ -372,7 +372,7 @@ def remarks(study: Data) -> Data:
         ),
         "changes": (
             f"Each re-optimised for bandwidth at {fixed(1e3 * base['mass'], 1)} g."
-            f" {every['changes']} Valve: centred, at supply pressure; bleed: at full pressure"
+            f" {every['changes']} Valve: holding, at supply pressure; bleed: at full pressure"
             f" difference; sag: the loop's standing error under the force of the {slow} by the"
             " bleed alone. A quicker spool makes it worse: its lag no longer keeps the loop off"
             " the resonance. All of it rests on the mass of the load: the optimum as required, its"

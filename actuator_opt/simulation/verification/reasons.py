@@ -62,11 +62,11 @@ def _seals(facts: Facts) -> str:
 
 
 def point(facts: Facts | None, held: tuple[float, float]) -> str:
-    """Where the loop works, beside the pressures that the linear tier takes, its valve centred."""
+    """Where the loop works, beside the pressures that the linear tier takes."""
     if facts is None:
         return "no record"
     (a, b), (taken_a, taken_b) = ([1e-5 * one for one in pair] for pair in (facts.pressures, held))
     words = f"chambers at {a:.0f} and {b:.0f} bar, linear {taken_a:.0f} and {taken_b:.0f}"
     if facts.spool is not None:
-        words += f"; spool about {0.5 * sum(facts.spool):.2g} V, linear 0"
+        words += f"; spool about {0.5 * sum(facts.spool):.2g} V"
     return words
