@@ -118,9 +118,7 @@ def test_slopes_are_the_derivatives_of_the_whole_valve(pressure_a, pressure_b, e
         assert (slopes.conductance_a, slopes.conductance_b)[i] == pytest.approx(lost, rel=1e-4)
 
 
-@given(
-    st.floats(-1e6, 3.6e7), st.floats(1.0, 20.0), st.floats(1.0, 20.0), st.floats(-1e-5, 1e-5)
-)
+@given(st.floats(-1e6, 3.6e7), st.floats(1.0, 20.0), st.floats(1.0, 20.0), st.floats(-1e-5, 1e-5))
 def test_feeding_edges_close_the_balance(pressure, more_supply, more_tank, lost):
     """What leaks is fed: neither edge below its leakage nor above its capacity, one at it."""
     supply, leaks = 35e6, (more_supply * LEAKAGE, more_tank * LEAKAGE)
@@ -129,7 +127,8 @@ def test_feeding_edges_close_the_balance(pressure, more_supply, more_tank, lost)
         rated_coefficient=RATED, leakage_supply=leaks[0], leakage_tank=leaks[1], into=into, out=out,
         lost=lost,
     )  # fmt: skip
-    assert leaks[0] <= edges.supply * (1 + 1e-15) and leaks[1] <= edges.tank * (1 + 1e-15)
+    assert leaks[0] <= edges.supply * (1 + 1e-15)
+    assert leaks[1] <= edges.tank * (1 + 1e-15)
     assert max(edges) <= RATED
     if max(edges) < RATED:
         assert min(edges.supply / leaks[0], edges.tank / leaks[1]) == pytest.approx(1, rel=1e-14)
