@@ -46,6 +46,8 @@ control:
 SHAKEN = ("    side_load: 30 N\n", "    side_load: 30 N\n    frequency: 20 Hz\n")
 CLEARANCE = "  clearance: 30 um\n"
 LEAKY = (CLEARANCE, f"{CLEARANCE}  leakage_conductance: 1 ml/min/bar\n")
+PISTON_LEAKAGE = 1e-11 / 60
+"""1 ml/min/bar [m^3/s/Pa]."""
 THROTTLE = """  throttle:
     area: 8 mm2
     check_area: 20 mm2
@@ -156,8 +158,9 @@ def circuit_of(subject, done, case, position, direction=None):
         beyond = 0.0 if done.motion.throttles else 0.5  # the throttle sits at the port by default
         far = beyond * (bore * length / moduli[name] + wall)
         up, down = supply - pressures[name], pressures[name] - drain
-        valve = leak / (2 * math.sqrt(up)) + leak / (2 * math.sqrt(down))
-        ends = [("conductance", valve)]
+        past = PISTON_LEAKAGE * (1 if name == "a" else -1) * (pressures["a"] - pressures["b"])
+        fed = max(leak * math.sqrt(up), leak * math.sqrt(down) + past)  # one edge leaks, one feeds
+        ends = [("conductance", fed / (2 * up) + (fed - past) / (2 * down))]
         if direction is None:
             kind = subject.design.ports.end
             ends = {
@@ -187,7 +190,7 @@ def circuit_of(subject, done, case, position, direction=None):
         "mass": number(done.motion.mass),
         "damping": number(done.motion.damping),
         "coupling": number(whole.ab),
-        "leakage": 1e-11 / 60,  # 1 ml/min/bar
+        "leakage": PISTON_LEAKAGE,
         "seal_stiffness": number(budget.seals) if sticks else 0.0,
         "flexibility": sum(1 / number(part) for part in budget.chain.values()),
     }
