@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import signal
 import sys
 from dataclasses import replace
 
@@ -14,7 +15,7 @@ from hypothesis import strategies as st
 
 from actuator_opt.errors import InputError, Unsolvable
 from actuator_opt.models.tuning import ControllerGains
-from actuator_opt.simulation.fast import translate
+from actuator_opt.simulation.fast import interruptible, translate
 from actuator_opt.simulation.integrate import integrate
 from actuator_opt.simulation.run import COMPARED
 from actuator_opt.simulation.system import System
@@ -190,3 +191,23 @@ def test_without_casadi_one_line_says_so(monkeypatch):
     system.rate(system.state("x", 1.0, tolerance=1e-9), 1.0)
     with pytest.raises(InputError, match=r'needs CasADi; pip install "actuator-opt\[fast\]"'):
         cvodes(system)
+
+
+def test_ctrl_c_in_the_library_stays_one():
+    """CasADi tells of Ctrl-C as a failure; it is an interruption, any other failure is not."""
+    before = signal.getsignal(signal.SIGINT)
+
+    def fail(*, pressed):
+        with interruptible():
+            try:
+                if pressed:
+                    signal.raise_signal(signal.SIGINT)
+            except KeyboardInterrupt:
+                pass
+            raise RuntimeError("CV_RHSFUNC_FAIL")
+
+    with pytest.raises(KeyboardInterrupt):
+        fail(pressed=True)
+    with pytest.raises(RuntimeError, match="CV_RHSFUNC_FAIL"):
+        fail(pressed=False)
+    assert signal.getsignal(signal.SIGINT) is before

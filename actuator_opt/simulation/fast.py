@@ -7,7 +7,11 @@ or says why it cannot. A servo takes about half of LSODA's time, at the same err
 
 from __future__ import annotations
 
+import signal
+import threading
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -120,7 +124,8 @@ def cvodes(compiled: Compiled, relative: float, counted: list[int], otherwise: A
         found[0] = y
         for begin, end in _even(times):
             try:
-                states = run(times[begin], times[end], end - begin, found[begin] / unit, m)
+                with interruptible():
+                    states = run(times[begin], times[end], end - begin, found[begin] / unit, m)
             except RuntimeError:
                 return otherwise(times, y, m, most)
             counted[0] += run.evaluations()
@@ -128,6 +133,31 @@ def cvodes(compiled: Compiled, relative: float, counted: list[int], otherwise: A
         return found
 
     return advance
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Ctrl-C stays one: CasADi turns it into a failure of the integration."""
+    pressed = False
+    before = signal.getsignal(signal.SIGINT)
+
+    def press(number: int, frame: FrameType | None) -> None:
+        nonlocal pressed
+        pressed = True
+        raise KeyboardInterrupt
+
+    if threading.current_thread() is not threading.main_thread() or not callable(before):
+        yield
+        return
+    signal.signal(signal.SIGINT, press)
+    try:
+        yield
+    except RuntimeError:
+        if pressed:
+            raise KeyboardInterrupt from None
+        raise
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 class _Integrator:
