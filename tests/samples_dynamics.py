@@ -75,11 +75,11 @@ SAMPLES: dict = {
     "valve.edge_conductance": [
         {"coefficient": 3e-7, "pressure_drop": p} for p in (35e5, -2e4, 50.0)
     ],
-    "valve.feeding_edges": [
+    "holding_valve.feeding_edges": [
         {"rated_coefficient": 3.5e-7, "leakage_supply": 3e-9, "leakage_tank": 4e-9, "into": into,
          "out": 35e6 - into} for into in (8e6, 3e7)
     ],
-    "valve.valve_slopes": [{**CENTRE, "extending": extending} for extending in (True, False)],
+    "holding_valve.valve_slopes": [{**CENTRE, "extending": one} for one in (True, False)],
     "line_ends.parallel_ends": {"*": (FAR_END, LineEnd((1e-12,)), LineEnd((0.5, 2.0), (1.0, 3.0)))},
     "line_ends.accumulator_end": {"capacitance": 4e-12, "inertance": 2e7, "resistance": 3e9},
     "line_ends.reducing_valve_end": {

@@ -18,7 +18,7 @@ from samples_dynamics import DRIVEN, bare, loop_of, model_of
 from test_models_hydraulics_dynamics import CHAMBERS
 from test_models_valve import LEAKAGE, RATED
 
-from actuator_opt.models import dynamics, linear, loop, valve
+from actuator_opt.models import dynamics, holding_valve, linear, loop
 from actuator_opt.models.line_ends import LineEnd
 from actuator_opt.models.linear import Side
 
@@ -62,7 +62,7 @@ def test_ultimate_gain_is_where_the_closed_loop_begins_to_grow(seed, spool):
 
 def check_loop(frequency):
     """32/18-160 of PHYSICS at mid-stroke: 140 bar, both chambers at 70 bar, U > 0."""
-    slopes = valve.valve_slopes(
+    slopes = holding_valve.valve_slopes(
         rated_coefficient=RATED, leakage_coefficient=LEAKAGE, signal=10.0, supply_pressure=14e6,
         return_pressure=0.0, pressure_a=7e6, pressure_b=7e6, extending=True,
     )  # fmt: skip

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from actuator_opt.models import reducing_valve, spool, tuning, valve
+from actuator_opt.models import holding_valve, reducing_valve, spool, tuning, valve
 from actuator_opt.models.line_ends import LineEnd, end_admittance, reducing_valve_end
 from actuator_opt.models.linear import Side, linear_actuator
 from actuator_opt.models.loop import open_loop, ultimate_gain
@@ -98,7 +98,7 @@ def test_slopes_of_the_valve_that_holds_are_those_of_the_linear_valve(pressure_a
     """At p_A + p_B = p_S one signal feeds both chambers; slopes there equal `valve_slopes`."""
     supply = 140e5
     pressure_b = supply - pressure_a
-    slopes = valve.valve_slopes(
+    slopes = holding_valve.valve_slopes(
         rated_coefficient=RATED, leakage_coefficient=LEAKAGE, signal=10.0, return_pressure=0.0,
         extending=extending, supply_pressure=supply, pressure_a=pressure_a, pressure_b=pressure_b,
         piston_leakage=past,
@@ -240,7 +240,7 @@ def test_an_unknown_law_is_one_clear_line():
 
 def servo(spool_frequency):
     """Polynomials, ultimate point and velocity gain of the check cylinder's position loop."""
-    slopes = valve.valve_slopes(
+    slopes = holding_valve.valve_slopes(
         rated_coefficient=RATED, leakage_coefficient=LEAKAGE, signal=10.0, supply_pressure=140e5,
         return_pressure=0.0, pressure_a=70e5, pressure_b=70e5, extending=True,
     )  # fmt: skip

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from actuator_opt.models import valve
+from actuator_opt.models import holding_valve, valve
 
 # [MECE5005]: 40 l/min at 35 bar and 10 V, 0.45 l/min at 50 bar and 0 V
 RATED = valve.edge_coefficient(flow=40 / 60000, pressure_drop=35e5)
@@ -99,7 +99,7 @@ def test_edges_follow_the_square_root_beyond_a_bar():
 def test_slopes_are_the_derivatives_of_the_whole_valve(pressure_a, pressure_b, extending):
     """Gains equal differences about the centre, conductances where a chamber gains no oil."""
     supply, h, sign = 35e6, 1e3, 1 if extending else -1
-    slopes = valve.valve_slopes(
+    slopes = holding_valve.valve_slopes(
         rated_coefficient=RATED, leakage_coefficient=LEAKAGE, signal=10.0, supply_pressure=supply,
         return_pressure=0.0, pressure_a=pressure_a, pressure_b=pressure_b, extending=extending,
     )  # fmt: skip
@@ -123,7 +123,7 @@ def test_feeding_edges_close_the_balance(pressure, more_supply, more_tank, lost)
     """What leaks is fed: neither edge below its leakage nor above its capacity, one at it."""
     supply, leaks = 35e6, (more_supply * LEAKAGE, more_tank * LEAKAGE)
     into, out = supply - pressure, pressure
-    edges = valve.feeding_edges(
+    edges = holding_valve.feeding_edges(
         rated_coefficient=RATED, leakage_supply=leaks[0], leakage_tank=leaks[1], into=into, out=out,
         lost=lost,
     )  # fmt: skip
@@ -141,7 +141,7 @@ def test_feeding_edges_close_the_balance(pressure, more_supply, more_tank, lost)
 
 def test_an_edge_without_pressure_gives_no_flow():
     """Gains vanish where the opening edge sees no pressure drop: the valve moves nothing."""
-    slopes = valve.valve_slopes(
+    slopes = holding_valve.valve_slopes(
         rated_coefficient=RATED, leakage_coefficient=LEAKAGE, signal=10.0, supply_pressure=1e7,
         return_pressure=5e5, pressure_a=np.array([1.1e7, 1e7]), pressure_b=4e5, extending=True,
     )  # fmt: skip

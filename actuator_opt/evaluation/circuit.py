@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 from ..design.circuit import Line
 from ..design.model import Design
-from ..models import accumulator, elements, line_ends, lines, one_way_valve, valve
+from ..models import accumulator, elements, holding_valve, line_ends, lines, one_way_valve, valve
 from ..models.line_ends import LineEnd
 from ..numeric import Array, where
 from .geometry import Geometry
@@ -89,7 +89,7 @@ class Ways(NamedTuple):
         return where(extending, self.extending, self.retracting)
 
 
-class HoldingValve(NamedTuple):
+class LinearValve(NamedTuple):
     """The valve linearised where it holds the load; both empty without one."""
 
     gains: dict[Chamber, Ways]
@@ -129,13 +129,13 @@ def valve_edges(v: Values, design: Design, state: State) -> Edges:
     )
 
 
-def holding_valve(v: Values, design: Design, state: State, leakage: Array) -> HoldingValve:
+def linear_valve(v: Values, design: Design, state: State, leakage: Array) -> LinearValve:
     """Valve at the held pressures, its spool where it feeds its own leakage and the piston's."""
     if design.valve is None:
-        return HoldingValve({}, {})
+        return LinearValve({}, {})
     edges = valve_edges(v, design, state)
     out, back = (
-        valve.valve_slopes(
+        holding_valve.valve_slopes(
             rated_coefficient=edges.rated,
             leakage_coefficient=edges.supply,
             leakage_tank=edges.tank,
@@ -150,7 +150,7 @@ def holding_valve(v: Values, design: Design, state: State, leakage: Array) -> Ho
         for extending in (True, False)
     )
     tight = design.valve.leakage_flow == 0 and "valve.leakage_flow" not in v.varied
-    return HoldingValve(
+    return LinearValve(
         {"a": Ways(out.gain_a, back.gain_a), "b": Ways(-out.gain_b, -back.gain_b)},
         {
             "a": line_ends.CLOSED if tight else LineEnd((out.conductance_a,)),

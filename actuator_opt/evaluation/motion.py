@@ -117,7 +117,7 @@ def derive(
     leakage: Array,
 ) -> Motion:
     """The linear model's numbers in every load case."""
-    holding = circuit.holding_valve(v, design, state, leakage)
+    holding = circuit.linear_valve(v, design, state, leakage)
     accumulators = {
         chamber: circuit.accumulator_ends(v, design, state, chamber) for chamber in CHAMBERS
     }

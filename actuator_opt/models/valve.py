@@ -1,4 +1,4 @@
-"""Proportional valve of four edges: flow of an edge, of the whole valve, slopes; see `spool`.
+"""Proportional valve of four edges: flow of an edge and of the whole valve; see `spool`.
 
 A signal U > 0 opens P to A and B to T, U < 0 opens A to T and P to B.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..numeric import Array, maximum, minimum, positive, real, sqrt, where
+from ..numeric import Array, maximum, minimum, positive, sqrt
 
 SMOOTHING = 1e4
 """Pressure difference below which an edge is laminar (Pa): a choice, 0.1 bar."""
@@ -102,162 +102,6 @@ def edge_conductance(*, coefficient: Array, pressure_drop: Array) -> Array:
     small = SMOOTHING * SMOOTHING
     whole = square + small
     return coefficient * (0.5 * square + small) / (whole * sqrt(sqrt(whole)))
-
-
-class FeedingEdges(NamedTuple):
-    """Coefficients of the two edges of a chamber while the valve holds it [m^3/s/sqrt(Pa)]."""
-
-    supply: Array
-    tank: Array
-
-
-def feeding_edges(
-    *,
-    rated_coefficient: Array,
-    leakage_supply: Array,
-    leakage_tank: Array,
-    into: Array,
-    out: Array,
-    lost: Array = 0.0,
-) -> FeedingEdges:
-    """Edges of a chamber at rest: one leaks, the other opens until oil in and oil out balance.
-
-    Q_S = max(K0s sqrt(into), K0t sqrt(out) + q), Q_T = Q_S - q; K = Q/sqrt(dp), K10 at most.
-
-    Parameters
-    ----------
-    rated_coefficient : K10 [m^3/s/sqrt(Pa)]
-    leakage_supply, leakage_tank : K0 of the edges to both lines [m^3/s/sqrt(Pa)]
-    into, out : pressure drops p_S - p and p - p_T [Pa]
-    lost : flow q that leaves the chamber past the piston [m^3/s]
-
-    Returns
-    -------
-    K of both edges [m^3/s/sqrt(Pa)]; K10 where an edge has no pressure drop to feed with
-
-    Notes
-    -----
-    Valid: a load held still by the valve.
-
-    One signal balances both chambers of matched edges at p_A + p_B = p_S + p_T, whatever leaks
-    past the piston: the pressures of `stiffness.holding_pressures` stay exact.
-
-    References
-    ----------
-    [derived] continuity of a chamber at rest; [MECE5005] model for a control edge
-
-    Examples
-    --------
-    >>> found = feeding_edges(rated_coefficient=3.6e-7, leakage_supply=1e-9, leakage_tank=1e-9,
-    ...                       into=1e6, out=9e6)
-    >>> print(f"{found.supply:.3e} {found.tank:.3e}")
-    3.000e-09 1.000e-09
-    """
-    unit_in = edge_flow(coefficient=1.0, pressure_drop=into)
-    unit_out = edge_flow(coefficient=1.0, pressure_drop=out)
-    supplied = maximum(leakage_supply * unit_in, leakage_tank * unit_out + lost)
-
-    def opened(flow: Array, unit: Array) -> Array:
-        feeds = real(unit) > 0
-        wanted = flow / where(feeds, unit, 1.0)
-        return where(feeds, minimum(rated_coefficient, wanted), rated_coefficient)
-
-    return FeedingEdges(opened(supplied, unit_in), opened(supplied - lost, unit_out))
-
-
-class ValveSlopes(NamedTuple):
-    """Valve that holds a load: into chamber A dq_A = G_A du - C_A dp_A, out of B G_B du."""
-
-    gain_a: Array
-    """Flow into chamber A per signal [m^3/s/V]."""
-    gain_b: Array
-    """Flow out of chamber B per signal [m^3/s/V]."""
-    conductance_a: Array
-    """Flow out of chamber A through both its edges per its pressure [m^3/s/Pa]."""
-    conductance_b: Array
-
-
-def valve_slopes(
-    *,
-    rated_coefficient: Array,
-    leakage_coefficient: Array,
-    signal: Array,
-    supply_pressure: Array,
-    return_pressure: Array,
-    pressure_a: Array,
-    pressure_b: Array,
-    extending: Array,
-    leakage_tank: Array | None = None,
-    piston_leakage: Array = 0.0,
-) -> ValveSlopes:
-    """Small-signal model of a valve that holds a load; flow gains differ by direction.
-
-    K(U) = K0 + (K10 - K0)|U|/U_max on opening edges, so G = ((K10 - K0)/U_max) sqrt(dp) of the
-    edge that opens: P-A and B-T extending, A-T and P-B retracting. Each chamber's conductance is
-    that of both its edges, the spool moved until they feed what leaks (`feeding_edges`): on alike
-    edges without load that is the centre, under load it is more.
-
-    Parameters
-    ----------
-    rated_coefficient, leakage_coefficient : K10 and K0 [m^3/s/sqrt(Pa)]
-    signal : U_max [V]
-    supply_pressure, return_pressure, pressure_a, pressure_b : gauge [Pa]
-    extending : True for U > 0 (P to A, B to T) [-]
-    leakage_tank : K0 of A-T and B-T where it is another [m^3/s/sqrt(Pa)]
-    piston_leakage : conductance from A to B [m^3/s/Pa]
-
-    Returns
-    -------
-    flow gains into A and out of B [m^3/s/V], conductances of A and B [m^3/s/Pa]
-
-    Notes
-    -----
-    Valid: spool near its centre, no overlap; laminar leakage damps twice as much.
-
-    References
-    ----------
-    [MECE5005] flow rates in a proportional control valve; [derived] linearised
-
-    Examples
-    --------
-    >>> slopes = valve_slopes(rated_coefficient=3.5635e-7, leakage_coefficient=1.0607e-9,
-    ...     signal=10.0, supply_pressure=14e6, return_pressure=0.0, pressure_a=7e6,
-    ...     pressure_b=7e6, extending=True)
-    >>> print(f"{slopes.gain_a * 60000:.3f} l/min/V, {slopes.conductance_a:.3e}")
-    5.640 l/min/V, 4.009e-13
-    """
-    tank = leakage_coefficient if leakage_tank is None else leakage_tank
-    slope_supply = (rated_coefficient - leakage_coefficient) / signal
-    slope_tank = (rated_coefficient - tank) / signal
-    into_a, from_a = supply_pressure - pressure_a, pressure_a - return_pressure
-    into_b, from_b = supply_pressure - pressure_b, pressure_b - return_pressure
-    drop_a = where(extending, into_a, from_a)
-    drop_b = where(extending, from_b, into_b)
-
-    def gain(slope: Array, drop: Array) -> Array:
-        return edge_flow(coefficient=slope, pressure_drop=where(real(drop) > 0, drop, 0 * drop))
-
-    past = piston_leakage * (pressure_a - pressure_b)
-
-    def conductance(into: Array, out: Array, lost: Array) -> Array:
-        edges = feeding_edges(
-            rated_coefficient=rated_coefficient,
-            leakage_supply=leakage_coefficient,
-            leakage_tank=tank,
-            into=into,
-            out=out,
-            lost=lost,
-        )
-        return edge_conductance(coefficient=edges.supply, pressure_drop=into) + edge_conductance(
-            coefficient=edges.tank, pressure_drop=out
-        )
-
-    return ValveSlopes(
-        gain(where(extending, slope_supply, slope_tank), drop_a),
-        gain(where(extending, slope_tank, slope_supply), drop_b),
-        conductance(into_a, from_a, past),
-        conductance(into_b, from_b, -past),
-    )
 
 
 def edge_opening(
