@@ -328,8 +328,32 @@ def linearise(
 ) -> tuple[Floats, Floats]:
     """State matrix and command column at a point, open loop, by central differences.
 
-    `side` is the sign of the spool whose branch is taken. The load of the first piece acts.
+    `side` is the sign of the spool whose branch is taken. The load of the first piece acts. Where
+    the start has a spool, that holds the load, and only its own column is that of the branch.
     """
+    if start.get("spool"):
+        matrix, column = _slopes(circuit, start, math.copysign(1.0, start["spool"]), names)
+        opened, _ = _slopes(circuit, start | {"spool": 0.0}, side, names)
+        matrix[:, names.index("spool")] = opened[:, names.index("spool")]
+        return matrix, column
+    return _slopes(circuit, start, side, names)
+
+
+def holding(circuit: Circuit, start: dict[str, float], most: float = 9.0) -> dict[str, float]:
+    """The start with the spool at which chamber A gains no oil."""
+    bare, load = replace(circuit, controller=None), circuit.load.piece(0.0)
+
+    def gained(spool: float) -> float:
+        y, side = start_state(circuit, start | {"spool": spool}), math.copysign(1.0, spool)
+        point = bare.evaluate(0.0, y, (line(0.0), load), Mode(), side)
+        return float(point.rates[STATES.index("p_a")])
+
+    return start | {"spool": float(brentq(gained, -most, most, xtol=1e-13))}
+
+
+def _slopes(
+    circuit: Circuit, start: dict[str, float], side: float, names: tuple[str, ...]
+) -> tuple[Floats, Floats]:
     bare = replace(circuit, controller=None)
     y0, load = start_state(circuit, start), circuit.load.piece(0.0)
     index = [STATES.index(name) for name in names]

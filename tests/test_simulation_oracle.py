@@ -392,12 +392,16 @@ def test_ultimate_gain_is_the_check_value(spool, gain, period):
 
 
 def test_ultimate_gain_of_a_motor_is_the_oracles():
-    """Shaft speed over the signal, at rest: the same K_u and T_u as by eigenvalues."""
+    """Shaft speed over the signal, where the valve holds 8 N m: K_u and T_u as by eigenvalues."""
     asked = motor()
     linear = Linear.of(assemble(scenario(**asked.scene), asked.own, {}, None, linear=True))
     bare = replace(asked.circuit.actuator, dry=0.0, constant_torque=0.0)
     circuit = replace(asked.circuit, actuator=bare)
+    across = 8.0 * 2 * math.pi / 13.3e-6
+    middle = 0.5 * asked.own.supply_pressure
+    still = asked.start | {"p_a": middle + 0.5 * across, "p_b": middle - 0.5 * across}
+    held = oracle.holding(circuit, still)
     for side, loop in zip((1.0, -1.0), linear.about(), strict=True):
         found = ultimate(loop)
-        theirs = oracle.ultimate_gain_by_swinging(circuit, asked.start, side, of="velocity")
+        theirs = oracle.ultimate_gain_by_swinging(circuit, held, side, of="velocity")
         assert theirs == pytest.approx((found.gain, found.period), rel=1e-5)

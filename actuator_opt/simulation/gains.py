@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import inf, isfinite, radians
+from math import copysign, inf, isfinite, radians
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from ..design.scenario.model import Control, Scenario
 from ..errors import Diagnostic, InputError
 from ..evaluation.study.plant import Plant
 from ..models.tuning import ControllerGains, margin_rules, ziegler_nichols
-from ..numeric import Array
 from .assemble import assemble, loop_of
 from .linearise import Law, Linear, Margins, OpenLoop, Ultimate, least, margins
 from .parts.circuit import Loop
@@ -49,7 +48,8 @@ def tune(
 ) -> Tuned | None:
     """Gains of a scenario's controller; None without one. `held` keeps gains, with new margins.
 
-    The loop is taken without sticking friction, at the start and at every end of the reference, the
+    The loop is taken without sticking friction where the valve holds the load of the start,
+    whatever pressures the scenario begins with: at the start and at every end of the reference, the
     spool to either side; a speed loop also where it runs steadily. The least ultimate gain counts.
 
     Raises
@@ -60,7 +60,7 @@ def tune(
     control, loop = scenario.control, loop_of(scenario.control)
     if control is None or loop is None:
         return None
-    circuit = assemble(scenario, plant, records, None, linear=True)
+    circuit = assemble(_held(scenario), plant, records, None, linear=True)
     linear = Linear.of(circuit)
     limit, worst = least(_loops(linear, scenario, plant, control, loop))
     stated = getattr(control, f"{loop}_gain")
@@ -94,6 +94,12 @@ def tune(
     return Tuned(gains, origin, limit, margins(worst, shaped), UNITS[loop], notes)
 
 
+def _held(scenario: Scenario) -> Scenario:
+    """The scenario from pressures that hold its load."""
+    held = scenario.initial.model_copy(update={"pressure_a": None, "pressure_b": None})
+    return scenario.model_copy(update={"initial": held})
+
+
 def _loops(
     linear: Linear, scenario: Scenario, plant: Plant, control: Control, loop: Loop
 ) -> list[OpenLoop]:
@@ -101,7 +107,7 @@ def _loops(
     end = steady_value(getattr(control, loop))
     if loop in ("shaft_speed", "shaft_angle"):
         found = linear.about()
-        return found + (_running(linear, "shaft speed", end) if loop == "shaft_speed" else [])
+        return found + (_running(linear, "shaft_speed", end) if loop == "shaft_speed" else [])
     if loop == "speed":
         return linear.about() + _running(linear, "speed", end)
     begin = linear.circuit.start.position
@@ -115,31 +121,8 @@ def _loops(
 
 def _running(linear: Linear, name: str, value: float) -> list[OpenLoop]:
     """The open loop where the actuator runs steadily at a speed; none where it cannot."""
-    from scipy.optimize import root
-
-    if value == 0:
-        return []
-
-    names = linear.names
-    y = linear.initial.copy()
-    y[names.index(name)] = value
-    free = [k for k, one in enumerate(names) if one not in (name, "shaft angle", "position")]
-    scale = np.array([1e5 if abs(linear.initial[k]) > 1e3 else 1.0 for k in free])
-
-    def missing(x: Array) -> Array:
-        state = y.copy()
-        state[free] = x[:-1] * scale
-        rates = np.array(linear.rates(0.0, state.tolist(), x[-1], linear.flags))
-        kept = [k for k, one in enumerate(names) if one not in ("shaft angle", "position")]
-        return rates[kept] / np.array([max(abs(linear.scale[k]), 1e-12) for k in kept]) * 1e-9
-
-    start = np.append(y[free] / scale, np.copysign(1.0, value))
-    start[:-1][[names[k] == "spool" for k in free]] = np.copysign(1.0, value)
-    solved = root(missing, start, method="hybr")
-    if not solved.success:
-        return []
-    y[free] = solved.x[:-1] * scale
-    return [linear.loop(y, float(solved.x[-1]))]
+    found = None if value == 0 else linear.steady(copysign(1.0, value), **{name: value})
+    return [] if found is None else [linear.loop(*found)]
 
 
 def _ruled(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, pi
 
@@ -14,6 +14,8 @@ from .parts.circuit import Circuit
 
 TOUCH = 1e-9
 """Position of the spool beside its centre [V]: which pair of edges opens."""
+PLACES = ("position", "shaft angle")
+"""States that change while an actuator runs steadily."""
 CREEP = 1e-3
 """Rate of a growing pole that does not swing, over the slowest swing, that counts as creep (a
 choice: beside a point of rest the load drifts a little)."""
@@ -93,30 +95,83 @@ class Linear:
             flags=(False,) * len(flags),
         )
 
-    def loop(self, state: Array, signal: float) -> OpenLoop:
-        """The open loop about a state and a signal."""
-        size = len(state)
-        flat = np.array(self.slopes(0.0, state.tolist(), signal, self.flags))
-        table = flat.reshape(size + 1, size + 1)
-        d = self.scale
+    def loop(self, state: Array, signal: float, spool: float | None = None) -> OpenLoop:
+        """The open loop about a state and a signal; flows follow the spool as where it is told."""
+        table = self._table(state, signal)
+        if spool is not None:
+            moved, column = state.copy(), self.names.index("spool")
+            moved[column] = spool
+            table[:, column] = self._table(moved, signal)[:, column]
+        size, d = len(state), self.scale
         a = table[:size, :size] * d / d[:, None]
         b, c = table[:size, size] / d, table[size, :size] * d
         poles, modes = np.linalg.eig(a)
         residues = (c @ modes) * np.linalg.solve(modes, b.astype(complex))
         return OpenLoop(poles, residues)
 
+    def _table(self, state: Array, signal: float) -> Array:
+        """Slopes of the rates and the measured value over the states and the signal."""
+        size = len(state) + 1
+        flat = self.slopes(0.0, state.tolist(), signal, self.flags)
+        return np.array(flat).reshape(size, size)
+
     def about(self, **states: float) -> list[OpenLoop]:
-        """Open loops at the start with some states changed, the spool a touch to either side."""
+        """Open loops where the valve holds the load, some states given: it opens to either side.
+
+        Where nothing holds it, about the start.
+        """
+        still = {one: 0.0 for one in ("speed", "shaft_speed") if self._known(one)}
+        found = self.steady(self.circuit.centre, **(still | states))
+        if found is None:
+            y = self._with(still | states)
+            y[self.names.index("spool")] = self.circuit.centre
+            found = y, self.circuit.centre
+        return [self.loop(*found, spool=self.circuit.centre + side) for side in (TOUCH, -TOUCH)]
+
+    def steady(self, guess: float, **states: float) -> tuple[Array, float] | None:
+        """State and signal at which nothing but the place changes, some states given.
+
+        Parameters
+        ----------
+        guess : signal near it [V]
+        states : by name, SI
+
+        Returns
+        -------
+        None where there is no such state
+        """
+        from scipy.optimize import root
+
+        begin = self._with(states)
+        given = {one.replace("_", " ") for one in states} | set(PLACES)
+        free = [k for k, one in enumerate(self.names) if one not in given]
+        kept = [k for k, one in enumerate(self.names) if one not in PLACES]
+        scale = np.array([1e5 if abs(self.initial[k]) > 1e3 else 1.0 for k in free])
+        unit = np.maximum(np.abs(self.scale[kept]), 1e-12)
+
+        def state(x: Array) -> Array:
+            y = begin.copy()
+            y[free] = x[:-1] * scale
+            return y
+
+        def missing(x: Array) -> Array:
+            rates = np.array(self.rates(0.0, state(x).tolist(), x[-1], self.flags))
+            return 1e-9 * rates[kept] / unit
+
+        start = np.append(begin[free] / scale, guess)
+        start[:-1][[self.names[k] == "spool" for k in free]] = guess
+        solved = root(missing, start, method="hybr")
+        return (state(solved.x), float(solved.x[-1])) if solved.success else None
+
+    def _known(self, name: str) -> bool:
+        return name.replace("_", " ") in self.names
+
+    def _with(self, states: Mapping[str, float]) -> Array:
+        """The start with some states changed."""
         y = self.initial.copy()
-        if "speed" in self.names:
-            y[self.names.index("speed")] = 0.0
         for name, value in states.items():
             y[self.names.index(name.replace("_", " "))] = value
-        found = []
-        for side in (TOUCH, -TOUCH):
-            y[self.names.index("spool")] = beside = self.circuit.centre + side
-            found.append(self.loop(y, beside))
-        return found
+        return y
 
 
 @dataclass(frozen=True, slots=True)
