@@ -15,7 +15,7 @@ from .store import require_apart
 
 if TYPE_CHECKING:
     from .simulation import Simulation
-    from .simulation.integrate import Method
+    from .simulation.methods import Method
     from .simulation.sensitivity import Sensitivities
     from .verbs import Compared
 

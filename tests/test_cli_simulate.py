@@ -235,3 +235,46 @@ def test_a_valve_between_empty_ports_runs():
     result = run("simulate", str(ramp), *(f"--set={one}" for one in changes), "--json")
     found = json.loads(result.out)["signals"]
     assert found["flow_tank"]["max"] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("pressure", ["0 bar", "200 bar"])
+def test_a_start_away_from_rest_is_no_unstable_loop(short, pressure):
+    """Margins are those where the valve holds the load, whatever pressures a run begins with."""
+    rest, away = (
+        json.loads(run("simulate", str(short), "--json", *more).out)["controller"]
+        for more in ((), (f"--set=initial.pressure_a={pressure}",
+                          f"--set=initial.pressure_b={pressure}"))
+    )  # fmt: skip
+    assert away == rest
+    assert away["stable"]
+
+
+def test_a_load_that_no_pressure_holds_is_named(short):
+    """A rule gives no gain then, in one line; a stated gain runs, and its margins say nothing."""
+    motor = DESIGNS / "scenarios" / "course_motor_position.yaml"
+    result = run("simulate", str(motor), "--set=motor.torque[0].value=22 N*m")
+    assert result.code == 3
+    assert "the supply pressure cannot hold the load of the start" in result.err
+    assert run("simulate", str(motor), "--set=motor.torque[0].value=20 N*m").code in (0, 1)
+    short.write_text(SHORT + "load: {force: [{shape: constant, value: 12 kN}]}\n")
+    result = run("simulate", str(short))
+    assert "margins of the linear loop say nothing" in " ".join(result.out.split())
+
+
+def test_a_run_that_ends_says_where_the_actuator_was(tmp_path):
+    """10 kN m turn the joint to its dead point: time, place and cause in one line, exit 4."""
+    text = (DESIGNS / "servo_knee.yaml").read_text(encoding="utf-8")
+    design = tmp_path / "linked.yaml"
+    linkage = (
+        "  mass: 2 kg\n  inertia: 0.5 kg*m^2\nlinkage:\n  base_radius: 250 mm\n"
+        "  crank_radius: 60 mm\n  angle_offset: 10 deg\n"
+    )
+    design.write_text(text.replace("  mass: 20 kg\n", linkage), encoding="utf-8")
+    file = tmp_path / "fall.yaml"
+    file.write_text("name: fall\ndesign: linked.yaml\nduration: 1 s\nload:\n  torque:\n"
+                    "    - {shape: constant, value: 10 kN*m}\n")  # fmt: skip
+    result = run("simulate", str(file))
+    assert result.code == 4
+    assert result.err.startswith("at 0.17")
+    assert "pressure in chamber B -1.0" in result.err
+    assert "the joint comes to its dead point" in result.err

@@ -20,7 +20,8 @@ from ..errors import Diagnostic, InputError
 from ..numeric import Array
 from ..symbolic import Symbol
 from ..symbolic.order import needed
-from .integrate import CHUNK, Advance
+from .integrate import CHUNK
+from .methods import Advance
 from .system import Compiled
 
 SHARPER = 0.1

@@ -41,6 +41,8 @@ class Tuned:
     """In the linear loop, factors of the scenario included."""
     unit: str
     notes: tuple[str, ...] = ()
+    stalled: bool = False
+    """The load of the start takes the whole supply pressure: margins say nothing."""
 
 
 def tune(
@@ -55,7 +57,8 @@ def tune(
     Raises
     ------
     InputError
-        a law that the rule does not give; a loop that no gain makes swing, or that swings alone
+        a law that the rule does not give; a loop that no gain makes swing, or that swings alone;
+        a load that the supply pressure cannot hold
     """
     control, loop = scenario.control, loop_of(scenario.control)
     if control is None or loop is None:
@@ -63,6 +66,7 @@ def tune(
     circuit = assemble(_held(scenario), plant, records, None, linear=True)
     linear = Linear.of(circuit)
     limit, worst = least(_loops(linear, scenario, plant, control, loop))
+    stalled = not plant.return_pressure < circuit.start.pressure_a < plant.supply_pressure
     stated = getattr(control, f"{loop}_gain")
     design = plant.design.control
     notes: tuple[str, ...] = ()
@@ -82,6 +86,10 @@ def tune(
         and control.margin is None
     ):
         gains, origin = ControllerGains(design.gain, inf, 0.0), "control.gain of the design"
+    elif stalled:
+        message = "the supply pressure cannot hold the load of the start, so no rule gives a gain"
+        remedy = "lower the load, raise supply.pressure, or state the gain"
+        raise InputError(Diagnostic(message, remedy, path=f"control.{loop}"))
     else:
         gains, origin, notes = _ruled(control, loop, limit, worst)
     factor, integral = control.gain_factor or NO_GAIN, control.integral_factor
@@ -91,7 +99,7 @@ def tune(
         control.derivative_factor / factor * gains.derivative_time,
         control.filter_time,
     )
-    return Tuned(gains, origin, limit, margins(worst, shaped), UNITS[loop], notes)
+    return Tuned(gains, origin, limit, margins(worst, shaped), UNITS[loop], notes, stalled)
 
 
 def _held(scenario: Scenario) -> Scenario:

@@ -1,26 +1,17 @@
-"""Integration in time: restarted where an input jumps or a switch turns, never across it.
-
-LSODA changes between stiff and non-stiff steps by itself and has the exact Jacobian; Radau is the
-second opinion, CVODES (`fast`) the faster one.
-"""
+"""Integration in time: restarted where an input jumps or a switch turns, never across it."""
 
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Final, Literal
 
 import numpy as np
 
-from ..errors import Diagnostic, Unsolvable
 from ..numeric import Array
+from .methods import METHODS, MOST, RELATIVE, Advance, Method, Stuck
 from .system import Compiled
 
-Method = Literal["lsoda", "radau", "cvodes"]
-RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
-"""Relative tolerance of a step; the second opinion is the sharper one."""
 CHUNK = 200
 """Samples after which the switches are looked at (a choice: what runs past a stop is lost)."""
 LOOK = 2e-3
@@ -29,8 +20,8 @@ MOST_TURNS = 20_000
 """Turns of switches before a run counts as chattering (a choice)."""
 APART = 1e-9
 """Instants that are nearer to one another are one [s] (a choice)."""
-FEW, MOST = 2_000, 100_000
-"""Steps between two samples: of a first try, which may run past a switch, and at most."""
+FEW = 2_000
+"""Steps between two samples of a first try, which may run past a switch."""
 TRIES = 12
 """Shorter and shorter pieces up to where the equations end, in search of a turn before."""
 PARTS, LEVELS = 16, 5
@@ -59,18 +50,6 @@ class Trajectory:
     events: tuple[Event, ...] = ()
     evaluations: int = 0
     restarts: int = 0
-
-
-Advance = Callable[[Array, Array, tuple[bool, ...], int], Array]
-"""States (times, states) at times from the first on, with at most so many steps between two."""
-
-
-class _Stuck(Unsolvable):
-    """An integration that came no further than a time."""
-
-    def __init__(self, time: float, message: str, remedy: str) -> None:
-        super().__init__(Diagnostic(f"at {time:.6g} s: {message}", remedy))
-        self.time = time
 
 
 @dataclass(slots=True)
@@ -200,7 +179,8 @@ def _segment(
         name = run.compiled.system.switches[which].name
         run.events.append(Event(name, at, bool(m[first + which])))
         if len(run.events) > MOST_TURNS:
-            raise _Stuck(at, f"{name} turns without end", "raise the damping of what turns it")
+            remedy = "raise the damping of what turns it"
+            raise Stuck(at, there, f"{name} turns without end", remedy)
         y, start, own = there, at, True
         begin += k + (at >= times[begin + k + 1])
     return y, m
@@ -217,14 +197,14 @@ def _ahead(
     try:
         found = run.advance(times, y, m, FEW)
         return times, found, _first_turn(run, times, found, m)
-    except _Stuck as stuck:
+    except Stuck as stuck:
         good, bad = float(times[0]), min(stuck.time, float(times[-1]))
     near = good + 0.99 * (bad - good)
     for _ in range(TRIES if run.compiled.system.switches else 0):
         short = np.append(times[times < near], near)
         try:
             found = run.advance(short, y, m, FEW)
-        except _Stuck:
+        except Stuck:
             bad = near
         else:
             turn = _first_turn(run, short, found, m)
@@ -300,99 +280,3 @@ def _turn(
 
 def _state_at(run: _Run, start: float, t: float, y: Array, m: tuple[bool, ...]) -> Array:
     return y if t <= start else run.advance(np.array([start, t]), y, m, MOST)[-1]
-
-
-def _checked(times: Array, found: Array) -> Array:
-    """The states, where all of them are numbers."""
-    bad = ~np.isfinite(found).all(axis=1)
-    if bad.any():
-        raise _Stuck(float(times[int(np.argmax(bad))]), "the equations have no solution", _REMEDY)
-    return found
-
-
-_REMEDY = "look at the signals up to there: a gain, a volume or a leakage may be absurd"
-
-
-def _why(error: Exception) -> str:
-    return f"the equations cannot be evaluated ({error})"
-
-
-def _longest(compiled: Compiled, times: Array) -> float:
-    """Longest step that does not miss what a record does in some time; 0 without a limit."""
-    bends = compiled.bends
-    first, last = np.searchsorted(bends, times[0]), np.searchsorted(bends, times[-1], "right")
-    if first == last:
-        return 0.0
-    shortest = float(np.min(np.diff(bends[max(first - 1, 0) : last + 1]), initial=np.inf))
-    return max(shortest, float(times[-1] - times[0]) / MOST)
-
-
-def _lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
-    from scipy.integrate import ODEintWarning, odeint
-
-    reached = [0.0]
-    stiff = _radau(compiled, relative, counted)
-
-    def rates(t: float, y: Array, m: tuple[bool, ...]) -> list[float]:
-        reached[0] = t
-        return compiled.rates(t, y, m)
-
-    def advance(times: Array, y: Array, m: tuple[bool, ...], most: int) -> Array:
-        reached[0] = float(times[0])
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ODEintWarning)
-            try:
-                found, report = odeint(
-                    rates, y, times, args=(m,), Dfun=compiled.slopes, tfirst=True,
-                    rtol=relative, atol=compiled.tolerances, mxstep=most, full_output=True,
-                    hmax=_longest(compiled, times), tcrit=times[-1:],
-                )  # fmt: skip
-            except (ArithmeticError, ValueError) as error:
-                raise _Stuck(reached[0], _why(error), _REMEDY) from None
-        if report["message"] != "Integration successful.":
-            if most < MOST:
-                raise _Stuck(reached[0], "no step is small enough", _REMEDY)
-            return stiff(times, y, m, most)  # near rest LSODA may not see that they are stiff
-        counted[0] += int(report["nfe"][-1])
-        return _checked(times, found)
-
-    return advance
-
-
-def _radau(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
-    from scipy.integrate import solve_ivp
-
-    reached = [0.0]
-
-    def advance(times: Array, y: Array, m: tuple[bool, ...], most: int) -> Array:
-        def rates(t: float, y: Array) -> list[float]:
-            reached[0] = t
-            return compiled.rates(t, y, m)
-
-        try:
-            with np.errstate(all="ignore"):
-                found = solve_ivp(
-                    rates, (times[0], times[-1]), y, method="Radau", t_eval=times,
-                    rtol=relative, atol=0.01 * compiled.tolerances,
-                    jac=lambda t, y: compiled.slopes(t, y, m),
-                    max_step=_longest(compiled, times) or np.inf,
-                )  # fmt: skip
-        except (ArithmeticError, ValueError) as error:
-            raise _Stuck(reached[0], _why(error), _REMEDY) from None
-        counted[0] += int(found.nfev)
-        if not found.success:
-            raise _Stuck(reached[0], "no step is small enough", _REMEDY)
-        return _checked(times, found.y.T)
-
-    return advance
-
-
-def _cvodes(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
-    from .fast import cvodes
-
-    return cvodes(compiled, relative, counted, _lsoda(compiled, RELATIVE["lsoda"], counted))
-
-
-METHODS: Final[dict[Method, Callable[[Compiled, float, list[int]], Advance]]] = {
-    "lsoda": _lsoda, "radau": _radau, "cvodes": _cvodes,
-}  # fmt: skip

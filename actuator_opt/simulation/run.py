@@ -20,8 +20,10 @@ from ..quantities import INPUTS
 from . import reading
 from .assemble import assemble
 from .balance import balance
+from .failure import failed
 from .gains import Tuned, tune
-from .integrate import Method, Trajectory, integrate
+from .integrate import Trajectory, integrate
+from .methods import Method, Stuck
 from .parts.circuit import Circuit
 from .parts.signals import Records
 from .result import Second, Simulation, Told
@@ -93,7 +95,10 @@ def run(
     circuit = assemble(scenario, own, records, None if tuned is None else tuned.gains)
     compiled = circuit.system.compiled()
     step = scenario.sample_time or scenario.duration / SAMPLES
-    found = integrate(compiled, duration=scenario.duration, sample_time=step, method=method)
+    try:
+        found = integrate(compiled, duration=scenario.duration, sample_time=step, method=method)
+    except Stuck as stuck:
+        raise failed(stuck, compiled, own) from None
     signals = compiled.signals(found.time, found.states, found.flags)
     added = balance(circuit, found)
     followed = reading.servo(scenario, found.time, signals)
@@ -173,7 +178,12 @@ def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]
     notes = [*circuit.system.notes]
     if tuned is not None:
         notes += tuned.notes
-        if not tuned.margins.stable:
+        if tuned.stalled:
+            notes.append(
+                "the load of the start takes the whole supply pressure: the valve cannot hold it, "
+                "and margins of the linear loop say nothing"
+            )
+        elif not tuned.margins.stable:
             notes.append(
                 f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}, it swings "
                 "until the valve's limits or the friction hold it"

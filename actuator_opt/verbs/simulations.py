@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from ..design.scenario import LoadedScenario, Scenario
     from ..reporting import ReportFile
     from ..simulation import Simulation
-    from ..simulation.integrate import Method
     from ..simulation.measured import Overlay
     from ..simulation.measured.fit import Fit
+    from ..simulation.methods import Method
     from ..simulation.sensitivity import Sensitivities
     from ..simulation.verification import Verification
 

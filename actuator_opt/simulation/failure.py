@@ -1,0 +1,46 @@
+"""What a run says that could not go on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..errors import Diagnostic, Unsolvable
+from ..evaluation.study.plant import Plant
+from ..numeric import Array
+from .methods import Stuck
+from .system import Compiled
+
+TOLD = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b")
+"""Signals that show what happened."""
+OUT = 0.1
+"""Share of the stroke by which a piston beyond it is out of its stops (a choice)."""
+
+
+def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:
+    """The failure with what the actuator did there, and the likeliest cause."""
+    flags = np.zeros((len(compiled.instants) + len(compiled.system.switches), 1), dtype=bool)
+    signals = compiled.signals(np.array([stuck.time]), stuck.state[:, None], list(flags))
+    words = [
+        f"{one.label} {one.quantity.text(float(signals[one.name][0]))}"
+        for one in compiled.system.signals
+        if one.name in TOLD and np.isfinite(signals[one.name][0])
+    ]
+    (fault,) = stuck.diagnostics
+    at = f" ({', '.join(words)})" if words else ""
+    remedy = _outside(signals, plant) or fault.remedy
+    return Unsolvable(Diagnostic(f"{fault.message}{at}", remedy))
+
+
+def _outside(signals: Mapping[str, Array], plant: Plant) -> str:
+    """What to do where the piston has left its stroke; empty otherwise."""
+    if "position" not in signals:
+        return ""
+    position = float(signals["position"][0])
+    beyond = max(-position, position - plant.stroke)
+    if plant.design.linkage is not None and beyond > 0:
+        return "the joint comes to its dead point beyond the stop: lower its load"
+    if beyond > OUT * plant.stroke:
+        return "the piston is beyond its stops: lower the load, or stiffen them (stop_travel)"
+    return ""
