@@ -19,9 +19,10 @@ from ..gains import Tuned, tune
 from ..parts.signals import Records
 from ..run import run
 from .bounds import bounds
+from .file import Measured
 from .parameters import Entry, entries
 from .problem import Problem
-from .record import Measured, Overlay, overlay
+from .record import Overlay, overlay
 
 MISFIT: Final = 2.0
 """Residual over noise from which the model misses the record (a choice)."""

@@ -17,8 +17,9 @@ from ..assemble import assemble
 from ..gains import Tuned
 from ..integrate import integrate
 from ..parts.signals import Records
+from .file import FEWEST, Measured
 from .parameters import PARAMETERS, Case, Entry
-from .record import FEWEST, Course, Measured, beside, inside, noise
+from .record import Course, beside, inside, noise
 
 MOST: Final = 4000
 """Largest number of samples of a channel in a fit (a choice: what is denser is thinned evenly)."""
