@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import json
+import re
+from functools import cache
+
 import numpy as np
 import pytest
-from cli_runner import DESIGNS
+from cli_runner import DESIGNS, run
 from simulation_case import scenario
+from test_report_simulation import boxes_collide
 
 import actuator_opt as ao
 from actuator_opt.errors import InputError
+from actuator_opt.evaluation.study.plant import plant
 from actuator_opt.identification import parse_column
+from actuator_opt.reporting.measured_figures import drawn, measured_figures
+from actuator_opt.reporting.measured_rows import measured_blocks, measured_text
+from actuator_opt.simulation.measured import Measured, fit, overlay
 from actuator_opt.simulation.parts.signals import acts_after, at_start
 
 REPLAY = f"""\
@@ -133,3 +142,130 @@ def test_marks_commas_and_tabs_are_read():
     for text in ("\ufefft [s];U [V]\n0;1,5\n0,5;2,5\n", "t [ms]\tU [mV]\n0\t1500\n500\t2500\n"):
         found = parse_column(text, "U", "voltage", name="in.csv")
         assert np.allclose(found, plain, rtol=1e-15)
+
+
+# What a record says
+
+
+STEP = f"""\
+name: step
+design: {DESIGNS / "servo_knee.yaml"}
+duration: 0.1 s
+sample_time: 0.5 ms
+control:
+  position:
+    - {{shape: step, value: 2 mm, start: 0.02 s}}
+"""
+NOISE = {"pressure_a": 1.4e4, "pressure_b": 1.4e4, "position": 3e-6, "signal": 1e-2}
+
+
+@cache
+def trial():
+    """The scenario, read once."""
+    return ao.read_scenario(STEP)
+
+
+def record(count=4, lag=0.0):
+    """A record of a run with other oil, with noise, without samples from 50 to 60 ms and the end.
+
+    It ends at 90 ms.
+    """
+    made = ao.simulate(STEP, set={"fluid.air_content": 0.012})
+    time, first = np.unique(made.time, return_index=True)
+    rng = np.random.default_rng(4)
+    kept = (time < 0.0901) & ~((time > 0.0499) & (time < 0.0601))
+    return Measured(
+        {
+            name: ((time + lag)[kept], (made.signals[name][first] + size * noise)[kept])
+            for name, size in list(NOISE.items())[:count]
+            for noise in [rng.standard_normal(time.size)]
+        },
+        "bench.csv",
+    )
+
+
+@cache
+def fitted():
+    """Air and capacity found from the record, with a lag."""
+    own = plant(trial().actuator.subject())
+    return fit(
+        trial().scenario, own, {}, record(lag=0.003), ("air_content", "valve_capacity", "lag")
+    )
+
+
+def test_a_record_that_ends_early_is_compared_while_it_lasts():
+    """Residuals over the overlap, and a note of what that is."""
+    found = overlay(ao.simulate(trial()), record())
+    assert found.residuals["position"].count == 181 - 21
+    assert (
+        "all channels: measured from 0 to 0.09 s, simulated from 0 to 0.1 s: compared where both "
+        "are" in found.notes
+    )
+    late = Measured({"position": tuple(one[40:] for one in record().channels["position"])})
+    notes = overlay(ao.simulate(trial()), late).notes
+    assert any(one.startswith("position: measured from 0.02 to 0.09 s") for one in notes)
+
+
+def test_lines_break_where_samples_are_missing():
+    """Nothing is drawn between 50 and 60 ms, on the time of the simulation."""
+    found = drawn(overlay(ao.simulate(trial()), record(lag=0.003), lag=0.003))
+    time, values = found["position"]
+    assert time[0] == pytest.approx(0.0, abs=1e-12)
+    (hole,) = time[~np.isfinite(values)]
+    assert 0.0499 < hole < 0.0601
+
+
+@pytest.mark.parametrize("count", [1, 4])
+def test_every_channel_is_drawn_with_what_is_left_over(count):
+    """Names, the noise of the sensor, the gap left open; nothing overlaps or leaves the paper."""
+    found = overlay(ao.simulate(trial()), record(count))
+    made = measured_figures(found)
+    assert [boxes_collide(ink) for ink in made] == [[]] * len(made)
+    words = [one[0] for ink in made for one in ink.text_boxes()]
+    assert sum(one.startswith("Measured less simulated, ") for one in words) == count
+    assert words.count("±2σ of noise") == count
+    assert {"Pressure A, bar", "measured", "simulated"} <= set(words)
+    assert not [one for one in words if "…" in one]
+
+
+@pytest.mark.parametrize("width", [40, 60, 80, 100])
+def test_the_terminal_shows_every_parameter_whole(width):
+    """Names, bounds and verdict at any width, in lines that fit; powers of ten as printed."""
+    found = fitted()
+    text = measured_text(found.after, found, width=width)
+    assert max(map(len, text.splitlines())) <= width
+    flat = " ".join(text.split())
+    for word in ("air content", "valve capacity", "lag", "pressure A", "identified", "ms"):
+        assert word in flat
+    assert "…" not in text
+    assert not re.search(r"\de[-+]?\d", text)
+
+
+def test_numbers_show_what_they_are_uncertain_by():
+    """Bounds differ from their value by two digits at least."""
+    found = fitted()
+    block = measured_blocks(found.after, found)[0]
+    for row, one in zip(block["rows"], found.parameters.values(), strict=True):
+        value, low, high = (float(cell.replace("\N{MINUS SIGN}", "-")) for cell in row[3:6])
+        scale = one.entry.quantity.to_display(1.0)
+        half = scale * (one.parameter.upper - one.parameter.value)
+        assert high - value == pytest.approx(half, rel=0.15)
+        assert value - low == pytest.approx(half, rel=0.15)
+
+
+def test_the_second_integrator_and_the_hash_come_with_a_fit(tmp_path):
+    """--verify counts with --fit; the hash is that of the scenario without it."""
+    scene, bench = tmp_path / "step.yaml", tmp_path / "bench.csv"
+    scene.write_text(STEP, encoding="utf-8")
+    time, values = record().channels["position"]
+    lines = [f"{t:.6f},{1e3 * x:.6f}" for t, x in zip(time, values, strict=True)]
+    bench.write_text("\n".join(["time [s],way [mm]", *lines]), encoding="utf-8")
+    plain = json.loads(run("simulate", str(scene), "--json").out)
+    options = ("--measured", str(bench), "--column", "x=way", "--json")
+    found = json.loads(
+        run("simulate", str(scene), *options, "--fit", "air_content", "--verify").out
+    )
+    assert found["spec_hash"] == plain["spec_hash"] != ""
+    assert found["second_integrator"]["method"] == "radau"
+    assert found["measured"]["parameters"]["air_content"]["value"] == pytest.approx(0.012, rel=0.1)
+    assert run("simulate", str(scene), "--column", "x=way").code == 2

@@ -369,7 +369,10 @@ def test_parameters_without_effect_are_told():
     scene, own = case()
     held = scenario(held_ports={"pressure_a": 35 * BAR, "pressure_b": 35 * BAR})
     tight = replace(own, valve=replace(VALVE, leakage_supply=0.0, leakage_tank=0.0))
+    even = case(static=TRUE["coulomb"])[0]
+    assert entries(["stribeck_speed", "static"], even, own)
     for name, there, body, why in (
+        ("stribeck_speed", even, own, "static and Coulomb friction are alike; fit static with it"),
         ("valve_offset", scene, replace(own, valve=None), "the design has no valve"),
         ("mass", held, own, "the ports of the valve are held"),
         ("valve_leakage", scene, tight, "it is a factor"),

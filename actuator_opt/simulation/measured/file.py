@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -72,7 +72,9 @@ class Measured:
         if not channels:
             message = "no channel that a simulation tells"
             raise record.fault(message, f"name columns {', '.join(SIGNALS)} with units")
-        notes += [f"{', '.join(names)}: {words}, left out" for words, names in missing.items()]
+        notes += [
+            f"{named(names, channels)}: {words}, left out" for words, names in missing.items()
+        ]
         still = [signal for signal, (_, values) in channels.items() if np.ptp(values) == 0]
         if still:
             notes.append(f"{', '.join(still)}: one value all the time in the record")
@@ -110,6 +112,11 @@ def parse_measured(
         for one in record.notes
     ]
     return Measured.of(replace(record, notes=tuple(notes)))
+
+
+def named(names: Collection[str], every: Collection[str]) -> str:
+    """Some channels by name, or all of them."""
+    return ", ".join(names) if len(names) < max(len(every), 2) else "all channels"
 
 
 def _rising(record: Record) -> Array:

@@ -16,6 +16,7 @@ from ...least_squares import WEAK, Known, Parameter, rated
 from ...numeric import Array
 from ...suggest import shown
 from ..gains import Tuned, tune
+from ..integrate import Method
 from ..parts.signals import Records
 from ..run import run
 from .bounds import bounds
@@ -116,6 +117,9 @@ def fit(
     names: Sequence[str],
     *,
     tuned: Tuned | None = None,
+    verify: bool = False,
+    method: Method = "lsoda",
+    spec: str = "",
 ) -> Fit:
     """Fit named parameters of a design or scenario to a measured record.
 
@@ -130,6 +134,8 @@ def fit(
     measured : on the scenario's time
     names : of `parameters.PARAMETERS`, and "lag"
     tuned : gains of the controller, which the fit leaves alone; default: as the scenario says
+    verify, method : of the simulation with the fitted values, as `simulation.simulate`
+    spec : hash of the scenario and its design
 
     Raises
     ------
@@ -144,7 +150,7 @@ def fit(
     problem = Problem(scenario, plant, records, gains, measured, own)
     first = problem.lag(problem.start)
     dense = {"sample_time": problem.step}
-    start = run(scenario.model_copy(update=dense), plant, records, gains)
+    start = run(scenario.model_copy(update=dense), plant, records, gains, spec=spec)
     before = overlay(start, measured, lag=first)
     x = problem.solve()
     told = bounds(problem, x)
@@ -155,7 +161,10 @@ def fit(
     correlations = _correlations(told)
     new_scenario, new_plant = problem.put(x)
     after_gains = tune(new_scenario, new_plant, records, held=gains)
-    final = run(new_scenario.model_copy(update=dense), new_plant, records, after_gains)
+    final = run(
+        new_scenario.model_copy(update=dense), new_plant, records, after_gains,
+        verify=verify, method=method, spec=spec,
+    )  # fmt: skip
     after = overlay(final, measured, lag=problem.lag(x))
     doubts = (
         *problem.notes,
@@ -253,7 +262,7 @@ def _missed(after: Overlay, before: Overlay) -> Iterator[str]:
         if one.span == 0 or one.rms <= MISFIT * one.noise:
             continue
         quantity = after.simulation.told[name].quantity
-        missed.append(f"{name} {quantity.text(one.rms, 2)}, {one.rms / one.noise:.2g} times")
+        missed.append(f"{name} {quantity.text(one.rms, 2)}, {_times(one.rms / one.noise)} times")
         if one.rms > WORSE * before.residuals[name].rms:
             yield f"{name} fits worse than before: the channels contradict each other"
     if missed:
@@ -263,6 +272,10 @@ def _missed(after: Overlay, before: Overlay) -> Iterator[str]:
             "pulls the parameters",
             400,
         )
+
+
+def _times(ratio: float) -> str:
+    return f"{ratio:.2g}" if ratio < 10 else f"{ratio:.0f}"
 
 
 def _loop(tuned: Tuned | None) -> Iterator[str]:

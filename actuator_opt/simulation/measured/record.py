@@ -13,7 +13,7 @@ from ...design.scenario.recorded import WIDE
 from ...numeric import Array
 from ...suggest import shown
 from ..result import Simulation, Told
-from .file import FEWEST, SIGNALS, Measured
+from .file import FEWEST, SIGNALS, Measured, named
 
 FINEST = 1e-4
 """Least noise of a sensor over the span of its record (a choice: no sensor is better)."""
@@ -249,12 +249,13 @@ def _reach(
     for name in used:
         time = measured.channels[name][0] - lag
         room = WIDE * float(np.median(np.diff(time)))
-        first, last = float(time[0]), float(time[-1])
-        if abs(first) > room or abs(last - duration) > room:
+        first = 0.0 if abs(time[0]) <= room else float(time[0])
+        last = duration if abs(time[-1] - duration) <= room else float(time[-1])
+        if (first, last) != (0.0, duration):
             spans.setdefault((f"{first:.4g}", f"{last:.4g}"), []).append(name)
     for (begin, end), names in spans.items():
         yield (
-            f"{', '.join(names)}: measured from {begin} to {end} s, simulated from 0 to "
+            f"{named(names, used)}: measured from {begin} to {end} s, simulated from 0 to "
             f"{duration:.4g} s: compared where both are"
         )
 
