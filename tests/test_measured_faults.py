@@ -18,7 +18,7 @@ from actuator_opt.evaluation.study.plant import plant
 from actuator_opt.identification import parse_column
 from actuator_opt.reporting.measured_figures import drawn, measured_figures
 from actuator_opt.reporting.measured_rows import measured_blocks, measured_text
-from actuator_opt.simulation.measured import Measured, fit, overlay
+from actuator_opt.simulation.measured import Measured, fit, overlay, parse_measured
 from actuator_opt.simulation.parts.signals import acts_after, at_start
 
 REPLAY = f"""\
@@ -269,3 +269,87 @@ def test_the_second_integrator_and_the_hash_come_with_a_fit(tmp_path):
     assert found["second_integrator"]["method"] == "radau"
     assert found["measured"]["parameters"]["air_content"]["value"] == pytest.approx(0.012, rel=0.1)
     assert run("simulate", str(scene), "--column", "x=way").code == 2
+
+
+def of_lines(head, count=30, cells="{k},{k}.5"):
+    """A record of numbered lines."""
+    return "\n".join([head, *(cells.format(k=k) for k in range(count))])
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "line"),
+    [
+        ("", "the record is empty", None),
+        ("t [s],p1 [bar]\n", "no samples below the header", None),
+        (of_lines("t [s],p1 [bar]", 9), "fewer than 10 numbers in p1", None),
+        (of_lines("t [s],p1 [bar]", cells="{k},1e300"), "fewer than 10 numbers in p1", None),
+        (of_lines("t [s],p1 [bar],p1 [bar]", cells="{k},1,1"), 'columns "p1 [bar]" and', 1),
+        (of_lines("t [s],time [s],x [mm]", cells="{k},{k},1"), 'columns "t [s]" and "time', 1),
+        (of_lines("t [s],presure_1 [bar]"), "no channel that a simulation tells", None),
+        (of_lines("t [s],p1 [mm]"), 'column "p1": mm is a length', 1),
+        (of_lines("t [s],p1"), 'column "p1" states no unit', 1),
+        (of_lines("t [s],p1 [bar]", cells="{k},5,{k},5"), "4 cells, the header has 2 columns", 2),
+        (of_lines("t [s],p1 [bar]") + "\n3,1", "time does not rise at 3 s", 32),
+        (of_lines("t [s],p1 [bar]", cells="1,{k}"), "time does not rise at 1 s", 3),
+    ],
+)
+def test_bad_records_are_told_in_one_line(text, message, line):
+    """What, where and what to do."""
+    with pytest.raises(InputError) as told:
+        parse_measured(text, name="bench.csv")
+    (fault,) = told.value.diagnostics
+    assert fault.message.startswith(message)
+    assert (fault.file, fault.line) == ("bench.csv", line)
+    assert fault.remedy
+
+
+def test_a_record_in_another_unit_is_told():
+    """Millimetres that are called metres, bar that are called MPa."""
+    good = record(3).channels
+    wrong = Measured(
+        {
+            "position": (good["position"][0], 1e3 * good["position"][1]),
+            "pressure_a": (good["pressure_a"][0], 10 * good["pressure_a"][1]),
+            "pressure_b": good["pressure_b"],
+        }
+    )
+    made = ao.simulate(trial())
+    told = [one for one in overlay(made, wrong).notes if "check its unit" in one]
+    assert [one.split()[0] for one in told] == ["position", "pressure_a"]
+    assert not any("check its unit" in one for one in overlay(made, record()).notes)
+
+
+def test_a_record_of_a_million_samples_is_thinned_for_a_fit():
+    """Every 250th of them, which is told; all count for the residuals."""
+    made = ao.simulate(trial())
+    time = np.linspace(0.0, 0.1, 1_000_001)[:-1]
+    rng = np.random.default_rng(1)
+    course = np.interp(time, made.time, made.signals["pressure_a"])
+    wide = Measured({"pressure_a": (time, course + 1e4 * rng.standard_normal(time.size))})
+    assert overlay(made, wide).residuals["pressure_a"].count == 1_000_000
+    own = plant(trial().actuator.subject())
+    found = fit(trial().scenario, own, {}, wide, ("air_content",))
+    assert "pressure_a: one of 250 samples is fitted to, 4000 at most" in found.doubts
+    assert found.values["air_content"] == pytest.approx(0.005, rel=0.1)
+
+
+def test_a_record_that_stands_still_is_not_fitted_to():
+    """No channel that moves: one line, not a search."""
+    still = Measured({"position": (np.linspace(0, 0.1, 50), np.full(50, 0.055))})
+    own = plant(trial().actuator.subject())
+    with pytest.raises(InputError, match="every channel stands still; fit to a record that moves"):
+        fit(trial().scenario, own, {}, still, ("air_content",))
+
+
+def test_a_fit_at_the_end_of_a_range_says_which_way():
+    """Oil of which a record asks for more air than there can be."""
+    made = ao.simulate(STEP, set={"fluid.air_content": 0.15})
+    time, first = np.unique(made.time, return_index=True)
+    rng = np.random.default_rng(9)
+    noise = rng.standard_normal(time.size)
+    whole = made.signals["pressure_a"][first]
+    more = whole[0] + 0.2 * (whole - whole[0]) + 1e3 * noise
+    own = plant(trial().actuator.subject())
+    found = fit(trial().scenario, own, {}, Measured({"pressure_a": (time, more)}), ("air_content",))
+    assert found.parameters["air_content"].at_bound == "upper"
+    assert any("upper end of its range, 20 %: the record asks for more" in o for o in found.doubts)

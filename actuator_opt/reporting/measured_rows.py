@@ -42,7 +42,7 @@ def residual_rows(found: Overlay, before: Overlay | None = None) -> list[list[st
             say(one.noise, 2),
             say(one.largest),
             f"{number(one.time, 3)} s",
-            fixed(bias, places) if places <= MOST_PLACES else number(bias, 2),
+            fixed(bias, places) if 0 < places <= MOST_PLACES else number(bias, 2),
             DASH if one.relative is None else f"{number(100 * one.relative, 2)} %",
         ]
         if before is not None:

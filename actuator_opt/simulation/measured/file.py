@@ -67,8 +67,8 @@ class Measured:
             if absent := gaps(time, values):
                 missing.setdefault(gap_words(absent), []).append(signal)
         if known and not channels:
-            message = f"fewer than {FEWEST} samples of {', '.join(known)}"
-            raise record.fault(message, "give a longer record")
+            message = f"fewer than {FEWEST} numbers in {', '.join(known)}"
+            raise record.fault(message, "give more: an empty cell, nan, inf or 1e30 is none")
         if not channels:
             message = "no channel that a simulation tells"
             raise record.fault(message, f"name columns {', '.join(SIGNALS)} with units")

@@ -221,10 +221,12 @@ def _unknown(fitted: Mapping[str, Fitted]) -> Iterator[str]:
     for name, one in fitted.items():
         quantity, found = one.entry.quantity, one.parameter
         if one.at_bound is not None:
-            end = one.entry.lower if one.at_bound == "lower" else one.entry.upper
+            low = one.at_bound == "lower"
+            end = one.entry.lower if low else one.entry.upper
             yield (
                 f"{name} lies at the {one.at_bound} end of its range, {quantity.text(end)}: the "
-                "record asks for none, or something else is missing from the simulation"
+                f"record asks for {'less' if low else 'more'}, or something else is missing from "
+                "the simulation"
             )
         elif found.verdict == "identifiable":
             continue

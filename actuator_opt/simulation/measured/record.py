@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...design.scenario.recorded import WIDE
+from ...models.fluid import ATMOSPHERIC_PRESSURE
 from ...numeric import Array
 from ...suggest import shown
 from ..result import Simulation, Told
@@ -25,6 +26,9 @@ APART = 0.02
 """Share of a channel's span by which the start may be off before it is told (a choice)."""
 BEYOND = 5.0
 """The same in standard deviations of the noise (a choice)."""
+BESIDE = 0.1
+"""Share of the stroke, or of the proof pressure, that a record may go beyond (a choice: noise, and
+a sensor's zero)."""
 STARTS = ("position", "pressure_a", "pressure_b")
 """Signals whose start a scenario states."""
 
@@ -119,6 +123,7 @@ def overlay(simulation: Simulation, measured: Measured, *, lag: float = 0.0) -> 
     notes += _reach(used, measured, duration, lag)
     notes += _sampling(simulation, used)
     notes += _starts(simulation, used, found, lag)
+    notes += _absurd(simulation, used)
     return Overlay(measured, simulation, lag, found, tuple(notes))
 
 
@@ -292,4 +297,24 @@ def _starts(
             yield (
                 f"{name} begins at {quantity.text(float(y[0]))} in the record, at "
                 f"{quantity.text(begun)} in the scenario: state initial.{name}"
+            )
+
+
+def _absurd(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -> Iterator[str]:
+    """Positions off the stroke and pressures off the design: another unit, or another zero."""
+    plant = simulation.plant
+    for name, low, high, what in (
+        ("position", 0.0, plant.stroke, "the stroke"),
+        ("pressure_a", -ATMOSPHERIC_PRESSURE, plant.proof_pressure, "the proof pressure"),
+        ("pressure_b", -ATMOSPHERIC_PRESSURE, plant.proof_pressure, "the proof pressure"),
+    ):
+        if name not in used:
+            continue
+        room = BESIDE * (high - low)
+        least, most = float(np.min(used[name][1])), float(np.max(used[name][1]))
+        if least < low - room or most > high + room:
+            say = simulation.told[name].quantity.text
+            yield (
+                f"{name} goes from {say(least)} to {say(most)} in the record, {what} is "
+                f"{say(high)}: check its unit and its zero"
             )
