@@ -85,7 +85,7 @@ def _verdict(one: Fitted, *, missed: bool) -> str:
     if one.at_bound is not None:
         return f"at its {one.at_bound} end"
     if not one.parameter.identifiable:
-        return "not identifiable here"
+        return one.parameter.verdict
     return "if the model were right" if missed else "identified"
 
 
