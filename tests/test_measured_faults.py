@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+import simulation_report_case as case
 from cli_runner import DESIGNS, run
 from simulation_case import scenario
 from test_report_simulation import boxes_collide
@@ -18,6 +19,7 @@ from actuator_opt.evaluation.study.plant import plant
 from actuator_opt.identification import parse_column
 from actuator_opt.reporting.measured_figures import drawn, measured_figures
 from actuator_opt.reporting.measured_rows import measured_blocks, measured_text
+from actuator_opt.reporting.simulation_figures import simulation_figure
 from actuator_opt.simulation.measured import Measured, fit, overlay, parse_measured
 from actuator_opt.simulation.parts.signals import acts_after, at_start
 
@@ -353,3 +355,14 @@ def test_a_fit_at_the_end_of_a_range_says_which_way():
     found = fit(trial().scenario, own, {}, Measured({"pressure_a": (time, more)}), ("air_content",))
     assert found.parameters["air_content"].at_bound == "upper"
     assert any("upper end of its range, 20 %: the record asks for more" in o for o in found.doubts)
+
+
+@pytest.mark.parametrize("kind", case.KINDS)
+def test_no_name_of_a_curve_is_cut_for_a_record(kind):
+    """With every signal measured, legends of strips and panels hold their words whole."""
+    found = case.simulated(kind)
+    measured = {name: (found.time, values) for name, values in found.signals.items()}
+    bare = {one[0] for one in simulation_figure(found).text_boxes()}
+    words = {one[0] for one in simulation_figure(found, measured=measured).text_boxes()}
+    assert "measured" in words
+    assert not [one for one in words - bare if "…" in one]
