@@ -19,7 +19,7 @@ RESIDUALS = ("channel", "unit", "rms", "noise", "largest", "at", "bias", "rms/sp
 """Heads of the residuals; the last one of a fit."""
 DROPS = (0, 0, 0, 2, 1, 5, 4, 3, 6)
 """Which of them a narrow terminal leaves out first."""
-PARAMETERS = ("parameter", "unit", "before", "fitted", "95 % from", "to", "verdict")
+PARAMETERS = ("parameter", "unit", "start", "fitted", "95 % from", "to", "verdict")
 MOST_PLACES = 6
 """Decimals of a bias, at most."""
 
@@ -162,7 +162,7 @@ def _parameters(console: Console, fit: Fit) -> list[str]:
         return lines
     return [
         console.wrap(
-            f"{name} {with_unit(value, unit)}, 95 % from {low} to {high}; before {start}; {verdict}"
+            f"{name} {with_unit(value, unit)}, 95 % from {low} to {high}; start {start}; {verdict}"
         )
         for name, unit, start, value, low, high, verdict in rows
     ]

@@ -26,9 +26,8 @@ APART = 0.02
 """Share of a channel's span by which the start may be off before it is told (a choice)."""
 BEYOND = 5.0
 """The same in standard deviations of the noise (a choice)."""
-BESIDE = 0.1
-"""Share of the stroke, or of the proof pressure, that a record may go beyond (a choice: noise, and
-a sensor's zero)."""
+BESIDE = 2.0
+"""Strokes or proof pressures that a record may go beyond (a choice: bar and MPa are ten apart)."""
 STARTS = ("position", "pressure_a", "pressure_b")
 """Signals whose start a scenario states."""
 
