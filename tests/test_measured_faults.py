@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import doctest
 import json
 import re
 from functools import cache
@@ -14,9 +15,11 @@ from simulation_case import scenario
 from test_report_simulation import boxes_collide
 
 import actuator_opt as ao
+from actuator_opt.design.scenario import recorded
 from actuator_opt.errors import InputError
 from actuator_opt.evaluation.study.plant import plant
 from actuator_opt.identification import parse_column
+from actuator_opt.reporting import measured_figures as figures
 from actuator_opt.reporting.measured_figures import drawn, measured_figures
 from actuator_opt.reporting.measured_rows import measured_blocks, measured_text
 from actuator_opt.reporting.simulation_figures import simulation_figure
@@ -366,3 +369,10 @@ def test_no_name_of_a_curve_is_cut_for_a_record(kind):
     words = {one[0] for one in simulation_figure(found, measured=measured).text_boxes()}
     assert "measured" in words
     assert not [one for one in words - bare if "…" in one]
+
+
+@pytest.mark.parametrize("module", [recorded, figures])
+def test_examples_in_docstrings(module):
+    """What the docstrings show is what comes out."""
+    found = doctest.testmod(module)
+    assert (found.attempted > 0, found.failed) == (True, 0)
