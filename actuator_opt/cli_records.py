@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import streams
-from .cli_shared import check_targets, command_line, given, read_actuator, say_files
+from .cli_shared import (
+    check_targets,
+    command_line,
+    given,
+    named_columns,
+    read_actuator,
+    say_files,
+)
 from .errors import Diagnostic, ExitCode, UsageError
 from .options import REPORTS, Date, Json, Out, PluginFile, Quiet, Report, Seed, Set
 from .quantities import RECORDS
@@ -127,7 +134,7 @@ def identify(
     if csv is not None:
         require_apart(csv, record, design)
     _check_bootstrap(bootstrap)
-    named = _columns(columns)
+    named = named_columns(columns)
     length = given("--span", span, RECORDS["span"])
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
     actuator = read_actuator(design, sets, plugin)
@@ -202,7 +209,7 @@ def calibrate(
     found = verbs.calibrate(
         record,
         design=actuator,
-        columns=_columns(columns),
+        columns=named_columns(columns),
         search=search,
         bootstrap=bootstrap,
         seed=seed,
@@ -268,18 +275,6 @@ def _check_bootstrap(count: int) -> None:
     if 0 < count < FEWEST:
         message = f"--bootstrap {count}: too few to have a tail of 2.5 %"
         raise UsageError(Diagnostic(message, f"take {FEWEST} or more, 200 as a rule"))
-
-
-def _columns(texts: list[str] | None) -> dict[str, str]:
-    """Channel and column of every ``--column``."""
-    found: dict[str, str] = {}
-    for text in texts or []:
-        channel, equals, name = text.partition("=")
-        if not equals or not channel.strip() or not name.strip():
-            message = f'--column "{text}" is no CHANNEL=NAME'
-            raise UsageError(Diagnostic(message, 'write e.g. "p1=Channel 3 [bar]"'))
-        found[channel.strip()] = name.strip()
-    return found
 
 
 _OPTIONS = {

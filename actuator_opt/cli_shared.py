@@ -120,3 +120,15 @@ def say_files(files: list[dict[str, Any]]) -> None:
     """Name every written file."""
     for file in files:
         streams.err(f"wrote {file['path']}")
+
+
+def named_columns(texts: list[str] | None) -> dict[str, str]:
+    """Channel and column of every ``--column``."""
+    found: dict[str, str] = {}
+    for text in texts or []:
+        channel, equals, name = text.partition("=")
+        if not equals or not channel.strip() or not name.strip():
+            message = f'--column "{text}" is no CHANNEL=NAME'
+            raise UsageError(Diagnostic(message, 'write e.g. "p1=Channel 3 [bar]"'))
+        found[channel.strip()] = name.strip()
+    return found

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import streams
-from .cli_shared import assignments, check_targets, command_line, say_files
+from .cli_shared import assignments, check_targets, command_line, named_columns, say_files
 from .errors import Diagnostic, ExitCode, UsageError
 from .options import REPORTS, Date, Json, Out, Quiet, Report, Set
 from .store import require_apart
@@ -45,6 +45,15 @@ Fitted = Annotated[
         "piston_leakage, coulomb). Repeatable.",
     ),
 ]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--column",
+        metavar="CHANNEL=NAME",
+        help='Column of a channel of the record (t, p1, x, U, ...), e.g. "p1=Channel 3 [bar]". '
+        "Repeatable.",
+    ),
+]
 Sensitivity = Annotated[
     bool,
     typer.Option("--sensitivity", help="Rank the parameters by what they change in the results."),
@@ -59,6 +68,7 @@ def simulate(
     fast: Fast = False,
     measured: MeasuredFile = None,
     fit: Fitted = None,
+    columns: Columns = None,
     sensitivity: Sensitivity = False,
     report: Report = False,
     out: Out = REPORTS,
@@ -73,17 +83,22 @@ def simulate(
     check_targets(out if report else None, date, csv)
     if csv is not None:
         require_apart(csv, scenario, *([measured] if measured else []))
-    if fit and measured is None:
-        raise UsageError(Diagnostic("--fit: only with --measured", "name the record"))
+    for name, given in (("--fit", fit), ("--column", columns)):
+        if given and measured is None:
+            raise UsageError(Diagnostic(f"{name}: only with --measured", "name the record"))
     trial = verbs.read_scenario(scenario, set=assignments(sets))
     if csv is not None:
         require_apart(csv, *map(str, trial.files))
     method: Method = "cvodes" if fast else "lsoda"
-    found = verbs.simulate(trial, verify=verify, method=method)
     overlay = None
-    if measured is not None:
-        overlay = verbs.compare_measured(trial, measured, fit=fit or (), simulation=found)
-        found = overlay.simulation if fit else found
+    if measured is None:
+        found = verbs.simulate(trial, verify=verify, method=method)
+    else:
+        overlay = verbs.compare_measured(
+            trial, measured, fit=fit or (), columns=named_columns(columns),
+            verify=verify, method=method,
+        )  # fmt: skip
+        found = overlay.simulation
     data = found.to_dict() | ({} if overlay is None else {"measured": overlay.to_dict()})
     ranked = verbs.servo_sensitivities(trial) if sensitivity else None
     if ranked is not None:

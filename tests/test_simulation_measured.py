@@ -21,9 +21,10 @@ from simulation_case import VALVE as FAST
 from actuator_opt.errors import InputError
 from actuator_opt.evaluation.study.plant import Plane, SealData
 from actuator_opt.simulation.gains import tune
+from actuator_opt.simulation.measured.file import Measured, parse_measured
 from actuator_opt.simulation.measured.fit import fit
 from actuator_opt.simulation.measured.parameters import PARAMETERS, entries
-from actuator_opt.simulation.measured.record import Course, Measured, noise, overlay, parse_measured
+from actuator_opt.simulation.measured.record import Course, noise, overlay
 from actuator_opt.simulation.run import run
 
 VALVE = replace(FAST, natural_frequency=80.0)
@@ -135,7 +136,12 @@ def test_channels_are_read_with_their_units():
         "position": pytest.approx(0.08), "signal": 1.5, "flow_a": pytest.approx(1e-4),
         "shaft_speed": pytest.approx(2 * np.pi), "shaft_angle": pytest.approx(np.pi),
     }  # fmt: skip
-    assert found.notes == ('columns that are no channel: "note"',)
+    unknown, still = found.notes
+    assert unknown.startswith('columns that are no channel: "note"; channels are p1, p2, x')
+    assert still == (
+        "pressure_b, position, signal, flow_a, shaft_speed, shaft_angle: one value all the time in "
+        "the record"
+    )
 
 
 def test_missing_samples_are_left_out_channel_by_channel():
@@ -144,7 +150,26 @@ def test_missing_samples_are_left_out_channel_by_channel():
     found = parse_measured("t [s],p1 [bar],x [mm]\n" + "\n".join(lines))
     assert found.channels["pressure_a"][0].tolist() == [0, 1, 2, *range(6, 20)]
     assert list(found.channels) == ["pressure_a"]
-    assert any(note.startswith("x: fewer than 10 samples") for note in found.notes)
+    assert found.notes[:2] == (
+        "position: 4 samples, left out: 10 tell something",
+        "pressure_a: 3 samples are missing from 3 to 5 s, left out",
+    )
+
+
+def test_what_is_missing_is_told_with_its_place():
+    """Cells that are no number and lines that an even clock leaves out, counted by hand."""
+    values = ["80"] * 40
+    values[5], values[20], values[21] = "inf", "", "-"
+    lines = [f"{0.001 * k:.3f},{70 + k},{one}" for k, one in enumerate(values)]
+    del lines[30:33]
+    found = parse_measured("t [s],p1 [bar],x [mm]\n" + "\n".join(lines))
+    assert found.channels["position"][0].size == 34
+    assert found.notes == (
+        "pressure_a: 3 samples are missing from 0.03 to 0.032 s, left out",
+        "position: 6 samples are missing in 3 places, first at 0.005 s, last from 0.03 to 0.032 s, "
+        "left out",
+        "position: one value all the time in the record",
+    )
 
 
 @pytest.mark.parametrize(
@@ -344,7 +369,10 @@ def test_parameters_without_effect_are_told():
     scene, own = case()
     held = scenario(held_ports={"pressure_a": 35 * BAR, "pressure_b": 35 * BAR})
     tight = replace(own, valve=replace(VALVE, leakage_supply=0.0, leakage_tank=0.0))
+    even = case(static=TRUE["coulomb"])[0]
+    assert entries(["stribeck_speed", "static"], even, own)
     for name, there, body, why in (
+        ("stribeck_speed", even, own, "static and Coulomb friction are alike; fit static with it"),
         ("valve_offset", scene, replace(own, valve=None), "the design has no valve"),
         ("mass", held, own, "the ports of the valve are held"),
         ("valve_leakage", scene, tight, "it is a factor"),

@@ -19,7 +19,7 @@ FEWEST = 2
 def parse_column(text: str, header: str, dimension: str, *, name: str) -> tuple[Array, Array]:
     """Time [s] and values [SI] of a column, named by its header with or without its unit.
 
-    Missing samples are left out.
+    Missing samples are NaN.
 
     Parameters
     ----------
@@ -42,7 +42,10 @@ def parse_column(text: str, header: str, dimension: str, *, name: str) -> tuple[
 
     try:
         place, unit = column_of(sheet, cells, header)
-    except LookupError:
+    except LookupError as error:
+        if error.args[0]:
+            message = f'{error.args[0]} columns are called "{shown(header)}"'
+            raise fault(message, "rename all but one") from None
         remedy = shown(remedy_for(header, names), 200)
         raise fault(f'no column "{shown(header)}"', remedy) from None
     own = cells[place][1]
@@ -60,15 +63,19 @@ def parse_column(text: str, header: str, dimension: str, *, name: str) -> tuple[
     except units.UnitError as error:
         message = f'column "{shown(header)}": {shown(error.message, 120)}'
         raise fault(message, shown(error.remedy, 120)) from None
-    table, _ = numbers(sheet, [clock, place])
+    table, lines = numbers(sheet, [clock, place])
     t, x = (column.values(table[:, k]) for k, column in enumerate(columns))
-    known = np.isfinite(t) & np.isfinite(x)
-    t, x = t[known], x[known]
-    if len(t) < FEWEST:
+    if np.count_nonzero(np.isfinite(x)) < FEWEST:
         raise fault(f'column "{shown(header)}" holds no course', "give two samples or more")
-    if np.any(np.diff(t) <= 0):
-        raise fault("the times do not rise", "sort the samples, leave repeated ones out")
+    for bad, message, remedy in (
+        (~np.isfinite(t), "no time", "give every sample its time"),
+        (np.diff(t, prepend=-np.inf) <= 0, *_FALLS),
+    ):
+        if np.any(bad):
+            line = int(lines[np.argmax(bad)])
+            raise InputError(Diagnostic(message, remedy, file=name, line=line))
     return t, x
 
 
+_FALLS = ("the time does not rise", "sort the lines by time, leave repeated ones out")
 _TIMES = ("t", *CHANNELS["t"].others)

@@ -314,6 +314,7 @@ def drawn(sheet: Ink) -> Any:
                     linestyle=dash,
                     edgecolor=mark["stroke"] or "none",
                     linewidth=pen,
+                    joinstyle="round",
                     zorder=order,
                 )
             )

@@ -77,7 +77,8 @@ def step_panel(ink: Ink, box: Box, found: Simulation, measured: Measured) -> Non
     upper, lower = axes.y(target + half), axes.y(target - half)
     ink.box(frame[0], upper, frame[2], lower - upper, fill=_BAND, stroke=None)
     axes.frame_at("", "", [], even_ticks(low, high, 5))
-    ink.text(left, top + 2.0, titled(f"Step of the {words}", quantity), size=7.0, bold=True)
+    title = titled(f"Step of {words}" if under else f"Step of the {words}", quantity)
+    ink.text(left, top + 2.0, title, size=7.0, bold=True)
     ink.path(lines(axes, time, scaled(quantity, found.signals["reference"])), **ASKED)
     for one in under:
         ink.path(lines(axes, one.time - servo.time, one.values), **one.style)
@@ -85,7 +86,7 @@ def step_panel(ink: Ink, box: Box, found: Simulation, measured: Measured) -> Non
     ink.path(lines(axes, time, values), **style)
     entries = [("measured", under[0].style)] if under else []
     entries += [("±2 %", {"stroke": _BAND, "pen": 1.6}), ("asked", ASKED)]
-    room = width - text_width(titled(f"Step of the {words}", quantity), 7.0, bold=True) - 2.0
+    room = width - text_width(title, 7.0, bold=True) - 2.0
     names(ink, left + width, top + 2.0, entries, room)
     _rise(axes, servo, time, (values - start) / size, start, size)
     _settled(axes, servo, start, size)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -18,7 +17,7 @@ from .assemble import loop_of
 from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import Event
 from .parts.circuit import Loop
-from .parts.signals import frequencies
+from .parts.signals import Records, acts_after, frequencies
 from .result import Balance, Row, Servo, Shaken, Window
 from .step_response import step_metrics
 
@@ -107,6 +106,7 @@ def values(
     step: Servo | None,
     dynamic: Shaken | None,
     still: str,
+    records: Records,
 ) -> tuple[dict[str, float | None], dict[str, str]]:
     """Every result of `quantities.RESULTS`, None with a reason where it does not apply."""
     found: dict[str, float | None] = dict.fromkeys(RESULTS)
@@ -130,8 +130,8 @@ def values(
         found["lowest_pressure"] = lowest
         found["cavitation_margin"] = lowest + ATMOSPHERIC_PRESSURE - plant.oil.vapour_pressure
     if "position" in signals:
-        found["hold_drift"] = _drift(scenario, time, signals)
-        why["hold_drift"] = "the reference or the load still moves in the last tenth"
+        found["hold_drift"] = _drift(scenario, records, time, signals)
+        why["hold_drift"] = "the signal, reference or load still moves it in the last tenth"
         speed = _stop_speed(time, signals["speed"], events)
         found["stop_speed"], why["stop_speed"] = speed, "the piston meets no stop"
     loop, parts = reference(scenario)
@@ -167,7 +167,9 @@ def _settled_from(parts: Sequence[Part], duration: float) -> float:
     return min(begin + (1 / min(tones) if tones else 0.0), 0.9 * duration)
 
 
-def _drift(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> float | None:
+def _drift(
+    scenario: Scenario, records: Records, time: Array, signals: Mapping[str, Array]
+) -> float | None:
     """Mean speed over the last part, where nothing asks for motion."""
     begin = (1 - LAST) * scenario.duration
     loop, parts = reference(scenario)
@@ -175,7 +177,7 @@ def _drift(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> flo
     acting = [*load.force, *load.torque, *(load.drive.position if load.drive else ()), *parts]
     acting += load.cylinder.signal if load.cylinder is not None else ()
     acting += () if parts else scenario.signal
-    if any(_acts(part, begin) for part in acting):
+    if any(acts_after(part, begin, records) for part in acting):
         return None
     late = time >= begin
     open_loop = loop is None and "signal" in signals and np.any(signals["signal"][late] != 0)
@@ -183,17 +185,6 @@ def _drift(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> flo
         return None
     t, x = time[late], signals["position"][late]
     return float(abs(x[-1] - x[0]) / (t[-1] - t[0]))
-
-
-def _acts(part: Part, begin: float) -> bool:
-    """Whether a part of a signal changes from an instant on."""
-    end = math.inf if part.end is None else part.end
-    if part.shape in ("sine", "record"):
-        return end > begin
-    edges = {"step": (part.start,), "ramp": (part.start, end), "pulse": (part.start, end)}
-    if part.shape == "ramp" and part.start < begin < end:
-        return True
-    return any(begin < edge < math.inf for edge in edges.get(part.shape, ()))
 
 
 def _stop_speed(time: Array, speed: Array, events: Sequence[Event]) -> float | None:

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from ..design.scenario.model import SAMPLES, Scenario
+from ..design.scenario.recorded import recorded_notes
 from ..evaluation.build import spec_hash
 from ..evaluation.kernel import Subject
 from ..evaluation.study.plant import Plant, plant
@@ -75,7 +76,7 @@ def simulate(
     tuned = tune(scenario, own, files)
     return run(
         scenario, own, files, tuned, verify=verify, method=method,
-        spec=_spec(subject, scenario), begin=begin,
+        spec=spec_of(subject, scenario), begin=begin,
     )  # fmt: skip
 
 
@@ -104,7 +105,7 @@ def run(
     followed = reading.servo(scenario, found.time, signals)
     dynamic, still = reading.shaken(scenario, found.time, signals)
     values, why = reading.values(
-        scenario, own, found.time, signals, added, found.events, followed, dynamic, still
+        scenario, own, found.time, signals, added, found.events, followed, dynamic, still, records
     )
     result = Simulation(
         scenario=scenario,
@@ -122,6 +123,7 @@ def run(
         shaken=dynamic,
         events=found.events,
         notes=(
+            *recorded_notes(scenario, records),
             *_notes(circuit, own, tuned),
             *_reach(own, signals),
             *_limits(scenario, signals),
@@ -238,7 +240,7 @@ def _reach(own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
         )
 
 
-def _spec(subject: Subject, scenario: Scenario) -> str:
+def spec_of(subject: Subject, scenario: Scenario) -> str:
     """Hash of everything that decides the result."""
     content = json.dumps(scenario.model_dump(mode="json"), sort_keys=True, default=str)
     text = spec_hash(subject) + content

@@ -203,6 +203,8 @@ def compare_measured(
     *,
     fit: Sequence[str] = (),
     columns: Mapping[str, str] | None = None,
+    verify: bool = False,
+    method: Method = "lsoda",
     simulation: Simulation | None = None,
 ) -> Compared:
     """A measured record over a scenario: residuals, and parameters fitted to it.
@@ -213,6 +215,7 @@ def compare_measured(
     record : CSV file with t and any of p1, p2, x, v, F_L, ...
     fit : names of parameters, as ``air_content``; see `simulation.measured.parameters`
     columns : header by channel where it is none of the known names
+    verify, method : as `simulate`; of a fit, of the run with the fitted values
     simulation : of the scenario, where it has been run
 
     Raises
@@ -223,6 +226,7 @@ def compare_measured(
     from ..identification import decode_record
     from ..simulation.measured import overlay, parse_measured
     from ..simulation.measured.fit import fit as fitted
+    from ..simulation.run import spec_of
     from ..store import read_bytes
 
     trial = as_trial(scenario)
@@ -232,11 +236,13 @@ def compare_measured(
     measured = parse_measured(text, name=name, columns=columns)
     with placed(trial):
         if not fit:
-            done = simulation if simulation is not None else simulate(trial)
+            done = simulation or simulate(trial, verify=verify, method=method)
             return Compared(overlay(done, measured))
+        subject = trial.actuator.subject()
         found = fitted(
-            trial.scenario, plant(trial.actuator.subject()), trial.records, measured, fit
-        )
+            trial.scenario, plant(subject), trial.records, measured, fit,
+            verify=verify, method=method, spec=spec_of(subject, trial.scenario),
+        )  # fmt: skip
     return Compared(found.after, found)
 
 
@@ -319,7 +325,8 @@ def write_simulation(
     folder : where to; the name is the scenario file's
     command, date : as `report`
     """
-    from ..reporting.measured_rows import measured_tables
+    from ..reporting.measured_figures import drawn
+    from ..reporting.measured_rows import measured_blocks
     from ..reporting.simulation_document import write_simulation_sheet
     from ..reporting.tables import extra
     from ..reporting.verification_rows import sensitivity_rows
@@ -328,8 +335,8 @@ def write_simulation(
     page = origin(scenario.actuator.design, scenario.actuator.source, command=command, date=date)
     spec = simulation.spec_hash or page.spec_hash
     name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
-    tables = [] if measured is None else [*measured_tables(measured.overlay, measured.fit)]
-    tables += [] if sensitivities is None else [*sensitivity_rows(sensitivities)]
+    blocks = [] if measured is None else measured_blocks(measured.overlay, measured.fit)
+    blocks += [] if sensitivities is None else map(extra, sensitivity_rows(sensitivities))
     return write_simulation_sheet(
         simulation,
         replace(
@@ -340,6 +347,6 @@ def write_simulation(
         ),
         folder=Path(folder),
         stem=Path(name).stem,
-        measured=None if measured is None else measured.overlay.measured.channels,
-        extra=[extra(one) for one in tables],
+        measured=None if measured is None else drawn(measured.overlay),
+        extra=blocks,
     )

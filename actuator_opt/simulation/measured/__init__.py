@@ -1,7 +1,8 @@
 """Measured records over a simulation: residuals, and parameters fitted with bounds."""
 
+from .file import Measured, parse_measured
 from .fit import Fit, fit
 from .parameters import PARAMETERS
-from .record import Measured, Overlay, overlay, parse_measured
+from .record import Overlay, overlay
 
 __all__ = ["PARAMETERS", "Fit", "Measured", "Overlay", "fit", "overlay", "parse_measured"]

@@ -16,12 +16,14 @@ from ...least_squares import WEAK, Known, Parameter, rated
 from ...numeric import Array
 from ...suggest import shown
 from ..gains import Tuned, tune
+from ..integrate import Method
 from ..parts.signals import Records
 from ..run import run
 from .bounds import bounds
+from .file import Measured
 from .parameters import Entry, entries
 from .problem import Problem
-from .record import Measured, Overlay, overlay
+from .record import Overlay, overlay
 
 MISFIT: Final = 2.0
 """Residual over noise from which the model misses the record (a choice)."""
@@ -115,6 +117,9 @@ def fit(
     names: Sequence[str],
     *,
     tuned: Tuned | None = None,
+    verify: bool = False,
+    method: Method = "lsoda",
+    spec: str = "",
 ) -> Fit:
     """Fit named parameters of a design or scenario to a measured record.
 
@@ -129,6 +134,8 @@ def fit(
     measured : on the scenario's time
     names : of `parameters.PARAMETERS`, and "lag"
     tuned : gains of the controller, which the fit leaves alone; default: as the scenario says
+    verify, method : of the simulation with the fitted values, as `simulation.simulate`
+    spec : hash of the scenario and its design
 
     Raises
     ------
@@ -143,7 +150,7 @@ def fit(
     problem = Problem(scenario, plant, records, gains, measured, own)
     first = problem.lag(problem.start)
     dense = {"sample_time": problem.step}
-    start = run(scenario.model_copy(update=dense), plant, records, gains)
+    start = run(scenario.model_copy(update=dense), plant, records, gains, spec=spec)
     before = overlay(start, measured, lag=first)
     x = problem.solve()
     told = bounds(problem, x)
@@ -154,7 +161,10 @@ def fit(
     correlations = _correlations(told)
     new_scenario, new_plant = problem.put(x)
     after_gains = tune(new_scenario, new_plant, records, held=gains)
-    final = run(new_scenario.model_copy(update=dense), new_plant, records, after_gains)
+    final = run(
+        new_scenario.model_copy(update=dense), new_plant, records, after_gains,
+        verify=verify, method=method, spec=spec,
+    )  # fmt: skip
     after = overlay(final, measured, lag=problem.lag(x))
     doubts = (
         *problem.notes,
@@ -211,10 +221,12 @@ def _unknown(fitted: Mapping[str, Fitted]) -> Iterator[str]:
     for name, one in fitted.items():
         quantity, found = one.entry.quantity, one.parameter
         if one.at_bound is not None:
-            end = one.entry.lower if one.at_bound == "lower" else one.entry.upper
+            low = one.at_bound == "lower"
+            end = one.entry.lower if low else one.entry.upper
             yield (
                 f"{name} lies at the {one.at_bound} end of its range, {quantity.text(end)}: the "
-                "record asks for none, or something else is missing from the simulation"
+                f"record asks for {'less' if low else 'more'}, or something else is missing from "
+                "the simulation"
             )
         elif found.verdict == "identifiable":
             continue
@@ -252,7 +264,7 @@ def _missed(after: Overlay, before: Overlay) -> Iterator[str]:
         if one.span == 0 or one.rms <= MISFIT * one.noise:
             continue
         quantity = after.simulation.told[name].quantity
-        missed.append(f"{name} {quantity.text(one.rms, 2)}, {one.rms / one.noise:.2g} times")
+        missed.append(f"{name} {quantity.text(one.rms, 2)}, {_times(one.rms / one.noise)} times")
         if one.rms > WORSE * before.residuals[name].rms:
             yield f"{name} fits worse than before: the channels contradict each other"
     if missed:
@@ -262,6 +274,10 @@ def _missed(after: Overlay, before: Overlay) -> Iterator[str]:
             "pulls the parameters",
             400,
         )
+
+
+def _times(ratio: float) -> str:
+    return f"{ratio:.2g}" if ratio < 10 else f"{ratio:.0f}"
 
 
 def _loop(tuned: Tuned | None) -> Iterator[str]:

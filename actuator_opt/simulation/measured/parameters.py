@@ -63,6 +63,9 @@ def entries(names: Sequence[str], scenario: Scenario, plant: Plant) -> tuple[Ent
             faults.append(Diagnostic(f"{name} is named twice", "name it once"))
         elif why := _idle(name, scenario, plant):
             faults.append(Diagnostic(f"{name} has no effect: {why}", "leave it out"))
+        elif name == "stribeck_speed" and "static" not in names and _even(scenario, plant):
+            message = f"{name} has no effect: static and Coulomb friction are alike"
+            faults.append(Diagnostic(message, "fit static with it, or state a higher one"))
     if not names:
         faults.append(Diagnostic("no parameter to fit", f"name one of {', '.join(known)}"))
     if faults:
@@ -93,6 +96,14 @@ def _idle(name: str, scenario: Scenario, plant: Plant) -> str | None:
     if name == "bristle_travel" and scenario.friction.model == "stribeck":
         return "friction.model is stribeck"
     return None
+
+
+def _even(scenario: Scenario, plant: Plant) -> bool:
+    """Whether friction does not fall with speed."""
+    own = scenario.friction
+    if own.coulomb is not None:
+        return (own.static or own.coulomb) <= own.coulomb
+    return plant.seals.static == plant.seals.coulomb
 
 
 def _entry(name: str, scenario: Scenario, plant: Plant) -> Entry:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import ceil
 from typing import Final
@@ -17,8 +17,9 @@ from ..assemble import assemble
 from ..gains import Tuned
 from ..integrate import integrate
 from ..parts.signals import Records
+from .file import FEWEST, Measured, named
 from .parameters import PARAMETERS, Case, Entry
-from .record import FEWEST, Course, Measured, beside, inside, noise
+from .record import Course, beside, inside, noise
 
 MOST: Final = 4000
 """Largest number of samples of a channel in a fit (a choice: what is denser is thinned evenly)."""
@@ -89,10 +90,13 @@ class Problem:
         still = [name for name, one in self.noise.items() if one == 0]
         self.notes = [f"{name} stands still in the record: not fitted to" for name in still]
         moving = {name: one for name, one in measured.channels.items() if name not in still}
+        if not moving:
+            raise measured.fault("every channel stands still", "fit to a record that moves")
         self.weights = {name: 1 / self.noise[name] for name in moving}
         _, signals = self._simulated(self.start)
         used = self._overlapping(replace(measured, channels=moving), signals)
         self.used = {name: _thinned(*one) for name, one in used.items()}
+        self.notes += _told(used, self.used)
         self.far = np.inf
         self.far = FAR * float(np.max(np.abs(self.rest(self.start))))
 
@@ -303,7 +307,23 @@ def _step(apart: float, duration: float) -> float:
     return apart / ceil(apart / longest) if longest < apart else longest
 
 
+def _told(
+    whole: Mapping[str, tuple[Array, Array]], used: Mapping[str, tuple[Array, Array]]
+) -> Iterator[str]:
+    """Channels of which a fit takes a part."""
+    steps: dict[int, list[str]] = {}
+    for name, (time, _) in whole.items():
+        steps.setdefault(_every(time), []).append(name)
+    for every, names in sorted(steps.items()):
+        if every > 1:
+            yield f"{named(names, used)}: one of {every} samples is fitted to, {MOST} at most"
+
+
+def _every(time: Array) -> int:
+    return -(-len(time) // MOST)
+
+
 def _thinned(time: Array, values: Array) -> tuple[Array, Array]:
     """Every so many samples, as few as a fit takes."""
-    every = -(-time.size // MOST)
+    every = _every(time)
     return time[::every], values[::every]

@@ -1,4 +1,4 @@
-"""A measured record beside a simulation: read, laid over it in time, and what is left over."""
+"""A measured record laid over a simulation in time, and what is left over."""
 
 from __future__ import annotations
 
@@ -9,30 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import Diagnostic, InputError
-from ...identification.record import CHANNELS, Channel, Record, parse_record
+from ...design.scenario.recorded import WIDE
+from ...models.fluid import ATMOSPHERIC_PRESSURE
 from ...numeric import Array
 from ...suggest import shown
 from ..result import Simulation, Told
+from .file import FEWEST, SIGNALS, Measured, named
 
-COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L", "T")} | {
-    "U": Channel("voltage", "V", "signal of the valve", ("signal", "command")),
-    "spool": Channel("voltage", "V", "position of the spool", ("spoolposition",)),
-    "pS": Channel("pressure", "bar", "supply pressure", ("pressuresupply", "psupply", "pp")),
-    "qA": Channel("flow", "l/min", "flow into port A", ("flowa",)),
-    "qB": Channel("flow", "l/min", "flow into port B", ("flowb",)),
-    "n_shaft": Channel("angular_speed", "rpm", "speed of the shaft", ("shaftspeed", "speed")),
-    "phi": Channel("angle", "deg", "angle of the shaft", ("shaftangle",)),
-}
-"""Channels of a record as a header writes them; its temperature is read past."""
-SIGNALS = {
-    "p1": "pressure_a", "p2": "pressure_b", "x": "position", "v": "speed", "F_L": "load_force",
-    "U": "signal", "spool": "spool", "pS": "pressure_supply", "qA": "flow_a", "qB": "flow_b",
-    "n_shaft": "shaft_speed", "phi": "shaft_angle",
-}  # fmt: skip
-"""The simulated signal that each channel measures."""
-FEWEST = 10
-"""Samples of a channel that say something (a choice)."""
 FINEST = 1e-4
 """Least noise of a sensor over the span of its record (a choice: no sensor is better)."""
 ORDERS = (3, 6)
@@ -43,87 +26,10 @@ APART = 0.02
 """Share of a channel's span by which the start may be off before it is told (a choice)."""
 BEYOND = 5.0
 """The same in standard deviations of the noise (a choice)."""
+BESIDE = 2.0
+"""Strokes or proof pressures that a record may go beyond (a choice: bar and MPa are ten apart)."""
 STARTS = ("position", "pressure_a", "pressure_b")
 """Signals whose start a scenario states."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Measured:
-    """A measured record on the scenario's time: signals by name, each (time [s], values [SI]).
-
-    Channels may be sampled differently, begin late and have gaps; times rise.
-    """
-
-    channels: Mapping[str, tuple[Array, Array]]
-    name: str = "record"
-    notes: tuple[str, ...] = ()
-
-    @classmethod
-    def of(cls, record: Record) -> Measured:
-        """The channels of a record; missing samples are left out.
-
-        Raises
-        ------
-        InputError
-            no time at a sample, times that do not rise, no channel that can be compared
-        """
-        time = _rising(record)
-        channels: dict[str, tuple[Array, Array]] = {}
-        notes = [*record.notes]
-        for column, signal in SIGNALS.items():
-            if column not in record:
-                continue
-            seen = np.isfinite(record[column])
-            if np.count_nonzero(seen) < FEWEST:
-                notes.append(f"{column}: fewer than {FEWEST} samples, left out")
-            else:
-                channels[signal] = time[seen], record[column][seen]
-        if not channels:
-            message = "no channel that a simulation tells"
-            raise record.fault(message, f"name columns {', '.join(SIGNALS)} with units")
-        return cls(channels, record.name, tuple(notes))
-
-    def delayed(self, time: float) -> Measured:
-        """The same record with a time added, as for a logger with another zero."""
-        moved = {name: (t + time, y) for name, (t, y) in self.channels.items()}
-        return Measured(moved, self.name, self.notes)
-
-    def fault(self, message: str, remedy: str) -> InputError:
-        """A fault of this record."""
-        return InputError(Diagnostic(message, remedy, file=self.name))
-
-
-def parse_measured(
-    text: str, *, name: str = "record", columns: Mapping[str, str] | None = None
-) -> Measured:
-    """A measured record from the text of a CSV file, columns as in `COLUMNS`.
-
-    Parameters
-    ----------
-    text : of the file
-    name : of the file, for messages
-    columns : header by channel, where it is none of the known names: ``{"p1": "Channel 3 [bar]"}``
-
-    Raises
-    ------
-    InputError
-        as `identification.parse_record`; no channel that a simulation tells
-    """
-    return Measured.of(parse_record(text, name=name, columns=columns, channels=COLUMNS))
-
-
-def _rising(record: Record) -> Array:
-    """The times of a record, checked."""
-    time = record.time
-    lost = np.flatnonzero(~np.isfinite(time))
-    if lost.size:
-        raise record.fault("no time", "give every sample its time", int(lost[0]))
-    back = np.flatnonzero(np.diff(time) <= 0)
-    if back.size:
-        at = int(back[0]) + 1
-        message = f"time does not rise at {time[at]:.9g} s"
-        raise record.fault(message, "sort the lines by time, leave repeated ones out", at)
-    return time
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,8 +119,10 @@ def overlay(simulation: Simulation, measured: Measured, *, lag: float = 0.0) -> 
     short = [name for name in measured.channels if name in signals and name not in used]
     if short:
         notes.append(f"no time in common: {', '.join(short)}")
+    notes += _reach(used, measured, duration, lag)
     notes += _sampling(simulation, used)
     notes += _starts(simulation, used, found, lag)
+    notes += _absurd(simulation, used)
     return Overlay(measured, simulation, lag, found, tuple(notes))
 
 
@@ -337,11 +245,30 @@ def noise(values: Array) -> float:
     return max(rough, float(grain / np.sqrt(12.0)), FINEST * span)
 
 
+def _reach(
+    used: Mapping[str, tuple[Array, Array]], measured: Measured, duration: float, lag: float
+) -> Iterator[str]:
+    """Channels that begin later or end earlier than the run, or go beyond it."""
+    spans: dict[tuple[str, str], list[str]] = {}
+    for name in used:
+        time = measured.channels[name][0] - lag
+        room = WIDE * float(np.median(np.diff(time)))
+        first = 0.0 if abs(time[0]) <= room else float(time[0])
+        last = duration if abs(time[-1] - duration) <= room else float(time[-1])
+        if (first, last) != (0.0, duration):
+            spans.setdefault((f"{first:.4g}", f"{last:.4g}"), []).append(name)
+    for (begin, end), names in spans.items():
+        yield (
+            f"{named(names, used)}: measured from {begin} to {end} s, simulated from 0 to "
+            f"{duration:.4g} s: compared where both are"
+        )
+
+
 def _sampling(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -> Iterator[str]:
     """Whether the simulation is told more coarsely than the record."""
     own = float(np.median(np.diff(simulation.time)))
     theirs = min(float(np.median(np.diff(t))) for t, _ in used.values())
-    if own > 1.5 * theirs:
+    if own > WIDE * theirs:
         yield (
             f"the simulation is told every {1e3 * own:.3g} ms, the record every "
             f"{1e3 * theirs:.3g} ms: peaks between are cut; state sample_time"
@@ -369,4 +296,24 @@ def _starts(
             yield (
                 f"{name} begins at {quantity.text(float(y[0]))} in the record, at "
                 f"{quantity.text(begun)} in the scenario: state initial.{name}"
+            )
+
+
+def _absurd(simulation: Simulation, used: Mapping[str, tuple[Array, Array]]) -> Iterator[str]:
+    """Positions off the stroke and pressures off the design: another unit, or another zero."""
+    plant = simulation.plant
+    for name, low, high, what in (
+        ("position", 0.0, plant.stroke, "the stroke"),
+        ("pressure_a", -ATMOSPHERIC_PRESSURE, plant.proof_pressure, "the proof pressure"),
+        ("pressure_b", -ATMOSPHERIC_PRESSURE, plant.proof_pressure, "the proof pressure"),
+    ):
+        if name not in used:
+            continue
+        room = BESIDE * (high - low)
+        least, most = float(np.min(used[name][1])), float(np.max(used[name][1]))
+        if least < low - room or most > high + room:
+            say = simulation.told[name].quantity.text
+            yield (
+                f"{name} goes from {say(least)} to {say(most)} in the record, {what} is "
+                f"{say(high)}: check its unit and its zero"
             )

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from math import pi
 from typing import Any
 
 import numpy as np
 
+from ...design.scenario.recorded import Records as Records
+from ...design.scenario.recorded import course
 from ...design.scenario.signals import Part
 from ...numeric import Array, where
 from ...symbolic import Expression, Namespace, jacobian
 from ..system import System
-
-Records = Mapping[tuple[str, str], tuple[Array, Array]]
-"""Time [s] and values [SI] of every column of a file that a part names."""
 
 
 def signal(system: System, parts: Sequence[Part], records: Records) -> Expression:
@@ -32,10 +31,9 @@ def _part(system: System, part: Part, records: Records) -> Expression:
     if part.shape == "constant":
         return value
     if part.shape == "record":
-        assert part.file is not None
-        assert part.column is not None
-        time, values = records[part.file, part.column]
-        time, values = time + start, part.scale * values
+        known = course(part, records)
+        assert known is not None
+        time, values = known
         system.bends += _bends(time, values)
         return system.graph.table(_between(time, values), t, _slope(time, values))
     on = system.after(start)
@@ -103,16 +101,28 @@ def at_start(parts: Sequence[Part], records: Records) -> float:
     for part in parts:
         value: float = getattr(part, "value", None) or 0.0
         if part.shape == "record":
-            known = records.get((part.file or "", part.column or ""))
-            if known is None:
-                continue
-            time, values = known
-            total += part.scale * float(np.interp(-part.start, time, values))
+            known = course(part, records)
+            total += 0.0 if known is None else float(np.interp(0.0, *known))
         elif part.shape == "constant" or (part.shape in ("step", "pulse") and part.start <= 0):
             total += value
         elif part.shape == "sine" and part.start <= 0:
             total += value * math.sin(part.phase)
     return total
+
+
+def acts_after(part: Part, moment: float, records: Records) -> bool:
+    """Whether a part of a signal changes after an instant."""
+    end = math.inf if part.end is None else part.end
+    known = course(part, records)
+    if known is not None:
+        still = float(np.interp(moment, *known))
+        return bool(np.any(known[1][known[0] > moment] != still))
+    if part.shape in ("sine", "record"):
+        return end > moment
+    if part.shape == "ramp" and part.start < moment < end:
+        return True
+    edges = {"step": (part.start,), "ramp": (part.start, end), "pulse": (part.start, end)}
+    return any(moment < edge < math.inf for edge in edges.get(part.shape, ()))
 
 
 def frequencies(parts: Sequence[Part]) -> tuple[float, ...]:

@@ -1,0 +1,133 @@
+"""A measured record as its file holds it: channels by the names of the signals they measure."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...design.scenario.recorded import gap_words, gaps
+from ...errors import Diagnostic, InputError
+from ...identification.record import CHANNELS, Channel, Record, parse_record
+from ...numeric import Array
+
+COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L", "T")} | {
+    "U": Channel("voltage", "V", "signal of the valve", ("signal", "command")),
+    "spool": Channel("voltage", "V", "position of the spool", ("spoolposition",)),
+    "pS": Channel("pressure", "bar", "supply pressure", ("pressuresupply", "psupply", "pp")),
+    "qA": Channel("flow", "l/min", "flow into port A", ("flowa",)),
+    "qB": Channel("flow", "l/min", "flow into port B", ("flowb",)),
+    "n_shaft": Channel("angular_speed", "rpm", "speed of the shaft", ("shaftspeed", "speed")),
+    "phi": Channel("angle", "deg", "angle of the shaft", ("shaftangle",)),
+}
+"""Channels of a record as a header writes them; its temperature is read past."""
+SIGNALS = {
+    "p1": "pressure_a", "p2": "pressure_b", "x": "position", "v": "speed", "F_L": "load_force",
+    "U": "signal", "spool": "spool", "pS": "pressure_supply", "qA": "flow_a", "qB": "flow_b",
+    "n_shaft": "shaft_speed", "phi": "shaft_angle",
+}  # fmt: skip
+"""The simulated signal that each channel measures."""
+FEWEST = 10
+"""Samples of a channel that say something (a choice)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measured:
+    """A measured record on the scenario's time: signals by name, each (time [s], values [SI]).
+
+    Channels may be sampled differently, begin late and have gaps; times rise.
+    """
+
+    channels: Mapping[str, tuple[Array, Array]]
+    name: str = "record"
+    notes: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, record: Record) -> Measured:
+        """The channels of a record; missing samples are left out.
+
+        Raises
+        ------
+        InputError
+            no time at a sample, times that do not rise, no channel that can be compared
+        """
+        time = _rising(record)
+        channels: dict[str, tuple[Array, Array]] = {}
+        notes, missing = [*record.notes], dict[str, list[str]]()
+        known = [column for column in SIGNALS if column in record]
+        for column in known:
+            values, signal = record[column], SIGNALS[column]
+            seen = np.isfinite(values)
+            count = int(np.count_nonzero(seen))
+            if count < FEWEST:
+                notes.append(f"{signal}: {count} samples, left out: {FEWEST} tell something")
+                continue
+            channels[signal] = time[seen], values[seen]
+            if absent := gaps(time, values):
+                missing.setdefault(gap_words(absent), []).append(signal)
+        if known and not channels:
+            message = f"fewer than {FEWEST} numbers in {', '.join(known)}"
+            raise record.fault(message, "give more: an empty cell, nan, inf or 1e30 is none")
+        if not channels:
+            message = "no channel that a simulation tells"
+            raise record.fault(message, f"name columns {', '.join(SIGNALS)} with units")
+        notes += [
+            f"{named(names, channels)}: {words}, left out" for words, names in missing.items()
+        ]
+        still = [signal for signal, (_, values) in channels.items() if np.ptp(values) == 0]
+        if still:
+            notes.append(f"{', '.join(still)}: one value all the time in the record")
+        return cls(channels, record.name, tuple(notes))
+
+    def delayed(self, time: float) -> Measured:
+        """The same record with a time added, as for a logger with another zero."""
+        moved = {name: (t + time, y) for name, (t, y) in self.channels.items()}
+        return Measured(moved, self.name, self.notes)
+
+    def fault(self, message: str, remedy: str) -> InputError:
+        """A fault of this record."""
+        return InputError(Diagnostic(message, remedy, file=self.name))
+
+
+def parse_measured(
+    text: str, *, name: str = "record", columns: Mapping[str, str] | None = None
+) -> Measured:
+    """A measured record from the text of a CSV file, columns as in `COLUMNS`.
+
+    Parameters
+    ----------
+    text : of the file
+    name : of the file, for messages
+    columns : header by channel, where it is none of the known names: ``{"p1": "Channel 3 [bar]"}``
+
+    Raises
+    ------
+    InputError
+        as `identification.parse_record`; no channel that a simulation tells
+    """
+    record = parse_record(text, name=name, columns=columns, channels=COLUMNS)
+    notes = [
+        f"{one}; channels are {', '.join(SIGNALS)}" if one.startswith("columns") else one
+        for one in record.notes
+    ]
+    return Measured.of(replace(record, notes=tuple(notes)))
+
+
+def named(names: Collection[str], every: Collection[str]) -> str:
+    """Some channels by name, or all of them."""
+    return ", ".join(names) if len(names) < max(len(every), 2) else "all channels"
+
+
+def _rising(record: Record) -> Array:
+    """The times of a record, checked."""
+    time = record.time
+    lost = np.flatnonzero(~np.isfinite(time))
+    if lost.size:
+        raise record.fault("no time", "give every sample its time", int(lost[0]))
+    back = np.flatnonzero(np.diff(time) <= 0)
+    if back.size:
+        at = int(back[0]) + 1
+        message = f"time does not rise at {time[at]:.9g} s"
+        raise record.fault(message, "sort the lines by time, leave repeated ones out", at)
+    return time
