@@ -7,6 +7,7 @@ modules are imported inside the commands that need them.
 from __future__ import annotations
 
 import sys
+from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -72,11 +73,15 @@ def _main(
 
 @app.command()
 def init(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the actuator.")] = (
-        "my actuator"
-    ),
+    name: Annotated[
+        str | None, typer.Argument(metavar="NAME", help="Name of the actuator or scenario.")
+    ] = None,
     source: Annotated[
         str | None, typer.Option("--from", metavar="DESIGN", help="Start from this design.")
+    ] = None,
+    scenario: Annotated[
+        str | None,
+        typer.Option("--scenario", metavar="DESIGN", help="A scenario around this design instead."),
     ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", metavar="FILE", help="File to write; default: stdout.")
@@ -84,14 +89,22 @@ def init(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Print or write a commented start file."""
+    """A commented start file, of a design or a scenario."""
     from .design import read_design
     from .design.kinds import ValueFault
+    from .design.scenario.template import scenario_text
     from .design.template import init_text
     from .store import write_text
 
+    if scenario is not None and source is not None:
+        raise UsageError(Diagnostic("--from and --scenario", "give one of them"))
+    given = {} if name is None else {"name": name}
     try:
-        text = init_text(name, None if source is None else read_design(source))
+        if scenario is None:
+            text = init_text(from_design=None if source is None else read_design(source), **given)
+        else:
+            beside = relpath(scenario, Path() if out is None else out.parent)
+            text = scenario_text(read_design(scenario).design, beside, **given)
     except ValueFault as fault:
         raise UsageError(Diagnostic(f"NAME: {fault.message}", fault.remedy)) from None
     if out is not None:

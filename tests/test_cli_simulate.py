@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+import yaml
 from cli_runner import DESIGNS, run
 
 import actuator_opt as ao
@@ -278,3 +279,35 @@ def test_a_run_that_ends_says_where_the_actuator_was(tmp_path):
     assert result.err.startswith("at 0.17")
     assert "pressure in chamber B -1.0" in result.err
     assert "the joint comes to its dead point" in result.err
+
+
+@pytest.mark.parametrize("name", sorted(one.name for one in DESIGNS.glob("*.yaml")))
+def test_a_start_scenario_runs_around_every_design(name, tmp_path):
+    """`init --scenario` writes beside a copy of the design what `check` and `simulate` take."""
+    design, file = tmp_path / name, tmp_path / "more" / "step.yaml"
+    design.write_bytes((DESIGNS / name).read_bytes())
+    file.parent.mkdir()
+    result = run("init", "first step", "--scenario", str(design), "--out", str(file))
+    assert result.code == 0
+    assert yaml.safe_load(file.read_text(encoding="utf-8"))["design"] == f"../{name}"
+    assert run("check", str(file)).code == 0
+    found = json.loads(run("simulate", str(file), "--json").out)
+    assert found["name"] == "first step"
+    assert all(one["met"] for one in found["requirements"])
+
+
+def test_a_start_scenario_and_a_start_design_are_one_or_the_other():
+    """Both at once are refused in one line."""
+    knee = str(DESIGNS / "knee.yaml")
+    result = run("init", "--scenario", knee, "--from", knee)
+    assert (result.code, result.out) == (2, "")
+    assert "give one of them" in result.err
+
+
+def test_check_reads_a_scenario_from_standard_input():
+    """Its faults stand at their lines of <stdin>; a good one has none."""
+    text = SHORT.replace("duration: 0.2 s", "duration: -2 s")
+    for given, code, said in ((SHORT, 0, "-: no faults"), (text, 3, "<stdin>:3:11: duration")):
+        result = run("check", "-", stdin=given.encode())
+        assert result.code == code
+        assert result.err.startswith(said)

@@ -218,9 +218,7 @@ _MARKS = {"design": "cylinder", "scenario": "design"}
 
 
 def is_scenario(source: str | Path) -> bool:
-    """Whether a file, or a text of several lines, looks like a scenario; False for stdin."""
-    if source == "-":
-        return False
+    """Whether a file, or a text of several lines, looks like a scenario."""
     data = parse(*opened(source, "design")).data
     return _MARKS["scenario"] in data and _MARKS["design"] not in data
 

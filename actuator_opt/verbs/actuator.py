@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..design import Design, LoadedDesign, Source, is_scenario, read_design, with_values
+from ..design.reader import TEXT, opened
 from ..errors import Diagnostic, InputError
 from ..evaluation import Subject, compute, prepare
 from ..evaluation.plugin import Plugin, View, collect, load
@@ -98,6 +99,10 @@ def check(
 
     Found too: variables that no model reads, requirements that no model answers.
     """
+    if source == "-":  # read once, whatever it turns out to be
+        text, name = opened(source)
+        found = check(f"{text}\n", set=set, plugins=plugins)
+        return [replace(fault, file=name) if fault.file == TEXT else fault for fault in found]
     try:
         if is_scenario(source):
             from .simulations import read_scenario

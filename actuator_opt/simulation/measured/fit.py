@@ -16,7 +16,7 @@ from ...least_squares import WEAK, Known, Parameter, rated
 from ...numeric import Array
 from ...suggest import shown
 from ..gains import Tuned, tune
-from ..integrate import Method
+from ..methods import Method
 from ..parts.signals import Records
 from ..run import run
 from .bounds import bounds
