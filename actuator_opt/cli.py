@@ -222,7 +222,8 @@ def optimise(
     good = _outcome(result) == ExitCode.MET
     if write is not None and good:
         verbs.save(result.best, write, source=actuator.source)
-    timed = None if trial is None else verbs.verify_dynamics(trial, result.best)
+    with streams.watching():
+        timed = None if trial is None else verbs.verify_dynamics(trial, result.best)
     tables = _dynamics_tables(timed)
     files = write_report(result, actuator, out, date, tables) if reporting else []
     if as_json:

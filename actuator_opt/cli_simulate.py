@@ -91,16 +91,17 @@ def simulate(
         require_apart(csv, *map(str, trial.files))
     method: Method = "cvodes" if fast else "lsoda"
     overlay = None
-    if measured is None:
-        found = verbs.simulate(trial, verify=verify, method=method)
-    else:
-        overlay = verbs.compare_measured(
-            trial, measured, fit=fit or (), columns=named_columns(columns),
-            verify=verify, method=method,
-        )  # fmt: skip
-        found = overlay.simulation
+    with streams.watching():
+        if measured is None:
+            found = verbs.simulate(trial, verify=verify, method=method)
+        else:
+            overlay = verbs.compare_measured(
+                trial, measured, fit=fit or (), columns=named_columns(columns),
+                verify=verify, method=method,
+            )  # fmt: skip
+            found = overlay.simulation
+        ranked = verbs.servo_sensitivities(trial) if sensitivity else None
     data = found.to_dict() | ({} if overlay is None else {"measured": overlay.to_dict()})
-    ranked = verbs.servo_sensitivities(trial) if sensitivity else None
     if ranked is not None:
         data["sensitivities"] = ranked.to_dict()
     files: list[dict[str, Any]] = []

@@ -8,13 +8,18 @@ from __future__ import annotations
 import io
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from time import monotonic
 from typing import Any, TextIO, TypedDict
 
 from .errors import Diagnostic, ExitCode, InputError
+from .progress import watched
 
 NARROWEST, USUAL, TERMINAL = 40, 100, 80
 """Columns: at least, where the output is no terminal, and where a terminal does not say."""
+PATIENCE, PAUSE = 1.0, 0.2
+"""Seconds before progress is told, and between two tellings."""
 
 
 class Style(TypedDict):
@@ -82,6 +87,38 @@ def err(text: str) -> None:
         stream.flush()
     except OSError:  # nowhere left to say it
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+@contextmanager
+def watching() -> Iterator[None]:
+    """Tell long work on standard error, where that is a terminal; nothing of it stays."""
+    stream: TextIO | None = sys.stderr
+    if stream is None or not stream.isatty() or os.environ.get("TERM") == "dumb":
+        yield
+        return
+    begin = piece = last = monotonic()
+    shown, done = "", 0.0
+
+    def show(what: str, share: float | None) -> None:
+        nonlocal piece, last, shown, done
+        now = monotonic()
+        if share is not None:
+            piece, done = (now if share < done else piece), share  # a new piece of work begins
+        if now < begin + PATIENCE or now < last + PAUSE:
+            return
+        left = f", {(now - piece) * (1 / share - 1):.0f} s left" if share else ""
+        words = what if share is None else f"{what}, {100 * share:.0f} %{left}"
+        stream.write(f"\r{words.ljust(len(shown))}")
+        stream.flush()
+        last, shown = now, words
+
+    try:
+        with watched(show):
+            yield
+    finally:
+        if shown:
+            stream.write(f"\r{' ' * len(shown)}\r")
+            stream.flush()
 
 
 def out_json(data: Any) -> None:

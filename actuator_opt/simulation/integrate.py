@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..numeric import Array
+from ..progress import tell
 from .methods import METHODS, MOST, RELATIVE, Advance, Method, Stuck
 from .system import Compiled
 
@@ -56,6 +57,7 @@ class Trajectory:
 class _Run:
     compiled: Compiled
     advance: Advance
+    duration: float
     time: list[Array] = field(default_factory=list)
     states: list[Array] = field(default_factory=list)
     flags: list[Array] = field(default_factory=list)
@@ -96,7 +98,7 @@ def integrate(
     counted = [0]
     tolerance = RELATIVE[method] if relative is None else relative
     advance = METHODS[method](compiled, tolerance, counted)
-    run = _Run(compiled, advance)
+    run = _Run(compiled, advance, duration)
     count = max(round(duration / sample_time), 1)
     looks = math.ceil(sample_time / LOOK) if compiled.system.switches else 1
     grid = np.linspace(0.0, duration, looks * count + 1)
@@ -167,6 +169,7 @@ def _segment(
         wanted = np.concatenate(([own], told[begin + 1 : end + 1]))
         asked, found, turn = _ahead(run, asked, y, m)
         run.restarts += 1
+        tell("simulating", start / run.duration)
         if turn is None:
             wanted[-1] &= end == last  # the next piece has its first sample
             run.keep(asked[wanted], found[wanted], m)

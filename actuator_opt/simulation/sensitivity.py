@@ -21,6 +21,7 @@ from ..errors import Diagnostic, InputError, Unsolvable
 from ..evaluation.build import prepare
 from ..evaluation.kernel import Subject
 from ..evaluation.study.plant import plant
+from ..progress import steps
 from ..quantities import RESULTS, Quantity
 from ..suggest import remedy
 from .gains import Tuned, tune
@@ -160,7 +161,7 @@ def sensitivities(
     chosen = _results(base, results)
     found: list[Parameter] = []
     skipped: dict[str, str] = {}
-    for one in bench.targets(names):
+    for one in steps("moving each parameter", [*bench.targets(names)]):
         if one.value == 0:
             skipped[one.path] = "it is 0: a share of it moves nothing"
             continue

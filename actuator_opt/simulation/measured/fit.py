@@ -14,6 +14,7 @@ from ...design.scenario.model import Scenario
 from ...evaluation.study.plant import Plant
 from ...least_squares import WEAK, Known, Parameter, rated
 from ...numeric import Array
+from ...progress import whole
 from ...suggest import shown
 from ..gains import Tuned, tune
 from ..methods import Method
@@ -152,7 +153,8 @@ def fit(
     dense = {"sample_time": problem.step}
     start = run(scenario.model_copy(update=dense), plant, records, gains, spec=spec)
     before = overlay(start, measured, lag=first)
-    x = problem.solve()
+    with whole("fitting"):
+        x = problem.solve()
     told = bounds(problem, x)
     fitted = {
         one.name: Fitted(one, _natural(one, told, problem), _edge(problem, x, k))

@@ -19,6 +19,7 @@ from ...errors import InputError, Unsolvable
 from ...evaluation.build import evaluate
 from ...evaluation.kernel import Subject
 from ...evaluation.result import Requirement
+from ...progress import steps
 from ...quantities import METRICS
 from ..assemble import loop_of
 from ..parts.signals import Records
@@ -140,7 +141,7 @@ def verify(
         result = simulate(scenario, subject, records=records)
     bench = _Bench(scenario, LinearTier.of(subject), tally, scale)
     asked = [one for one in evaluate(subject).requirements if one.metric in DYNAMIC]
-    rows = [bench.row(one) for one in asked]
+    rows = [bench.row(one) for one in steps("verifying each requirement", asked)]
     rows += [
         Row("scenario", one.metric, one.sense, one.limit, None, None, one.value, None, one.met,
             where=scenario.name, how="the scenario itself", why=one.why)
