@@ -140,11 +140,15 @@ def test_a_multiplier_lies_between_the_slopes_beside_it() -> None:
 
 
 def test_the_closed_forms_agree_with_the_model(numbers) -> None:
-    """Spool, resonance and integrator give the bandwidth within 5 %, the leaking spring 3 %."""
+    """Spool, resonance and integrator give the bandwidth within 5 %.
+
+    One spring that leaks is stiffer than two that leak at different rates, by 1 to 11 % here.
+    """
     for row in numbers["series"]["bandwidth"]["points"]:
         assert row["with_spool"] == pytest.approx(row["metrics"]["bandwidth"], rel=0.05)
     for row in numbers["series"]["dynamic_stiffness"]["points"]:
-        assert row["maxwell"] == pytest.approx(1e-6 * row["metrics"]["dynamic_stiffness"], rel=0.03)
+        high = 1e6 * row["maxwell"] / row["metrics"]["dynamic_stiffness"]
+        assert 1.0 < high < 1.11
 
 
 def test_a_quick_spool_comes_to_merritts_limit() -> None:
