@@ -456,3 +456,28 @@ def test_the_pi_of_the_shaft_angle_keeps_its_margin() -> None:
     one = found("motor_position", control__law="pi")
     assert one.tuned.margins.gain >= 0.9 * 3
     assert one.values["settling_time"] is not None
+
+
+def test_the_scenarios_notes_say_what_happens() -> None:
+    """Overshoots, standing errors and pressures in the shipped notes are those of the runs."""
+    said = " ".join(trial("position_servo").scenario.notes.split())
+    rule = {"control__tuning": "ziegler_nichols"}
+    for law, pattern in (("pi", r"overshoot by (\d+) and"), ("pid", r"and (\d+) % here")):
+        overshoot = found("position_servo", control__law=law, **rule).values["overshoot"]
+        assert 100 * overshoot == pytest.approx(float(re.search(pattern, said)[1]), abs=0.5)
+    servo = found("position_servo").servo
+    millimetres = float(re.search(r"ends ([\d.]+) mm beyond", said)[1])
+    assert -1e3 * servo.metrics.steady_state_error == pytest.approx(millimetres, abs=0.006)
+    said = " ".join(trial("motor_position").scenario.notes.split())
+    short = float(re.search(r"ends (\d+) degrees short", said)[1])
+    assert math.degrees(found("motor_position").servo.metrics.steady_state_error) == pytest.approx(
+        short, abs=0.5
+    )
+    said = " ".join(trial("motor_velocity").scenario.notes.split())
+    volts, high, low = map(
+        float, re.search(r"take ([\d.]+) V and (\d+) and (\d+) bar", said).groups()
+    )
+    end = {name: values[-1] for name, values in found("motor_velocity").signals.items()}
+    assert end["spool"] == pytest.approx(volts, abs=0.05)
+    assert end["pressure_a"] / 1e5 == pytest.approx(high, abs=0.5)
+    assert end["pressure_b"] / 1e5 == pytest.approx(low, abs=0.5)
