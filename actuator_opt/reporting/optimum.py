@@ -118,13 +118,16 @@ def quality(optimisation: Optimisation) -> str:
 
 
 def sentence(words: str) -> str:
-    """Words with a capital letter and a full stop.
+    """Words with a capital letter and a full stop; a name as pressure_a stays as it is.
 
-    >>> sentence("optimum found")
-    'Optimum found.'
+    >>> sentence("optimum found"), sentence("pressure_a: left out")
+    ('Optimum found.', 'pressure_a: left out.')
     """
     words = words.strip()
-    return words and words[0].upper() + words[1:] + ("" if words[-1] in ".!?" else ".")
+    if not words:
+        return ""
+    first = words[0] if "_" in words.split()[0] else words[0].upper()
+    return first + words[1:] + ("" if words[-1] in ".!?" else ".")
 
 
 def convergence(optimisation: Optimisation) -> list[str]:
