@@ -12,7 +12,6 @@ designs/scenarios, beside closed forms, the linear model and the statements of t
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cache
@@ -35,8 +34,8 @@ from actuator_opt.reporting.ink import BLUE, GREY, RED, WHITE, Ink, text_width
 from actuator_opt.reporting.simulation_axes import names as named_above
 from actuator_opt.reporting.simulation_comparison import comparison
 from actuator_opt.reporting.simulation_comparison_figures import comparison_figure
+from actuator_opt.reporting.study import rounded, study_sheets, write_study
 from actuator_opt.reporting.text import NARROW, fixed, number
-from actuator_opt.reporting.writer import TEMPLATE, sheets
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.harmonic import harmonic_fit
 from actuator_opt.simulation.result import Shaken
@@ -459,9 +458,7 @@ def compute(*, quick: bool = False) -> Data:
         "throttled": full_throttle(RATCHETS[1:] if quick else RATCHETS),
         "slip": [slip(hz, travel) for travel in ("20 um", "0.1 mm") for hz in FORCES],
     }
-    text = json.dumps(study, allow_nan=False)
-    found: Data = json.loads(text, parse_float=lambda digits: float(f"{float(digits):.5g}"))
-    return found
+    return rounded(study, 5)
 
 
 # ---- the page ----
@@ -1053,25 +1050,17 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
         figure("Slip of the seals: velocity behind the load cell", slip_drawing(study)),
         {"kind": "pair", "title": "", "sides": sides, "note": ""},
     ]
-    data = {
+    shown = {
         "version": study["version"],
         "lead": lead(study),
         "blocks": blocks,
-        "numbers": json.dumps(study, indent=1, allow_nan=False),
     }
-    shared, mark, _ = TEMPLATE.read_text("utf-8").partition("// ---- sheet ----")
-    assert mark, "the report template no longer says where its definitions end"
-    source = shared + Path(__file__).with_suffix(".typ").read_text("utf-8")
-    return sheets(source.encode(), data, timestamp=0)
+    return study_sheets(Path(__file__), study, shown)
 
 
 def write(study: Data, folder: Path) -> int:
     """Write aalto_rig.pdf and the PNG of its first sheet; how many sheets there are."""
-    pdf, images = page(study)
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "aalto_rig.pdf").write_bytes(pdf)
-    (folder / "aalto_rig.png").write_bytes(images[0])
-    return len(images)
+    return write_study(page(study), folder, "aalto_rig")
 
 
 def main() -> None:

@@ -13,7 +13,6 @@ extra: the course asks the variations of the other two.
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import dataclass
 from math import isfinite, pi, sqrt
 from pathlib import Path
@@ -26,8 +25,8 @@ from actuator_opt.models.tuning import ziegler_nichols
 from actuator_opt.reporting.blocks import Block, column, figure, notes, table
 from actuator_opt.reporting.simulation_comparison import comparison
 from actuator_opt.reporting.simulation_comparison_figures import LEAST, comparison_figure
+from actuator_opt.reporting.study import rounded, study_sheets, write_study
 from actuator_opt.reporting.text import fixed, number
-from actuator_opt.reporting.writer import TEMPLATE, sheets
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.sensitivity import sensitivities
 from actuator_opt.tables import aligned
@@ -332,10 +331,7 @@ def numbers(study: Study) -> Data:
         "pulse": study.pulse,
         "sensitive": study.sensitive,
     }
-    found: Data = json.loads(
-        json.dumps(data, allow_nan=False), parse_float=lambda digits: float(f"{float(digits):.7g}")
-    )
-    return found
+    return rounded(data)
 
 
 # ---- tables ----
@@ -504,12 +500,8 @@ def page(study: Study) -> tuple[bytes, list[bytes]]:
         "version": data["version"],
         "lead": sentences(data),
         "blocks": blocks,
-        "numbers": json.dumps(data, indent=1, allow_nan=False),
     }
-    shared, mark, _ = TEMPLATE.read_text("utf-8").partition("// ---- sheet ----")
-    assert mark, "the report template no longer says where its definitions end"
-    source = shared + Path(__file__).with_suffix(".typ").read_text("utf-8")
-    return sheets(source.encode(), shown, timestamp=0)
+    return study_sheets(Path(__file__), data, shown)
 
 
 _RAISED = "Ultimate gain: of the linear loop, and by raising it until the loop swings"
@@ -540,11 +532,7 @@ def _table(title: str, grid: list[list[str]], note: str = "") -> Block:
 
 def write(study: Study, folder: Path) -> int:
     """Write course_servo.pdf and the PNG of its first sheet; how many sheets there are."""
-    pdf, images = page(study)
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "course_servo.pdf").write_bytes(pdf)
-    (folder / "course_servo.png").write_bytes(images[0])
-    return len(images)
+    return write_study(page(study), folder, "course_servo")
 
 
 def main() -> None:

@@ -13,7 +13,6 @@ what other single changes give in bandwidth at the same mass.
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Iterable
 from itertools import pairwise
 from math import ceil, floor, pi, sqrt
@@ -27,8 +26,8 @@ from actuator_opt.quantities import METRICS
 from actuator_opt.reporting.blocks import column, figure, table
 from actuator_opt.reporting.figures import Axes
 from actuator_opt.reporting.ink import BLUE, GREY, RED, WHITE, Ink
+from actuator_opt.reporting.study import rounded, study_sheets, write_study
 from actuator_opt.reporting.text import fixed, number
-from actuator_opt.reporting.writer import TEMPLATE, sheets
 from actuator_opt.tables import aligned
 
 DESIGN = Path(__file__).resolve().parents[1] / "servo_knee.yaml"
@@ -216,11 +215,7 @@ def compute(*, quick: bool = False) -> Data:
             for name in changes
         },
     }
-    text = json.dumps(
-        study, allow_nan=False
-    )  # seven digits: the last bits of a machine do not show
-    found: Data = json.loads(text, parse_float=lambda digits: float(f"{float(digits):.7g}"))
-    return found
+    return rounded(study)
 
 
 def shown(metric: str, row: Data) -> float:
@@ -369,8 +364,8 @@ def remarks(study: Data) -> Data:
         "dynamic_stiffness": (
             f"{every['dynamic_stiffness']} Closed form: the weakest static stiffness as a spring"
             " that leaks (Maxwell) at the rate of the modes' damping, less the inertia of the mass;"
-            f" up to {number(100 * (max(high) - 1), 2)} % high, since the chambers leak at different"
-            " rates."
+            f" up to {number(100 * (max(high) - 1), 2)} % high, since the chambers leak at"
+            " different rates."
         ),
         "changes": (
             f"Each re-optimised for bandwidth at {fixed(1e3 * base['mass'], 1)} g."
@@ -400,25 +395,17 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
         else:
             columns[0]["width"], columns[6]["width"] = "16mm", "14.4mm"
         blocks.append(table(TITLES[name], columns, rows, note=said[name]))
-    data = {
+    shown = {
         "version": study["version"],
         "lead": [sentence(name, found[name]) for name in ASKED],
         "blocks": blocks,
-        "numbers": json.dumps(study, indent=1, allow_nan=False),
     }
-    shared, mark, _ = TEMPLATE.read_text("utf-8").partition("// ---- sheet ----")
-    assert mark, "the report template no longer says where its definitions end"
-    source = shared + Path(__file__).with_suffix(".typ").read_text("utf-8")
-    return sheets(source.encode(), data, timestamp=0)
+    return study_sheets(Path(__file__), study, shown)
 
 
 def write(study: Data, folder: Path) -> int:
     """Write knee_dynamics.pdf and the PNG of its first sheet; how many sheets there are."""
-    pdf, images = page(study)
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "knee_dynamics.pdf").write_bytes(pdf)
-    (folder / "knee_dynamics.png").write_bytes(images[0])
-    return len(images)
+    return write_study(page(study), folder, "knee_dynamics")
 
 
 def main() -> None:

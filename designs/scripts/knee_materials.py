@@ -11,7 +11,6 @@ table, a figure and a discussion of what decides.
 
 from __future__ import annotations
 
-import json
 import sys
 from functools import cache
 from math import ceil, floor, inf
@@ -24,8 +23,8 @@ import yaml
 import actuator_opt as ao
 from actuator_opt.reporting.figures import Axes
 from actuator_opt.reporting.ink import GREY, RED, Ink, spread_within
+from actuator_opt.reporting.study import rounded, study_sheets, write_study
 from actuator_opt.reporting.text import fixed, trimmed
-from actuator_opt.reporting.writer import TEMPLATE, sheets
 from actuator_opt.tables import aligned
 
 DESIGNS = Path(__file__).resolve().parents[1]
@@ -430,34 +429,14 @@ def _names(ink: Ink, axes: Axes, ends: dict[str, float]) -> None:
 
 def page(study: Data) -> tuple[bytes, list[bytes]]:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
-    shared, mark, _ = TEMPLATE.read_text("utf-8").partition("// ---- sheet ----")
-    assert mark, "the report template no longer says where its definitions end"
-    source = (shared + Path(__file__).with_suffix(".typ").read_text("utf-8")).encode()
-    numbers = json.dumps(_rounded(study), indent=1, sort_keys=True, allow_nan=False)
-    data = json.loads(numbers) | {
-        "labels": LABELS,
-        "figure": figure(study).data(),
-        "numbers": numbers,
-    }
-    return sheets(source, data, timestamp=0)
-
-
-def _rounded(value: Any) -> Any:
-    """Numbers to seven digits, so that the last bits of a machine do not show."""
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_rounded(item) for item in value]
-    return float(f"{value:.7g}") if isinstance(value, float) else value
+    found = rounded(study)
+    shown = {**found, "labels": LABELS, "figure": figure(study).data()}
+    return study_sheets(Path(__file__), found, shown)
 
 
 def write(study: Data, folder: Path) -> int:
     """Write knee_materials.pdf and the PNG of its first sheet; how many sheets there are."""
-    pdf, images = page(study)
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "knee_materials.pdf").write_bytes(pdf)
-    (folder / "knee_materials.png").write_bytes(images[0])
-    return len(images)
+    return write_study(page(study), folder, "knee_materials")
 
 
 def table(study: Data) -> str:

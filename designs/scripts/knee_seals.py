@@ -13,7 +13,6 @@ and are checked by solving again; closed forms stand beside the models.
 from __future__ import annotations
 
 import argparse
-import json
 from math import ceil, floor, pi
 from pathlib import Path
 from typing import Any
@@ -25,8 +24,8 @@ from actuator_opt.models.elastomer import modulus_gent
 from actuator_opt.reporting.blocks import column, figure, table
 from actuator_opt.reporting.figures import Axes
 from actuator_opt.reporting.ink import BLUE, GREY, RED, WHITE, Ink
+from actuator_opt.reporting.study import rounded, study_sheets, write_study
 from actuator_opt.reporting.text import fixed, number
-from actuator_opt.reporting.writer import TEMPLATE, sheets
 from actuator_opt.tables import aligned
 
 DESIGN = Path(__file__).resolve().parents[1] / "knee.yaml"
@@ -308,10 +307,7 @@ def compute(*, quick: bool = False) -> Data:
         "prices": prices,
         "choices": [row for bare in (False, True) for row in enumerated(bare, quick)],
     }
-    text = json.dumps(study, allow_nan=False)
-    # seven digits: the last bits of a machine do not show
-    found: Data = json.loads(text, parse_float=lambda digits: float(f"{float(digits):.7g}"))
-    return found
+    return rounded(study)
 
 
 def grams(found: float, name: str) -> float:
@@ -593,25 +589,17 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
             if name == "choices":
                 columns[-1] |= {"align": "left", "width": 1}
         blocks.append(table(TITLES[name], columns, rows, note=said[name]))
-    data = {
+    shown = {
         "version": study["version"],
         "lead": lead(study),
         "blocks": blocks,
-        "numbers": json.dumps(study, indent=1, allow_nan=False),
     }
-    shared, mark, _ = TEMPLATE.read_text("utf-8").partition("// ---- sheet ----")
-    assert mark, "the report template no longer says where its definitions end"
-    source = shared + Path(__file__).with_suffix(".typ").read_text("utf-8")
-    return sheets(source.encode(), data, timestamp=0)
+    return study_sheets(Path(__file__), study, shown)
 
 
 def write(study: Data, folder: Path) -> int:
     """Write knee_seals.pdf and the PNG of its first sheet; how many sheets there are."""
-    pdf, images = page(study)
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "knee_seals.pdf").write_bytes(pdf)
-    (folder / "knee_seals.png").write_bytes(images[0])
-    return len(images)
+    return write_study(page(study), folder, "knee_seals")
 
 
 def main() -> None:
