@@ -430,7 +430,7 @@ def _names(ink: Ink, axes: Axes, ends: dict[str, float]) -> None:
 def page(study: Data) -> tuple[bytes, list[bytes]]:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
     found = rounded(study)
-    shown = {**found, "labels": LABELS, "figure": figure(study).data()}
+    shown = {**found, "labels": LABELS, "figure": figure(found).data()}
     return study_sheets(Path(__file__), found, shown)
 
 
