@@ -160,7 +160,11 @@ def circuit_of(subject, done, case, position, direction=None):
         up, down = supply - pressures[name], pressures[name] - drain
         past = PISTON_LEAKAGE * (1 if name == "a" else -1) * (pressures["a"] - pressures["b"])
         fed = max(leak * math.sqrt(up), leak * math.sqrt(down) + past)  # one edge leaks, one feeds
-        ends = [("conductance", fed / (2 * up) + (fed - past) / (2 * down))]
+        into, out = fed, fed - past
+        if direction is not None:  # an edge that this way does not open only leaks
+            fills = (name == "a") == (direction == "extending")
+            into, out = (into, leak * math.sqrt(down)) if fills else (leak * math.sqrt(up), out)
+        ends = [("conductance", into / (2 * up) + out / (2 * down))]
         if direction is None:
             kind = subject.design.ports.end
             ends = {

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from ..design.circuit import Line
 from ..design.model import Design
 from ..models import accumulator, elements, holding_valve, line_ends, lines, one_way_valve, valve
 from ..models.line_ends import LineEnd
-from ..numeric import Array, where
+from ..numeric import Array, maximum, where
 from .geometry import Geometry
 from .state import State
 from .values import Values
@@ -90,12 +92,22 @@ class Ways(NamedTuple):
 
 
 class LinearValve(NamedTuple):
-    """The valve linearised where it holds the load; both empty without one."""
+    """The valve linearised where it holds the load."""
 
     gains: dict[Chamber, Ways]
     """Flow gains K_q into the lines, A +, B - [m^3/s/V]."""
-    ends: dict[Chamber, LineEnd]
-    """Flow-pressure coefficients K_c as line ends; a valve that leaks nothing closes them."""
+    conductances: dict[Chamber, Ways]
+    """Flow-pressure coefficients K_c [m^3/s/Pa]; empty where nothing leaks: it closes the lines."""
+
+    def held(self, chamber: Chamber) -> LineEnd:
+        """As the end of a chamber's line while it holds the load."""
+        ways = self.conductances.get(chamber)
+        return LineEnd((maximum(*ways),)) if ways else line_ends.CLOSED
+
+    def driving(self, chamber: Chamber, extending: Array) -> LineEnd:
+        """As the end of a chamber's line while it drives."""
+        ways = self.conductances.get(chamber)
+        return LineEnd((ways.toward(extending),)) if ways else line_ends.CLOSED
 
 
 class Edges(NamedTuple):
@@ -129,10 +141,10 @@ def valve_edges(v: Values, design: Design, state: State) -> Edges:
     )
 
 
-def linear_valve(v: Values, design: Design, state: State, leakage: Array) -> LinearValve:
+def linear_valve(v: Values, design: Design, state: State, leakage: Array) -> LinearValve | None:
     """Valve at the held pressures, its spool where it feeds its own leakage and the piston's."""
     if design.valve is None:
-        return LinearValve({}, {})
+        return None
     edges = valve_edges(v, design, state)
     out, back = (
         holding_valve.valve_slopes(
@@ -149,13 +161,14 @@ def linear_valve(v: Values, design: Design, state: State, leakage: Array) -> Lin
         )
         for extending in (True, False)
     )
-    tight = design.valve.leakage_flow == 0 and "valve.leakage_flow" not in v.varied
+    conductances: dict[Chamber, Ways] = {
+        "a": Ways(out.conductance_a, back.conductance_a),
+        "b": Ways(out.conductance_b, back.conductance_b),
+    }
+    tight = not any(np.any(np.real(one) > 0) for ways in conductances.values() for one in ways)
     return LinearValve(
         {"a": Ways(out.gain_a, back.gain_a), "b": Ways(-out.gain_b, -back.gain_b)},
-        {
-            "a": line_ends.CLOSED if tight else LineEnd((out.conductance_a,)),
-            "b": line_ends.CLOSED if tight else LineEnd((out.conductance_b,)),
-        },
+        {} if tight else conductances,
     )
 
 
@@ -190,15 +203,15 @@ def throttle_conductances(
 def line_end(
     v: Values,
     design: Design,
-    holding: dict[Chamber, LineEnd],
+    holding: LinearValve | None,
     accumulators: tuple[LineEnd, ...],
     chamber: Chamber,
 ) -> LineEnd:
     """What ends the line of a chamber while the load shakes the actuator."""
     ends = list(accumulators)
     kind = design.ports.end
-    if kind == "valve":
-        ends.append(holding[chamber])
+    if kind == "valve" and holding is not None:
+        ends.append(holding.held(chamber))
     elif kind == "constant_pressure":
         return line_ends.CONSTANT_PRESSURE
     elif kind == "reducing_valve":

@@ -18,7 +18,7 @@ from ..models.line_ends import LineEnd
 from ..models.linear import LinearActuator, Side
 from ..numeric import Array, angle, magnitude, maximum, real, where
 from . import circuit
-from .circuit import CHAMBERS, Branch, Chamber, Ways
+from .circuit import CHAMBERS, Branch, Chamber, LinearValve, Ways
 from .rows import Computed
 from .springs import Springs, weakest_per_chamber
 from .state import State
@@ -44,10 +44,9 @@ class Motion:
     """Cases whose piston extends: how the throttles work while the load shakes."""
     held: dict[Chamber, LineEnd]
     """What ends the lines while the load shakes the actuator, accumulators included."""
-    driven: dict[Chamber, LineEnd]
-    """What ends them while the valve drives, accumulators included; empty without a valve."""
-    gains: dict[Chamber, Ways]
-    """Flow gains of the valve into the lines, A +, B - [m^3/s/V]; empty without."""
+    accumulators: dict[Chamber, tuple[LineEnd, ...]]
+    """Those at the ports."""
+    valve: LinearValve | None
     spool: tuple[Array, Array] | None
 
     def model(self, position: Array, *, extending: Array | None = None) -> LinearActuator:
@@ -64,6 +63,11 @@ class Motion:
             CHAMBERS, (s.geometry.area_a, s.geometry.area_b), (near.a, near.b), strict=True
         ):
             branch, throttle = self.branches[chamber], self.throttles.get(chamber)
+            end, gain = self.held[chamber], 0.0
+            if extending is not None and self.valve is not None:
+                end = self.valve.driving(chamber, extending)
+                end = line_ends.parallel_ends(end, *self.accumulators[chamber])
+                gain = self.valve.gains[chamber].toward(extending)
             sides[chamber] = Side(
                 area=area,
                 compliance=whole - branch.far,
@@ -71,8 +75,8 @@ class Motion:
                 resistance=branch.resistance,
                 inertance=branch.inertance,
                 far_compliance=branch.far,
-                end=(self.driven if driven else self.held)[chamber],
-                flow_gain=self.gains[chamber].toward(way) if driven else 0.0,
+                end=end,
+                flow_gain=gain,
             )
         return linear.linear_actuator(
             side_a=sides["a"],
@@ -130,14 +134,11 @@ def derive(
         throttles=circuit.throttle_conductances(v, design, state, springs.geometry),
         push=state.push,
         held={
-            chamber: circuit.line_end(v, design, holding.ends, accumulators[chamber], chamber)
+            chamber: circuit.line_end(v, design, holding, accumulators[chamber], chamber)
             for chamber in CHAMBERS
         },
-        driven={
-            chamber: line_ends.parallel_ends(end, *accumulators[chamber])
-            for chamber, end in holding.ends.items()
-        },
-        gains=holding.gains,
+        accumulators=accumulators,
+        valve=holding,
         spool=(v["valve.natural_frequency"], v["valve.damping_ratio"]) if design.valve else None,
     )
 

@@ -41,7 +41,8 @@ def warnings(
 
 def _weakest_gain(motion: Motion) -> Array:
     """Smallest flow gain of the valve over chambers and directions, in every case."""
-    gains = [np.abs(np.real(gain)) for ways in motion.gains.values() for gain in ways]
+    assert motion.valve is not None
+    gains = [np.abs(np.real(gain)) for ways in motion.valve.gains.values() for gain in ways]
     return np.min(np.stack(np.broadcast_arrays(*gains)), axis=0)
 
 

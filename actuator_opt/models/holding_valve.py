@@ -70,7 +70,7 @@ def feeding_edges(
 
 
 class ValveSlopes(NamedTuple):
-    """Valve that holds a load: into chamber A dq_A = G_A du - C_A dp_A, out of B G_B du."""
+    """About a held load, in one direction: into A dq_A = G_A du - C_A dp_A, out of B G_B du."""
 
     gain_a: Array
     """Flow into chamber A per signal [m^3/s/V]."""
@@ -94,12 +94,13 @@ def valve_slopes(
     leakage_tank: Array | None = None,
     piston_leakage: Array = 0.0,
 ) -> ValveSlopes:
-    """Small-signal model of a valve that holds a load; flow gains differ by direction.
+    """Small-signal model of a valve that holds a load, in the direction in which its spool opens.
 
     K(U) = K0 + (K10 - K0)|U|/U_max on opening edges, so G = ((K10 - K0)/U_max) sqrt(dp) of the
     edge that opens: P-A and B-T extending, A-T and P-B retracting. Each chamber's conductance is
-    that of both its edges, the spool moved until they feed what leaks (`feeding_edges`): on alike
-    edges without load that is the centre, under load it is more.
+    that of both its edges: where this direction feeds what leaks, of the spool that rests there
+    (`feeding_edges`); else of the centre, where the load only drifts. Held, a chamber has the
+    larger one of both directions.
 
     Parameters
     ----------
@@ -143,7 +144,8 @@ def valve_slopes(
 
     past = piston_leakage * (pressure_a - pressure_b)
 
-    def conductance(into: Array, out: Array, lost: Array) -> Array:
+    def conductances(into: Array, out: Array, lost: Array) -> tuple[Array, Array]:
+        """Of a chamber whose supply edge may open, and of one whose tank edge may."""
         edges = feeding_edges(
             rated_coefficient=rated_coefficient,
             leakage_supply=leakage_coefficient,
@@ -152,13 +154,20 @@ def valve_slopes(
             out=out,
             lost=lost,
         )
-        return edge_conductance(coefficient=edges.supply, pressure_drop=into) + edge_conductance(
-            coefficient=edges.tank, pressure_drop=out
+        fed, leaks = (
+            edge_conductance(coefficient=one, pressure_drop=into)
+            for one in (edges.supply, leakage_coefficient)
         )
+        drained, drips = (
+            edge_conductance(coefficient=one, pressure_drop=out) for one in (edges.tank, tank)
+        )
+        return fed + drips, leaks + drained
 
+    fed_a, drained_a = conductances(into_a, from_a, past)
+    fed_b, drained_b = conductances(into_b, from_b, -past)
     return ValveSlopes(
         gain(where(extending, slope_supply, slope_tank), drop_a),
         gain(where(extending, slope_tank, slope_supply), drop_b),
-        conductance(into_a, from_a, past),
-        conductance(into_b, from_b, -past),
+        where(extending, fed_a, drained_a),
+        where(extending, drained_b, fed_b),
     )
