@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
+from scipy.optimize import brentq, fsolve
 from servo_oracle_parts import (
     ConstantSupply,
     ControlledPump,
@@ -328,32 +328,8 @@ def linearise(
 ) -> tuple[Floats, Floats]:
     """State matrix and command column at a point, open loop, by central differences.
 
-    `side` is the sign of the spool whose branch is taken. The load of the first piece acts. Where
-    the start has a spool, that holds the load, and only its own column is that of the branch.
+    `side` is the sign of the spool whose branch is taken. The load of the first piece acts.
     """
-    if start.get("spool"):
-        matrix, column = _slopes(circuit, start, math.copysign(1.0, start["spool"]), names)
-        opened, _ = _slopes(circuit, start | {"spool": 0.0}, side, names)
-        matrix[:, names.index("spool")] = opened[:, names.index("spool")]
-        return matrix, column
-    return _slopes(circuit, start, side, names)
-
-
-def holding(circuit: Circuit, start: dict[str, float], most: float = 9.0) -> dict[str, float]:
-    """The start with the spool at which chamber A gains no oil."""
-    bare, load = replace(circuit, controller=None), circuit.load.piece(0.0)
-
-    def gained(spool: float) -> float:
-        y, side = start_state(circuit, start | {"spool": spool}), math.copysign(1.0, spool)
-        point = bare.evaluate(0.0, y, (line(0.0), load), Mode(), side)
-        return float(point.rates[STATES.index("p_a")])
-
-    return start | {"spool": float(brentq(gained, -most, most, xtol=1e-13))}
-
-
-def _slopes(
-    circuit: Circuit, start: dict[str, float], side: float, names: tuple[str, ...]
-) -> tuple[Floats, Floats]:
     bare = replace(circuit, controller=None)
     y0, load = start_state(circuit, start), circuit.load.piece(0.0)
     index = [STATES.index(name) for name in names]
@@ -368,6 +344,38 @@ def _slopes(
         step[i] = size = STATE_SIZES[name][1]
         columns.append((rates(y0 + step, 0.0) - rates(y0 - step, 0.0)) / (2 * size))
     return np.array(columns).T, (rates(y0, 1e-3) - rates(y0, -1e-3)) / 2e-3
+
+
+def holding(circuit: Circuit, start: dict[str, float], most: float = 9.0) -> dict[str, float]:
+    """The start with the spool at which chamber A gains no oil."""
+    bare, load = replace(circuit, controller=None), circuit.load.piece(0.0)
+
+    def gained(spool: float) -> float:
+        y, side = start_state(circuit, start | {"spool": spool}), math.copysign(1.0, spool)
+        point = bare.evaluate(0.0, y, (line(0.0), load), Mode(), side)
+        return float(point.rates[STATES.index("p_a")])
+
+    return start | {"spool": float(brentq(gained, -most, most, xtol=1e-13))}
+
+
+def about_rest(circuit: Circuit, start: dict[str, float], side: float) -> dict[str, float]:
+    """The held state where its spool lies on a side; else the drift that passes the centre."""
+    held = holding(circuit, start)
+    if held["spool"] * side > 0:
+        return held
+    bare, load = replace(circuit, controller=None), circuit.load.piece(0.0)
+    names = ("p_a", "p_b", "velocity")
+    size = np.array([1e6, 1e6, 1e-3])
+
+    def moved(x: Floats) -> Floats:
+        y = start_state(circuit, start | dict(zip(names, x * size, strict=True)))
+        point = bare.evaluate(0.0, y, (line(0.0), load), Mode(), side)
+        return np.array([point.rates[STATES.index(name)] for name in names]) / [1e9, 1e9, 1.0]
+
+    begin = np.array([start.get(name, 0.0) for name in names]) / size
+    found, _, good, why = fsolve(moved, begin, xtol=1e-13, full_output=True)
+    assert good == 1, why
+    return start | dict(zip(names, found * size, strict=True))
 
 
 def ultimate_gain_by_swinging(

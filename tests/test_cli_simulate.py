@@ -255,7 +255,7 @@ def test_a_load_that_no_pressure_holds_is_named(short):
     motor = DESIGNS / "scenarios" / "course_motor_position.yaml"
     result = run("simulate", str(motor), "--set=motor.torque[0].value=22 N*m")
     assert result.code == 3
-    assert "the supply pressure cannot hold the load of the start" in result.err
+    assert "the valve cannot hold the load at the start" in result.err
     assert run("simulate", str(motor), "--set=motor.torque[0].value=20 N*m").code in (0, 1)
     short.write_text(SHORT + "load: {force: [{shape: constant, value: 12 kN}]}\n")
     result = run("simulate", str(short))

@@ -243,15 +243,15 @@ def test_split_leakage_and_offset_shift_the_ramp() -> None:
 
 @pytest.mark.parametrize("place", [0.1, 0.2, 0.3])
 def test_ultimate_gain_of_the_position_loop(place) -> None:
-    """At three places, to both sides, held: the gain at which the second simulator's poles turn."""
+    """At three places, to both sides: the gain at which the second simulator's poles turn."""
     scene, own = trial("position_servo").scenario, bare("position_servo")
     linear = Linear.of(assemble(scene, own, {}, None, linear=True))
     pressures = dict(zip(linear.names, linear.initial, strict=True))
     start = {"position": place, "p_a": pressures["pressure a"], "p_b": pressures["pressure b"]}
     smooth = replace(case.CYLINDER, actuator=replace(case.SLIDES, friction=None))
-    start = oracle.holding(smooth, start)
-    for loop, side in zip(linear.about(position=place), (1.0, -1.0), strict=True):
-        gain, period = oracle.ultimate_gain_by_swinging(smooth, start, side, gains=(10.0, 1e4))
+    for loop, side in zip(linear.about(position=place).loops, (1.0, -1.0), strict=True):
+        there = oracle.about_rest(smooth, start, side)
+        gain, period = oracle.ultimate_gain_by_swinging(smooth, there, side, gains=(10.0, 1e4))
         ours = ultimate(loop)
         assert ours.gain == pytest.approx(gain, rel=2e-5)
         assert ours.period == pytest.approx(period, rel=2e-5)

@@ -378,7 +378,7 @@ def test_ultimate_gain_is_the_check_value(spool, gain, period):
     own = plant(valve=replace(VALVE, natural_frequency=float(spool)))
     control = {"position": [{"shape": "step", "start": 0.5, "value": 0.02}]}
     scene = scenario(initial=MIDDLE, load={"force": BALANCED}, control=control)
-    loops = Linear.of(assemble(scene, own, {}, None, linear=True)).about(position=0.08)
+    loops = Linear.of(assemble(scene, own, {}, None, linear=True)).about(position=0.08).loops
     for loop in loops:
         found = ultimate(loop)
         assert found.gain == pytest.approx(gain, rel=2e-6)
@@ -400,8 +400,8 @@ def test_ultimate_gain_of_a_motor_is_the_oracles():
     across = 8.0 * 2 * math.pi / 13.3e-6
     middle = 0.5 * asked.own.supply_pressure
     still = asked.start | {"p_a": middle + 0.5 * across, "p_b": middle - 0.5 * across}
-    held = oracle.holding(circuit, still)
-    for side, loop in zip((1.0, -1.0), linear.about(), strict=True):
+    for side, loop in zip((1.0, -1.0), linear.about().loops, strict=True):
         found = ultimate(loop)
-        theirs = oracle.ultimate_gain_by_swinging(circuit, held, side, of="velocity")
+        there = oracle.about_rest(circuit, still, side)
+        theirs = oracle.ultimate_gain_by_swinging(circuit, there, side, of="velocity")
         assert theirs == pytest.approx((found.gain, found.period), rel=1e-5)

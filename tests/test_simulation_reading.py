@@ -49,7 +49,7 @@ def test_a_loop_beyond_its_ultimate_gain_is_unstable():
     text = {"position": [{"shape": "step", "value": 0.01}]}
     scene = scenario(control=text, initial={"pressure_a": 7e6, "pressure_b": 7e6})
     linear = Linear.of(assemble(scene, plant(), {}, None, linear=True))
-    loop = linear.about(position=0.08)[0]
+    loop = linear.about(position=0.08).loops[0]
     limit = ultimate(loop)
     for factor in (0.97, 1.03, 1.3):
         found = margins(loop, Law(factor * limit.gain, np.inf, 0.0, 1e-3))

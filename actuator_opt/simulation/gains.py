@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import copysign, inf, isfinite, radians
 
 import numpy as np
 
 from ..design.scenario.model import Control, Scenario
+from ..design.scenario.signals import Part
 from ..errors import Diagnostic, InputError
 from ..evaluation.study.plant import Plant
 from ..models.tuning import ControllerGains, margin_rules, ziegler_nichols
+from ..quantities import INPUTS
 from .assemble import assemble, loop_of
 from .linearise import Law, Linear, Margins, OpenLoop, Ultimate, least, margins
 from .parts.circuit import Loop
@@ -25,6 +28,8 @@ KEPT = 0.9
 """Share of the margins of the gain alone that an integral part leaves (a choice)."""
 NO_GAIN = 1e-9
 """Factor that stands for a gain of zero beside an integral or derivative part."""
+UNHELD = "the valve cannot hold the load"
+CAUSES = "lower the load or the piston's leakage, raise supply.pressure or the valve's flow"
 UNITS: dict[Loop, str] = {
     "position": "V/m", "speed": "V*s/m", "shaft_speed": "V*s/rad", "shaft_angle": "V/rad",
 }  # fmt: skip
@@ -41,8 +46,8 @@ class Tuned:
     """In the linear loop, factors of the scenario included."""
     unit: str
     notes: tuple[str, ...] = ()
-    stalled: bool = False
-    """The load of the start takes the whole supply pressure: margins say nothing."""
+    unheld: str = ""
+    """Where nothing holds the load; empty where the valve does. Margins say nothing then."""
 
 
 def tune(
@@ -58,15 +63,15 @@ def tune(
     ------
     InputError
         a law that the rule does not give; a loop that no gain makes swing, or that swings alone;
-        a load that the supply pressure cannot hold
+        a load that the valve cannot hold
     """
     control, loop = scenario.control, loop_of(scenario.control)
     if control is None or loop is None:
         return None
     circuit = assemble(_held(scenario), plant, records, None, linear=True)
     linear = Linear.of(circuit)
-    limit, worst = least(_loops(linear, scenario, plant, control, loop))
-    stalled = not plant.return_pressure < circuit.start.pressure_a < plant.supply_pressure
+    loops, unheld = _loops(linear, scenario, plant, control, loop)
+    limit, worst = least(loops)
     stated = getattr(control, f"{loop}_gain")
     design = plant.design.control
     notes: tuple[str, ...] = ()
@@ -86,9 +91,9 @@ def tune(
         and control.margin is None
     ):
         gains, origin = ControllerGains(design.gain, inf, 0.0), "control.gain of the design"
-    elif stalled:
-        message = "the supply pressure cannot hold the load of the start, so no rule gives a gain"
-        remedy = "lower the load, raise supply.pressure, or state the gain"
+    elif unheld:
+        message = f"{UNHELD}{unheld}, so no rule gives a gain"
+        remedy = f"{CAUSES}; or state the gain"
         raise InputError(Diagnostic(message, remedy, path=f"control.{loop}"))
     else:
         gains, origin, notes = _ruled(control, loop, limit, worst)
@@ -99,7 +104,7 @@ def tune(
         control.derivative_factor / factor * gains.derivative_time,
         control.filter_time,
     )
-    return Tuned(gains, origin, limit, margins(worst, shaped), UNITS[loop], notes, stalled)
+    return Tuned(gains, origin, limit, margins(worst, shaped), UNITS[loop], notes, unheld)
 
 
 def _held(scenario: Scenario) -> Scenario:
@@ -110,26 +115,36 @@ def _held(scenario: Scenario) -> Scenario:
 
 def _loops(
     linear: Linear, scenario: Scenario, plant: Plant, control: Control, loop: Loop
-) -> list[OpenLoop]:
-    """Open loops at every point that counts."""
-    end = steady_value(getattr(control, loop))
-    if loop in ("shaft_speed", "shaft_angle"):
-        found = linear.about()
-        return found + (_running(linear, "shaft_speed", end) if loop == "shaft_speed" else [])
-    if loop == "speed":
-        return linear.about() + _running(linear, "speed", end)
-    begin = linear.circuit.start.position
-    places = {begin}
-    reached = begin
-    for part in control.position:
-        reached += part.value or 0.0 if part.shape in ("step", "ramp", "constant") else 0.0
-        places.add(min(max(reached, 0.0), plant.stroke))
-    return [one for place in sorted(places) for one in linear.about(position=place)]
+) -> tuple[list[OpenLoop], str]:
+    """Open loops at every point that counts; where nothing holds the load, in words."""
+    if loop != "position":
+        loops, held = linear.about()
+        end = steady_value(getattr(control, loop))
+        if loop != "shaft_angle":
+            loops += _running(linear, loop, end)
+        return loops, "" if held else " at the start"
+    loops, words = [], ""
+    for place in _places(control.position, linear.circuit.start.position, plant.stroke):
+        found, held = linear.about(position=place)
+        loops += found
+        if not held:
+            words = words or f" with the piston at {INPUTS['position'].text(place)}"
+    return loops, words
+
+
+def _places(parts: Sequence[Part], start: float, stroke: float) -> list[float]:
+    """Where a position reference begins, and where each of its parts leads to."""
+    places, reached = {start}, start
+    for part in sorted(parts, key=lambda one: one.start or 0.0):
+        reached += steady_value([part])
+        places.add(min(max(reached, 0.0), stroke))
+    return sorted(places)
 
 
 def _running(linear: Linear, name: str, value: float) -> list[OpenLoop]:
     """The open loop where the actuator runs steadily at a speed; none where it cannot."""
-    found = None if value == 0 else linear.steady(copysign(1.0, value), **{name: value})
+    guess = linear.circuit.centre + copysign(1.0, value)
+    found = None if value == 0 else linear.steady(guess, **{name: value})
     return [] if found is None else [linear.loop(*found)]
 
 

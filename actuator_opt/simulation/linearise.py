@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, pi
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,11 +15,19 @@ from .parts.circuit import Circuit
 
 TOUCH = 1e-9
 """Position of the spool beside its centre [V]: which pair of edges opens."""
+SIZE = 1e5
+"""Size of a state over its tolerance, as an equation solver takes it (a choice)."""
+RESTING = 1.0
+"""Rate of a state that is left at rest, in its tolerances per second (a choice)."""
 PLACES = ("position", "shaft angle")
 """States that change while an actuator runs steadily."""
 CREEP = 1e-3
 """Rate of a growing pole that does not swing, over the slowest swing, that counts as creep (a
 choice: beside a point of rest the load drifts a little)."""
+STILL = 1e-3
+"""Size of a pole that counts as zero [rad/s] (a choice: a quarter of an hour)."""
+SLOWER = 1e-3
+"""Frequency of a steady rate over the slowest pole that is not zero: its square is the error."""
 ROUNDING = 1e-6
 """Real part over the size of a swinging pole that is rounding."""
 POINTS = 2000
@@ -27,21 +36,44 @@ POINTS = 2000
 
 @dataclass(frozen=True, slots=True)
 class OpenLoop:
-    """Measured value over signal, L(s) = sum of r_i/(s - lambda_i)."""
+    """Measured value over signal, L(s) = c (s - T)^-1 b with an upper triangle T.
 
-    poles: Array
-    residues: Array
+    Poles may coincide: a valve that leaks nothing leaves position and common pressure both at zero.
+    """
+
+    triangle: Array
+    given: Array
+    """b"""
+    seen: Array
+    """c"""
+
+    @classmethod
+    def of(cls, a: Array, b: Array, c: Array) -> OpenLoop:
+        """Of x' = a x + b u, y = c x."""
+        from scipy.linalg import schur
+
+        triangle, q = schur(a, output="complex")
+        return cls(triangle, q.conj().T @ b, c @ q)
+
+    @property
+    def poles(self) -> Array:
+        """Eigenvalues of T [rad/s]."""
+        return np.diag(self.triangle)
 
     def at(self, omega: Array) -> Array:
         """L(i omega)."""
-        s = 1j * np.asarray(omega, dtype=float)[..., None]
-        return np.sum(self.residues / (s - self.poles), axis=-1)
+        s = 1j * np.asarray(omega, dtype=float)
+        t, size = self.triangle, len(self.given)
+        x = np.zeros((size, *s.shape), dtype=complex)
+        for k in reversed(range(size)):
+            x[k] = (self.given[k] + np.tensordot(t[k, k + 1 :], x[k + 1 :], 1)) / (s - t[k, k])
+        return np.tensordot(self.seen, x, 1)
 
     @property
     def frequencies(self) -> Array:
         """Angular frequencies that show every resonance [rad/s]."""
         size = np.abs(self.poles)
-        size = size[size > 1e-3]
+        size = size[size > STILL]
         grid = np.geomspace(size.min() / 100, size.max() * 10, POINTS)
         near = size[:, None] * (1 + np.array([-0.02, -0.005, -1e-3, 0.0, 1e-3, 0.005, 0.02]))
         return np.unique(np.concatenate((grid, near.ravel())))
@@ -53,11 +85,18 @@ class OpenLoop:
 
     @property
     def steady_rate(self) -> float:
-        """Steady rate of the measured value per signal: the residue of the integrator.
+        """Steady rate of the measured value per signal, the limit of s L(s) at zero."""
+        size = np.abs(self.poles)
+        omega = float(np.min(size[size > STILL])) * SLOWER
+        return float((1j * omega * self.at(np.array(omega))).real)
 
-        That is the slowest pole; beside a point of rest it is not quite at zero.
-        """
-        return float(np.real(self.residues[np.argmin(np.abs(self.poles))]))
+
+class Around(NamedTuple):
+    """Loops about a point, the spool opening to either side."""
+
+    loops: list[OpenLoop]
+    held: bool
+    """Whether the valve holds the load there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,19 +134,12 @@ class Linear:
             flags=(False,) * len(flags),
         )
 
-    def loop(self, state: Array, signal: float, spool: float | None = None) -> OpenLoop:
-        """The open loop about a state and a signal; flows follow the spool as where it is told."""
-        table = self._table(state, signal)
-        if spool is not None:
-            moved, column = state.copy(), self.names.index("spool")
-            moved[column] = spool
-            table[:, column] = self._table(moved, signal)[:, column]
+    def loop(self, state: Array, signal: float) -> OpenLoop:
+        """The open loop about a state and a signal."""
         size, d = len(state), self.scale
+        table = self._table(state, signal)
         a = table[:size, :size] * d / d[:, None]
-        b, c = table[:size, size] / d, table[size, :size] * d
-        poles, modes = np.linalg.eig(a)
-        residues = (c @ modes) * np.linalg.solve(modes, b.astype(complex))
-        return OpenLoop(poles, residues)
+        return OpenLoop.of(a, table[:size, size] / d, table[size, :size] * d)
 
     def _table(self, state: Array, signal: float) -> Array:
         """Slopes of the rates and the measured value over the states and the signal."""
@@ -115,18 +147,29 @@ class Linear:
         flat = self.slopes(0.0, state.tolist(), signal, self.flags)
         return np.array(flat).reshape(size, size)
 
-    def about(self, **states: float) -> list[OpenLoop]:
-        """Open loops where the valve holds the load, some states given: it opens to either side.
+    def about(self, **states: float) -> Around:
+        """Open loops where the valve holds the load, some states given, to either side of it.
 
-        Where nothing holds it, about the start.
+        On the side on which its spool rests that is the state of rest; on the other side, and
+        without load on both, the centre, which the spool passes as the load drifts. About the
+        states given where nothing holds it.
         """
         still = {one: 0.0 for one in ("speed", "shaft_speed") if self._known(one)}
-        found = self.steady(self.circuit.centre, **(still | states))
-        if found is None:
-            y = self._with(still | states)
-            y[self.names.index("spool")] = self.circuit.centre
-            found = y, self.circuit.centre
-        return [self.loop(*found, spool=self.circuit.centre + side) for side in (TOUCH, -TOUCH)]
+        centre = self.circuit.centre
+        guesses = (self.steady(centre + volts, **(still | states)) for volts in self._guesses())
+        held = next((one for one in guesses if one is not None), None)
+        rest = self._with(still | states) if held is None else held[0]
+        loops = []
+        for side in (TOUCH, -TOUCH):
+            there: tuple[Array, float] | None = held
+            if held is None or (held[1] - centre) * side < TOUCH * TOUCH:
+                beside = centre + side
+                there = self.steady(beside, **(states | {"spool": beside}))
+                if there is None:
+                    there = np.where([one == "spool" for one in self.names], beside, rest), beside
+            assert there is not None
+            loops.append(self.loop(*there))
+        return Around(loops, held is not None)
 
     def steady(self, guess: float, **states: float) -> tuple[Array, float] | None:
         """State and signal at which nothing but the place changes, some states given.
@@ -134,7 +177,7 @@ class Linear:
         Parameters
         ----------
         guess : signal near it [V]
-        states : by name, SI
+        states : by name, SI; the place is given or that of the start
 
         Returns
         -------
@@ -142,26 +185,40 @@ class Linear:
         """
         from scipy.optimize import root
 
-        begin = self._with(states)
+        begin = self._with({"spool": guess} | states)
         given = {one.replace("_", " ") for one in states} | set(PLACES)
-        free = [k for k, one in enumerate(self.names) if one not in given]
-        kept = [k for k, one in enumerate(self.names) if one not in PLACES]
-        scale = np.array([1e5 if abs(self.initial[k]) > 1e3 else 1.0 for k in free])
-        unit = np.maximum(np.abs(self.scale[kept]), 1e-12)
+        free = np.array([k for k, one in enumerate(self.names) if one not in given])
+        kept = np.array([k for k, one in enumerate(self.names) if one not in PLACES])
+        size = np.append(SIZE * self.scale[free], 1.0)
+        unit = self.scale[kept]
+        columns = np.append(free, len(self.names))
 
-        def state(x: Array) -> Array:
+        def point(x: Array) -> tuple[Array, float]:
             y = begin.copy()
-            y[free] = x[:-1] * scale
-            return y
+            y[free] = x[:-1] * size[:-1]
+            return y, float(x[-1])
 
         def missing(x: Array) -> Array:
-            rates = np.array(self.rates(0.0, state(x).tolist(), x[-1], self.flags))
-            return 1e-9 * rates[kept] / unit
+            y, u = point(x)
+            return np.array(self.rates(0.0, y.tolist(), u, self.flags))[kept] / unit
 
-        start = np.append(begin[free] / scale, guess)
-        start[:-1][[self.names[k] == "spool" for k in free]] = guess
-        solved = root(missing, start, method="hybr")
-        return (state(solved.x), float(solved.x[-1])) if solved.success else None
+        def slopes(x: Array) -> Array:
+            return self._table(*point(x))[np.ix_(kept, columns)] * size / unit[:, None]
+
+        start = np.append(begin[free], guess) / size
+        try:
+            with np.errstate(all="ignore"):
+                solved = root(missing, start, jac=slopes, method="hybr", tol=1e-12)
+            left = missing(solved.x)
+        except (ArithmeticError, ValueError):  # the equations end on the way
+            return None
+        return point(solved.x) if np.max(np.abs(left)) < RESTING else None  # NaN is none
+
+    def _guesses(self) -> Iterator[float]:
+        """Signals over the centre from which a rest is searched."""
+        valve = self.circuit.plant.valve
+        assert valve is not None
+        return (share * valve.signal for share in (0.0, 0.3, -0.3))
 
     def _known(self, name: str) -> bool:
         return name.replace("_", " ") in self.names
@@ -228,18 +285,18 @@ class Law:
 
     def closed(self, loop: OpenLoop) -> Array:
         """Poles of the closed loop."""
-        size = len(loop.poles)
-        c, ones = loop.residues, np.ones(size)
+        size = len(loop.given)
+        b, c = loop.given, loop.seen
         direct = self.gain * (1 + self.derivative_time / self.filter_time)
         a = np.zeros((size + 2, size + 2), dtype=complex)
         # u = -K [(1 + T_d/T_f) y + I/T_i - T_d/T_f f], I' = y, f' = (y - f)/T_f
-        a[:size, :size] = np.diag(loop.poles) - direct * np.outer(ones, c)
+        a[:size, :size] = loop.triangle - direct * np.outer(b, c)
         if self.integral_time < inf:
-            a[:size, size] = -self.gain / self.integral_time
+            a[:size, size] = -self.gain / self.integral_time * b
             a[size, :size] = c
         else:
             a[size, size] = -1 / self.filter_time
-        a[:size, size + 1] = self.gain * self.derivative_time / self.filter_time
+        a[:size, size + 1] = self.gain * self.derivative_time / self.filter_time * b
         a[size + 1, :size] = c / self.filter_time
         a[size + 1, size + 1] = -1 / self.filter_time
         return np.asarray(np.linalg.eigvals(a))
@@ -259,7 +316,7 @@ class Margins:
 def _grow(poles: Array) -> bool:
     """Whether a pole grows: any that swings, and a real one faster than creep."""
     size = np.abs(poles)
-    swings = np.abs(poles.imag) > 1e-3 * size
+    swings = (np.abs(poles.imag) > 1e-3 * size) & (size > STILL)
     slowest = np.min(size[swings]) if swings.any() else np.max(size)
     limit = np.where(swings, ROUNDING * size, CREEP * slowest)
     return bool(np.any(poles.real > limit))

@@ -22,7 +22,7 @@ from . import reading
 from .assemble import assemble
 from .balance import balance
 from .failure import failed
-from .gains import Tuned, tune
+from .gains import CAUSES, UNHELD, Tuned, tune
 from .integrate import Trajectory, integrate
 from .methods import Method, Stuck
 from .parts.circuit import Circuit
@@ -180,11 +180,9 @@ def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]
     notes = [*circuit.system.notes]
     if tuned is not None:
         notes += tuned.notes
-        if tuned.stalled:
-            notes.append(
-                "the load of the start takes the whole supply pressure: the valve cannot hold it, "
-                "and margins of the linear loop say nothing"
-            )
+        if tuned.unheld:
+            said = "margins of the linear loop say nothing"
+            notes.append(f"{UNHELD}{tuned.unheld}: {said}; {CAUSES}")
         elif not tuned.margins.stable:
             notes.append(
                 f"the linear loop is unstable: gain margin {tuned.margins.gain:.2f}, it swings "

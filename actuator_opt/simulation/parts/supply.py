@@ -13,6 +13,8 @@ from .circuit import Circuit
 
 RATE_BAND = 1e-3
 """Share of the largest flow within which the swash plate comes to rest at its ends (a choice)."""
+AWAKE = 0.1
+"""Share of it from which a state of rest is searched (a choice: at an end nothing moves it)."""
 
 
 @dataclass(slots=True)
@@ -120,7 +122,8 @@ class Source:
         assert unit.flow is not None
         assert unit.gain is not None
         assert unit.time_constant is not None
-        state = system.state("pump", 0.0, tolerance=1e-6 * unit.flow)
+        begin = AWAKE * unit.flow if self.circuit.linear else 0.0
+        state = system.state("pump", begin, tolerance=1e-6 * unit.flow)
         rate = supply.controlled_pump_rate(
             flow=state,
             pressure=self.unit,
