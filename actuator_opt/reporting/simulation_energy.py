@@ -30,6 +30,8 @@ BRIEF = {
 """Doors whose name has no room beside a curve."""
 SMALL = 2e-3
 """Share of all energy below which a door is counted with others (a choice: a hair on paper)."""
+USEFUL = ("load", "joint")
+"""Doors that are told whatever their share: what the actuator is there for."""
 MOST_ROWS = 9
 """Rows of the energy figure."""
 MOST_CURVES = 5
@@ -56,9 +58,9 @@ def shares(found: Simulation) -> list[Share]:
     if total <= 0:
         return []
     order = sorted(doors, key=lambda one: (one.energy < 0, one.name != "supply", -abs(one.energy)))
-    small = [one for one in order if abs(one.energy) < SMALL * total]
+    small = [one for one in order if abs(one.energy) < SMALL * total and one.name not in USEFUL]
     large = [one for one in order if one not in small]
-    taken = [one for one in large if one.energy < 0]
+    taken = [one for one in large if one.energy < 0 and one.name not in USEFUL]
     while len(large) > MOST_ROWS - 1 and len(taken) > 1:
         last = taken.pop()
         large.remove(last)
@@ -73,7 +75,7 @@ def shares(found: Simulation) -> list[Share]:
 
 def _words(one: Share) -> str:
     if one.name == "store":
-        return "out of oil and walls" if one.energy > 0 else "into oil and walls"
+        return "out of oil, walls, motion" if one.energy > 0 else "into oil, walls, motion"
     if one.energy > 0 and one.name in ("load", "joint", "machine outside", "held ports"):
         return f"from the {one.name}"
     return one.name

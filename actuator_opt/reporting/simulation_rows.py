@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -255,9 +255,20 @@ def run_words(found: Simulation) -> str:
 
 def remarks(found: Simulation, more: Sequence[str] = ()) -> list[str]:
     """Doubts, notes of the run, of the caller and of the scenario, in full sentences."""
-    said = [*doubts(found), *found.notes, *more]
+    said = [*doubts(found), *_open(found), *found.notes, *more]
     own = found.scenario.notes.strip()
     return [sentence(pretty(" ".join(one.split()))) for one in [*said, *([own] if own else [])]]
+
+
+def _open(found: Simulation) -> Iterator[str]:
+    """Why a run is in doubt: a balance that does not close, integrators that do not agree."""
+    for name in ("mass", "energy"):
+        error = getattr(found.balance, name)
+        if error >= SURE:
+            yield f"in doubt: the balance of {name} is open by {share_words(error)}"
+    if found.second is not None and found.second.max_difference >= AGREE:
+        apart = share_words(found.second.max_difference)
+        yield f"in doubt: the second integrator differs by {apart} of a signal's span"
 
 
 # ---- verdict and key figures ----

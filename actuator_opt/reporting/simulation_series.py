@@ -42,8 +42,11 @@ _SIGNALS: tuple[tuple[str, int, bool, tuple[tuple[str, str], ...]], ...] = (
     ("Stops and cushions", 5, True, (("stop_force", "stops"), ("cushion_force", "cushions"))),
 )  # fmt: skip
 """Title, rank, whether zero belongs to it, and signals with their names."""
-_STILL = {"Stops and cushions", "Load", "Supply", "Torque on the joint"}
+_STILL = {"Stops and cushions", "Load", "Supply", "Torque on the joint", "Friction"}
 """Strips that are left out where nothing in them moves."""
+
+_PUMPED = ("Supply", "Flows of the pump")
+"""Strips that come early where the supply is no constant one."""
 
 
 def scaled(quantity: Quantity, values: Array) -> Array:
@@ -112,9 +115,11 @@ def strips(found: Simulation, measured: Measured) -> list[Strip]:
     used = followed(found)
     if used not in ("", "position") and "position" in found.signals:
         shown += _strip(found, measured, "Position", 5, False, (("position", ""),))
+    pumped = found.scenario.supply.type != "constant"
     for title, rank, zero, signals in _SIGNALS:
         if used not in [name for name, _ in signals]:
-            shown += _strip(found, measured, title, rank, zero, signals)
+            early = 3 if pumped and title in _PUMPED else rank
+            shown += _strip(found, measured, title, early, zero, signals)
     return shown
 
 

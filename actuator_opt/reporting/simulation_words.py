@@ -142,7 +142,12 @@ def _machine(found: Simulation) -> str:
     elif "flow_supply" not in found.signals:
         words.append(ENDS[ends_of(scenario, plant)])
     if "flow_supply" in found.signals:
-        supply = f"{SUPPLY[scenario.supply.type]} {amount(PRESSURE, plant.supply_pressure)}"
+        relief = scenario.supply.relief
+        supply = SUPPLY[scenario.supply.type]
+        if scenario.supply.type == "fixed_pump" and relief is not None:
+            supply += f", relief valve {amount(PRESSURE, relief.pressure)}"
+        else:
+            supply += f" {amount(PRESSURE, plant.supply_pressure)}"
         words.append(f"{supply}, return {amount(PRESSURE, plant.return_pressure)}")
     if "friction" in found.signals:
         words.append(FRICTION[scenario.friction.model])

@@ -12,7 +12,7 @@ from ..numeric import Array
 from .methods import Stuck
 from .system import Compiled
 
-TOLD = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b")
+TOLD = ("position", "speed", "shaft_speed", "pressure_a", "pressure_b", "pressure_supply")
 """Signals that show what happened."""
 OUT = 0.1
 """Share of the stroke by which a piston beyond it is out of its stops (a choice)."""

@@ -23,6 +23,8 @@ from .step_response import step_metrics
 
 LAST = 0.1
 """Share of the time whose creep is told."""
+RISE = 4
+"""Samples of a rise, at least, for its figures to be the response's own (a choice)."""
 _STEP = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 
 
@@ -123,6 +125,10 @@ def values(
         }
         why["rise_time"] = "the response never gets to 90 % of the step"
         why["settling_time"] = "the response does not stay within 2 % of the step"
+        if own.rise_time is not None and own.rise_time < RISE * float(np.median(np.diff(time))):
+            coarse = f"the response rises within {RISE} samples: state a shorter sample_time"
+            for name in ("rise_time", "settling_time", "overshoot"):
+                found[name], why[name] = None, coarse
     chambers = [signals[name] for name in ("pressure_a", "pressure_b") if name in signals]
     if chambers:
         found["peak_pressure"] = float(max(np.max(one) for one in chambers))

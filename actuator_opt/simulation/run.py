@@ -39,8 +39,11 @@ COMPARED = (
 """Signals on which two integrators are compared."""
 TORN = -0.8e5
 """Gauge pressure below which oil is told to be torn [Pa] (a choice: air comes out before)."""
-COARSE = 5e-3
-"""Sample time above which peaks of the oil's swing may be missed [s] (a choice)."""
+COARSE = 1e-3
+"""Sample time above which peaks of the oil's swing may be missed [s] (a choice: at 125 Hz, an
+eighth of a swing)."""
+SETTLED = 0.02
+"""Share of its pressure from which the start of a pump's line is told (a choice)."""
 WARN_PLANE = 0.02
 """Error of the friction's fit over the pressures that is told."""
 
@@ -126,8 +129,9 @@ def run(
             *recorded_notes(scenario, records),
             *_notes(circuit, own, tuned),
             *_reach(own, signals),
-            *_limits(scenario, signals),
+            *_limits(scenario, own, signals),
             *_coarse(step, signals),
+            *_unsettled(scenario, own),
         ),
         evaluations=found.evaluations,
         seconds=perf_counter() - begin,
@@ -204,12 +208,19 @@ def _notes(circuit: Circuit, own: Plant, tuned: Tuned | None) -> tuple[str, ...]
     return tuple(notes)
 
 
-def _limits(scenario: Scenario, signals: Mapping[str, Array]) -> Iterator[str]:
-    """A chamber near vacuum, a load cylinder beyond its stroke: the equations go on, a rig not."""
+def _limits(scenario: Scenario, own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
+    """Torn oil, too much pressure, a load cylinder's end: the equations go on, a rig does not."""
+    where = "chamber" if scenario.motor is None else "pipe"
     for name in ("pressure_a", "pressure_b"):
-        lowest = float(np.min(signals[name])) if name in signals else 0.0
+        if name not in signals:
+            continue
+        text, side = INPUTS["pressure"].text, f"{where} {name[-1].upper()}"
+        lowest, highest = float(np.min(signals[name])), float(np.max(signals[name]))
         if lowest < TORN:
-            yield f"the oil of chamber {name[-1].upper()} is torn: {lowest / 1e5:.2f} bar gauge"
+            yield f"the oil of {side} is torn: {text(lowest)} gauge"
+        if highest > own.proof_pressure:
+            proof = text(own.proof_pressure)
+            yield f"the pressure in {side} peaks at {text(highest)}, beyond the proof of {proof}"
     bench = scenario.load.cylinder
     if bench is not None and "position" in signals:
         x = signals["position"]
@@ -220,7 +231,22 @@ def _limits(scenario: Scenario, signals: Mapping[str, Array]) -> Iterator[str]:
 def _coarse(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
     """Samples that may miss a peak."""
     if step > COARSE and "pressure_a" in signals:
-        yield f"peaks are read at samples, {1e3 * step:.3g} ms apart: state a shorter sample_time"
+        apart = f"{1e3 * step:.3g} ms apart"
+        yield f"peaks and steps are read at samples, {apart}: state a shorter sample_time"
+
+
+def _unsettled(scenario: Scenario, own: Plant) -> Iterator[str]:
+    """A pump that does not begin where its relief valve takes its flow."""
+    unit = scenario.supply
+    if unit.type != "fixed_pump" or unit.relief is None or unit.flow is None:
+        return
+    relief, text = unit.relief, INPUTS["pressure"].text
+    rest = own.return_pressure + relief.pressure + relief.override * unit.flow / relief.rated_flow
+    if abs(rest - own.supply_pressure) > SETTLED * own.supply_pressure:
+        yield (
+            f"the supply line begins at {text(own.supply_pressure)} (supply.pressure), pump and "
+            f"relief valve come to rest near {text(rest)}: set supply.pressure there"
+        )
 
 
 def _reach(own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:

@@ -15,6 +15,7 @@ from . import control_faults, signal_faults
 from .model import Friction, Load, Scenario, Supply
 
 _force = quantities.SCENARIOS["coulomb_force"].text
+_flow = quantities.INPUTS["rated_flow"].text
 _area = quantities.INPUTS["orifice_area"].text
 _NEEDED = {
     "fixed_pump": ("volume", "relief"),
@@ -44,6 +45,10 @@ def supply(view: View) -> Iterator[Fault]:
     if kind == "fixed_pump" and flow and pump:
         message = "pump beside flow: both say what is delivered"
         yield Fault(("supply", "pump"), message, "keep one of them", at_key=True)
+    given, passed = (view.number("supply", *one) for one in (("flow",), ("relief", "rated_flow")))
+    if kind == "fixed_pump" and given is not None and passed is not None and passed < given:
+        message = f"{_flow(passed)}: less than the pump gives ({_flow(given)})"
+        yield Fault(("supply", "relief", "rated_flow"), message, f"write {_flow(given)} or more")
     where = "on a constant supply" if kind == "constant" else f"on a {kind}"
     remedy = "remove it, or write another type" if kind == "constant" else "remove the line"
     yield from without_effect(view, ("supply",), _UNREAD[kind], where, remedy)
