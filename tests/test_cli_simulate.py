@@ -311,3 +311,62 @@ def test_check_reads_a_scenario_from_standard_input():
         result = run("check", "-", stdin=given.encode())
         assert result.code == code
         assert result.err.startswith(said)
+
+
+PUMP = """\
+supply:
+  type: fixed_pump
+  volume: 100 ml
+  flow: 8 l/min
+  relief: {pressure: 190 bar, override: 15 bar, rated_flow: 20 l/min}
+  accumulator: {gas_volume: 50 ml, precharge: 220 bar}
+"""
+
+
+def test_a_precharge_above_the_supply_is_an_empty_accumulator(short):
+    """It gives no oil: the run is that without it, and the loop has its margins."""
+    found = []
+    for text in (PUMP, PUMP.replace(PUMP.splitlines()[-1] + "\n", "")):
+        short.write_text(SHORT + text, encoding="utf-8")
+        found.append(json.loads(run("simulate", str(short), "--json").out))
+    for name in ("rise_time", "peak_pressure"):
+        values = [one["results"][name]["value"] for one in found]
+        assert values[0] == pytest.approx(values[1], rel=1e-3)
+    assert found[0]["controller"]["gain_margin"] == pytest.approx(
+        found[1]["controller"]["gain_margin"], rel=1e-3
+    )
+
+
+def test_a_relief_valve_takes_the_pumps_flow(short):
+    """A smaller one is refused; a start away from where both rest is told with the pressure."""
+    short.write_text(SHORT + PUMP, encoding="utf-8")
+    result = run("simulate", str(short), "--set=supply.flow=30 l/min")
+    assert result.code == 3
+    assert "supply.relief.rated_flow: 20 l/min: less than the pump gives (30 l/min)" in result.err
+    said = " ".join(run("simulate", str(short)).out.split())
+    assert "begins at 210 bar (supply.pressure), pump and relief valve come to rest near" in said
+
+
+def test_pressure_beyond_proof_and_coarse_samples_are_told(short):
+    """Above the proof pressure a note says so; a rise within four samples has no figures."""
+    short.write_text(SHORT, encoding="utf-8")
+    said = " ".join(run("simulate", str(short), "--set=initial.pressure_a=350 bar").out.split())
+    assert "The pressure in chamber A peaks at 350 bar, beyond the proof of 315 bar" in said
+    coarse = run("simulate", str(short), "--set=sample_time=15 ms", "--json")
+    assert coarse.code == 1
+    rise = json.loads(coarse.out)["results"]["rise_time"]
+    assert rise["value"] is None
+    assert "within 4 samples" in rise["why"]
+
+
+def test_a_load_cylinder_without_leakage_leaves_the_loop_stable(short):
+    """Its trapped oil is a neutral pole, not a growing one."""
+    bench = (
+        "load:\n  cylinder:\n    {bore: 25 mm, rod_diameter: 12 mm, stroke: 110 mm,"
+        " dead_volume: 5 ml, supply_pressure: 100 bar,\n"
+        "     valve: {rated_flow: 10 l/min, natural_frequency: 80 Hz}}\n"
+    )
+    short.write_text(SHORT + bench, encoding="utf-8")
+    found = json.loads(run("simulate", str(short), "--json").out)["controller"]
+    assert found["stable"]
+    assert found["gain_margin"] > 2

@@ -271,6 +271,17 @@ def test_a_valve_without_leakage_has_an_ultimate_gain(subject_of):
         np.testing.assert_allclose(limit, almost["ultimate_gain"][place], rtol=1e-5)
 
 
+def test_no_leakage_is_the_limit_of_little(subject_of):
+    """The edges feed the piston's bleed where the valve itself leaks nothing."""
+    none, little = (
+        compute(subject, subject.values()).computed.metrics
+        for subject in (subject_of(**{"valve.leakage_flow": flow}) for flow in (0.0, 1e-14))
+    )
+    for name in ("damping_ratio", "dynamic_stiffness", "ultimate_gain"):
+        for place, value in none[name].items():
+            np.testing.assert_allclose(value, little[name][place], rtol=1e-4, err_msg=name)
+
+
 def test_an_accumulator_below_its_precharge_is_not_there(subject_of):
     """Precharged above the held pressure it takes no oil: every figure is that without it."""
     empty = subject_of("accumulator", **{"ports.accumulators[0].precharge": 2.5e7})

@@ -391,6 +391,49 @@ def test_ultimate_gain_is_the_check_value(spool, gain, period):
     assert tuned.ultimate.gain <= gain * (1 + 2e-6)  # the end of the step may swing first
 
 
+def test_a_valve_that_leaks_nothing_has_the_oracles_ultimate_gain():
+    """Position and common pressure then share a pole at zero: K_u is near that of hardly any.
+
+    Near, since without leakage the least motion decides which pressures it has.
+    """
+    gains = []
+    for share in (0.0, 1e-5):
+        tight = replace(VALVE, leakage_supply=share * VALVE.leakage_supply,
+                        leakage_tank=share * VALVE.leakage_tank)  # fmt: skip
+        own = plant(valve=tight)
+        control = {"position": [{"shape": "step", "start": 0.5, "value": 0.02}]}
+        scene = scenario(initial=MIDDLE, load={"force": BALANCED}, control=control)
+        loops = Linear.of(assemble(scene, own, {}, None, linear=True)).about(position=0.08).loops
+        assert not any(loop.swings for loop in loops)
+        gains.append([ultimate(loop).gain for loop in loops])
+    circuit = twin(own, reference=steps((0.0, 0.08)), load=steps((0.0, HOLD)))
+    for k, side in enumerate((1.0, -1.0)):
+        theirs, _ = oracle.ultimate_gain_by_swinging(circuit, AT_REST, side, gains=(100.0, 1e4))
+        assert gains[1][k] == pytest.approx(theirs, rel=1e-4)
+        assert gains[0][k] == pytest.approx(theirs, rel=0.06)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.6, 0.8])
+def test_no_load_that_is_let_down_swings_before_the_one_that_is_held(share):
+    """The oracle's K_u while the load sinks steadily is not below the least at rest, by 4 %."""
+    own = plant()
+    force = share * (140 * BAR) * AREA_A
+    held = [{"shape": "constant", "value": force}]
+    control = {"position": [{"shape": "step", "start": 0.5, "value": 0.0001}]}
+    scene = scenario(initial={"position": 0.08}, load={"force": held}, control=control)
+    linear = Linear.of(assemble(scene, own, {}, None, linear=True))
+    least = min(ultimate(loop).gain for loop in linear.about(position=0.08).loops)
+    circuit = twin(own, reference=steps((0.0, 0.08)), load=steps((0.0, force)))
+    names = {"position": "position", "speed": "velocity", "pressure a": "p_a",
+             "pressure b": "p_b", "spool": "spool"}  # fmt: skip
+    for speed in (-1e-4, -1e-3, -5e-3, -2e-2, -5e-2):
+        state, signal = linear.steady(-1.0, speed=speed)
+        there = dict(zip(linear.names, state, strict=True))
+        start = {theirs: there[ours] for ours, theirs in names.items()}
+        sinking, _ = oracle.ultimate_gain_by_swinging(circuit, start, math.copysign(1.0, signal))
+        assert sinking > 0.96 * least
+
+
 def test_ultimate_gain_of_a_motor_is_the_oracles():
     """Shaft speed over the signal, where the valve holds 8 N m: K_u and T_u as by eigenvalues."""
     asked = motor()

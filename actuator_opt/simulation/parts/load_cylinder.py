@@ -6,7 +6,7 @@ from ...design.scenario.model import LoadCylinder
 from ...evaluation.springs import Give
 from ...evaluation.study.plant import ValveData
 from ...models import forces
-from ...models.valve import edge_coefficient
+from ...models.valve import edge_coefficient, viscosity_corrected
 from ...quantities import INPUTS, SCENARIOS
 from ...symbolic import Expression, Symbol
 from . import chambers, valve
@@ -23,7 +23,7 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
     half = 0.5 * stated.force / area
     a = system.pressure(f"{WHOSE}pressure a", middle + half)
     b = system.pressure(f"{WHOSE}pressure b", middle - half)
-    data = _data(stated)
+    data = _data(stated, circuit.plant.oil.kinematic_viscosity)
     opening = valve.spool(circuit, data, circuit.course(stated.signal), WHOSE)
     flows = valve.edges(
         circuit,
@@ -63,16 +63,22 @@ def push(circuit: Circuit, stated: LoadCylinder, *, position: Symbol, speed: Sym
     return pushed
 
 
-def _data(stated: LoadCylinder) -> ValveData:
-    """Its valve's edges, without correction for viscosity."""
+def _data(stated: LoadCylinder, viscosity: float) -> ValveData:
+    """Its valve's edges, with the oil of the design."""
     own = stated.valve
     after = own.leakage_drop if own.tank_leakage_drop is None else own.tank_leakage_drop
 
     def coefficient(flow: float, drop: float) -> float:
         return float(edge_coefficient(flow=flow, pressure_drop=drop))
 
+    rated = coefficient(own.rated_flow, own.rated_drop)
+    if own.rated_viscosity is not None:
+        corrected = viscosity_corrected(
+            coefficient=rated, rated_viscosity=own.rated_viscosity, viscosity=viscosity
+        )
+        rated = float(corrected)
     return ValveData(
-        rated=coefficient(own.rated_flow, own.rated_drop),
+        rated=rated,
         leakage_supply=coefficient(own.leakage_flow, own.leakage_drop),
         leakage_tank=coefficient(own.leakage_flow, after),
         signal=own.signal,
