@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..quantities import SCENARIOS
+from ..simulation.loops import LOOPS
 from ..simulation.result import Simulation
 from ..simulation.step_response import BAND
 from . import simulation_comparison as compare
@@ -32,7 +33,6 @@ from .simulation_energy import ENERGY
 from .simulation_series import Measured, overlay, scaled, titled
 from .simulation_step import window
 from .simulation_stiffness import Static, along, stiffness_panels, travelled
-from .simulation_words import LOOPS
 from .text import value_text
 
 WIDTH = 180.0
@@ -161,7 +161,7 @@ def _response(
 ) -> None:
     first = one.runs[0][1]
     assert first.servo is not None
-    words, quantity = LOOPS[first.servo.loop]
+    words, quantity, *_ = LOOPS[first.servo.loop]
     curves = []
     for _, found in one.runs:
         assert found.servo is not None

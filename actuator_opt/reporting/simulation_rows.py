@@ -9,12 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..quantities import RESULTS, SCENARIOS, Quantity
+from ..simulation.loops import LOOPS, loop_of
 from ..simulation.result import Row, Simulation
 from . import text
 from .optimum import sentence
 from .origin import tile
 from .simulation_energy import doubts
-from .simulation_words import LOOPS, PRESSURE
+from .simulation_words import PRESSURE
 from .text import DASH, number, pretty, trimmed, unit_text, value_text, with_unit
 
 SHORT = {
@@ -126,8 +127,9 @@ def controller(found: Simulation) -> list[tuple[str, str]]:
     if tuned is None or control is None:
         return []
     unit, gains = unit_text(tuned.unit), tuned.gains
-    loop = next((LOOPS[name][0] for name in LOOPS if getattr(control, name)), "")
-    rows = [("law", f"{control.law.upper()} on the {loop}")]
+    loop = loop_of(control)
+    words = "" if loop is None else LOOPS[loop].words
+    rows = [("law", f"{control.law.upper()} on the {words}")]
     gain = with_unit(number(float(gains.proportional_gain)), unit)
     factor = control.gain_factor
     rows.append(("gain K", gain if factor == 1 else f"{gain} × {trimmed(factor)}"))
@@ -320,12 +322,12 @@ def _note(found: Simulation, name: str) -> str:
     """What to know of a result without a limit."""
     servo, shaken = found.servo, found.shaken
     if name == "steady_state_ratio" and servo is not None:
-        quantity = LOOPS[servo.loop][1]
+        quantity = LOOPS[servo.loop].quantity
         error = servo.metrics.steady_state_error
         span = abs(servo.target - servo.start)
         return value_text(quantity, error if abs(error) > 1e-6 * span else 0.0, 3)
     if name == "overshoot" and servo is not None:
-        return f"peak {value_text(LOOPS[servo.loop][1], servo.metrics.peak)}"
+        return f"peak {value_text(LOOPS[servo.loop].quantity, servo.metrics.peak)}"
     if name == "peak_pressure":
         return f"proof {value_text(PRESSURE, found.plant.proof_pressure, 3)}"
     if name == "dynamic_stiffness" and shaken is not None:

@@ -10,9 +10,10 @@ import numpy as np
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array
 from ..quantities import Quantity
+from ..simulation.loops import LOOPS, Loop, loop_of
 from ..simulation.result import Simulation
 from .simulation_axes import ASKED, LEVEL, LIMIT, MEASURED, STYLES, Curve, Level, Strip
-from .simulation_words import LOOPS, PRESSURE
+from .simulation_words import PRESSURE
 from .text import unit_text
 
 Measured = Mapping[str, tuple[Array, Array]]
@@ -79,12 +80,12 @@ def titled(words: str, quantity: Quantity) -> str:
     return f"{words}, {unit}" if unit else words
 
 
-def followed(found: Simulation) -> str:
-    """The signal that a controller follows, or what moves; empty where nothing does."""
+def followed(found: Simulation) -> Loop | None:
+    """The signal that a controller follows, or what moves; None where nothing does."""
     control = found.scenario.control
     if control is not None and "reference" in found.signals:
-        return next((name for name in LOOPS if getattr(control, name)), "")
-    return next((name for name in ("position", "shaft_speed") if name in found.signals), "")
+        return loop_of(control)
+    return next((name for name in ("position", "shaft_speed") if name in found.signals), None)
 
 
 def response(found: Simulation, measured: Measured) -> Strip | None:
@@ -92,7 +93,7 @@ def response(found: Simulation, measured: Measured) -> Strip | None:
     name = followed(found)
     if not name:
         return None
-    words, quantity = LOOPS[name]
+    words, quantity, *_ = LOOPS[name]
     curves = overlay(found, name, measured)
     asked = "reference" if "reference" in found.signals else "drive_position"
     if asked in found.signals:
@@ -113,7 +114,7 @@ def strips(found: Simulation, measured: Measured) -> list[Strip]:
         own = curve(found, "error", "", STYLES[0])
         shown.append(Strip(titled("Error", quantity), (own,), zero=True, rank=3))
     used = followed(found)
-    if used not in ("", "position") and "position" in found.signals:
+    if used not in (None, "position") and "position" in found.signals:
         shown += _strip(found, measured, "Position", 5, False, (("position", ""),))
     pumped = found.scenario.supply.type != "constant"
     for title, rank, zero, signals in _SIGNALS:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..numeric import Array
+from ..simulation.loops import LOOPS
 from ..simulation.result import Servo, Simulation
 from ..simulation.step_response import BAND
 from .figures import Axes
@@ -20,7 +21,6 @@ from .simulation_axes import (
     time_axis,
 )
 from .simulation_series import Measured, overlay, scaled, titled
-from .simulation_words import LOOPS
 from .text import number
 from .wall_figures import OCHRE
 
@@ -58,7 +58,7 @@ def step_panel(ink: Ink, box: Box, found: Simulation, measured: Measured) -> Non
     if servo is None:
         return
     left, top, width, height = box
-    words, quantity = LOOPS[servo.loop]
+    words, quantity, *_ = LOOPS[servo.loop]
     begin, end = window(found, servo)
     scale = quantity.to_display(1.0)
     start, target = scale * servo.start, scale * servo.target

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..quantities import RESULTS
+from ..simulation.loops import LOOPS
 from ..simulation.result import Simulation
 from . import plot
 from . import simulation_comparison as compare
@@ -13,7 +14,7 @@ from .console import Column, Console
 from .simulation_comparison import Comparison
 from .simulation_energy import table_rows
 from .simulation_step import window
-from .simulation_words import LOOPS, what
+from .simulation_words import what
 from .text import number, unit_text
 
 _PAINTS = {"met": "green", "checks": "yellow bold", "missed": "red bold"}
@@ -118,7 +119,7 @@ def _step(found: Simulation, console: Console) -> str:
     lines = plot.curve(points, 100.0, console, min(console.width, 76), 11, ends=ends)
     if not lines:
         return ""
-    words = LOOPS[servo.loop][0]
+    words = LOOPS[servo.loop].words
     head = f"step of the {words} at {number(servo.time, 3)} s, % of the step over time after it"
     return "\n".join([console.heading(head), *lines])
 

@@ -9,6 +9,7 @@ from typing import Any
 from ..design.scenario.model import Scenario
 from ..quantities import INPUTS, SCENARIOS, Quantity
 from ..simulation.assemble import ends_of
+from ..simulation.loops import LOOPS
 from ..simulation.result import Simulation
 from .optimum import sentence
 from .text import trimmed, unit_text, with_unit
@@ -16,13 +17,6 @@ from .text import trimmed, unit_text, with_unit
 MOST_PARTS = 3
 """Parts of a signal that are told."""
 PRESSURE, LENGTH = INPUTS["pressure"], INPUTS["position"]
-LOOPS: dict[str, tuple[str, Quantity]] = {
-    "position": ("position", LENGTH),
-    "speed": ("speed", SCENARIOS["speed_value"]),
-    "shaft_speed": ("shaft speed", SCENARIOS["shaft_speed_value"]),
-    "shaft_angle": ("shaft angle", SCENARIOS["shaft_angle_value"]),
-}
-"""Each loop in words, with its quantity."""
 FRICTION = {"lugre": "LuGre friction", "stribeck": "Stribeck friction", "none": "no dry friction"}
 SUPPLY = {
     "constant": "constant supply",
@@ -85,7 +79,8 @@ def what(found: Simulation) -> str:
     said = [f"{plant.design.name}: {_machine(found)}, {trimmed(scenario.duration)} s."]
     control = scenario.control
     asked = ""
-    for name, (words, quantity) in LOOPS.items() if control is not None else ():
+    for name, one in LOOPS.items() if control is not None else ():
+        words, quantity = one.words, one.quantity
         if found_words := parts_words(getattr(control, name), quantity):
             asked = f"{words}: {found_words}"
             if name == "position":

@@ -5,40 +5,23 @@ from __future__ import annotations
 from math import pi
 
 from ..design.kinds import position_at
-from ..design.scenario.model import Control, HeldPorts, Scenario
+from ..design.scenario.model import HeldPorts, Scenario
 from ..errors import Diagnostic, InputError
 from ..evaluation.study.plant import Plant
 from ..models import linkage
 from ..models.stiffness import holding_pressures
 from ..models.tuning import ControllerGains
-from ..quantities import INPUTS, SCENARIOS, Quantity
+from ..quantities import INPUTS, SCENARIOS
 from ..symbolic import Expression, Symbol
+from .loops import LOOPS, loop_of
 from .parts import chambers, friction, load_cylinder, motion, motor, ports, signals, valve
-from .parts.circuit import Circuit, Loop, Start
+from .parts.circuit import Circuit, Start
 from .parts.control import Measured, command, inner
 from .parts.signals import Records
 from .parts.supply import Source
 from .system import System
 
-LOOPS: tuple[Loop, ...] = ("position", "speed", "shaft_speed", "shaft_angle")
-QUANTITIES: dict[Loop, Quantity] = {
-    "position": INPUTS["position"],
-    "speed": SCENARIOS["speed_value"],
-    "shaft_speed": SCENARIOS["shaft_speed_value"],
-    "shaft_angle": SCENARIOS["shaft_angle_value"],
-}
-TYPICAL: dict[Loop, float] = {
-    "position": 1e-2, "speed": 0.1, "shaft_speed": 10.0, "shaft_angle": 1.0,
-}  # fmt: skip
-"""A typical error of each loop, for tolerances (SI)."""
 PRESSURES = INPUTS["pressure"]
-
-
-def loop_of(control: Control | None) -> Loop | None:
-    """Which reference closes the loop."""
-    if control is None:
-        return None
-    return next((name for name in LOOPS if getattr(control, name)), None)
 
 
 def ends_of(scenario: Scenario, plant: Plant) -> str:
@@ -123,9 +106,9 @@ def _command(circuit: Circuit, measured: Measured) -> Expression:
         return circuit.course(circuit.scenario.signal)
     base = circuit.start.position if loop == "position" else 0.0
     wanted = base + circuit.course(getattr(control, loop))
-    system.signal("reference", "reference", QUANTITIES[loop], wanted)
-    system.signal("error", "error of the loop", QUANTITIES[loop], wanted - measured.value)
-    return command(circuit, wanted, measured, TYPICAL[loop])
+    system.signal("reference", "reference", LOOPS[loop].quantity, wanted)
+    system.signal("error", "error of the loop", LOOPS[loop].quantity, wanted - measured.value)
+    return command(circuit, wanted, measured, LOOPS[loop].typical)
 
 
 def _driven(

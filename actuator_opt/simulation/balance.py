@@ -45,9 +45,7 @@ def balance(circuit: Circuit, run: Trajectory) -> Balance:
 
 def _values(system: System, expressions: list[object], run: Trajectory) -> list[Array]:
     """Expressions of the states at every sample."""
-    names = ", ".join(str(state.symbol.args[0]) for state in system.states)
-    flags = [one.flag for one in system.instants] + [one.flag for one in system.switches]
-    unpack = {f"{names},": "y"} | ({f"{', '.join(flags)},": "m"} if flags else {})
+    unpack = system.unpack([state.symbol for state in system.states], "y")
     values = vectorised("stored", "t, y, m", unpack, expressions)(
         run.time, run.states, tuple(run.flags)
     )

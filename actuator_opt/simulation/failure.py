@@ -20,7 +20,7 @@ OUT = 0.1
 
 def failed(stuck: Stuck, compiled: Compiled, plant: Plant) -> Unsolvable:
     """The failure with what the actuator did there, and the likeliest cause."""
-    flags = np.zeros((len(compiled.instants) + len(compiled.system.switches), 1), dtype=bool)
+    flags = np.zeros((len(compiled.system.flags), 1), dtype=bool)
     signals = compiled.signals(np.array([stuck.time]), stuck.state[:, None], list(flags))
     words = [
         f"{one.label} {one.quantity.text(float(signals[one.name][0]))}"

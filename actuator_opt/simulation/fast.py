@@ -203,7 +203,6 @@ def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
         return free.get(name, casadi.SX.sym(name))
 
     states = casadi.vertcat(*(symbol(str(s.symbol.args[0])) for s in system.states))
-    names = [one.flag for one in system.instants] + [one.flag for one in system.switches]
     sample, start, step = (casadi.SX.sym(name) for name in ("sample", "start", "step"))
     scaled = casadi.SX.sym("x", len(system.states))
     (ode,) = casadi.substitute(
@@ -211,7 +210,7 @@ def _equations(casadi: Any, compiled: Compiled) -> dict[str, Any]:
         [casadi.vertcat(states, symbol("t"))],
         [casadi.vertcat(scaled * unit, start + step * sample)],
     )
-    parameters = casadi.vertcat(start, *(symbol(name) for name in names))
+    parameters = casadi.vertcat(start, *(symbol(name) for name in system.flags))
     return {"t": sample, "x": scaled, "p": parameters, "u": step, "ode": ode}
 
 

@@ -14,9 +14,9 @@ from ..errors import Diagnostic, InputError
 from ..evaluation.study.plant import Plant
 from ..models.tuning import ControllerGains, margin_rules, ziegler_nichols
 from ..quantities import INPUTS
-from .assemble import assemble, loop_of
+from .assemble import assemble
 from .linearise import Law, Linear, Margins, OpenLoop, Ultimate, least, margins
-from .parts.circuit import Loop
+from .loops import LOOPS, Loop, loop_of
 from .parts.signals import Records, steady_value
 
 MARGIN = {"p": 2.0, "pi": 3.0}
@@ -30,9 +30,6 @@ NO_GAIN = 1e-9
 """Factor that stands for a gain of zero beside an integral or derivative part."""
 UNHELD = "the valve cannot hold the load"
 CAUSES = "lower the load or the piston's leakage, raise supply.pressure or the valve's flow"
-UNITS: dict[Loop, str] = {
-    "position": "V/m", "speed": "V*s/m", "shaft_speed": "V*s/rad", "shaft_angle": "V/rad",
-}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +101,7 @@ def tune(
         control.derivative_factor / factor * gains.derivative_time,
         control.filter_time,
     )
-    return Tuned(gains, origin, limit, margins(worst, shaped), UNITS[loop], notes, unheld)
+    return Tuned(gains, origin, limit, margins(worst, shaped), LOOPS[loop].unit, notes, unheld)
 
 
 def _held(scenario: Scenario) -> Scenario:

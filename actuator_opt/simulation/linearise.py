@@ -120,10 +120,7 @@ class Linear:
         u = system.graph.variable("u")
         rates = [one.rate for one in states]
         rows = jacobian([*rates, circuit.measured], [*symbols, u])
-        flags = [one.flag for one in system.instants] + [one.flag for one in system.switches]
-        unpack = {f"{', '.join(str(s.args[0]) for s in symbols)},": "y"}
-        if flags:
-            unpack[f"{', '.join(flags)},"] = "m"
+        unpack = system.unpack(symbols, "y")
         return cls(
             circuit=circuit,
             names=tuple(one.name for one in states),
@@ -131,7 +128,7 @@ class Linear:
             scale=np.array([one.tolerance for one in states]),
             slopes=function("slopes", "t, y, u, m", unpack, [x for row in rows for x in row]),
             rates=function("rates", "t, y, u, m", unpack, rates),
-            flags=(False,) * len(flags),
+            flags=(False,) * len(system.flags),
         )
 
     def loop(self, state: Array, signal: float) -> OpenLoop:

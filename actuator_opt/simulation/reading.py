@@ -13,10 +13,9 @@ from ..evaluation.study.plant import Plant
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array
 from ..quantities import RESULTS
-from .assemble import loop_of
 from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import Event
-from .parts.circuit import Loop
+from .loops import Loop, loop_of
 from .parts.signals import Records, acts_after, frequencies
 from .result import Balance, Row, Servo, Shaken, Window
 from .step_response import step_metrics

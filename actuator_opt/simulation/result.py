@@ -14,7 +14,7 @@ from ..numeric import Array
 from ..quantities import RESULTS, Quantity
 from .gains import Tuned
 from .integrate import Event
-from .parts.circuit import Loop
+from .loops import Loop
 from .step_response import StepMetrics
 
 

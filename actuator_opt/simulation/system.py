@@ -149,6 +149,17 @@ class System:
         self.signals = [one for one in self.signals if one.name != name]
         self.signals.append(Signal(name, label, quantity, value))
 
+    @property
+    def flags(self) -> list[str]:
+        """Names of the flags, those of the instants first."""
+        return [one.flag for one in self.instants] + [one.flag for one in self.switches]
+
+    def unpack(self, symbols: Sequence[Symbol], states: str) -> dict[str, str]:
+        """How written code takes the states from an argument, and the flags from ``m``."""
+        names = ", ".join(str(symbol.args[0]) for symbol in symbols)
+        flags = ", ".join(self.flags)
+        return ({f"{names},": states} if names else {}) | ({f"{flags},": "m"} if flags else {})
+
     def compiled(self) -> Compiled:
         """The equations as functions of time, states and flags."""
         return Compiled.of(self)
@@ -182,14 +193,10 @@ class Compiled:
         """Trace, differentiate, write and compile."""
         symbols = [state.symbol for state in system.states]
         rates = [state.rate for state in system.states]
-        flags = [one.flag for one in system.instants] + [one.flag for one in system.switches]
-        names = ", ".join(str(symbol.args[0]) for symbol in symbols)
-        one = {f"{names},": "y.tolist()"} if names else {}
-        many = {f"{names},": "y"} if names else {}
-        switch = {f"{', '.join(flags)},": "m"} if flags else {}
+        one, many = (system.unpack(symbols, states) for states in ("y.tolist()", "y"))
         entries = [x for row in jacobian(rates, symbols) for x in row]
         filled = np.array([k for k, x in enumerate(entries) if isinstance(x, Symbol) or x], int)
-        flat = function("jacobian", "t, y, m", one | switch, [entries[k] for k in filled])
+        flat = function("jacobian", "t, y, m", one, [entries[k] for k in filled])
         size = len(symbols)
 
         def slopes(t: float, y: Array, m: tuple[bool, ...]) -> Array:
@@ -199,15 +206,11 @@ class Compiled:
 
         return cls(
             system=system,
-            rates=function("rates", "t, y, m", one | switch, rates),
+            rates=function("rates", "t, y, m", one, rates),
             slopes=slopes,
-            guards=vectorised(
-                "guards", "t, y, m", many | switch, [one.guard for one in system.switches]
-            ),
-            guard_rates=vectorised("guard_rates", "t, y, m", many | switch, _along(system)),
-            told=vectorised(
-                "told", "t, y, m", many | switch, [one.value for one in system.signals]
-            ),
+            guards=vectorised("guards", "t, y, m", many, [one.guard for one in system.switches]),
+            guard_rates=vectorised("guard_rates", "t, y, m", many, _along(system)),
+            told=vectorised("told", "t, y, m", many, [one.value for one in system.signals]),
             initial=np.array([state.initial for state in system.states]),
             tolerances=np.array([state.tolerance for state in system.states]),
             instants=tuple(one.time for one in system.instants),

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal
 
 from ...design.scenario.model import Scenario
 from ...design.scenario.signals import Part
 from ...evaluation.study.plant import Plant
 from ...models.tuning import ControllerGains
 from ...symbolic import Expression, Symbol
+from ..loops import Loop
 from ..system import System
 from . import signals
 
-Loop = Literal["position", "speed", "shaft_speed", "shaft_angle"]
 FLOW = 1e-4
 """Flow whose power at supply pressure is the scale of an energy [m^3/s], 6 l/min (a choice)."""
 

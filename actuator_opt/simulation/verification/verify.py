@@ -21,7 +21,7 @@ from ...evaluation.kernel import Subject
 from ...evaluation.result import Requirement
 from ...progress import steps
 from ...quantities import METRICS
-from ..assemble import loop_of
+from ..loops import loop_of
 from ..parts.signals import Records
 from ..result import Simulation
 from ..run import simulate

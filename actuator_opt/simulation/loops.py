@@ -1,0 +1,45 @@
+"""What a controller may follow: a place or a speed, of the piston or of a motor's shaft."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+from ..design.scenario.model import Control
+from ..quantities import INPUTS, SCENARIOS, Quantity
+
+Loop = Literal["position", "speed", "shaft_speed", "shaft_angle"]
+
+
+class Followed(NamedTuple):
+    """What a loop follows."""
+
+    words: str
+    quantity: Quantity
+    unit: str
+    """Of the loop's gain."""
+    typical: float
+    """A typical error, for tolerances (SI)."""
+
+
+def _followed(words: str, quantity: Quantity, gain: str, typical: float) -> Followed:
+    return Followed(words, quantity, SCENARIOS[gain].unit, typical)
+
+
+LOOPS: dict[Loop, Followed] = {
+    "position": _followed("position", INPUTS["position"], "position_gain", 1e-2),
+    "speed": _followed("speed", SCENARIOS["speed_value"], "speed_gain", 0.1),
+    "shaft_speed": _followed(
+        "shaft speed", SCENARIOS["shaft_speed_value"], "shaft_speed_gain", 10.0
+    ),
+    "shaft_angle": _followed(
+        "shaft angle", SCENARIOS["shaft_angle_value"], "shaft_angle_gain", 1.0
+    ),
+}
+"""Every loop, by the name of its reference and its signal."""
+
+
+def loop_of(control: Control | None) -> Loop | None:
+    """Which reference closes the loop."""
+    if control is None:
+        return None
+    return next((name for name in LOOPS if getattr(control, name)), None)
