@@ -370,3 +370,12 @@ def test_a_load_cylinder_without_leakage_leaves_the_loop_stable(short):
     found = json.loads(run("simulate", str(short), "--json").out)["controller"]
     assert found["stable"]
     assert found["gain_margin"] > 2
+
+
+def test_runs_are_compared_on_a_page(short, tmp_path):
+    """`write_comparison` draws runs of one scenario side by side, under its name."""
+    trials = [ao.read_scenario(short, set={"load.mass": f"{kg} kg"}) for kg in (20, 40)]
+    runs = [(name, ao.simulate(one)) for name, one in zip(("20 kg", "40 kg"), trials, strict=True)]
+    files = ao.write_comparison(runs, trials[0], title="load", folder=tmp_path)
+    assert [file.path.name for file in files] == ["short-compared.pdf", "short-compared.png"]
+    assert all(file.path.stat().st_size > 10_000 for file in files)

@@ -15,7 +15,7 @@ from actuator_opt.simulation.harmonic import (
     harmonic_fit,
     windows,
 )
-from actuator_opt.simulation.step_response import ramp_lag, sine_following, step_metrics
+from actuator_opt.simulation.step_response import step_metrics
 
 TIME = np.linspace(0.0, 2.0, 20001)
 
@@ -130,28 +130,6 @@ def test_records_that_are_none_are_one_clear_line(changes, line):
     good = {"time": [0.0, 1.0, 2.0], "response": [0.0, 1.0, 1.0], "start": 0.0, "target": 1.0}
     with pytest.raises(InputError, match=f"^{line}"):
         step_metrics(**{**good, **changes})
-
-
-def test_a_lag_follows_a_ramp_late_by_speed_times_its_time_constant():
-    """It answers V t with V (t - tau + tau e^(-t/tau)): lag V tau, either direction."""
-    for speed in (0.3, -0.3):
-        response = speed * (TIME - 0.05 * first_order(TIME, 0.05))
-        lag = ramp_lag(time=TIME, command=speed * TIME, response=response)
-        assert lag == pytest.approx(0.05 * speed, rel=1e-10)
-
-
-def test_a_lag_follows_a_sine_with_its_frequency_response():
-    """1/(1 + i w tau), measured beside a drift."""
-    omega, constant = 2 * math.pi * 3.0, 0.08
-    answer = 1 / (1 + 1j * omega * constant)
-    response = np.imag(answer * np.exp(1j * omega * TIME)) + 4 - 0.7 * TIME
-    found = sine_following(
-        time=TIME, command=np.sin(omega * TIME), response=response, frequency=3.0
-    )
-    assert found.amplitude_ratio == pytest.approx(abs(answer), rel=1e-10)
-    assert found.phase == pytest.approx(np.angle(answer), rel=1e-10)
-    with pytest.raises(InputError, match="the command does not swing at 3 Hz"):
-        sine_following(time=TIME, command=0.1 + 0 * TIME, response=response, frequency=3.0)
 
 
 @given(

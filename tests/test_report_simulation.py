@@ -565,12 +565,8 @@ def test_absurd_names_are_cut_or_broken(tmp_path):
     files = pair_document.write_comparison_sheet(made, ORIGIN, folder=tmp_path, stem="b")
     assert files[0].pages <= 3
     for width in (40, 100):
-        for text in (
-            simulation_text.simulation_text(long, width=width),
-            simulation_text.comparison_text(made, width=width),
-        ):
-            lines = text.splitlines()
-            assert max(map(len, lines[1:])) <= width
+        lines = simulation_text.simulation_text(long, width=width).splitlines()
+        assert max(map(len, lines[1:])) <= width
 
 
 @pytest.fixture
@@ -593,27 +589,17 @@ def test_the_plain_renderer_draws_it_too(tmp_path, no_typst):
     assert files[0].pages == len(files) - 1
 
 
-def test_figures_are_written_alone(tmp_path):
-    """One PNG for each, by its name."""
-    files = figures.write_figures(case.simulated("motor"), tmp_path, "m")
-    names = sorted(file.path.name for file in files)
-    assert names == ["m-energy-time.png", "m-energy.png", "m-signals.png", "m-step.png"]
-    assert all(file.path.read_bytes().startswith(b"\x89PNG") for file in files)
-
-
 # ---- terminal ----
 
 
 @pytest.mark.parametrize("width", [40, 80, 140])
 def test_the_terminal_keeps_its_width(width):
     """No line is longer than the terminal, also in plain ASCII."""
-    made = simulation_comparison.comparison(case.tuned(), "tuning")
     for unicode in (True, False):
         texts = [
             simulation_text.simulation_text(case.simulated(kind), width=width, unicode=unicode)
             for kind in case.KINDS
         ]
-        texts.append(simulation_text.comparison_text(made, width=width, unicode=unicode))
         for text in texts:
             assert max(map(len, text.splitlines())) <= width, text
             assert "\\u" not in text

@@ -260,8 +260,9 @@ def test_overlay_refuses_what_has_nothing_in_common():
     """No time or no signal in common is a fault of the record."""
     scene, own = case()
     made = run(scene, own, {}, None)
+    late = Measured({name: (t + 9.0, y) for name, (t, y) in bench(1).channels.items()})
     with pytest.raises(InputError, match=r"from 9 to 9\.5 s, the scenario from 0 to 0\.5 s"):
-        overlay(made, bench(1).delayed(9.0))
+        overlay(made, late)
     time, signals = measured_signals()
     with pytest.raises(InputError, match="none of its channels is simulated"):
         overlay(made, Measured({"shaft_speed": (time, signals["speed"])}))

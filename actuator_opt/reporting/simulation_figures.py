@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..quantities import SCENARIOS
 from ..simulation.result import Simulation
-from . import fallback, writer
+from . import fallback
 from .figures import Axes
 from .identification_axes import Box, even_ticks
 from .identification_series import thinned
@@ -157,24 +155,6 @@ def figures(
         one.draw(ink, (1.0, 0.0, 88.0, height))
         made[one.name] = ink
     return made
-
-
-def write_figures(
-    found: Simulation,
-    folder: Path,
-    stem: str,
-    *,
-    measured: Measured | None = None,
-    static: Static | None = None,
-) -> list[writer.ReportFile]:
-    """Write every figure alone as ``STEM-NAME.png``, whole or not at all."""
-    made = figures(found, measured=measured, static=static)
-    contents = {f"{stem}-{name.replace('_', '-')}.png": image(ink) for name, ink in made.items()}
-    writer.write_all(folder, contents)
-    return [
-        writer.ReportFile(folder / name, hashlib.sha256(content).hexdigest(), 1)
-        for name, content in contents.items()
-    ]
 
 
 def image(ink: Ink, pixels_per_inch: float = 200.0) -> bytes:

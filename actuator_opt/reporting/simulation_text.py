@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..quantities import RESULTS
 from ..simulation.loops import LOOPS
 from ..simulation.result import Simulation
 from . import plot
-from . import simulation_comparison as compare
 from . import simulation_rows as rows
 from .console import Column, Console
-from .simulation_comparison import Comparison
 from .simulation_energy import table_rows
 from .simulation_step import window
 from .simulation_words import what
@@ -146,34 +143,3 @@ def _trust(found: Simulation, console: Console) -> str:
         said += f" {number(found.seconds, 2)} s of computing."
     lines.append(console.wrap(said, "dim"))
     return "\n".join([*lines, *(console.wrap(note, "yellow") for note in rows.remarks(found))])
-
-
-# ---- several ----
-
-
-def comparison_text(
-    comparison: Comparison, *, colour: bool = False, unicode: bool = True, width: int = 100
-) -> str:
-    """Several runs: one row each, then how far to trust them."""
-    console = Console(colour, unicode, width)
-    seen = compare.verdict(comparison)
-    head = [
-        console.paint(console.say(comparison.title), "bold"),
-        console.wrap(", ".join(seen["lines"]), "dim"),
-        console.wrap(compare.what(comparison)),
-    ]
-    order = sorted(comparison.columns, key=lambda name: name not in RESULTS)
-    columns = [Column("run", flexible=True)]
-    for k, name in enumerate(order):
-        unit = compare.unit_of(comparison, name)
-        words = compare.COLUMNS[name].head
-        columns.append(Column(f"{words}, {unit}" if unit else words, "right", drop=k + 1))
-    body, styles = [], []
-    for name, found in comparison.runs:
-        body.append([name, *(compare.COLUMNS[key].text(found) for key in order)])
-        bad = ["red bold" if compare.missed(found, key) else "" for key in order]
-        styles.append(["", *bad])
-    said = compare.trust(comparison)
-    parts = [head, console.table(columns, body, styles)]
-    parts.append([console.wrap(words, "" if k == 0 else "yellow") for k, words in enumerate(said)])
-    return "\n\n".join("\n".join(lines) for lines in parts) + "\n"

@@ -1,15 +1,13 @@
-"""How a servo follows: a step, a ramp, a sine."""
+"""How a servo follows a step."""
 
 from __future__ import annotations
 
-import cmath
 from typing import NamedTuple
 
 import numpy as np
 
 from ..errors import Diagnostic, InputError
 from ..numeric import Array
-from .harmonic import RESOLVED, harmonic_fit
 from .sampled import LAST, last_mean, sampled
 
 BAND = 0.02
@@ -129,92 +127,3 @@ def _decay(beyond: np.ndarray) -> float | None:
         return None
     following = float(np.max(beyond[back[0] :]))
     return following / float(beyond[0]) if following > 0 else None
-
-
-def ramp_lag(*, time: Array, command: Array, response: Array) -> float:
-    """Following error on a ramp: mean of command less response over the last tenth.
-
-    A position loop lags by the command's speed over its velocity gain.
-
-    Parameters
-    ----------
-    time : (n,) [s], of the ramp alone
-    command, response : (n,), in one unit
-
-    Returns
-    -------
-    lag, in that unit; positive where the response is behind a rising command
-
-    Raises
-    ------
-    InputError : samples that are no record
-
-    Notes
-    -----
-    Valid: the start of the ramp has died away.
-
-    References
-    ----------
-    [derived] mean error
-
-    Examples
-    --------
-    >>> t = np.linspace(0.0, 1.0, 101)
-    >>> print(f"{ramp_lag(time=t, command=2 * t, response=2 * (t - 0.05)):.3f}")
-    0.100
-    """
-    t, wanted, found = sampled(time=time, command=command, response=response)
-    return last_mean(t, wanted - found)
-
-
-class SineFollowing(NamedTuple):
-    """How a response follows a sine."""
-
-    amplitude_ratio: float
-    """Response over command."""
-    phase: float
-    """[rad], negative where the response lags, within -pi and pi."""
-
-
-def sine_following(
-    *, time: Array, command: Array, response: Array, frequency: float
-) -> SineFollowing:
-    """Amplitude ratio and phase of the response to a sine, by `harmonic_fit` of both.
-
-    Parameters
-    ----------
-    time : (n,) [s], one cycle or more, the start died away
-    command, response : (n,), in one unit
-    frequency : of the command [Hz]
-
-    Returns
-    -------
-    amplitude ratio [-] and phase [rad]
-
-    Raises
-    ------
-    InputError : as `harmonic_fit`; a command that does not swing at the frequency
-
-    Notes
-    -----
-    Valid: the fundamental alone; the phase repeats every turn.
-
-    References
-    ----------
-    [derived] ratio of the complex amplitudes
-
-    Examples
-    --------
-    >>> t = np.linspace(0.0, 1.0, 201)
-    >>> found = sine_following(time=t, command=np.sin(2 * np.pi * 3 * t),
-    ...     response=0.5 * np.sin(2 * np.pi * 3 * t - 0.7), frequency=3.0)
-    >>> print(f"{found.amplitude_ratio:.3f} {found.phase:.3f}")
-    0.500 -0.700
-    """
-    t, wanted, found = sampled(time=time, command=command, response=response)
-    asked = harmonic_fit(time=t, values=wanted, frequency=frequency).amplitude
-    if abs(asked) <= RESOLVED * np.max(np.abs(wanted)):
-        message = f"the command does not swing at {frequency:g} Hz"
-        raise InputError(Diagnostic(message, "give the frequency of the command"))
-    ratio = harmonic_fit(time=t, values=found, frequency=frequency).amplitude / asked
-    return SineFollowing(abs(ratio), cmath.phase(ratio))

@@ -23,6 +23,7 @@ from .simulations import (
     servo_sensitivities,
     simulate,
     verify_dynamics,
+    write_comparison,
     write_signals,
     write_simulation,
 )
@@ -53,6 +54,7 @@ __all__ = [
     "verify_dynamics",
     "with_contact",
     "write_calibration",
+    "write_comparison",
     "write_identification",
     "write_seal",
     "write_series",

@@ -18,6 +18,7 @@ from .reports import origin
 if TYPE_CHECKING:
     from ..design.scenario import LoadedScenario, Scenario
     from ..reporting import ReportFile
+    from ..reporting.origin import Origin
     from ..simulation import Simulation
     from ..simulation.measured import Overlay
     from ..simulation.measured.fit import Fit
@@ -331,22 +332,63 @@ def write_simulation(
     from ..reporting.tables import extra
     from ..reporting.verification_rows import sensitivity_rows
 
-    source = scenario.loaded.source
-    page = origin(scenario.actuator.design, scenario.actuator.source, command=command, date=date)
-    spec = simulation.spec_hash or page.spec_hash
-    name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
+    page, stem = _page(scenario, simulation, command, date)
     blocks = [] if measured is None else measured_blocks(measured.overlay, measured.fit)
     blocks += [] if sensitivities is None else map(extra, sensitivity_rows(sensitivities))
     return write_simulation_sheet(
         simulation,
-        replace(
-            page,
-            source_text=source.text,
-            source_name=name,
-            spec_hash=spec,
-        ),
+        page,
         folder=Path(folder),
-        stem=Path(name).stem,
+        stem=stem,
         measured=None if measured is None else drawn(measured.overlay),
         extra=blocks,
     )
+
+
+def write_comparison(
+    runs: Sequence[tuple[str, Simulation]],
+    scenario: Trial,
+    *,
+    title: str,
+    notes: Sequence[str] = (),
+    folder: str | Path = "reports",
+    command: str = "",
+    date: str | None = None,
+) -> list[ReportFile]:
+    """Write one page about several simulations side by side (PDF and PNG).
+
+    Parameters
+    ----------
+    runs : name and simulation of each; "50 %, extending" and "50 %, retracting" share a colour
+    scenario : that they vary, attached
+    title, notes : of the page
+    folder : where to; the name is the scenario file's with "-compared"
+    command, date : as `report`
+
+    Raises
+    ------
+    InputError
+        no run, a name that stands twice
+    """
+    from ..reporting.simulation_comparison import comparison
+    from ..reporting.simulation_comparison_document import write_comparison_sheet
+
+    made = comparison(runs, title, notes)
+    page, stem = _page(scenario, runs[0][1], command, date)
+    return write_comparison_sheet(made, page, folder=Path(folder), stem=f"{stem}-compared")
+
+
+def _page(
+    scenario: Trial, simulation: Simulation, command: str, date: str | None
+) -> tuple[Origin, str]:
+    """What the title block of a scenario's page says, the file attached, and the file's stem."""
+    source = scenario.loaded.source
+    page = origin(scenario.actuator.design, scenario.actuator.source, command=command, date=date)
+    name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
+    found = replace(
+        page,
+        source_text=source.text,
+        source_name=name,
+        spec_hash=simulation.spec_hash or page.spec_hash,
+    )
+    return found, Path(name).stem

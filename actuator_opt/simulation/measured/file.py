@@ -80,11 +80,6 @@ class Measured:
             notes.append(f"{', '.join(still)}: one value all the time in the record")
         return cls(channels, record.name, tuple(notes))
 
-    def delayed(self, time: float) -> Measured:
-        """The same record with a time added, as for a logger with another zero."""
-        moved = {name: (t + time, y) for name, (t, y) in self.channels.items()}
-        return Measured(moved, self.name, self.notes)
-
     def fault(self, message: str, remedy: str) -> InputError:
         """A fault of this record."""
         return InputError(Diagnostic(message, remedy, file=self.name))
