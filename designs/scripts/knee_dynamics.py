@@ -101,6 +101,32 @@ def shaken_stiffness(*, stiffness: float, mass: float, frequency: float, corner:
     return abs(spring - mass * (2 * pi * frequency) ** 2)
 
 
+def passing_share(design: Any, case: str) -> float:
+    """Conductance of valve and bleed where the spool passes its centre, over that where it holds.
+
+    Centred, both edges of a chamber leak; held, the one that leaks less opens to feed the other and
+    the bleed. The bleed counts twice on each chamber: the chambers swing against one another.
+    """
+    duty = next(one for one in design.load_cases if one.name == case)
+    area = pi / 4 * design.cylinder.bore**2
+    ring = area - pi / 4 * design.rod.outer_diameter**2
+    high, low = design.supply.pressure, design.supply.return_pressure
+    force = duty.force if duty.direction == "push" else -duty.force
+    pressure_a = (force + (high + low) * ring) / (area + ring)
+    bleed = design.piston.leakage_conductance
+    edge = design.valve.leakage_flow / sqrt(design.valve.leakage_drop)
+    held = passing = 4 * bleed
+    for pressure, other in (
+        (pressure_a, high + low - pressure_a),
+        (high + low - pressure_a, pressure_a),
+    ):
+        into, out, past = high - pressure, pressure - low, bleed * (pressure - other)
+        fed = max(edge * sqrt(into), edge * sqrt(out) + past)
+        held += fed / (2 * into) + (fed - past) / (2 * out)
+        passing += edge / (2 * sqrt(into)) + edge / (2 * sqrt(out))
+    return float(passing / held)
+
+
 def wishes(*, without: str = "", goal: str = "", mass: float | None = None) -> ao.Actuator:
     """The knee; one requirement left out, another goal, and a mass to stay within."""
     data = yaml.load(DESIGN.read_text("utf-8"), Loader=yaml.BaseLoader)
@@ -130,7 +156,8 @@ def measured(found: Any, metric: str, asked: float | None = None) -> Data:
     drop = supply.pressure - supply.return_pressure
     share = speeds[1] / speeds[0] / fast.gain_margin
     lag = {"spool": valve.natural_frequency, "spool_damping": valve.damping_ratio}
-    mode = {"frequency": frequency, "damping": damping}
+    left = dynamics.conductance_share * passing_share(design, fast.case)
+    mode = {"frequency": frequency, "damping": dynamics.friction_share + left}
     area, force = pi / 4 * design.cylinder.bore**2, design.load_cases[0].force
     layers = [layer.thickness for layer in design.barrel.layup]
     return {
@@ -151,6 +178,7 @@ def measured(found: Any, metric: str, asked: float | None = None) -> Data:
         "wall": sum(layers),
         "frequency": frequency,
         "damping": damping,
+        "passing_damping": mode["damping"],
         "cases": [fast.case, slow.case],
         "speed_gains": speeds,
         "fast_bandwidth": fast.bandwidth,
@@ -343,7 +371,8 @@ def remarks(study: Data) -> Data:
     first, last = rows["bandwidth"][0], found["bandwidth"]["most"]
     ratios = [number(row["speed_gains"][0] / row["speed_gains"][1], 3) for row in (first, last)]
     lifted = [number(row["frequency"], 3) for row in (first, last)]
-    merritt = number(2 * base["damping"] * base["frequency"], 3)
+    merritt = number(2 * base["passing_damping"] * base["frequency"], 3)
+    left, held = (number(base[name], 2) for name in ("passing_damping", "damping"))
     kept = ", ".join(f"{number(m, 3)} with {kg} kg" for kg, m in study["kept"].items())
     high = [1e6 * r["maxwell"] / r["metrics"]["dynamic_stiffness"] for r in rows[ASKED[1]]]
     model, (fast, slow) = number(base["metrics"]["bandwidth"], 3), base["cases"]
@@ -351,7 +380,8 @@ def remarks(study: Data) -> Data:
         "bandwidth": (
             "g per Hz: from the row above, by finite differences; red in the figure: by the"
             f" multipliers. {every['bandwidth']} By hand, as required: Merritt's limit of a"
-            f" proportional loop, 2ζf₀ = {merritt} Hz of velocity gain, over the gain margin and"
+            f" proportional loop, 2ζf₀ = {merritt} Hz of velocity gain by the damping that is left"
+            f" where the spool passes its centre (ζ {left}; held {held}), over the gain margin and"
             f" over the ratio of the valve's gain where the margin is least ({fast}) to that where"
             f" the bandwidth is ({slow}), is {number(base['merritt'], 3)} Hz. That is for a spool"
             f" without lag. This one has {number(study['spool'], 3)} Hz, so that the loop would"
