@@ -8,6 +8,10 @@ from ..numeric import Array, maximum, minimum, real, where
 from .valve import edge_conductance, edge_flow
 
 
+LEAST = 1e-12
+"""Flow over coefficient of an edge that feeds [sqrt(Pa)]: of a tenth of a nanopascal."""
+
+
 class FeedingEdges(NamedTuple):
     """Coefficients of the two edges of a chamber while the valve holds it [m^3/s/sqrt(Pa)]."""
 
@@ -62,7 +66,7 @@ def feeding_edges(
     supplied = maximum(leakage_supply * unit_in, leakage_tank * unit_out + lost)
 
     def opened(flow: Array, unit: Array) -> Array:
-        feeds = real(unit) > 0
+        feeds = real(unit) > LEAST
         wanted = flow / where(feeds, unit, 1.0)
         return where(feeds, minimum(rated_coefficient, wanted), rated_coefficient)
 
