@@ -95,7 +95,7 @@ def test_one_speed_lists_what_was_left():
     found = calibrated("one speed")
     said = " ".join(rows.remarks(found.calibration, found.redesign))
     for key in ("breakaway_ratio", "stribeck_speed", "viscous_friction"):
-        assert f"{key.capitalize()} stays as the design says: one speed, 50 mm/s" in said
+        assert f"{key} stays as the design says: one speed, 50 mm/s" in said
 
 
 def test_levels_of_pressure_are_drawn_apart():

@@ -7,7 +7,6 @@ from typing import NamedTuple
 from ..numeric import Array, maximum, minimum, real, where
 from .valve import edge_conductance, edge_flow
 
-
 LEAST = 1e-12
 """Flow over coefficient of an edge that feeds [sqrt(Pa)]: of a tenth of a nanopascal."""
 
