@@ -50,3 +50,12 @@ def shown(text: object, limit: int = 60) -> str:
         c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in str(text)
     )
     return line if len(line) <= limit else line[: limit - 1] + "…"
+
+
+def article(words: str) -> str:
+    """Words with their indefinite article, by their first letter.
+
+    >>> article("oil volume"), article("bore")
+    ('an oil volume', 'a bore')
+    """
+    return f"an {words}" if words[:1].lower() in "aeiou" else f"a {words}"

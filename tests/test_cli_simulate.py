@@ -379,3 +379,11 @@ def test_runs_are_compared_on_a_page(short, tmp_path):
     files = ao.write_comparison(runs, trials[0], title="load", folder=tmp_path)
     assert [file.path.name for file in files] == ["short-compared.pdf", "short-compared.png"]
     assert all(file.path.stat().st_size > 10_000 for file in files)
+
+
+def test_edges_that_leak_unlike_are_told_in_the_linear_model():
+    """Its held pressures are those of alike edges; with alike ones nothing is said."""
+    knee = str(DESIGNS / "servo_knee.yaml")
+    unlike = " ".join(run("evaluate", knee, "--set=valve.tank_leakage_drop=20 bar").out.split())
+    assert "edges to tank leak unlike those to the supply" in unlike
+    assert "unlike those" not in " ".join(run("evaluate", knee).out.split())

@@ -18,7 +18,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from .. import quantities, units
 from ..numeric import Array
 from ..quantities import Quantity
-from ..suggest import shown
+from ..suggest import article, shown
 
 _LONGEST_NUMBER = 100
 _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d")
@@ -141,7 +141,7 @@ def read_quantity(value: object, quantity: Quantity) -> float:
         return check_range(float(value), quantity)
     if not isinstance(value, str):
         raise ValueFault(
-            f"need a {quantity.label}, not {what(value)}",
+            f"need {article(quantity.label)}, not {what(value)}",
             f'write one value, e.g. "{example(quantity)}"',
         )
     try:

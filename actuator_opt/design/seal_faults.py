@@ -10,6 +10,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..models.elastomer import modulus_gent
+from ..suggest import article
 from . import profile_faults
 from .profile_faults import elements
 from .seals import BACK_UPS
@@ -44,10 +45,6 @@ STRANGE = {
 """Fields an element of a type has not."""
 
 
-def _article(kind: str) -> str:
-    return f"an {kind}" if kind == "o_ring" else f"a {kind}"
-
-
 def fields(view: View) -> Iterator[Fault]:
     """Every type states what it is made of, and nothing else; a piston has no wiper."""
     for loc in elements(view):
@@ -56,14 +53,14 @@ def fields(view: View) -> Iterator[Fault]:
             if not view.has(*loc, field):
                 yield Fault(
                     (*loc, field),
-                    f"missing: {_article(kind)} needs it",
+                    f"missing: {article(kind)} needs it",
                     f'add e.g. "{field}: {EXAMPLES[field]}"',
                 )
         for field in STRANGE.get(kind, ()):
             if view.has(*loc, field):
                 yield Fault(
                     (*loc, field),
-                    f"{_article(kind)} has none",
+                    f"{article(kind)} has none",
                     "remove the line, or write another type",
                     at_key=True,
                 )
@@ -332,4 +329,4 @@ def sliding_rings(tree: Any, materials: Materials) -> Iterator[Fault]:
         if sliding != (kind == "step_ring"):
             has = "is a plastic ring on rubber" if sliding else "has no sliding ring"
             other = "write type: step_ring" if sliding else "use e.g. ptfe_bronze_nbr_70"
-            yield Fault((*loc, "compound"), f"{name} {has}, not for {_article(kind)}", other)
+            yield Fault((*loc, "compound"), f"{name} {has}, not for {article(kind)}", other)

@@ -35,6 +35,13 @@ def warnings(
         )
     if "ultimate_gain" in out.metrics:
         yield from _loop(v, motion, out)
+        own = design.valve
+        if own is not None and own.tank_leakage_drop not in (None, own.leakage_drop):
+            yield (
+                "ultimate_gain",
+                "edges to tank leak unlike those to the supply: the load is taken as held by the "
+                "pressures of alike ones; a scenario finds its own",
+            )
     yield from _ports(v, design, motion, state)
     yield from _lines(design, motion, out)
 

@@ -18,7 +18,7 @@ BESIDE = 0.02
 MEANING = (
     "Evaluation: the linear tier at its worst; linear: the same where the experiment stands, on "
     "the side on which its spool rests; the difference is from that. Beside: the linear tier is "
-    "worse where the spool never rests, and no experiment can stand there."
+    "worse on the side that the spool only passes as the load drifts; experiments stand at rest."
 )
 UNSURE = "?"
 """Behind an effect that half the step does not confirm."""

@@ -285,6 +285,6 @@ def _times(ratio: float) -> str:
 def _loop(tuned: Tuned | None) -> Iterator[str]:
     if tuned is not None and tuned.origin != "stated":
         yield (
-            f"the controller's gain is the design's ({tuned.origin}): state that of the bench in "
-            "control"
+            f"the controller's gain is not stated but taken by {tuned.origin}: state that of the "
+            "bench in control"
         )
