@@ -17,8 +17,8 @@ from actuator_opt.evaluation.study.plant import Plant, plant
 from actuator_opt.models.tuning import ControllerGains
 from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.fast import cvodes
-from actuator_opt.simulation.integrate import integrate
-from actuator_opt.simulation.methods import METHODS, RELATIVE
+from actuator_opt.simulation.integrate import METHODS, integrate
+from actuator_opt.simulation.methods import RELATIVE
 from actuator_opt.simulation.system import Compiled
 
 KNEE = Path(__file__).parent.parent / "designs" / "servo_knee.yaml"

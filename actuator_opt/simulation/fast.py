@@ -20,8 +20,7 @@ from ..errors import Diagnostic, InputError
 from ..numeric import Array
 from ..symbolic import Symbol
 from ..symbolic.order import needed
-from .integrate import CHUNK
-from .methods import Advance
+from .methods import CHUNK, Advance
 from .system import Compiled
 
 SHARPER = 0.1

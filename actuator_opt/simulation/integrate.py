@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 
 from ..numeric import Array
 from ..progress import tell
-from .methods import METHODS, MOST, RELATIVE, Advance, Method, Stuck
+from .methods import CHUNK, MOST, RELATIVE, Advance, Method, Stuck, lsoda, radau
 from .system import Compiled
 
-CHUNK = 200
-"""Samples after which the switches are looked at (a choice: what runs past a stop is lost)."""
 LOOK = 2e-3
 """Longest time between two samples of a switch [s] (a choice: a half swing of the oil)."""
 MOST_TURNS = 20_000
@@ -283,3 +282,14 @@ def _turn(
 
 def _state_at(run: _Run, start: float, t: float, y: Array, m: tuple[bool, ...]) -> Array:
     return y if t <= start else run.advance(np.array([start, t]), y, m, MOST)[-1]
+
+
+def _cvodes(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
+    from .fast import cvodes
+
+    return cvodes(compiled, relative, counted, lsoda(compiled, RELATIVE["lsoda"], counted))
+
+
+METHODS: Final[dict[Method, Callable[[Compiled, float, list[int]], Advance]]] = {
+    "lsoda": lsoda, "radau": radau, "cvodes": _cvodes,
+}  # fmt: skip

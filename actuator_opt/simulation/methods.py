@@ -1,7 +1,7 @@
 """Integrators of a smooth piece: states at its samples, or how far they came.
 
 LSODA changes between stiff and non-stiff steps by itself and has the exact Jacobian; Radau is the
-second opinion, CVODES (`fast`) the faster one.
+second opinion; CVODES (`fast`) is the faster one.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ from .system import Compiled
 Method = Literal["lsoda", "radau", "cvodes"]
 RELATIVE: Final = {"lsoda": 1e-6, "radau": 1e-8, "cvodes": 1e-7}
 """Relative tolerance of a step; the second opinion is the sharper one."""
+CHUNK = 200
+"""Samples after which the switches are looked at (a choice: what runs past a stop is lost)."""
 MOST = 100_000
 """Steps between two samples at most."""
 
@@ -61,11 +63,12 @@ def _longest(compiled: Compiled, times: Array) -> float:
     return max(shortest, float(times[-1] - times[0]) / MOST)
 
 
-def _lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
+def lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
+    """Integration by LSODA; Radau takes a piece whose stiffness it does not see."""
     from scipy.integrate import ODEintWarning, odeint
 
     reached: list[Any] = [0.0, compiled.initial]
-    stiff = _radau(compiled, relative, counted)
+    stiff = radau(compiled, relative, counted)
 
     def rates(t: float, y: Array, m: tuple[bool, ...]) -> list[float]:
         reached[:] = t, y
@@ -93,7 +96,8 @@ def _lsoda(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
     return advance
 
 
-def _radau(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
+def radau(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
+    """Integration by Radau, implicit of order five."""
     from scipy.integrate import solve_ivp
 
     reached: list[Any] = [0.0, compiled.initial]
@@ -119,14 +123,3 @@ def _radau(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
         return _checked(times, found.y.T)
 
     return advance
-
-
-def _cvodes(compiled: Compiled, relative: float, counted: list[int]) -> Advance:
-    from .fast import cvodes
-
-    return cvodes(compiled, relative, counted, _lsoda(compiled, RELATIVE["lsoda"], counted))
-
-
-METHODS: Final[dict[Method, Callable[[Compiled, float, list[int]], Advance]]] = {
-    "lsoda": _lsoda, "radau": _radau, "cvodes": _cvodes,
-}  # fmt: skip

@@ -1,6 +1,7 @@
 """The verbs of the library: one name each in the terminal and in scripts."""
 
-from .actuator import Actuator, check, read
+from .actuator import Actuator, read
+from .checking import check
 from .optimum import evaluate, optimise, sensitivity
 from .records import (
     Calibrated,

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
-from ..design import Design, LoadedDesign, Source, is_scenario, read_design, with_values
-from ..design.reader import TEXT, opened
+from ..design import Design, LoadedDesign, Source, read_design, with_values
 from ..errors import Diagnostic, InputError
 from ..evaluation import Subject, compute, prepare
 from ..evaluation.plugin import Plugin, View, collect, load
@@ -87,44 +86,6 @@ def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -
     if isinstance(design, Design):
         return Actuator(design, None, _plugins(plugins))
     return read(design, plugins=plugins)
-
-
-def check(
-    source: str | Path,
-    *,
-    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
-    plugins: Plugins = (),
-) -> list[Diagnostic]:
-    """All faults of a design or scenario file; an empty list for a good one. Parameters as `read`.
-
-    Found too: variables that no model reads, requirements that no model answers.
-    """
-    if source == "-":  # read once, whatever it turns out to be
-        text, name = opened(source)
-        found = check(f"{text}\n", set=set, plugins=plugins)
-        return [replace(fault, file=name) if fault.file == TEXT else fault for fault in found]
-    try:
-        if is_scenario(source):
-            from .simulations import read_scenario
-
-            read_scenario(source, set=set)
-            return []
-        actuator = read(source, set=set, plugins=plugins)
-        subject = actuator.subject()
-        faults = unanswered(actuator, subject)
-        if faults:
-            return faults
-        if actuator.design.choices:
-            from ..optimisation.choices import possible
-
-            possible(subject)
-        elif actuator.design.variables:
-            from ..optimisation.actuator import build
-
-            build(subject, place(actuator))
-    except InputError as error:
-        return error.diagnostics
-    return []
 
 
 def place(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
