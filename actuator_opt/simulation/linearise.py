@@ -157,10 +157,10 @@ class Linear:
         held = next((one for one in guesses if one is not None), None)
         rest = self._with(still | states) if held is None else held[0]
         loops = []
-        for side in (TOUCH, -TOUCH):
+        for side in (1.0, -1.0):
             there: tuple[Array, float] | None = held
-            if held is None or (held[1] - centre) * side < TOUCH * TOUCH:
-                beside = centre + side
+            if held is None or (held[1] - centre) * side < TOUCH:
+                beside = centre + side * TOUCH
                 there = self.steady(beside, **(states | {"spool": beside}))
                 if there is None:
                     there = np.where([one == "spool" for one in self.names], beside, rest), beside

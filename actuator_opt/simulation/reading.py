@@ -97,6 +97,25 @@ def _window(time: Array, position: Array, force: Array, frequency: float) -> Win
     return Window(float(np.mean(time)), float(np.mean(position)), one.stiffness, one.standard_error)
 
 
+def _answer(step: Servo, apart: float) -> tuple[dict[str, float | None], dict[str, str]]:
+    """Figures of a step's answer, samples so far apart [s], and why one may be missing."""
+    own = step.metrics
+    error = abs(own.steady_state_error) / abs(step.target - step.start)
+    if own.rise_time is not None and own.rise_time < RISE * apart:
+        coarse = f"the response rises within {RISE} samples: state a shorter sample_time"
+        return dict.fromkeys(_STEP) | {"steady_state_ratio": error}, dict.fromkeys(_STEP, coarse)
+    found = {
+        "rise_time": own.rise_time,
+        "settling_time": own.settling_time,
+        "overshoot": own.overshoot,
+        "steady_state_ratio": error,
+    }
+    return found, {
+        "rise_time": "the response never gets to 90 % of the step",
+        "settling_time": "the response does not stay within 2 % of the step",
+    }
+
+
 def values(
     scenario: Scenario,
     plant: Plant,
@@ -114,20 +133,9 @@ def values(
     why = dict.fromkeys(RESULTS, "does not apply to this scenario")
     why |= dict.fromkeys(_STEP, "the reference has no step")
     if step is not None:
-        size = abs(step.target - step.start)
-        own = step.metrics
-        found |= {
-            "rise_time": own.rise_time,
-            "settling_time": own.settling_time,
-            "overshoot": own.overshoot,
-            "steady_state_ratio": abs(own.steady_state_error) / size,
-        }
-        why["rise_time"] = "the response never gets to 90 % of the step"
-        why["settling_time"] = "the response does not stay within 2 % of the step"
-        if own.rise_time is not None and own.rise_time < RISE * float(np.median(np.diff(time))):
-            coarse = f"the response rises within {RISE} samples: state a shorter sample_time"
-            for name in ("rise_time", "settling_time", "overshoot"):
-                found[name], why[name] = None, coarse
+        figures, reasons = _answer(step, float(np.median(np.diff(time))))
+        found |= figures
+        why |= reasons
     chambers = [signals[name] for name in ("pressure_a", "pressure_b") if name in signals]
     if chambers:
         found["peak_pressure"] = float(max(np.max(one) for one in chambers))

@@ -16,6 +16,7 @@ from ..design.scenario.recorded import recorded_notes
 from ..evaluation.build import spec_hash
 from ..evaluation.kernel import Subject
 from ..evaluation.study.plant import Plant, plant
+from ..models.supply import relief_flow
 from ..numeric import Array
 from ..quantities import INPUTS
 from . import reading
@@ -237,11 +238,24 @@ def _coarse(step: float, signals: Mapping[str, Array]) -> Iterator[str]:
 
 def _unsettled(scenario: Scenario, own: Plant) -> Iterator[str]:
     """A pump that does not begin where its relief valve takes its flow."""
+    from scipy.optimize import brentq
+
     unit = scenario.supply
     if unit.type != "fixed_pump" or unit.relief is None or unit.flow is None:
         return
-    relief, text = unit.relief, INPUTS["pressure"].text
-    rest = own.return_pressure + relief.pressure + relief.override * unit.flow / relief.rated_flow
+    relief, flow, text = unit.relief, unit.flow, INPUTS["pressure"].text
+
+    def missing(over: float) -> float:
+        passed = relief_flow(
+            pressure_difference=relief.pressure + over,
+            cracking_pressure=relief.pressure,
+            override=relief.override,
+            rated_flow=relief.rated_flow,
+        )
+        return float(passed) - flow
+
+    over = float(brentq(missing, 0.0, 2 * relief.override))  # it takes the pump, as is checked
+    rest = own.return_pressure + relief.pressure + over
     if abs(rest - own.supply_pressure) > SETTLED * own.supply_pressure:
         yield (
             f"the supply line begins at {text(own.supply_pressure)} (supply.pressure), pump and "

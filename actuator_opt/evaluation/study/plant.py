@@ -150,13 +150,12 @@ class Plant:
         pivots = self.design.linkage
         if pivots is None:
             return None
-        size = {
-            "base_radius": pivots.base_radius,
-            "crank_radius": pivots.crank_radius,
-            "angle_offset": pivots.angle_offset,
-        }
-        angle = linkage.linkage_angle(length=self.closed_length + position, **size)
-        arm = linkage.linkage(joint_angle=angle, **size)
+        arm = linkage.linkage(
+            joint_angle=self.joint_angle(position),
+            base_radius=pivots.base_radius,
+            crank_radius=pivots.crank_radius,
+            angle_offset=pivots.angle_offset,
+        )
         felt = linkage.reflected_inertia(
             inertia=self.design.load.inertia, lever_arm=arm.lever_arm, lever_slope=arm.lever_slope
         )
