@@ -531,6 +531,16 @@ def test_a_comparison_makes_one_sheet(tmp_path):
     assert "Ziegler-Nichols." in words_of(pair_document.comparison_document(made, ORIGIN))
 
 
+def test_one_value_of_every_run_is_no_range():
+    """Equal runs show each figure once; runs that differ show the least and the most."""
+    one = case.simulated("step")
+    same = simulation_comparison.comparison([("a", one), ("b", one)], "t")
+    assert {tile["note"] for tile in simulation_comparison.tiles(same)} == {"every run"}
+    assert not any("\N{EN DASH}" in tile["value"] for tile in simulation_comparison.tiles(same))
+    tuned = simulation_comparison.comparison(case.tuned(), "t")
+    assert any("\N{EN DASH}" in tile["value"] for tile in simulation_comparison.tiles(tuned))
+
+
 def test_what_the_caller_adds_goes_on_to_the_next_sheet(tmp_path):
     """An extra table that has no room leaves the figures as high as they were."""
     rows = [[f"frequency {k}", "1 Hz"] for k in range(40)]

@@ -237,8 +237,9 @@ def tiles(one: Comparison) -> list[dict[str, Any]]:
         if len(known) < 2 or len(made) == MOST_TILES:
             continue
         (low, first), (high, _) = min(known), max(known)
-        words = f"{number(low, 3)}\N{EN DASH}{number(high, 3)}"
-        note = f"least: {first}"
+        ends = dict.fromkeys((number(low, 3), number(high, 3)))
+        words = "\N{EN DASH}".join(ends)
+        note = f"least: {first}" if len(ends) > 1 else "every run"
         made.append(
             tile(
                 COLUMNS[name].head,
