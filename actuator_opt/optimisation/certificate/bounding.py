@@ -15,12 +15,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..problem import Vector
-from .box import Box, Layout
-from .shapes import SHAPES
+from .box import FAR, Box, Layout
 from .signomial import Form
-
-FAR = 200.0
-"""Largest logarithm of an atom or a ratio; e^200 is beyond any quantity."""
 
 WIDEST = 40.0
 """Widest range of an argument that gets a chord; beyond it the chord says nothing."""
@@ -28,8 +24,12 @@ WIDEST = 40.0
 ROUNDS = 12
 """Most rounds of tangents in one box."""
 
-MISSED = 1e-6
+MISSED = 1e-5
 """Distance from a curve at which a tangent is added."""
+
+MOST = 5
+"""Lines per curve beyond which those that do not touch are forgotten."""
+
 
 class Bound(NamedTuple):
     """Least objective of a box (its logarithm), and where the relaxation is loose there."""
@@ -52,39 +52,33 @@ class Bounding:
 
     def __init__(self, layout: Layout, objective: Form) -> None:
         self.layout = layout
-        found = layout.relaxation
-        self.atoms, self.ratios = len(found.lower), len(layout.directions)
-        self.curves = len(found.curves)
-        self.columns = self.atoms + self.ratios + self.curves
+        atoms, ratios, curves = layout.atoms, layout.directions, layout.curves
+        self.columns = atoms + ratios + curves
+        self.ratios = slice(atoms, atoms + ratios)
+        self.ratio = (atoms + layout.direction).astype(np.int32)
+        self.out = atoms + ratios + np.arange(curves, dtype=np.int32)
         self.cost = np.zeros(self.columns)
         for i, power in objective.powers:
             self.cost[i] = power
         self.constant = objective.constant
-        self.shapes = [SHAPES[curve.kind] for curve in found.curves]
-        self.convex = np.array([shape.convex for shape in self.shapes])
-        self.ratio = np.array([self.atoms + place[0] for place in layout.arguments], dtype=np.int32)
-        self.out = self.atoms + self.ratios + np.arange(self.curves, dtype=np.int32)
         self.matrix, self.low, self.high = self._definitions()
-        none = np.zeros(self.curves)
+        none = np.zeros(curves)
         self.lines = _Lines(self.ratio, none, self.out, none - np.inf, none + np.inf)
         self.solver = self._solver()
 
     def _definitions(self) -> tuple[Any, Vector, Vector]:
-        parts: list[tuple[dict[int, float], float, float]] = []
-        for k, key in enumerate(self.layout.directions):
-            parts.append((dict(key) | {self.atoms + k: -1.0}, 0.0, 0.0))
-        for column, curve in zip(self.out.tolist(), self.layout.relaxation.curves, strict=True):
-            constant = -curve.out.constant
-            parts.append((dict(curve.out.powers) | {column: -1.0}, constant, constant))
-        for row in self.layout.relaxation.rows:
-            form = row.high - row.low
-            parts.append((dict(form.powers), -form.constant, np.inf))
-        matrix = sp.lil_matrix((len(parts), self.columns))
-        for r, (entries, _, _) in enumerate(parts):
-            for column, value in entries.items():
-                matrix[r, column] = value
-        low, high = (np.array([part[i] for part in parts]) for i in (1, 2))
-        return sp.csr_matrix(matrix), low, high
+        """Outs and directions by their atoms; rows at least zero."""
+        layout = self.layout
+        defined = layout.curves + layout.directions
+        columns = np.concatenate([self.out, np.arange(layout.atoms, layout.atoms + layout.directions)])
+        rows = np.concatenate([layout.form, np.arange(defined)])
+        places = np.concatenate([layout.atom, columns])
+        values = np.concatenate([layout.power, np.full(defined, -1.0)])
+        count = len(layout.levels)
+        matrix = sp.csr_matrix((values, (rows, places)), shape=(count, self.columns))
+        high = -layout.levels.copy()
+        high[defined:] = np.inf
+        return matrix, -layout.levels, high
 
     def _solver(self) -> highspy.Highs:
         """The programme without bounds and chords, which follow the box."""
@@ -101,90 +95,133 @@ class Bounding:
 
     def solve(self, box: Box) -> Bound | None:
         """The bound of a box; None where the relaxation has no point."""
-        lower, upper = self._columns(box)
+        lower, upper = self.enter(box)
+        found = self._least(self.cost, lower, upper)
+        if found is None:
+            return None
+        value, x, dual = found
+        first = len(self.low)
+        return Bound(
+            value + self.constant,
+            x[: self.layout.atoms],
+            x[self.ratios],
+            np.maximum(-self._missed(x), 0.0),
+            np.abs(dual[first : first + self.layout.curves]),
+        )
+
+    def enter(self, box: Box) -> tuple[Vector, Vector]:
+        """Make a box the one that is looked at; the ranges of its columns."""
+        self._purge()
+        ends = self._columns(box)
         self._chords(box)
-        for _ in range(ROUNDS):
+        return ends
+
+    def _purge(self) -> None:
+        """Forget tangents that no longer touch, once there are too many."""
+        first, count = len(self.low) + self.layout.curves, len(self.lines.low)
+        if count < MOST * self.layout.curves:
+            return
+        status = self.solver.getBasis().row_status
+        idle = [r for r in range(first, len(status)) if status[r] == highspy.HighsBasisStatus.kBasic]
+        if not idle:
+            return
+        self.solver.deleteRows(len(idle), np.array(idle, dtype=np.int32))
+        kept = np.ones(count, dtype=bool)
+        kept[np.array(idle) - len(self.low)] = False
+        self.lines = _Lines(*(part[kept] for part in self.lines))
+
+    def extent(self, column: int, ends: tuple[Vector, Vector]) -> tuple[float, float] | None:
+        """Least and largest value of an atom or direction in the box looked at; None of none."""
+        cost = np.zeros(self.columns)
+        reach = []
+        for sign in (1.0, -1.0):
+            cost[column] = sign
+            found = self._least(cost, *ends)
+            if found is None:
+                return None
+            reach.append(sign * found[0])
+        return reach[0], reach[1]
+
+    def _least(
+        self, cost: Vector, lower: Vector, upper: Vector
+    ) -> tuple[float, Vector, Vector] | None:
+        """Least of a linear function: the value that is proven, the point, the multipliers."""
+        index = np.arange(self.columns, dtype=np.int32)
+        self.solver.changeColsCost(self.columns, index, cost)
+        for turn in range(ROUNDS):
+            # a new objective leaves the point feasible, new rows leave the multipliers so
+            self.solver.setOptionValue("simplex_strategy", 1 if turn else 4)
             self.solver.run()
             if self.solver.getModelStatus() == highspy.HighsModelStatus.kInfeasible:
                 return None
             solution = self.solver.getSolution()
             x, dual = np.array(solution.col_value), np.array(solution.row_dual)
-            missed = self._missed(x)
-            more = self._tangents(x, missed)
+            more = self._tangents(x, self._missed(x))
             if more is None:
                 break
             _add(self.solver, more)
             self.lines = self.lines.joined(more)
-        first = len(self.low)
-        return Bound(
-            self._safe(dual, lower, upper),
-            x[: self.atoms],
-            x[self.atoms : self.atoms + self.ratios],
-            np.maximum(-missed, 0.0),
-            np.abs(dual[first : first + self.curves]),
-        )
+        return self._safe(cost, dual, lower, upper), x, dual
 
     def _columns(self, box: Box) -> tuple[Vector, Vector]:
-        """Ranges of all columns in a box."""
-        outs = [box.range(curve.out) for curve in self.layout.relaxation.curves]
-        lower = np.concatenate([box.lower, box.low, [low for low, _ in outs]])
-        upper = np.concatenate([box.upper, box.high, [high for _, high in outs]])
-        lower, upper = np.clip(lower, -FAR, FAR), np.clip(upper, -FAR, FAR)
+        """Put the ranges of a box."""
+        low, high, _, _ = self.layout.reach(box.lower, box.upper)
+        outs = self.layout.parts[0]
+        lower = np.concatenate([box.lower, box.low, low[outs]])
+        upper = np.concatenate([box.upper, box.high, high[outs]])
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsBounds(self.columns, index, lower, upper)
         return lower, upper
 
     def _chords(self, box: Box) -> None:
         """Put the chords over a box in place of those of the last one."""
-        first, count, lines = len(self.low), self.curves, self.lines
-        for k, (place, shape) in enumerate(zip(self.layout.arguments, self.shapes, strict=True)):
-            low, high = box.argument(*place)
-            slope, ends = 0.0, (-np.inf, np.inf)
-            if high - low <= WIDEST:
-                ends = (shape.value(low), shape.value(high))
-                if high - low > 1e-12:
-                    slope = (ends[1] - ends[0]) / (high - low)
-                    level = ends[0] + slope * (place[2] - low)
-                    ends = (level, level)
-            lines.coefficient[k] = -slope * place[1]
-            lines.low[k] = -np.inf if shape.convex else min(ends)
-            lines.high[k] = max(ends) if shape.convex else np.inf
-            self.solver.changeCoeff(first + k, int(self.ratio[k]), lines.coefficient[k])
+        layout, lines = self.layout, self.lines
+        first, count = len(self.low), layout.curves
+        low, high = layout.arguments(box.low, box.high)
+        ends = layout.mixed.value(low), layout.mixed.value(high)
+        width = high - low
+        flat = width < 1e-12
+        slope = np.where(flat, 0.0, (ends[1] - ends[0]) / np.where(flat, 1.0, width))
+        level = ends[0] + np.where(flat, 0.0, slope * (layout.constant - low))
+        over, convex = width <= WIDEST, layout.mixed.convex
+        slope = np.where(over, slope, 0.0)
+        lines.coefficient[:count] = -slope * layout.factor
+        lines.low[:count] = np.where(over & ~convex, np.where(flat, np.minimum(*ends), level), -np.inf)
+        lines.high[:count] = np.where(over & convex, np.where(flat, np.maximum(*ends), level), np.inf)
         index = first + np.arange(count, dtype=np.int32)
+        for row, column, value in zip(
+            index.tolist(), self.ratio.tolist(), lines.coefficient[:count].tolist(), strict=True
+        ):
+            self.solver.changeCoeff(row, column, value)
         self.solver.changeRowsBounds(count, index, lines.low[:count], lines.high[:count])
+
+    def _argument(self, x: Vector) -> Vector:
+        return self.layout.factor * x[self.ratio] + self.layout.constant
 
     def _missed(self, x: Vector) -> Vector:
         """By how much every curve is missed, positive on the side of its tangents."""
-        values = [
-            shape.value(factor * x[self.atoms + number] + constant)
-            for shape, (number, factor, constant) in zip(
-                self.shapes, self.layout.arguments, strict=True
-            )
-        ]
-        return np.where(self.convex, 1.0, -1.0) * (np.array(values) - x[self.out])
+        mixed = self.layout.mixed
+        return np.where(mixed.convex, 1.0, -1.0) * (mixed.value(self._argument(x)) - x[self.out])
 
     def _tangents(self, x: Vector, missed: Vector) -> _Lines | None:
         """Tangents where the point lies on their side of a curve."""
         some = np.flatnonzero(missed > MISSED)
         if not len(some):
             return None
-        coefficients, levels = [], []
-        for k in some:
-            number, factor, constant = self.layout.arguments[k]
-            t, shape = factor * x[self.atoms + number] + constant, self.shapes[k]
-            coefficients.append(-shape.slope(t) * factor)
-            levels.append(shape.value(t) + shape.slope(t) * (constant - t))
-        level, convex = np.array(levels), self.convex[some]
+        layout, t = self.layout, self._argument(x)
+        slope = layout.mixed.slope(t)
+        level = (layout.mixed.value(t) + slope * (layout.constant - t))[some]
+        convex = layout.mixed.convex[some]
         return _Lines(
             self.ratio[some],
-            np.array(coefficients),
+            (-slope * layout.factor)[some],
             self.out[some],
             np.where(convex, level, -np.inf),
             np.where(convex, np.inf, level),
         )
 
-    def _safe(self, dual: Vector, lower: Vector, upper: Vector) -> float:
-        """Least objective that the multipliers prove: what rows and bounds contribute."""
+    def _safe(self, cost: Vector, dual: Vector, lower: Vector, upper: Vector) -> float:
+        """Least value that the multipliers prove: what rows and bounds contribute."""
         count, lines = len(self.low), self.lines
         dual = dual[: count + len(lines.low)]
         low, high = (
@@ -196,10 +233,10 @@ class Bounding:
         ends = np.where(np.isfinite(ends), ends, 0.0)
         own = dual[count:]
         some = slice(0, len(own))
-        rest = self.cost - self.matrix.T @ dual[:count]
+        rest = cost - self.matrix.T @ dual[:count]
         np.add.at(rest, lines.ratio[some], -own * lines.coefficient[some])
         np.add.at(rest, lines.out[some], -own)
-        return float(dual @ ends + np.minimum(rest * lower, rest * upper).sum()) + self.constant
+        return float(dual @ ends + np.minimum(rest * lower, rest * upper).sum())
 
 
 _OPTIONS = {

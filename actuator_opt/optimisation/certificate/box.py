@@ -2,57 +2,90 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from ..problem import Vector
 from .relaxation import Relaxation
-from .shapes import SHAPES
+from .shapes import Mixed
 from .signomial import Form, Powers
 
-ROUNDS = 6
+ROUNDS = 20
 """Most passes of the propagation in a part of the space."""
 
-GAIN = 1e-2
-"""Share of a range that a pass must cut for another one to be worth it."""
+GAIN = 0.01
+"""Share of the summed ranges that a pass must cut for another one to be worth it."""
 
 ROOM = 1e-9
 """Room given to every range for rounding (of logarithms, so relative)."""
 
+CROSSED = 1e-8
+"""By how much the ends of a range must cross for nothing to be left."""
 
-@dataclass(frozen=True)
+FAR = 200.0
+"""Largest logarithm of an atom or a ratio; e^200 is beyond any quantity."""
+
+
+class Gone(Exception):
+    """Nothing is left of a part of the space."""
+
+
 class Layout:
-    """A relaxation as lists: every distinct direction in the space of logarithms once.
+    """A relaxation as arrays: every distinct direction in the space of logarithms once.
 
     A direction is a log ratio, such as log(t/r): all curves of powers of one ratio share it.
+    Forms are, in order: those of the curves' outs, the directions, the rows (each >= 0).
     """
 
-    relaxation: Relaxation
-    directions: tuple[Powers, ...]
-    arguments: tuple[tuple[int, float, float], ...]
-    """Of every curve: direction, factor and constant of its argument."""
-    of_atom: dict[int, int]
-    """Direction of a lone atom."""
-
-    @classmethod
-    def of(cls, relaxation: Relaxation) -> Layout:
-        """Sort out the directions."""
+    def __init__(self, relaxation: Relaxation) -> None:
+        self.relaxation = relaxation
+        self.curves, self.atoms = len(relaxation.curves), len(relaxation.lower)
+        self.mixed = Mixed([curve.kind for curve in relaxation.curves])
         known: dict[Powers, int] = {}
-        arguments = []
+        places = []
         for curve in relaxation.curves:
             powers = curve.argument.powers
             factor = powers[0][1]
             key = tuple((i, round(p / factor, 12)) for i, p in powers)
             number = known.setdefault(key, len(known))
-            arguments.append((number, factor, curve.argument.constant))
-        lone = {key[0][0]: number for key, number in known.items() if len(key) == 1}
-        return cls(relaxation, tuple(known), tuple(arguments), lone)
+            places.append((number, factor, curve.argument.constant))
+        self.directions = len(known)
+        self.direction = np.array([place[0] for place in places], dtype=np.intp)
+        self.factor = np.array([place[1] for place in places])
+        self.constant = np.array([place[2] for place in places])
+        forms = [curve.out for curve in relaxation.curves]
+        forms += [Form(0.0, key) for key in known]
+        forms += [row.high - row.low for row in relaxation.rows]
+        self.levels = np.array([form.constant for form in forms])
+        entries = [(k, i, power) for k, form in enumerate(forms) for i, power in form.powers]
+        self.form = np.array([entry[0] for entry in entries], dtype=np.intp)
+        self.atom = np.array([entry[1] for entry in entries], dtype=np.intp)
+        self.power = np.array([entry[2] for entry in entries])
 
+    @cached_property
+    def parts(self) -> tuple[slice, slice, slice]:
+        """Forms of outs, of directions and of rows."""
+        first, second = self.curves, self.curves + self.directions
+        return slice(0, first), slice(first, second), slice(second, len(self.levels))
 
-class Gone(Exception):
-    """Nothing is left of a part of the space."""
+    def arguments(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
+        """Ranges of the curves' arguments from those of the directions."""
+        ends = (
+            self.factor * low[self.direction] + self.constant,
+            self.factor * high[self.direction] + self.constant,
+        )
+        return np.minimum(*ends), np.maximum(*ends)
+
+    def reach(self, lower: Vector, upper: Vector) -> tuple[Vector, Vector, Vector, Vector]:
+        """Ranges of all forms, and of their entries."""
+        ends = self.power * lower[self.atom], self.power * upper[self.atom]
+        least, most = np.minimum(*ends), np.maximum(*ends)
+        count = len(self.levels)
+        low = self.levels + np.bincount(self.form, least, count)
+        high = self.levels + np.bincount(self.form, most, count)
+        return low, high, least, most
 
 
 @dataclass(frozen=True)
@@ -67,19 +100,21 @@ class Box:
     @classmethod
     def whole(cls, layout: Layout) -> Box:
         """Everything that the bounds of the traced values leave."""
-        count = len(layout.directions)
-        return cls(
-            np.array(layout.relaxation.lower),
-            np.array(layout.relaxation.upper),
-            np.full(count, -np.inf),
-            np.full(count, np.inf),
-        )
+        found = layout.relaxation
+        none = np.zeros(layout.directions)
+        lower, upper = (np.clip(ends, -FAR, FAR) for ends in (found.lower, found.upper))
+        return cls(lower, upper, none - FAR, none + FAR)
 
     def split(self, direction: int, at: float) -> tuple[Box, Box]:
         """The part below and the part above a value of a direction."""
-        high, low = self.high.copy(), self.low.copy()
-        high[direction] = low[direction] = at
-        return replace(self, high=high), replace(self, low=low)
+        return self.cut(direction, high=at), self.cut(direction, low=at)
+
+    def cut(self, direction: int, *, low: float = -FAR, high: float = FAR) -> Box:
+        """The part between two values of a direction."""
+        lows, highs = self.low.copy(), self.high.copy()
+        lows[direction] = max(lows[direction], low)
+        highs[direction] = min(highs[direction], high)
+        return replace(self, low=lows, high=highs)
 
     def tightened(self, layout: Layout) -> Box:
         """What all rows and curves leave of it.
@@ -89,83 +124,75 @@ class Box:
         Gone
             nothing
         """
-        box = Box(*(one.copy() for one in (self.lower, self.upper, self.low, self.high)))
+        work = _Work(layout, self)
+        size = work.size()
         for _ in range(ROUNDS):
-            if not box._round(layout):
+            work.round()
+            left = work.size()
+            if left > (1 - GAIN) * size:
                 break
-        return box
+            size = left
+        return Box(work.lower, work.upper, work.low, work.high)
 
-    def _round(self, layout: Layout) -> bool:
-        gained = False
-        for row in layout.relaxation.rows:
-            low, high = self.range(row.low)[0], self.range(row.high)[1]
-            gained |= self._limit(row.high, low, math.inf) | self._limit(row.low, -math.inf, high)
-        for curve, (number, factor, constant) in zip(
-            layout.relaxation.curves, layout.arguments, strict=True
-        ):
-            shape, along = SHAPES[curve.kind], Form(0.0, layout.directions[number])
-            gained |= self._cut(number, *self.range(along))
-            ends = self.argument(number, factor, constant)
-            values = [shape.value(end) for end in ends]
-            gained |= self._limit(curve.out, min(values), max(values))
-            values = [shape.inverse(end) for end in self.range(curve.out)]
-            inner = sorted((value - constant) / factor for value in values)
-            gained |= self._cut(number, inner[0], inner[1])
-            gained |= self._limit(along, self.low[number], self.high[number])
-        return gained
 
-    def argument(self, number: int, factor: float, constant: float) -> tuple[float, float]:
-        """Range of a curve's argument."""
-        ends = (factor * self.low[number] + constant, factor * self.high[number] + constant)
-        return (ends[0], ends[1]) if factor > 0 else (ends[1], ends[0])
+class _Work:
+    """Ranges while they are cut."""
 
-    def range(self, form: Form) -> tuple[float, float]:
-        """Range of a monomial's logarithm."""
-        low = high = form.constant
-        for i, power in form.powers:
-            first, second = power * self.lower[i], power * self.upper[i]
-            low, high = (
-                (low + first, high + second) if power > 0 else (low + second, high + first)
-            )
-        return low, high
+    def __init__(self, layout: Layout, box: Box) -> None:
+        self.layout = layout
+        self.lower, self.upper = box.lower.copy(), box.upper.copy()
+        self.low, self.high = box.low.copy(), box.high.copy()
 
-    def _cut(self, number: int, low: float, high: float) -> bool:
-        """Cut a direction's range."""
-        old = (self.low[number], self.high[number])
-        new = _within(old, low, high)
-        self.low[number], self.high[number] = new
-        return _much(old, new)
+    def size(self) -> float:
+        """All ranges together."""
+        return float((self.upper - self.lower).sum() + (self.high - self.low).sum())
 
-    def _limit(self, form: Form, low: float, high: float) -> bool:
-        """Cut the atoms' ranges so that a monomial's logarithm can lie between two numbers."""
-        least, most = self.range(form)
-        if least > high + ROOM or most < low - ROOM:
+    def round(self) -> None:
+        """One pass over all forms and curves."""
+        layout = self.layout
+        outs, ways, rows = layout.parts
+        low, high, least, most = layout.reach(self.lower, self.upper)
+        self._raise(self.low, self.high, low[ways], high[ways])
+        ends = layout.arguments(self.low, self.high)
+        values = layout.mixed.value(ends[0]), layout.mixed.value(ends[1])
+        goal_low, goal_high = low.copy(), high.copy()
+        goal_low[outs] = np.maximum(low[outs], np.minimum(*values))
+        goal_high[outs] = np.minimum(high[outs], np.maximum(*values))
+        self._back(goal_low[outs], goal_high[outs])
+        goal_low[ways], goal_high[ways] = self.low, self.high
+        goal_low[rows] = np.maximum(low[rows], 0.0)
+        if (goal_low > goal_high + CROSSED).any():
             raise Gone
-        gained = False
-        for i, power in form.powers:
-            others = tuple(one for one in form.powers if one[0] != i)
-            rest_low, rest_high = self.range(Form(form.constant, others))
-            ends = ((low - rest_high) / power, (high - rest_low) / power)
-            old = (self.lower[i], self.upper[i])
-            new = _within(old, min(ends), max(ends))
-            self.lower[i], self.upper[i] = new
-            gained |= _much(old, new)
-        return gained
+        rest_low = low[layout.form] - least
+        rest_high = high[layout.form] - most
+        ends = (
+            (goal_low[layout.form] - rest_high) / layout.power,
+            (goal_high[layout.form] - rest_low) / layout.power,
+        )
+        lower, upper = self.lower.copy(), self.upper.copy()
+        np.maximum.at(lower, layout.atom, np.minimum(*ends) - ROOM)
+        np.minimum.at(upper, layout.atom, np.maximum(*ends) + ROOM)
+        self._raise(self.lower, self.upper, lower, upper)
 
+    def _back(self, low: Vector, high: Vector) -> None:
+        """What the outs of curves say about the directions."""
+        layout = self.layout
+        ends = [
+            (layout.mixed.inverse(end) - layout.constant) / layout.factor for end in (low, high)
+        ]
+        lows, highs = self.low.copy(), self.high.copy()
+        np.maximum.at(lows, layout.direction, np.minimum(*ends) - ROOM)
+        np.minimum.at(highs, layout.direction, np.maximum(*ends) + ROOM)
+        self._raise(self.low, self.high, lows, highs)
 
-def _within(old: tuple[float, float], low: float, high: float) -> tuple[float, float]:
-    if low != low or high != high:
-        return old
-    low, high = max(old[0], low - ROOM), min(old[1], high + ROOM)
-    if low > high:
-        if low > high + 10 * ROOM:
-            raise Gone
-        low = high = (low + high) / 2
-    return low, high
-
-
-def _much(old: tuple[float, float], new: tuple[float, float]) -> bool:
-    width = old[1] - old[0]
-    if not math.isfinite(width):
-        return new != old
-    return new[1] - new[0] < (1 - GAIN) * width
+    @staticmethod
+    def _raise(low: Vector, high: Vector, new_low: Vector, new_high: Vector) -> None:
+        """Cut ranges in place."""
+        np.maximum(low, new_low, out=low)
+        np.minimum(high, new_high, out=high)
+        crossed = low > high
+        if crossed.any():
+            if (low[crossed] > high[crossed] + CROSSED).any():
+                raise Gone
+            middle = (low[crossed] + high[crossed]) / 2
+            low[crossed] = high[crossed] = middle

@@ -86,7 +86,7 @@ def certify(
     """Lower bound on the objective of every design that meets the limits."""
     began = time.perf_counter()
     relaxed = relax(trace(actuator, x), objective)
-    layout = Layout.of(relaxed.relaxation)
+    layout = Layout(relaxed.relaxation)
     bounding = Bounding(layout, relaxed.objective)
     return relaxed, search(
         layout, bounding, float(np.log(objective)), until=began + seconds, report=report

@@ -13,6 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 
+import numpy as np
+
 from ...symbolic import Symbol
 from ...symbolic.bounds import bounds_of
 from .intervals import branch, extreme
@@ -346,6 +348,8 @@ class Builder:
 
     def _curve(self, kind: Kind, argument: Form, low: float, high: float) -> Form:
         """A new atom that is a function of a monomial's logarithm."""
-        out = self.found.atom(low, high, lambda y: SHAPES[kind].value(argument.at(y)))
+        out = self.found.atom(
+            low, high, lambda y: float(SHAPES[kind].value(np.array([argument.at(y)]))[0])
+        )
         self.found.curves.append(Curve(kind, argument, out))
         return out

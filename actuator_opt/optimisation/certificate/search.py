@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .bounding import Bound, Bounding
-from .box import Box, Gone, Layout
+from .box import ROOM, Box, Gone, Layout
 
 GUARD = 1e-6
 """Taken off the bound, relative: far above rounding in the traced values."""
@@ -25,6 +25,13 @@ MIDDLE = 0.2
 
 WORTH = 1e-9
 """Least excess times price that a split can gain."""
+
+
+SQUEEZES = 8
+"""Most rounds of cutting the first box."""
+
+WAYS = 16
+"""Directions cut in a round."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +82,10 @@ def search(
             return
         heapq.heappush(heap, (value, next(order), box, bound))
 
-    add(Box.whole(layout), -math.inf)
+    whole = squeezed(layout, bounding, Box.whole(layout), until)
+    if whole is None:
+        return Found(goal, 1, True)
+    add(whole, -math.inf)
     while heap:
         if report is not None:
             report(min(heap[0][0], least))
@@ -92,11 +102,38 @@ def search(
     return Found(bottom + math.log1p(-GUARD), solved, bottom >= goal)
 
 
+def squeezed(layout: Layout, bounding: Bounding, box: Box, until: float) -> Box | None:
+    """A box cut to where designs no worse than the best known one can be; None of none.
+
+    Bound by optimisation of the directions in which the relaxation is loosest, over and over.
+    """
+    try:
+        box = box.tightened(layout)
+        for _ in range(SQUEEZES):
+            bound = bounding.solve(box)
+            if bound is None:
+                return None
+            gain = np.bincount(layout.direction, bound.excess * bound.price, layout.directions)
+            some = np.argsort(-gain, kind="stable")[:WAYS]
+            size = float((box.high - box.low)[some].sum())
+            for number in some:
+                if time.perf_counter() > until:
+                    return box
+                reach = bounding.extent(layout.atoms + int(number), bounding.enter(box))
+                if reach is None:
+                    return None
+                box = box.cut(int(number), low=reach[0] - ROOM, high=reach[1] + ROOM)
+                box = box.tightened(layout)
+            if float((box.high - box.low)[some].sum()) > 0.9 * size:
+                break
+    except Gone:
+        return None
+    return box
+
+
 def _choice(layout: Layout, box: Box, bound: Bound) -> tuple[int, float] | None:
     """Direction and place of the split that can gain most; None where nothing is loose."""
-    gain = np.zeros(len(layout.directions))
-    for k, (number, _, _) in enumerate(layout.arguments):
-        gain[number] += bound.excess[k] * bound.price[k]
+    gain = np.bincount(layout.direction, bound.excess * bound.price, layout.directions)
     number = int(np.argmax(gain))
     if gain[number] <= WORTH:
         return None
