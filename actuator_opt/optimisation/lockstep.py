@@ -20,7 +20,7 @@ from .problem import ParametricProblem, Vector
 ITERATIONS = 10
 """Most full steps with the shared Hessian; 10 % changes mostly take three to five."""
 
-LONGEST = 40
+LONGEST = 60
 """Most evaluations of a descent within a trusted radius."""
 
 MEMORY = 3
@@ -43,6 +43,9 @@ SETTLED = 1e-6
 
 FEASIBLE = 1e-11
 """Violation left: the objective is first order in it."""
+
+MET = 1e-6
+"""Violation of a design that still counts as feasible."""
 
 RESIDUAL = 1e-6
 """Residual of the optimality conditions left: the objective is second order in it."""
@@ -102,8 +105,8 @@ def resolve_together(
             z[:, k] = np.clip(z[:, k] + share * step, space.lower, space.upper)
             going.append(k)
         alive = going
-    objectives, violations = standing(parametric, evaluator, [point], parameters)
-    unmoved = np.where(violations[0] <= FEASIBLE, objectives[0], np.inf)
+    rows = standing(parametric, [point], parameters)[:, 0]
+    unmoved = np.where(evaluator.violations(rows, "worst") <= FEASIBLE, rows[0], np.inf)
     for k, one in enumerate(found):
         if one is not None and unmoved[k] < one.objective - 1e-9 * abs(one.objective):
             found[k] = None  # the old optimum itself is better: another valley
@@ -122,6 +125,7 @@ class _Descent:
     hessian: Vector
     scale: float
     rows: int
+    price: float
     point: Point | None = None
     step: Vector = field(default_factory=lambda: np.zeros(0))
     radius: float = RADIUS
@@ -137,10 +141,9 @@ class _Descent:
         """Whether the trial is good enough to go on from."""
         if self.point is None or self.length <= SETTLED:
             return True
-        price = 2 * float(self.multipliers.max(initial=0.0)) + 1.0
         value, missed = self._measures(trial)
-        merits = [v + price * m for v, m in self.past[-MEMORY:]]
-        return value + price * missed < max(merits)
+        merits = [v + self.price * m for v, m in self.past[-MEMORY:]]
+        return value + self.price * missed < max(merits)
 
     def go_on(self, evaluator: Evaluator, trial: Point) -> None:
         """Learn from an accepted trial and choose the next step."""
@@ -173,6 +176,7 @@ class _Descent:
             np.concatenate([self.point.rows[constraints], down, up]),
         )
         self.multipliers = prices[: self.rows]
+        self.price = max(self.price, _price(self.multipliers))
         self.step = self.step * min(1.0, self.radius / max(self.length, 1e-300))
 
     def _measures(self, trial: Point) -> tuple[float, float]:
@@ -201,18 +205,20 @@ def descend_together(
     point: Point,
     starts: Vector,
     parameters: Vector,
-) -> list[Point | None]:
-    """Optima of the changed problems within trusted radii; None where one is not reached.
+) -> tuple[list[Point | None], list[Point | None]]:
+    """Optima of the changed problems within trusted radii, and designs on the way to the others.
 
-    Parameters as of `resolve_together`.
+    Parameters as of `resolve_together`. None where no optimum is reached; the designs on the way
+    are feasible, None where there is none or an optimum is reached.
     """
     count = starts.shape[1]
     found: list[Point | None] = [None] * count
     if count == 0:
-        return found
+        return found, []
     state = newton.state_at(evaluator, point)
     hessian, rows = newton.convex_hessian(evaluator, state), evaluator.constraint_count
-    descents = [_Descent(hessian, state.scale, rows) for _ in range(count)]
+    price = _price(state.multipliers[: len(state.near.constraint)] / state.scale)
+    descents = [_Descent(hessian, state.scale, rows, price) for _ in range(count)]
     space = evaluator.space
     z = np.clip(starts, space.lower[:, None], space.upper[:, None])
     alive = list(range(count))
@@ -237,7 +243,17 @@ def descend_together(
             z[:, k] = np.clip(one.point.z + one.step, space.lower, space.upper)
             going.append(k)
         alive = going
-    return found
+    last = [one.point for one in descents]
+    stopped = [
+        at if found[k] is None and at is not None and at.violation <= MET else None
+        for k, at in enumerate(last)
+    ]
+    return found, stopped
+
+
+def _price(multipliers: Vector) -> float:
+    """A price of what is missed above every multiplier."""
+    return 2 * float(multipliers.max(initial=0.0)) + 1.0
 
 
 def _optimal(evaluator: Evaluator, trial: Point) -> bool:
@@ -245,16 +261,16 @@ def _optimal(evaluator: Evaluator, trial: Point) -> bool:
 
 
 def restore_together(
-    parametric: ParametricProblem, evaluator: Evaluator, point: Point, parameters: Vector
+    parametric: ParametricProblem, evaluator: Evaluator, start: Vector, parameters: Vector
 ) -> list[Vector | None]:
-    """A feasible point (nf,) near the unchanged optimum for each problem; None where none is.
+    """A feasible point (nf,) near the start for each problem; None where none is.
 
     Every step is the shortest that meets the linearised rows, or misses them least.
     """
     space = evaluator.space
     count = parameters.shape[1]
     found: list[Vector | None] = [None] * count
-    z = np.repeat(point.z[:, None], count, axis=1)
+    z = np.repeat(start[:, None], count, axis=1)
     least = np.full(count, np.inf)
     alive = list(range(count))
     for iteration in range(RESTORATIONS):
@@ -263,7 +279,7 @@ def restore_together(
         points = _points(parametric, evaluator, z[:, alive], parameters[:, alive])
         going = []
         for k, trial in zip(alive, points, strict=True):
-            if trial.valid and trial.violation <= 1e-6:
+            if trial.valid and trial.violation <= MET:
                 found[k] = trial.z
                 continue
             stuck = iteration > PATIENCE and trial.violation > 0.98 * least[k]
@@ -304,13 +320,9 @@ def _points(
     ]
 
 
-def standing(
-    parametric: ParametricProblem, evaluator: Evaluator, points: list[Point], parameters: Vector
-) -> tuple[Vector, Vector]:
-    """Objective and worst violation (points, K) of points under each changed problem."""
+def standing(parametric: ParametricProblem, points: list[Point], parameters: Vector) -> Vector:
+    """Rows (rows, points, K) of points under each changed problem."""
     count, size = parameters.shape[1], len(points)
     x = np.stack([p.x for p in points], axis=1)
     both = parametric.with_columns(np.tile(parameters, size)).rows(np.repeat(x, count, axis=1))
-    rows = Evaluator.screen(both)
-    violation = evaluator.violations(rows, "worst")
-    return rows[0].reshape(size, count), violation.reshape(size, count)
+    return Evaluator.screen(both).reshape(-1, size, count)

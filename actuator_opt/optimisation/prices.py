@@ -92,7 +92,7 @@ def prices(
         given,
         moves,
         change if resolve else 0.0,
-        known=[one.x for one in solution.optima if one.violation <= resolving.FEASIBLE],
+        known=_others(solution),
     )
     return _rows(
         evaluator,
@@ -105,6 +105,16 @@ def prices(
         ends=ends,
         reach=movement.reach(found, given, moves, shifts),
     )
+
+
+def _others(solution: Solution) -> list[Vector]:
+    """Local optima of the search besides the one it chose."""
+    good = [
+        one
+        for one in solution.optima
+        if one.violation <= resolving.FEASIBLE and one.residual <= resolving.RESIDUAL
+    ]
+    return [one.x for one in good if not np.array_equal(one.x, solution.x)]
 
 
 def _rows(

@@ -1,13 +1,14 @@
 """Re-optimise a problem at changed parameters, every end of a price table together.
 
-Most ends follow from the predicted optimum in a few common steps. What is found at one end then
-stands as a start at every other, so that none stays in a worse valley than its neighbours know of.
-Only what is left is searched for like any optimum.
+Most ends follow from the predicted optimum in a few common steps. Every other local optimum known
+is followed too, and what is found at one end stands as a start at every other: a change of 10 % may
+make another valley the best. Only what is left is searched for like any optimum.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -24,11 +25,15 @@ FEASIBLE = 1e-6
 RESIDUAL = 1e-6
 """Residual of the optimality conditions that a re-solved optimum must reach."""
 
-BETTER = 1e-9
-"""Share of the objective by which another design must be better to count as another valley."""
+BETTER = 1e-8
+"""Share of the objective by which another design must be better to be another valley."""
 
 ROUNDS = 3
 """Most exchanges of what the ends found; each goes on only where the last one gained."""
+
+BEYOND = 1.0
+"""How far past another valley its descents start, as a share of the way there from the best: what
+lies between the two often moves as fast as they do."""
 
 SAMPLES = 1024
 """Points of the sweep where a feasible end has no optimum in reach."""
@@ -66,14 +71,15 @@ def ends(
     answers: dict[tuple[int, int], float | None] = {}
     inside: dict[tuple[int, int], Vector | None] = {}
     alone = set(steps)
-    if lockstep.applicable(parametric, evaluator):
-        batch = [pair for pair in steps if pair[0] < count]
+    batch = [pair for pair in steps if pair[0] < count]
+    if batch and lockstep.applicable(parametric, evaluator):
         columns = np.repeat(parametric.parameters[:, None], len(batch), axis=1)
         starts = np.repeat(point.z[:, None], len(batch), axis=1)
         for column, (k, sign) in enumerate(batch):
             columns[k, column] += steps[k, sign]
             starts[:, column] += moves[:, k] * steps[k, sign]
-        found, feasible = _together(parametric, evaluator, point, starts, columns, known)
+        others = [evaluator.point(evaluator.space.to_z(x)) for x in known]
+        found, feasible = _together(parametric, evaluator, [point, *others], starts, columns)
         for pair, one, z in zip(batch, found, feasible, strict=True):
             answers[pair], inside[pair] = None if one is None else one.objective, z
             if one is not None or z is None:
@@ -92,64 +98,93 @@ def ends(
 def _together(
     parametric: ParametricProblem,
     evaluator: Evaluator,
-    point: Point,
+    valleys: list[Point],
     starts: Vector,
     parameters: Vector,
-    known: Sequence[Vector],
 ) -> tuple[list[Point | None], list[Vector | None]]:
-    """The optimum of each changed problem, and a feasible point; None where none is in reach."""
+    """The optimum of each changed problem, and a feasible point; None where none is in reach.
+
+    `starts` (nf, K) are those of the first valley; the others are entered from beyond.
+    """
+    point, space = valleys[0], evaluator.space
     found = lockstep.resolve_together(parametric, evaluator, point, starts, parameters)
-    inside: list[Vector | None] = [None if one is None else one.z for one in found]
     left = [i for i, one in enumerate(found) if one is None]
-    restored = lockstep.restore_together(parametric, evaluator, point, parameters[:, left])
-    for i, z in zip(left, restored, strict=True):
-        inside[i] = z
-    better = {i: z for i, z in zip(left, restored, strict=True) if z is not None}
-    old = [point, *(evaluator.point(evaluator.space.to_z(x)) for x in known)]
+    restored = lockstep.restore_together(parametric, evaluator, point.z, parameters[:, left])
+    state = _Ends(parametric, evaluator, parameters, found, [None] * len(found))
+    state.descend(point, dict(zip(left, restored, strict=True)))
+    for valley in valleys[1:]:
+        begin = np.clip(valley.z + BEYOND * (valley.z - point.z), space.lower, space.upper)
+        restored = lockstep.restore_together(parametric, evaluator, begin, parameters)
+        state.descend(valley, dict(enumerate(restored)))
     for _ in range(ROUNDS):
-        if better:
-            chosen = list(better)
-            again = lockstep.descend_together(
-                parametric,
-                evaluator,
-                point,
-                np.stack([better[i] for i in chosen], axis=1),
-                parameters[:, chosen],
-            )
-            for i, one in zip(chosen, again, strict=True):
-                now = found[i]
-                if one is not None and (now is None or one.objective < now.objective):
-                    found[i] = one
-        better = _elsewhere(parametric, evaluator, old, found, parameters)
-        inside = [better.get(i, z) for i, z in enumerate(inside)]
+        better = state.elsewhere(valleys)
         if not better:
             break
-    for i in better:
-        found[i] = None  # a better valley is known, its optimum is not
-    return found, inside
+        state.descend(point, better)
+    return state.settled()
 
 
-def _elsewhere(
-    parametric: ParametricProblem,
-    evaluator: Evaluator,
-    old: list[Point],
-    found: list[Point | None],
-    parameters: Vector,
-) -> dict[int, Vector]:
-    """For each end the best of the other ends' designs, where that beats its own optimum."""
-    points = [*old, *(one for one in found if one is not None)]
-    if not found:
-        return {}
-    objectives, violations = lockstep.standing(parametric, evaluator, points, parameters)
-    objectives = np.where(violations <= lockstep.FEASIBLE, objectives, np.inf)
-    best = np.argmin(objectives, axis=0)
-    better = {}
-    for i, one in enumerate(found):
-        reached = float(objectives[best[i], i])
-        room = BETTER * abs(reached)
-        if np.isfinite(reached) and (one is None or reached < one.objective - room):
-            better[i] = points[int(best[i])].z
-    return better
+@dataclass
+class _Ends:
+    """The best optimum found for each changed problem, and the best feasible design."""
+
+    parametric: ParametricProblem
+    evaluator: Evaluator
+    parameters: Vector
+    found: list[Point | None]
+    known: list[Point | None]
+    feasible: dict[int, Vector] = field(default_factory=dict)
+
+    def descend(self, valley: Point, starts: Mapping[int, Vector | None]) -> None:
+        """Descend from a start of each of these ends, and keep what is better."""
+        begun = {i: z for i, z in starts.items() if z is not None}
+        chosen = list(begun)
+        if not chosen:
+            return
+        self.feasible = begun | self.feasible
+        z, parameters = np.stack(list(begun.values()), axis=1), self.parameters[:, chosen]
+        reached, stopped = lockstep.descend_together(
+            self.parametric, self.evaluator, valley, z, parameters
+        )
+        for i, optimum, stop in zip(chosen, reached, stopped, strict=True):
+            self.found[i] = _better(self.found[i], optimum)
+            self.known[i] = _better(self.known[i], stop)
+
+    def elsewhere(self, valleys: list[Point]) -> dict[int, Vector]:
+        """For each end the best of the other ends' designs, where it is better than its own."""
+        points = [*valleys, *(one for one in self.found if one is not None)]
+        rows = lockstep.standing(self.parametric, points, self.parameters)
+        missed = self.evaluator.violations(rows.reshape(len(rows), -1), "worst")
+        missed = missed.reshape(rows.shape[1:])
+        objectives = np.where(missed <= lockstep.FEASIBLE, rows[0], np.inf)
+        best = np.argmin(objectives, axis=0)
+        better = {}
+        for i, one in enumerate(self.found):
+            least = float(objectives[best[i], i])
+            if least < _beaten(one):
+                better[i] = points[int(best[i])].z
+        return better
+
+    def settled(self) -> tuple[list[Point | None], list[Vector | None]]:
+        """The optima, None where a better design is known than the optimum; and those designs."""
+        inside: list[Vector | None] = [None] * len(self.found)
+        for i, at in enumerate(self.known):
+            if at is not None and at.objective < _beaten(self.found[i]):
+                self.found[i], inside[i] = None, at.z
+            elif self.found[i] is None:
+                inside[i] = self.feasible.get(i)
+        return self.found, inside
+
+
+def _beaten(one: Point | None) -> float:
+    """Objective below which another design is really better."""
+    return np.inf if one is None else one.objective - BETTER * abs(one.objective)
+
+
+def _better(one: Point | None, other: Point | None) -> Point | None:
+    if one is None or other is None:
+        return one or other
+    return other if other.objective < one.objective else one
 
 
 def resolved(
@@ -185,6 +220,9 @@ def resolved(
             return None
         inside = restored.z
     first = near.point(inside)
+    found = polish(near, first, iterations=8, tolerance=1e-10)
+    if _optimal(near, found) and found.objective <= first.objective:
+        return found.objective
     more = [p.x for p in (first, *tried)]
     for samples in (0, SAMPLES):
         best = solve(problem, starts=len(more), samples=samples, more_starts=more)
