@@ -255,7 +255,9 @@ def moves(optimisation: Optimisation) -> Block | None:
     for row in optimisation.sensitivities:
         found = []
         for path, slope in row.movement.items():
-            variable = variables[path]
+            variable = variables.get(path)
+            if variable is None:
+                continue
             step = 0.01 * row.limit * slope
             share = step / variable.value if variable.value else 0.0
             found.append((abs(share), path, step, share))

@@ -211,7 +211,7 @@ def margin_of(
     """A margin in per cent of its limit; of a limit of 0 the room itself, in its unit.
 
     >>> margin_of(metric("pressure_loss"), 2.0, 0.031), margin_of(metric("bore_growth"), 0.0, -3e-5)
-    ('+3.1 %', '−30 µm')
+    ('+3.1 %', '−30.0 µm')
     """
     if limit != 0 or margin is None or math.isnan(margin):
         return margin_text(margin, met=met)
