@@ -90,7 +90,7 @@ def test_another_valley_takes_over():
     problem = Problem(
         ("x",), np.array([0.2]), np.array([5.0]), lambda x: evaluate(x, np.array([[2.5]]))
     )
-    found = solve(problem, more_starts=[np.array([4.0])])
+    found = solve(problem, more_starts=[np.array([3.05])])
     assert sorted(one.objective for one in found.optima) == pytest.approx([2.5, 2.625])
     (row,) = prices(parametric(problem, ("p",), [2.5], evaluate), found)
     assert row.predicted_up == pytest.approx(2.75)
