@@ -297,13 +297,15 @@ def sensitivity(
     files = write_report(result, actuator, out, date) if report else []
     if as_json:
         data = result.to_dict()
-        keys = ("name", "version", "status", "outcome", "objective", "sensitivities", "kkt")
+        keys = ["name", "version", "status", "outcome", "objective"]
+        keys += ["sensitivities", "what_buys_most", "kkt"]
         streams.out_json({key: data[key] for key in keys} | ({"files": files} if files else {}))
     elif not quiet:
-        from .reporting.terminal import infeasibility_card, sensitivity_table
+        from .reporting import prices
+        from .reporting.terminal import infeasibility_card
 
         style = streams.style()
-        shown = sensitivity_table(result, **style) if result.sensitivities else ""
+        shown = prices.terminal(result, moving=True, **style)
         streams.out(shown or infeasibility_card(result, **style) or result.sentence)
         say_files(files)
     raise typer.Exit(_outcome(result))

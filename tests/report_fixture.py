@@ -28,9 +28,9 @@ from actuator_opt.optimisation.result import (
     Infeasibility,
     Kkt,
     Optimisation,
-    Sensitivity,
     VariableResult,
 )
+from actuator_opt.optimisation.sensitivity import Sensitivity
 
 SOURCE = """name: robot knee
 fluid:
@@ -612,6 +612,9 @@ def sensitivities() -> tuple[Sensitivity, ...]:
             until,
             then,
             elasticity != 0.0,
+            elasticity * mass / limit,
+            elasticity * mass / limit,
+            {"cylinder.bore": 0.4 * elasticity * 25.04e-3 / limit},
         )
 
     return (

@@ -49,7 +49,7 @@ def test_price_is_per_display_unit():
     row = rows_of(page(fixture.build_optimisation(), **SOURCE), "What each")[0]
     assert row[:7] == ["stiffness_min.min", "10 kN/mm", "10.00", "0.0 %", "●", "+15.8", "+0.770"]
     assert row[7:11] == ["221.0", "221.7", "189.4", "190.4"]
-    assert row[11] == "12.1 kN/mm: rod.outer_diameter upper bound"
+    assert row[11] == "12.1 kN/mm, then rod.outer_diameter upper bound"
 
 
 def test_infeasible_resolve_shows_a_dash():

@@ -12,6 +12,7 @@ from ..design.model import Design
 from ..evaluation.result import Evaluation
 from ..quantities import INPUTS
 from ..tables import aligned
+from .sensitivity import Offers, Sensitivity, offers
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,28 +37,6 @@ class Kkt:
     rank: int
     curvature: str
     """Sign of the reduced Hessian in words ("vertex", "positive definite", …)."""
-
-
-@dataclass(frozen=True, slots=True)
-class Sensitivity:
-    """The price of one requirement limit or one parameter, in SI of the objective per SI of it."""
-
-    parameter: str
-    label: str
-    unit: str
-    """Display unit of the parameter."""
-    scale: float
-    """Display value = SI value / scale."""
-    limit: float
-    price: float
-    percent_per_percent: float
-    predicted_10: float | None
-    resolved_10: float | None
-    predicted_minus10: float | None
-    resolved_minus10: float | None
-    holds_until: float | None
-    next_active: str | None
-    active: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,6 +255,12 @@ class Optimisation:
         rounded = None if self.rounding is None else self.rounding.design
         return rounded or self.design
 
+    @property
+    def offers(self) -> Offers:
+        """What would buy the most of the objective, by its re-solved prices."""
+        maximised = self.design.objective.maximise is not None
+        return offers(self.sensitivities, self.objective_value, maximised=maximised)
+
     def __str__(self) -> str:
         """Outcome, variables and the evaluation of the best design as tables."""
         rows = [["variable", "value", "lower", "upper", ""]]
@@ -303,6 +288,8 @@ class Optimisation:
             "resolved_minus10": [r.resolved_minus10 for r in rows],
             "holds_until": [r.holds_until for r in rows],
             "next_active": [r.next_active for r in rows],
+            "price_up": [r.price_up for r in rows],
+            "price_down": [r.price_down for r in rows],
         }
 
     def to_dict(self) -> dict[str, Any]:
@@ -327,14 +314,8 @@ class Optimisation:
                     for v in self.variables
                 },
                 "kkt": None if self.kkt is None else asdict(self.kkt),
-                "sensitivities": [
-                    {
-                        key: value
-                        for key, value in asdict(row).items()
-                        if key not in ("label", "unit", "scale")
-                    }
-                    for row in self.sensitivities
-                ],
+                "sensitivities": [row.to_dict(self.objective_value) for row in self.sensitivities],
+                "what_buys_most": self.offers.to_dict(),
                 "certificate": self.certificate,
                 "rounding": None if self.rounding is None else self.rounding.to_dict(),
                 "choices": None if self.choices is None else self.choices.to_dict(),

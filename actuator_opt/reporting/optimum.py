@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..optimisation.result import Infeasibility, Optimisation, Sensitivity
+from ..optimisation.result import Infeasibility, Optimisation
 from . import text
 from .blocks import Block, Cell, clean, column, soft, table
 from .text import DASH
@@ -44,77 +44,6 @@ def variables(optimisation: Optimisation) -> Block:
     held = [row.path for row in optimisation.variables if row.at_bound]
     note = f"{len(held)} of {len(rows)} variables are at a bound." if held else ""
     return table("Design variables", columns, rows, note=note)
-
-
-def _parameter(row: Sensitivity, value: float | None) -> float | None:
-    """A parameter in its display unit; temperatures have an offset."""
-    if value is None:
-        return None
-    offset = 273.15 if row.unit in ("degC", "°C") else 0.0
-    return value / row.scale - offset
-
-
-def sensitivities(optimisation: Optimisation) -> Block:
-    """Price of every limit and parameter, checked by solving again at ±10 %."""
-    objective = text.metric(optimisation.objective_metric)
-    rows_by_path = {row.path: row for row in optimisation.evaluation.requirements}
-    per_display = objective.to_display(1.0) - objective.to_display(0.0)
-    rows: list[list[Cell]] = []
-    for row in optimisation.sensitivities:
-        found = rows_by_path.get(row.parameter)
-        unit = text.unit_text(row.unit)
-        value = None if found is None else found.value
-        pairs = (
-            (row.predicted_10, row.resolved_10),
-            (row.predicted_minus10, row.resolved_minus10),
-        )
-        until = text.with_unit(text.trimmed(_parameter(row, row.holds_until)), unit)
-        rows.append(
-            [
-                soft(row.parameter.removeprefix("requirements.")),
-                text.with_unit(text.trimmed(_parameter(row, row.limit)), unit),
-                DASH if found is None else text.number(_parameter(row, value)),
-                DASH if found is None else text.margin_text(found.margin, met=found.met),
-                "●" if row.active else "",
-                text.number(row.price * row.scale * per_display, 3, signed=True),
-                text.number(row.percent_per_percent, 3, signed=True),
-                *(text.number(text.display(objective, v)) for pair in pairs for v in pair),
-                soft(until if row.next_active is None else f"{until}: {row.next_active}"),
-            ]
-        )
-    unit = text.unit_text(objective.unit) or objective.name
-    columns = [
-        column("requirement or parameter", "left", 1.25, mono=True),
-        column("limit", "right"),
-        column("value", "right"),
-        column("margin", "right"),
-        column("active", "center"),
-        column(f"price,\n{unit}/unit", "right"),
-        column("% per\n+1 %", "right"),
-        column("+10 %\npredicted", "right"),
-        column("+10 %\nsolved", "right", strong=True),
-        column("−10 %\npredicted", "right"),
-        column("−10 %\nsolved", "right", strong=True),
-        column("holds until: next active", "left", 1.05),
-    ]
-    return table(
-        f"What each requirement costs ({objective.label}, {unit})",
-        columns,
-        rows,
-        note=quality(optimisation),
-    )
-
-
-def quality(optimisation: Optimisation) -> str:
-    """The quality line under the prices."""
-    kkt = optimisation.kkt
-    if kkt is None:
-        return "Quality: no multipliers (the design is not an optimum); prices are not exact."
-    return (
-        f"Quality: KKT residual {text.number(kkt.residual, 2)}, {len(kkt.active)} active rows of"
-        f" rank {kkt.rank}, {kkt.curvature}. Prices are per unit shown in the limit column;"
-        f" {DASH} under solved: no feasible design found nearby."
-    )
 
 
 def sentence(words: str) -> str:

@@ -205,6 +205,20 @@ def margin_text(margin: float | None, *, met: bool = True) -> str:
     return f"{_tenth(percent)} %"
 
 
+def margin_of(
+    quantity: Quantity, limit: float | None, margin: float | None, *, met: bool = True
+) -> str:
+    """A margin in per cent of its limit; of a limit of 0 the room itself, in its unit.
+
+    >>> margin_of(metric("pressure_loss"), 2.0, 0.031), margin_of(metric("bore_growth"), 0.0, -3e-5)
+    ('+3.1 %', '−30.0 µm')
+    """
+    if limit != 0 or margin is None or math.isnan(margin):
+        return margin_text(margin, met=met)
+    room = quantity.to_display(margin) - quantity.to_display(0.0)
+    return with_unit(number(room, 3, signed=True), unit_text(quantity.unit))
+
+
 def _tenth(percent: float) -> str:
     return f"{percent:+.1f}".replace("-", MINUS)
 
