@@ -216,9 +216,10 @@ def optimise(
     trial = None if verify is None else verbs.read_scenario(verify)
     if trial is not None:
         verbs.fitting(trial, actuator)
-    result = verbs.optimise(
-        actuator, algorithm=algorithm, starts=starts, seed=seed, whole_plies=whole_plies
-    )
+    with streams.watching():
+        result = verbs.optimise(
+            actuator, algorithm=algorithm, starts=starts, seed=seed, whole_plies=whole_plies
+        )
     good = _outcome(result) == ExitCode.MET
     if write is not None and good:
         verbs.save(result.best, write, source=actuator.source)
@@ -293,7 +294,8 @@ def sensitivity(
     if report:
         check_targets(out, date)
     actuator = read_actuator(design, sets, plugin)
-    result = verbs.optimise(actuator, seed=seed)
+    with streams.watching():
+        result = verbs.optimise(actuator, seed=seed)
     files = write_report(result, actuator, out, date) if report else []
     if as_json:
         data = result.to_dict()

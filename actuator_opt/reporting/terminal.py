@@ -295,6 +295,10 @@ def sensitivity_table(
     return "\n".join(lines)
 
 
+_CARD_DROP = {"stands for": 2, "change": 1}
+"""Columns of the infeasibility card that a narrow terminal leaves out, the highest first."""
+
+
 def infeasibility_card(
     subject: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
 ) -> str:
@@ -305,9 +309,16 @@ def infeasibility_card(
         return ""
     lines = []
     for block in optimum.infeasibility(card):
-        columns = [Column(c["head"], c["align"], flexible=True) for c in block["columns"]]
+        lines += ["", console.heading(block["title"])]
+        if block["kind"] == "notes":
+            lines += [console.wrap("".join(item)) for item in block["items"]]
+            continue
+        columns = [
+            Column(c["head"], c["align"], c["head"] == "stands for", _CARD_DROP.get(c["head"], 0))
+            for c in block["columns"]
+        ]
         rows = [["".join(cell) for cell in row] for row in block["rows"]]
-        lines += ["", console.heading(block["title"]), *console.table(columns, rows)]
+        lines += console.table(columns, rows)
         lines.append(console.wrap(block["note"], "dim"))
     return "\n".join(lines[1:])
 

@@ -1,0 +1,181 @@
+"""What alone would make an infeasible problem feasible: one requirement, or one opened bound.
+
+First a point that meets everything but the one requirement (or lies beyond the one bound), by the
+shortest steps to the linearised rows, for all candidates at once; where that finds none, by the
+least worst miss, from several points. From there the least amount that must be given up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..numeric import Array
+from ..progress import tell
+from . import elastic, lockstep
+from .evaluator import Evaluator
+from .nlopt_wrapper import run
+from .problem import ParametricProblem, Problem, Values, Vector
+
+NOTHING = 1e-6
+"""A relaxation below this is none."""
+
+WIDEST = 2.0
+"""A bound is opened to at most twice, or half, its value: beyond, it is another actuator."""
+
+_FREED = 1e9
+"""Margin granted to a requirement that is left out: no value misses it by as much."""
+
+
+@dataclass(frozen=True, slots=True)
+class Relaxation:
+    """A constraint and the margin (fraction of its limit) that must be given up.
+
+    `amount` is None where giving up this constraint entirely would not be enough.
+    """
+
+    constraint: str
+    index: int
+    amount: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """A bound that holds back the joint relaxation.
+
+    Parameters
+    ----------
+    variable, index, side, value : the bound
+    gain : fall of the total relaxation per unit of relative opening of the bound (0.01 = 1 %)
+    needed : value of the bound that alone would do; None where none was found up to `WIDEST`
+    """
+
+    variable: str
+    index: int
+    side: str
+    value: float
+    gain: float
+    needed: float | None = None
+
+
+def missed(evaluator: Evaluator, x: Vector, groups: Sequence[elastic.Indices]) -> list[float]:
+    """The largest margin missed in each group at a point."""
+    rows = evaluator.point(evaluator.space.to_z(x)).rows[1 : 1 + evaluator.constraint_count]
+    lacks = np.maximum(-np.nan_to_num(rows, nan=0.0), 0.0)
+    return [float(lacks[group].max(initial=0.0)) for group in groups]
+
+
+def by_limits(
+    problem: Problem,
+    groups: Sequence[elastic.Indices],
+    named: set[int],
+    points: Sequence[Vector],
+) -> tuple[Relaxation, ...]:
+    """What each group of constraints must give up alone.
+
+    Parameters
+    ----------
+    problem : the infeasible problem
+    groups : rows of the candidates
+    named : first rows of the groups to look into from every point
+    points : where to start, the point of the smallest joint relaxation first
+    """
+    found = []
+    near = _without_each(problem, groups, points[0])
+    for number, (group, x) in enumerate(zip(groups, near, strict=True)):
+        tell("nothing fits: which requirement alone would do", number / len(groups))
+        first = int(group[0])
+        if x is None:
+            x = _without(problem, group, points if first in named else points[:1])
+        amount = None if x is None else _least(problem, group, x)
+        found.append(Relaxation(problem.constraint_names[first], first, amount))
+    return tuple(found)
+
+
+def _without_each(
+    problem: Problem, groups: Sequence[elastic.Indices], x: Vector
+) -> list[Vector | None]:
+    """A point that meets everything but one group, for each group; None where none is near."""
+    evaluator = Evaluator(problem)
+    point = evaluator.point(evaluator.space.to_z(x))
+    freed = np.zeros((len(problem.constraint_names), len(groups)))
+    for k, group in enumerate(groups):
+        freed[group, k] = _FREED
+
+    def evaluate(points: Array, granted: Array) -> Values:
+        rows = problem.rows(points)
+        m = len(problem.constraint_names)
+        return Values(rows[0], rows[1 : 1 + m] + granted, rows[1 + m :])
+
+    labels = problem.constraint_names
+    parametric = ParametricProblem(problem, labels, np.zeros(len(labels)), evaluate)
+    evaluator.check_gradients(point)
+    if not groups or not lockstep.applicable(parametric, evaluator):
+        return [None] * len(groups)
+    found = lockstep.restore_together(parametric, evaluator, point, freed)
+    return [None if z is None else evaluator.space.to_x(z[:, None])[:, 0] for z in found]
+
+
+def _without(problem: Problem, group: elastic.Indices, points: Sequence[Vector]) -> Vector | None:
+    """A point that meets everything but one group, None where none was found."""
+    m = len(problem.constraint_names)
+    kept = np.setdiff1d(np.arange(m), group)
+
+    def evaluate(at: Array) -> Values:
+        rows = problem.rows(at)
+        return Values(rows[0], rows[1 : 1 + m][kept], rows[1 + m :])
+
+    names = tuple(problem.constraint_names[i] for i in kept)
+    slim = replace(problem, evaluate=evaluate, constraint_names=names, relaxable=None, groups=None)
+    evaluator = Evaluator(slim)
+    for x in points:
+        start = evaluator.point(evaluator.space.to_z(x))
+        end = elastic.least_missed(evaluator, start, start.violation / 4)
+        if end.violation <= NOTHING:
+            return end.x
+    return None
+
+
+def _least(problem: Problem, group: elastic.Indices, x: Vector) -> float | None:
+    """The least that one group must give up, the others met, from a point that meets these."""
+    lacks = missed(Evaluator(problem), x, [group])
+    stretched = elastic.separate(problem, [group], [2.0 * max(*lacks, 0.5)])
+    found = elastic.descend(stretched, x, lacks)
+    return float(found.objective) if found.violation <= NOTHING else None
+
+
+def by_bounds(problem: Problem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
+    """The bounds again, each with the value that alone would do."""
+    found = []
+    for number, bound in enumerate(bounds):
+        tell("nothing fits: which bound alone would do", number / len(bounds))
+        found.append(replace(bound, needed=_opened(problem, bound, x)))
+    return tuple(found)
+
+
+def _opened(problem: Problem, bound: Opening, x: Vector) -> float | None:
+    """The value nearest to a bound at which a variable beyond it meets every requirement."""
+    j, upper = bound.index, bound.side == "upper"
+    if bound.value <= 0:
+        return None
+    lower, above = problem.lower.copy(), problem.upper.copy()
+    lower[j], above[j] = (
+        (bound.value, bound.value * WIDEST) if upper else (bound.value / WIDEST, bound.value)
+    )
+
+    def evaluate(points: Array) -> Values:
+        rows = problem.rows(points)
+        m = len(problem.constraint_names)
+        return Values(points[j] if upper else -points[j], rows[1 : 1 + m], rows[1 + m :])
+
+    opened = replace(problem, lower=lower, upper=above, evaluate=evaluate, start=None)
+    near = _without_each(opened, [np.empty(0, dtype=np.intp)], x)[0]
+    if near is None:
+        return None
+    evaluator = Evaluator(opened)
+    start = evaluator.point(evaluator.space.to_z(near))
+    led = run(evaluator, start, "LD_SLSQP", tolerance=elastic.FINE, most=elastic.MOST)
+    found = elastic.finish(evaluator, led.point)
+    return float(found.x[j]) if found.violation <= NOTHING else None
