@@ -302,11 +302,12 @@ def sensitivity(
         keys = ("name", "version", "status", "outcome", "objective", "sensitivities", "kkt")
         streams.out_json({key: data[key] for key in keys} | ({"files": files} if files else {}))
     elif not quiet:
-        from .reporting.terminal import infeasibility_card, sensitivity_table
+        from .reporting import infeasibility_card
+        from .reporting.terminal import sensitivity_table
 
         style = streams.style()
         shown = sensitivity_table(result, **style) if result.sensitivities else ""
-        streams.out(shown or infeasibility_card(result, **style) or result.sentence)
+        streams.out(shown or infeasibility_card.terminal(result, **style) or result.sentence)
         say_files(files)
     raise typer.Exit(_outcome(result))
 

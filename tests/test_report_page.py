@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 import report_fixture as fixture
 
-from actuator_opt.reporting import ExtraTable, optimum
+from actuator_opt.reporting import ExtraTable, infeasibility_card
 from actuator_opt.reporting.page import key_figures, page, verdict
 
 SOURCE = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
@@ -117,7 +117,7 @@ def test_key_figures_are_five_and_start_with_the_objective():
 
 def test_the_infeasibility_card_reads_as_advice():
     """Limits by the PATH to set, now and needed with units, signed changes; what alone cannot."""
-    said, joint, alone, bounds, proof = optimum.infeasibility(
+    said, joint, alone, bounds, proof = infeasibility_card.blocks(
         fixture.build_infeasible().infeasibility
     )
     assert "250 N → 281 N (+12.4 %)" in text_of(said["items"][0])

@@ -115,19 +115,24 @@ def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> P
     An end that misses more than `rough` stays as rough as it is, which saves half the effort.
     """
     inner = Evaluator(common(evaluator.problem, 2.0 * point.violation + 1.0))
-    start = inner.point(inner.space.to_z(np.append(point.x, point.violation)))
+    start = found = inner.point(inner.space.to_z(np.append(point.x, point.violation)))
     if not start.valid:
         return point
     inner.eager = True
-    found = start
     if rough < np.inf:
-        found = run(inner, start, "LD_SLSQP", tolerance=ROUGH, most=MOST).point
-    if found.objective <= rough:
-        found = finish(inner, run(inner, found, "LD_SLSQP", tolerance=FINE, most=MOST).point)
+        found = run(inner, start, "LD_SLSQP", tolerance=ROUGH, most=MOST, rank=_miss).point
+    if _miss(found) <= rough:
+        led = run(inner, found, "LD_SLSQP", tolerance=FINE, most=MOST, rank=_miss)
+        found = min((led.point, finish(inner, led.point)), key=_miss)
     evaluator.evaluations += inner.evaluations
     evaluator.check_limits()
     end = evaluator.point(evaluator.space.to_z(found.x[: len(point.x)]))
     return end if end.valid and end.violation < point.violation else point
+
+
+def _miss(point: Point) -> float:
+    """The most missed limit at a point of a common slack: what is violated the slack could take."""
+    return point.objective + point.violation if point.valid else np.inf
 
 
 def descend(

@@ -21,7 +21,7 @@ from .evaluator import Evaluator, Point
 from .problem import Problem, Vector
 from .repairs import NOTHING, Opening, Relaxation
 
-STARTS = 3
+STARTS = 2
 """Most points from which the joint relaxation is sought."""
 
 
@@ -91,7 +91,7 @@ def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
             problem,
             [group for group in groups if part[group].any() or group[0] in named],
             named,
-            [x, *points[: STARTS - 1]],
+            [x, *points[:STARTS]],
         )
         open_bounds = repairs.by_bounds(problem, open_bounds, x)
     return Infeasibility(
@@ -134,7 +134,7 @@ def _smallest(
         if found.valid and not any(found is end for end in ends):
             ends.append(found)
     best = min(ends, key=lambda end: (max(end.violation - NOTHING, 0.0), end.objective))
-    return best, Evaluator(stretched)
+    return repairs.settled(stretched, best), Evaluator(stretched)
 
 
 def _binding_bounds(

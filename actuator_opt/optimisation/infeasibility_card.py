@@ -45,19 +45,20 @@ def _card(actuator: ActuatorProblem, found: Explanation, solution: Solution) -> 
     named = {r.index for r in found.joint}
     sole = sorted(found.sole, key=lambda r: math.inf if r.amount is None else r.amount)
     joint = tuple(_entry(actuator, r) for r in found.joint)
+    alone = tuple(
+        _entry(actuator, r)
+        for r in sole
+        if r.amount is not None
+        or r.index in named
+        or actuator.rows[r.index].limit_of.origin != "check"
+    )
     return Infeasibility(
         joint=joint,
-        sole=tuple(
-            _entry(actuator, r)
-            for r in sole
-            if r.amount is not None
-            or r.index in named
-            or actuator.rows[r.index].limit_of.origin != "check"
-        ),
+        sole=alone,
         bounds=tuple(_bound(actuator, bound) for bound in found.bounds),
         laws=found.laws,
         total=found.total,
-        sentence=_sentence(joint, found.laws),
+        sentence=_sentence(joint, alone, found.laws),
         evidence=_evidence(found, solution),
     )
 
@@ -160,7 +161,9 @@ def percent(share: float) -> str:
     return f"{100 * share:+.3g} %"
 
 
-def _sentence(joint: Sequence[dict[str, Any]], laws: Sequence[str]) -> str:
+def _sentence(
+    joint: Sequence[dict[str, Any]], alone: Sequence[dict[str, Any]], laws: Sequence[str]
+) -> str:
     if laws:
         return (
             "nothing fits whatever the requirements: the bounds leave no room for the geometry"
@@ -169,8 +172,12 @@ def _sentence(joint: Sequence[dict[str, Any]], laws: Sequence[str]) -> str:
     if not joint:
         return "nothing fits, and no relaxation that would do was found"
     changes = "; ".join(change_text(entry) for entry in joint)
-    together = f" of {len(joint)} limits together" if len(joint) > 1 else ""
-    return f"nothing fits: the smallest change{together} is {changes}"
+    if len(joint) == 1:
+        return f"nothing fits: the smallest change is {changes}"
+    said = f"nothing fits: the smallest change, of {len(joint)} limits together, is {changes}"
+    if alone and alone[0]["needed"] is not None:
+        said += f". One alone is enough too: {change_text(alone[0])}"
+    return said
 
 
 def _evidence(found: Explanation, solution: Solution) -> str:

@@ -14,13 +14,17 @@ import numpy as np
 
 from ..numeric import Array
 from ..progress import tell
-from . import elastic, lockstep
-from .evaluator import Evaluator
+from . import elastic, kkt, lockstep
+from .evaluator import Evaluator, Point
 from .nlopt_wrapper import run
 from .problem import ParametricProblem, Problem, Values, Vector
+from .solver import solve
 
 NOTHING = 1e-6
 """A relaxation below this is none."""
+
+SETTLED = 1e-6
+"""Residual of the optimality conditions up to which an end counts as an optimum."""
 
 WIDEST = 2.0
 """A bound is opened to at most twice, or half, its value: beyond, it is another actuator."""
@@ -89,7 +93,7 @@ def by_limits(
         first = int(group[0])
         if x is None:
             x = _without(problem, group, points if first in named else points[:1])
-        amount = None if x is None else _least(problem, group, x)
+        amount = None if x is None else _least(problem, group, x, points)
         found.append(Relaxation(problem.constraint_names[first], first, amount))
     return tuple(found)
 
@@ -138,12 +142,30 @@ def _without(problem: Problem, group: elastic.Indices, points: Sequence[Vector])
     return None
 
 
-def _least(problem: Problem, group: elastic.Indices, x: Vector) -> float | None:
+def _least(
+    problem: Problem, group: elastic.Indices, x: Vector, others: Sequence[Vector]
+) -> float | None:
     """The least that one group must give up, the others met, from a point that meets these."""
-    lacks = missed(Evaluator(problem), x, [group])
-    stretched = elastic.separate(problem, [group], [2.0 * max(*lacks, 0.5)])
-    found = elastic.descend(stretched, x, lacks)
+    judge = Evaluator(problem)
+    lacks = missed(judge, x, [group])
+    starts = [np.append(one, missed(judge, one, [group])) for one in others]
+    room = 2.0 * max(0.5, *lacks, *(start[-1] for start in starts))
+    stretched = elastic.separate(problem, [group], [room])
+    found = settled(stretched, elastic.descend(stretched, x, lacks), starts)
     return float(found.objective) if found.violation <= NOTHING else None
+
+
+def settled(problem: Problem, found: Point, others: Sequence[Vector] = ()) -> Point:
+    """The end of a descent; by every means, from other points too, where it is no optimum."""
+    evaluator = Evaluator(problem)
+    if not found.valid or kkt.check(evaluator, found, objective_scale=1.0).residual <= SETTLED:
+        return found
+    starts = [found.x, *others]
+    again = solve(problem, starts=len(starts), samples=0, more_starts=starts)
+    enough = again.violation <= max(NOTHING, found.violation)
+    if not enough or (found.violation <= NOTHING and again.objective >= found.objective):
+        return found
+    return evaluator.point(evaluator.space.to_z(again.x))
 
 
 def by_bounds(problem: Problem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
@@ -177,5 +199,5 @@ def _opened(problem: Problem, bound: Opening, x: Vector) -> float | None:
     evaluator = Evaluator(opened)
     start = evaluator.point(evaluator.space.to_z(near))
     led = run(evaluator, start, "LD_SLSQP", tolerance=elastic.FINE, most=elastic.MOST)
-    found = elastic.finish(evaluator, led.point)
+    found = settled(opened, elastic.finish(evaluator, led.point))
     return float(found.x[j]) if found.violation <= NOTHING else None

@@ -35,6 +35,9 @@ RESTORATION = "least worst miss by LD_SLSQP"
 NEARER = 1e-3
 """Share by which a worst miss must be less than those known to be another one."""
 
+ELSEWHERE = 0.1
+"""Share by which a worst miss must exceed the least known for its search to count as stuck."""
+
 LOCAL_EVALUATIONS = 150
 """Most evaluations of one local run of a default algorithm."""
 
@@ -128,7 +131,9 @@ class _Search:
         if found.violation < least * (1 - NEARER):
             self.optima.append(_Optimum(found, self.residual(found), RESTORATION))
         self.least.append(found)
-        if point is start:
+        if found.violation > least * (1 + ELSEWHERE):
+            self.descend(found, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+        elif point is start:
             used = self.evaluator.evaluations - before
             self.records.append(
                 StartRecord(start.x, found.objective, found.violation, RESTORATION, used)

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
-
-from ..optimisation.infeasibility_card import percent
-from ..optimisation.result import Infeasibility, Optimisation, Sensitivity
+from ..optimisation.result import Optimisation, Sensitivity
 from . import text
-from .blocks import Block, Cell, clean, column, notes, soft, table
+from .blocks import Block, Cell, clean, column, soft, table
 from .text import DASH
 
 
@@ -166,96 +162,3 @@ def convergence(optimisation: Optimisation) -> list[str]:
     if optimisation.kkt is not None and optimisation.kkt.active:
         lines.append(f"Active at the optimum: {', '.join(optimisation.kkt.active)}.")
     return lines
-
-
-def infeasibility(card: Infeasibility) -> list[Block]:
-    """The card of an infeasible design: what conflicts, by how much, what would repair it."""
-    blocks = [notes("Why nothing fits", [_arrows(card.sentence)])]
-    if card.joint:
-        these = "this" if len(card.joint) == 1 else "all of these together"
-        note = f"With {these} a design exists: the one shown here. No smaller sum was found."
-        blocks.append(table("Smallest joint relaxation", *_limits(card.joint), note=note))
-    alone = [entry for entry in card.sole if entry["needed"] is not None]
-    others = [str(e["parameter"] or e["requirement"]) for e in card.sole if e["needed"] is None]
-    words = ""
-    if alone:
-        words = "Any one of these, changed alone, is enough; less than that was not. "
-    if others:
-        words += f"Not enough alone, however much it gives way: {', '.join(others)}."
-    if alone:
-        blocks.append(table("One limit alone", *_limits(alone), note=words.strip()))
-    elif others:
-        blocks.append(notes("One limit alone", [words]))
-    if card.bounds:
-        blocks.append(_bounds(card))
-    if card.evidence:
-        blocks.append(notes("What is proven", [sentence(card.evidence)]))
-    return blocks
-
-
-def _arrows(words: str) -> str:
-    return text.pretty(sentence(words)).replace("->", "→")
-
-
-def _limits(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Block], list[list[Cell]]]:
-    """Columns and rows of limits that give way."""
-    columns = [
-        column("limit", "left", 1.3, mono=True),
-        column("stands for", "left", 1.3),
-        column("now", "right"),
-        column("needed", "right", strong=True),
-        column("change", "right"),
-    ]
-    rows: list[list[Cell]] = [
-        [
-            soft(entry["parameter"] or entry["requirement"]),
-            soft(_origin(entry)),
-            text.pretty(entry["limit_text"]),
-            text.pretty(entry["needed_text"]) or DASH,
-            _change(entry["change"]),
-        ]
-        for entry in entries
-    ]
-    return columns, rows
-
-
-def _origin(entry: Mapping[str, Any]) -> str:
-    """Who asks for a limit; a line of the check list by its name."""
-    origin = str(entry["origin"])
-    return f"{origin}: {entry['requirement']}" if origin == "check list" else origin
-
-
-def _change(share: float | None) -> str:
-    return DASH if share is None else text.pretty(percent(share))
-
-
-def _bounds(card: Infeasibility) -> Block:
-    """Bounds that the relaxed design stands at: what opening them helps."""
-    columns = [
-        column("bound", "left", 1.3, mono=True),
-        column("now", "right"),
-        column("gap closed by 1 %", "right"),
-        column("enough at", "right", strong=True),
-        column("change", "right"),
-    ]
-    rows: list[list[Cell]] = [
-        [
-            soft(bound["parameter"]),
-            text.pretty(bound["limit_text"]),
-            _closes(bound["gain"], card.total),
-            text.pretty(bound["needed_text"]) or DASH,
-            _change(bound["change"]),
-        ]
-        for bound in card.bounds
-    ]
-    total = DASH if card.total is None else f"{text.number(100 * card.total, 3)} % of the limits"
-    note = (
-        f"The gap is what the joint relaxation gives up in sum, {total}; 1 % more room closes this"
-        f" much of it, to begin with. {DASH}: no design found by opening this bound alone."
-    )
-    return table("Bounds in the way", columns, rows, note=note)
-
-
-def _closes(gain: float, total: float | None) -> str:
-    """Share of the gap that 1 % more room closes."""
-    return f"{text.number(min(gain / total, 100.0), 2)} %" if total else DASH

@@ -9,8 +9,17 @@ from collections.abc import Sequence
 from typing import TypedDict
 
 from ..evaluation.result import Evaluation, Requirement, StrokeCurve
-from ..optimisation.result import Infeasibility, Optimisation
-from . import choices_table, optimum, page, plot, stiffness_page, text, whole_plies
+from ..optimisation.result import Optimisation
+from . import (
+    choices_table,
+    infeasibility_card,
+    optimum,
+    page,
+    plot,
+    stiffness_page,
+    text,
+    whole_plies,
+)
 from .console import Column, Console
 from .places import brief
 from .text import DASH
@@ -295,34 +304,6 @@ def sensitivity_table(
     return "\n".join(lines)
 
 
-_CARD_DROP = {"stands for": 2, "change": 1}
-"""Columns of the infeasibility card that a narrow terminal leaves out, the highest first."""
-
-
-def infeasibility_card(
-    subject: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
-) -> str:
-    """Why nothing fits: what to relax together, what alone would do, which bounds bind."""
-    console = Console(colour, unicode, width)
-    card: Infeasibility | None = subject.infeasibility
-    if card is None:
-        return ""
-    lines = []
-    for block in optimum.infeasibility(card):
-        lines += ["", console.heading(block["title"])]
-        if block["kind"] == "notes":
-            lines += [console.wrap("".join(item)) for item in block["items"]]
-            continue
-        columns = [
-            Column(c["head"], c["align"], c["head"] == "stands for", _CARD_DROP.get(c["head"], 0))
-            for c in block["columns"]
-        ]
-        rows = [["".join(cell) for cell in row] for row in block["rows"]]
-        lines += console.table(columns, rows)
-        lines.append(console.wrap(block["note"], "dim"))
-    return "\n".join(lines[1:])
-
-
 def stiffness_curve(
     curve: StrokeCurve,
     requirement: Requirement | None = None,
@@ -397,7 +378,7 @@ def optimisation_text(
     console = Console(**style)
     parts: Sequence[str] = [
         verdict(optimisation, **style),
-        infeasibility_card(optimisation, **style),
+        infeasibility_card.terminal(optimisation, **style),
         requirements_table(optimisation.evaluation, **style),
         variables_table(optimisation, **style) if optimisation.variables else "",
         sensitivity_table(optimisation, **style) if optimisation.sensitivities else "",
