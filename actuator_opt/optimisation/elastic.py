@@ -147,6 +147,11 @@ def descend(
     return known[led.arrived] if led.arrived is not None else finish(inner, led.point)
 
 
+def go(evaluator: Evaluator, start: Point) -> Point:
+    """One descent with its finish."""
+    return finish(evaluator, run(evaluator, start, "LD_SLSQP", tolerance=FINE, most=MOST).point)
+
+
 def finish(evaluator: Evaluator, point: Point) -> Point:
     """The end of a descent, exact to `EXACT`."""
     return polish(evaluator, point, tolerance=EXACT)

@@ -134,7 +134,7 @@ def _smallest(
         if found.valid and not any(found is end for end in ends):
             ends.append(found)
     best = min(ends, key=lambda end: (max(end.violation - NOTHING, 0.0), end.objective))
-    return repairs.settled(stretched, best), Evaluator(stretched)
+    return best, Evaluator(stretched)
 
 
 def _binding_bounds(

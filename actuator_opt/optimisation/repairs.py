@@ -15,16 +15,20 @@ import numpy as np
 from ..numeric import Array
 from ..progress import tell
 from . import elastic, kkt, lockstep
-from .evaluator import Evaluator, Point
-from .nlopt_wrapper import run
+from .evaluator import Evaluator
 from .problem import ParametricProblem, Problem, Values, Vector
-from .solver import solve
 
 NOTHING = 1e-6
 """A relaxation below this is none."""
 
 SETTLED = 1e-6
 """Residual of the optimality conditions up to which an end counts as an optimum."""
+
+CHALLENGE = 0.99
+"""Share of an amount that must not be enough."""
+
+CHALLENGES = 8
+"""Most rounds of this; halving comes within a per cent in seven."""
 
 WIDEST = 2.0
 """A bound is opened to at most twice, or half, its value: beyond, it is another actuator."""
@@ -86,32 +90,69 @@ def by_limits(
     named : first rows of the groups to look into from every point
     points : where to start, the point of the smallest joint relaxation first
     """
-    found = []
-    near = _without_each(problem, groups, points[0])
+    amounts: list[float | None] = []
+    near = _nearby(problem, groups, points[0])
     for number, (group, x) in enumerate(zip(groups, near, strict=True)):
         tell("nothing fits: which requirement alone would do", number / len(groups))
-        first = int(group[0])
         if x is None:
-            x = _without(problem, group, points if first in named else points[:1])
-        amount = None if x is None else _least(problem, group, x, points)
-        found.append(Relaxation(problem.constraint_names[first], first, amount))
-    return tuple(found)
+            x = _without(problem, group, points if int(group[0]) in named else points[:1])
+        amounts.append(None if x is None else _least_of_all(problem, group, x, points[1:]))
+    amounts = _challenged(problem, groups, amounts, points)
+    return tuple(
+        Relaxation(problem.constraint_names[int(group[0])], int(group[0]), amount)
+        for group, amount in zip(groups, amounts, strict=True)
+    )
 
 
-def _without_each(
-    problem: Problem, groups: Sequence[elastic.Indices], x: Vector
+def _challenged(
+    problem: Problem,
+    groups: Sequence[elastic.Indices],
+    amounts: Sequence[float | None],
+    points: Sequence[Vector],
+) -> list[float | None]:
+    """The amounts, less where `CHALLENGE` of one is enough as well.
+
+    A descent may end on a kink, or in a valley that is not the deepest; then halving finds less.
+    """
+    enough = {k: amount for k, amount in enumerate(amounts) if amount is not None}
+    tried = {k: CHALLENGE * amount for k, amount in enough.items()}
+    short = dict.fromkeys(enough, 0.0)
+    for _ in range(CHALLENGES):
+        if not tried:
+            break
+        near: dict[int, Vector | None] = dict.fromkeys(tried)
+        for x in points:
+            left = [k for k in tried if near[k] is None]
+            reached = _nearby(problem, [groups[k] for k in left], x, [tried[k] for k in left])
+            near |= dict(zip(left, reached, strict=True))
+        for k, amount in tried.items():
+            found = near[k]
+            if found is None:
+                short[k] = amount
+                continue
+            less, _ = _least(problem, groups[k], found)
+            enough[k] = amount if less is None else min(amount, less)
+        tried = {k: (short[k] + enough[k]) / 2 for k in tried if short[k] < CHALLENGE * enough[k]}
+    return [enough.get(k) for k in range(len(groups))]
+
+
+def _nearby(
+    problem: Problem,
+    groups: Sequence[elastic.Indices],
+    x: Vector,
+    granted: Sequence[float] | None = None,
 ) -> list[Vector | None]:
-    """A point that meets everything but one group, for each group; None where none is near."""
+    """For each group a point where all is met but for the margin granted to it (None: any)."""
     evaluator = Evaluator(problem)
     point = evaluator.point(evaluator.space.to_z(x))
     freed = np.zeros((len(problem.constraint_names), len(groups)))
     for k, group in enumerate(groups):
-        freed[group, k] = _FREED
+        freed[group, k] = _FREED if granted is None else granted[k]
 
-    def evaluate(points: Array, granted: Array) -> Values:
+    def evaluate(points: Array, margins: Array) -> Values:
         rows = problem.rows(points)
         m = len(problem.constraint_names)
-        return Values(rows[0], rows[1 : 1 + m] + granted, rows[1 + m :])
+        return Values(rows[0], rows[1 : 1 + m] + margins, rows[1 + m :])
 
     labels = problem.constraint_names
     parametric = ParametricProblem(problem, labels, np.zeros(len(labels)), evaluate)
@@ -142,30 +183,30 @@ def _without(problem: Problem, group: elastic.Indices, points: Sequence[Vector])
     return None
 
 
-def _least(
+def _least_of_all(
     problem: Problem, group: elastic.Indices, x: Vector, others: Sequence[Vector]
 ) -> float | None:
-    """The least that one group must give up, the others met, from a point that meets these."""
-    judge = Evaluator(problem)
-    lacks = missed(judge, x, [group])
-    starts = [np.append(one, missed(judge, one, [group])) for one in others]
-    room = 2.0 * max(0.5, *lacks, *(start[-1] for start in starts))
-    stretched = elastic.separate(problem, [group], [room])
-    found = settled(stretched, elastic.descend(stretched, x, lacks), starts)
-    return float(found.objective) if found.violation <= NOTHING else None
+    """The least that one group must give up; from other points too where a descent got stuck."""
+    amount, settled = _least(problem, group, x)
+    for other in others:
+        if settled:
+            break
+        start = _without(problem, group, [other])
+        if start is not None:
+            again, settled = _least(problem, group, start)
+            amount = again if amount is None else min(amount, again or amount)
+    return amount
 
 
-def settled(problem: Problem, found: Point, others: Sequence[Vector] = ()) -> Point:
-    """The end of a descent; by every means, from other points too, where it is no optimum."""
-    evaluator = Evaluator(problem)
-    if not found.valid or kkt.check(evaluator, found, objective_scale=1.0).residual <= SETTLED:
-        return found
-    starts = [found.x, *others]
-    again = solve(problem, starts=len(starts), samples=0, more_starts=starts)
-    enough = again.violation <= max(NOTHING, found.violation)
-    if not enough or (found.violation <= NOTHING and again.objective >= found.objective):
-        return found
-    return evaluator.point(evaluator.space.to_z(again.x))
+def _least(problem: Problem, group: elastic.Indices, x: Vector) -> tuple[float | None, bool]:
+    """The least one group must give up, near a point that meets the others; whether optimal."""
+    lacks = missed(Evaluator(problem), x, [group])
+    stretched = elastic.separate(problem, [group], [2.0 * max(*lacks, 0.5)])
+    found = elastic.descend(stretched, x, lacks)
+    if found.violation > NOTHING:
+        return None, False
+    residual = kkt.check(Evaluator(stretched), found, objective_scale=1.0).residual
+    return float(found.objective), residual <= SETTLED
 
 
 def by_bounds(problem: Problem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
@@ -193,11 +234,10 @@ def _opened(problem: Problem, bound: Opening, x: Vector) -> float | None:
         return Values(points[j] if upper else -points[j], rows[1 : 1 + m], rows[1 + m :])
 
     opened = replace(problem, lower=lower, upper=above, evaluate=evaluate, start=None)
-    near = _without_each(opened, [np.empty(0, dtype=np.intp)], x)[0]
+    near = _nearby(opened, [np.empty(0, dtype=np.intp)], x)[0]
     if near is None:
         return None
     evaluator = Evaluator(opened)
     start = evaluator.point(evaluator.space.to_z(near))
-    led = run(evaluator, start, "LD_SLSQP", tolerance=elastic.FINE, most=elastic.MOST)
-    found = settled(opened, elastic.finish(evaluator, led.point))
+    found = elastic.go(evaluator, start)
     return float(found.x[j]) if found.violation <= NOTHING else None

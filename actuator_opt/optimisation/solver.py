@@ -35,7 +35,7 @@ RESTORATION = "least worst miss by LD_SLSQP"
 NEARER = 1e-3
 """Share by which a worst miss must be less than those known to be another one."""
 
-ELSEWHERE = 0.1
+ELSEWHERE = 1.0
 """Share by which a worst miss must exceed the least known for its search to count as stuck."""
 
 LOCAL_EVALUATIONS = 150
