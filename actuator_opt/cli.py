@@ -300,7 +300,8 @@ def sensitivity(
     if as_json:
         data = result.to_dict()
         keys = ("name", "version", "status", "outcome", "objective", "sensitivities", "kkt")
-        streams.out_json({key: data[key] for key in keys} | ({"files": files} if files else {}))
+        kept = {key: data[key] for key in (*keys, "infeasibility") if key in data}
+        streams.out_json(kept | ({"files": files} if files else {}))
     elif not quiet:
         from .reporting import infeasibility_card
         from .reporting.terminal import sensitivity_table

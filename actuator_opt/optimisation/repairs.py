@@ -27,6 +27,9 @@ SETTLED = 1e-6
 CHALLENGE = 0.99
 """Share of an amount that must not be enough."""
 
+FAINT = 1e-3
+"""Amounts below are not challenged: a hundredth of them is near what counts as met."""
+
 CHALLENGES = 8
 """Most rounds of this; halving comes within a per cent in seven."""
 
@@ -115,7 +118,7 @@ def _challenged(
     A descent may end on a kink, or in a valley that is not the deepest; then halving finds less.
     """
     enough = {k: amount for k, amount in enumerate(amounts) if amount is not None}
-    tried = {k: CHALLENGE * amount for k, amount in enough.items()}
+    tried = {k: CHALLENGE * amount for k, amount in enough.items() if amount > FAINT}
     short = dict.fromkeys(enough, 0.0)
     for _ in range(CHALLENGES):
         if not tried:
