@@ -43,15 +43,27 @@ class Kkt:
 class Infeasibility:
     """Why nothing fits: joint relaxation, sole repairs, binding bounds.
 
-    `joint` and `sole` entries hold requirement, parameter (PATH), metric, sense, limit, needed
-    (the limit that would do; None where this one alone cannot help) and relaxation (fraction);
-    `bounds` entries hold path, side, value and gain; `laws` names geometry that conflicts.
+    `joint` and `sole` entries hold requirement, origin, parameter (PATH), metric, sense, limit,
+    needed (the limit that would do; None where this one alone cannot help), relaxation (margin
+    given up, a fraction), change (of the limit, a fraction) and both limits as text in the
+    display unit, the needed one rounded so that it is enough as printed. Where a torque is
+    required through a lever, limit and needed are the torque.
+
+    `bounds` entries hold variable, parameter (PATH), quantity, bound (side), value, gain (fall of
+    `total` per unit of relative opening: 0.01 of it for 1 %), needed (the bound that alone would
+    do, None where none was found), change and texts.
+
+    `laws` names geometry that conflicts, `total` is the sum of the joint relaxations, `sentence`
+    the advice in one line and `evidence` what of it is proven.
     """
 
     joint: tuple[Mapping[str, Any], ...]
     sole: tuple[Mapping[str, Any], ...]
     bounds: tuple[Mapping[str, Any], ...]
     laws: tuple[str, ...] = ()
+    total: float | None = None
+    sentence: str = ""
+    evidence: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
-from typing import Any
-
-import numpy as np
 
 from ..design import quantity_of
 from ..evaluation import Subject, evaluate
-from ..evaluation.rows import Row
 from .actuator import ActuatorProblem, Fault, build
 from .choice_record import record
 from .choices import Search, Settings, search
-from .infeasibility import Infeasibility as Explanation
-from .infeasibility import explain
+from .infeasibility_card import explained
 from .outcome import Outcome, Solution
 from .price_table import sensitivities
-from .result import Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
+from .result import Choices, Kkt, Optimisation, Rounding, VariableResult
 from .rounding import design_at, listed_variables, rounded
 from .sensitivity import Sensitivity
 from .solver import solve
@@ -77,7 +71,7 @@ def optimise(
     rounding: Rounding | None = None
     if listed and solution.feasible:
         rounding, solution = rounded(actuator, solution, listed, until=until, seed=seed)
-    why, solution = _explained(actuator, solution)
+    why, solution = explained(actuator, solution)
     design, evaluation = design_at(actuator, solution.x)
     rows: tuple[Sensitivity, ...] = ()
     if prices and solution.outcome is Outcome.OPTIMUM:
@@ -165,60 +159,3 @@ def _kkt(solution: Solution) -> Kkt | None:
         return None
     curvature = "" if found.curvature is None else found.curvature.value
     return Kkt(float(found.residual), found.active, int(found.rank), curvature)
-
-
-def _explained(
-    actuator: ActuatorProblem, solution: Solution
-) -> tuple[Infeasibility | None, Solution]:
-    """Why nothing fits, and the design that needs only the smallest joint relaxation."""
-    if solution.feasible or solution.kkt is None:
-        return None, solution
-    points = [found.x for found in solution.optima] or [solution.x]
-    found = explain(actuator.problem, points)
-    objective = float(np.ravel(actuator.evaluate(found.x[:, None]).objective)[0])
-    closest = replace(solution, x=found.x, objective=objective, kkt=None)
-    return _card(actuator, found), closest
-
-
-def _card(actuator: ActuatorProblem, found: Explanation) -> Infeasibility:
-
-    def entry(index: int, amount: float | None) -> dict[str, Any]:
-        row = actuator.rows[index]
-        limit = float(np.ravel(row.limit)[0])
-        return {
-            "requirement": row.limit_of.name,
-            "parameter": row.limit_of.path,
-            "metric": row.limit_of.metric,
-            "sense": row.limit_of.sense,
-            "limit": limit,
-            "needed": None if amount is None else _relaxed(row, limit, amount),
-            "relaxation": amount,
-        }
-
-    sole = [entry(r.index, r.amount) for r in found.sole]
-    named = {r.index for r in found.joint}
-    return Infeasibility(
-        joint=tuple(entry(r.index, r.amount) for r in found.joint),
-        sole=tuple(
-            item
-            for item, r in zip(sole, found.sole, strict=True)
-            if r.amount is not None or r.index in named
-        ),
-        bounds=tuple(
-            {
-                "variable": b.variable,
-                "quantity": quantity_of(b.variable, actuator.subject.design).name,
-                "bound": b.side,
-                "value": b.value,
-                "gain": b.gain,
-            }
-            for b in found.bounds
-        ),
-        laws=found.laws,
-    )
-
-
-def _relaxed(row: Row, limit: float, amount: float) -> float:
-    """The limit that would do after giving up a margin `amount`."""
-    step = amount * (abs(limit) or 1.0)
-    return limit - step if row.limit_of.sense == "min" else limit + step

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from ..optimisation.result import Infeasibility, Optimisation
+from ..optimisation.result import Optimisation
 from . import text
 from .blocks import Block, Cell, clean, column, soft, table
-from .text import DASH
 
 
 def variables(optimisation: Optimisation) -> Block:
@@ -66,7 +65,10 @@ def convergence(optimisation: Optimisation) -> list[str]:
         f"{optimisation.algorithm}, seed {optimisation.seed},"
         f" {optimisation.evaluations} evaluations."
     ]
-    if optimisation.starts:
+    if optimisation.infeasibility is not None:
+        count = len(optimisation.starts)
+        lines.append(f"None of {count} starts led to a design that meets every requirement.")
+    elif optimisation.starts:
         best = min(optimisation.starts, key=lambda v: abs(v - optimisation.objective_value))
         same = sum(abs(v - best) <= 1e-3 * abs(best) for v in optimisation.starts)
         found = ", ".join(text.value_text(objective, v) for v in optimisation.starts[:8])
@@ -88,31 +90,3 @@ def convergence(optimisation: Optimisation) -> list[str]:
     if optimisation.kkt is not None and optimisation.kkt.active:
         lines.append(f"Active at the optimum: {', '.join(optimisation.kkt.active)}.")
     return lines
-
-
-_HEADS = {
-    "joint": ("Smallest joint relaxation", "Relax all of these together and a design exists."),
-    "sole": ("One requirement alone", f"{DASH}: no design found by relaxing only this one."),
-    "bounds": ("Bounds in the way", "Dimensions that stand at a bound of theirs."),
-}
-
-
-def infeasibility(card: Infeasibility) -> list[Block]:
-    """The card of an infeasible design: what conflicts, by how much, what would repair it."""
-    blocks = []
-    for name, (title, note) in _HEADS.items():
-        records = getattr(card, name)
-        if not records:
-            continue
-        keys = list(dict.fromkeys(key for record in records for key in record))
-        keys = [key for key in keys if key not in ("metric", "quantity", "index")]
-        rows: list[list[Cell]] = [
-            [soft(text.record_text(key, record.get(key), record)) for key in keys]
-            for record in records
-        ]
-        heads = [
-            column(key.replace("_", " "), "left", 1.0, mono=index == 0)
-            for index, key in enumerate(keys)
-        ]
-        blocks.append(table(title, heads, rows, note=note))
-    return blocks

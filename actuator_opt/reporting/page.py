@@ -11,6 +11,7 @@ from ..optimisation.result import Optimisation
 from . import (
     choices_table,
     dynamics_page,
+    infeasibility_card,
     optimum,
     prices,
     seal_sheet,
@@ -140,7 +141,7 @@ def page(
     kind = "Optimisation report" if optimisation is not None else "Evaluation report"
     blocks: list[Block] = []
     if optimisation is not None and optimisation.infeasibility is not None:
-        blocks += optimum.infeasibility(optimisation.infeasibility)
+        blocks += infeasibility_card.blocks(optimisation.infeasibility)
     blocks.append(tables.requirements(evaluation))
     if optimisation is not None and (chosen := choices_table.block(optimisation)) is not None:
         blocks.append(chosen)

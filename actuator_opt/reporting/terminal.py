@@ -9,8 +9,18 @@ from collections.abc import Sequence
 from typing import TypedDict
 
 from ..evaluation.result import Evaluation, Requirement, StrokeCurve
-from ..optimisation.result import Infeasibility, Optimisation
-from . import choices_table, optimum, page, plot, prices, stiffness_page, text, whole_plies
+from ..optimisation.result import Optimisation
+from . import (
+    choices_table,
+    infeasibility_card,
+    optimum,
+    page,
+    plot,
+    prices,
+    stiffness_page,
+    text,
+    whole_plies,
+)
 from .console import Column, Console
 from .places import brief
 from .text import DASH
@@ -246,23 +256,6 @@ def _slot(console: Console, value: float, lower: float, upper: float, size: int 
     return line * place + dot + line * (size - 1 - place)
 
 
-def infeasibility_card(
-    subject: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
-) -> str:
-    """Why nothing fits: what to relax together, what alone would do, which bounds bind."""
-    console = Console(colour, unicode, width)
-    card: Infeasibility | None = subject.infeasibility
-    if card is None:
-        return ""
-    lines = []
-    for block in optimum.infeasibility(card):
-        columns = [Column(c["head"], c["align"], flexible=True) for c in block["columns"]]
-        rows = [["".join(cell) for cell in row] for row in block["rows"]]
-        lines += ["", console.heading(block["title"]), *console.table(columns, rows)]
-        lines.append(console.wrap(block["note"], "dim"))
-    return "\n".join(lines[1:])
-
-
 def stiffness_curve(
     curve: StrokeCurve,
     requirement: Requirement | None = None,
@@ -337,7 +330,7 @@ def optimisation_text(
     console = Console(**style)
     parts: Sequence[str] = [
         verdict(optimisation, **style),
-        infeasibility_card(optimisation, **style),
+        infeasibility_card.terminal(optimisation, **style),
         requirements_table(optimisation.evaluation, **style),
         variables_table(optimisation, **style) if optimisation.variables else "",
         prices.terminal(optimisation, **style),
