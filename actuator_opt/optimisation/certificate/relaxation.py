@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 
@@ -18,9 +19,12 @@ import numpy as np
 from ...symbolic import Symbol
 from ..problem import Vector
 from .intervals import branch, extreme
-from .lone import Alone, function, sampled, samples
-from .shapes import SHAPES, Kind
+from .lone import CAUTION, SAMPLES, Leads, function
+from .shapes import FAR, Kind, Mixed, Table
 from .signomial import Form, Powers, Signomial
+
+WIDEST = 20.0
+"""Widest range of a logarithm that is sampled."""
 
 LARGEST = 8
 """Most terms of a sum that is kept expanded, so that its terms may cancel."""
@@ -29,18 +33,6 @@ class Curve(NamedTuple):
     """out = function(argument), both affine in the atoms' logarithms."""
 
     kind: Kind
-    argument: Form
-    out: Form
-
-
-class Band(NamedTuple):
-    """out = function(argument) of one variable, any smooth function of its logarithm.
-
-    `bend` bounds its second derivative, so that a band around a secant holds it.
-    """
-
-    function: Callable[[Vector], Vector]
-    bend: float
     argument: Form
     out: Form
 
@@ -68,7 +60,6 @@ class Relaxation:
     upper: list[float] = field(default_factory=list)
     rows: list[Row] = field(default_factory=list)
     curves: list[Curve] = field(default_factory=list)
-    bands: list[Band] = field(default_factory=list)
     plains: dict[Powers, tuple[float, Form]] = field(default_factory=dict)
     sums: dict[tuple[Form, Form], Form] = field(default_factory=dict)
 
@@ -150,6 +141,10 @@ def _log_of_sum(first: float, second: float) -> float:
     return high + math.log1p(math.exp(low - high))
 
 
+_MONOMIAL = ("variable", "mul", "div", "neg", "sqrt", "pow")
+"""Operations that keep a monomial a monomial."""
+
+
 class Unknown(Exception):
     """A value whose sign is open, or whose model has no relaxation: its reason."""
 
@@ -161,7 +156,7 @@ class Builder:
         self.found = Relaxation()
         self._forms: dict[int, tuple[float, Form] | Unknown] = {}
         self._sums: dict[int, Signomial | None] = {}
-        self._alone = Alone()
+        self._leads = Leads()
         self.variables: dict[str, Form] = {}
 
     def form(self, value: Any) -> tuple[float, Form]:
@@ -179,16 +174,20 @@ class Builder:
             return math.copysign(1.0, number), Form(math.log(abs(number)))
         if value.index not in self._forms:
             try:
-                self._forms[value.index] = self._made(value)
+                self._forms[value.index] = self._either(value)
             except Unknown as reason:
-                try:
-                    self._forms[value.index] = self._band(value)
-                except Unknown:
-                    self._forms[value.index] = reason
+                self._forms[value.index] = reason
         known = self._forms[value.index]
         if isinstance(known, Unknown):
             raise known
         return known
+
+    def _either(self, node: Symbol) -> tuple[float, Form]:
+        """Sampled where that says more than its parts, else by its parts."""
+        if node.op not in _MONOMIAL:
+            with suppress(Unknown):
+                return self._sampled(node)
+        return self._made(node)
 
     def _made(self, node: Symbol) -> tuple[float, Form]:
         op, args = node.op, node.args
@@ -219,30 +218,27 @@ class Builder:
         self.variables[node.args[0]] = form
         return 1.0, form
 
-    def _band(self, node: Symbol) -> tuple[float, Form]:
-        """A function of one variable, as sampled."""
-        variable = self._alone.variable(node)
-        if variable is None or variable is node:
-            raise Unknown("it depends on several variables")
-        _, argument = self.form(variable)
-        values, t = function([node], variable), samples(variable)
-        rows = values(t)[0]
-        found = sampled(rows)
-        sign = 1.0 if found.low > found.room else -1.0
-        if not (found.low > found.room or found.high < -found.room):
-            raise Unknown("its sign is open")
-        if not np.isfinite(rows).all() or not t[-1] > t[0]:
+    def _sampled(self, node: Symbol) -> tuple[float, Form]:
+        """A function of one other value, as sampled."""
+        lead = self._leads.of(node)
+        if lead is node:
+            raise Unknown("it depends on several values")
+        sign, argument = self.form(lead)
+        if sign < 0:
+            raise Unknown("its argument is negative")
+        t = np.linspace(*self.found.reach(argument), SAMPLES)
+        if not 0 < t[-1] - t[0] < WIDEST:
+            raise Unknown("its argument is fixed, or has no end")
+        values = function([node], lead)(t)[0]
+        with np.errstate(all="ignore"):
+            logs = np.log(np.abs(values))
+        if not np.isfinite(logs).all():
             raise Unknown("it has no value everywhere")
-        logs = sampled(np.log(np.abs(rows)))
-        bend = 8 * logs.room / (t[1] - t[0]) ** 2
-
-        def logarithm(t: Vector) -> Vector:
-            return np.log(np.abs(values(t)[0]))
-
-        ends = math.exp(logs.low - logs.room), math.exp(logs.high + logs.room)
-        out = self.found.atom(*ends, lambda y: float(logarithm(np.array([argument.at(y)]))[0]))
-        self.found.bands.append(Band(logarithm, bend, argument, out))
-        return sign, out
+        table = Table.of(t, logs, CAUTION)
+        if (values[0] > 0) != (values[-1] > 0) or values.min() * values.max() <= 0:
+            raise Unknown("its sign is open")
+        least, most = float(logs.min()) - table.room, float(logs.max()) + table.room
+        return math.copysign(1.0, values[0]), self._curve(table, argument, least, most)
 
     def expanded(self, value: Any) -> Signomial | None:
         """A value as a sum of monomials; None where that has too many terms."""
@@ -415,7 +411,7 @@ class Builder:
             return 1.0, self._exponential(argument, low, high)
         if op == "tanh" and low > 0:
             _, form = self.form(argument)
-            return 1.0, self._curve("tanh", form, low, high)
+            return 1.0, self._curve("tanh", form, math.log(low), math.log(high))
         raise Unknown(f"{op} has no relaxation")
 
     def _logarithm(
@@ -433,21 +429,24 @@ class Builder:
         sign = 1.0 if low > 0 else -1.0
         inner = form if sign > 0 else Form(0.0) - form
         ends = (low, high) if sign > 0 else (-high, -low)
-        return sign, self._curve("log", inner, *ends)
+        return sign, self._curve("log", inner, math.log(ends[0]), math.log(ends[1]))
 
     def _exponential(self, argument: Any, low: float, high: float) -> Form:
         """e^x: its logarithm is x, a curve of the logarithm of x."""
         sign, form = self.form(argument)
         if sign > 0:
-            return self._curve("exp", form, low, high)
+            return self._curve("exp", form, math.log(low) if low > 0 else -FAR, math.log(high))
         out = self.found.atom(low, high, lambda y: -math.exp(form.at(y)))
         self.found.curves.append(Curve("exp", form, Form(0.0) - out))
         return out
 
     def _curve(self, kind: Kind, argument: Form, low: float, high: float) -> Form:
-        """A new atom that is a function of a monomial's logarithm."""
+        """A new atom that is a function of a monomial's logarithm; ends are logarithms."""
+        one = Mixed([kind])
         out = self.found.atom(
-            low, high, lambda y: float(SHAPES[kind].value(np.array([argument.at(y)]))[0])
+            math.exp(low),
+            math.exp(high),
+            lambda y: float(one.value(np.array([argument.at(y)]))[0]),
         )
         self.found.curves.append(Curve(kind, argument, out))
         return out
