@@ -68,8 +68,17 @@ class Bounding:
             self.cost[i] = power
         self.constant = objective.constant
         self.matrix, self.low, self.high = self._definitions()
-        none = np.zeros(curves)
-        self.lines = _Lines(self.ratio, none, self.out, none - np.inf, none + np.inf)
+        bases = np.array([link.base for link in layout.links], dtype=np.int32)
+        outs = np.array([link.out for link in layout.links], dtype=np.int32)
+        self.moving = curves + 2 * len(outs)
+        none = np.zeros(self.moving)
+        self.lines = _Lines(
+            np.concatenate([self.ratio, bases, bases]),
+            none,
+            np.concatenate([self.out, outs, outs]),
+            none - np.inf,
+            none + np.inf,
+        )
         self.solver = self._solver()
 
     def _definitions(self) -> tuple[Any, Vector, Vector]:
@@ -124,8 +133,8 @@ class Bounding:
 
     def _purge(self) -> None:
         """Forget tangents that no longer touch, once there are too many."""
-        first, count = len(self.low) + self.layout.curves, len(self.lines.low)
-        if count < MOST * self.layout.curves:
+        first, count = len(self.low) + self.moving, len(self.lines.low)
+        if count < MOST * self.moving:
             return
         status = self.solver.getBasis().row_status
         idle = [r for r in range(first, len(status)) if status[r] == highspy.HighsBasisStatus.kBasic]
@@ -193,8 +202,13 @@ class Bounding:
         lines.coefficient[:count] = np.where(over, -slope * layout.factor, 0.0)
         lines.low[:count] = np.where(over & (mixed.convex <= 0), level + below - off, -np.inf)
         lines.high[:count] = np.where(over & (mixed.convex >= 0), level + above + off, np.inf)
+        ratios = layout.ratios(box)
+        least, most = slice(count, count + len(ratios[0])), slice(count + len(ratios[0]), self.moving)
+        lines.coefficient[least], lines.low[least] = -ratios[0], 0.0
+        lines.coefficient[most], lines.high[most] = -ratios[1], 0.0
+        count = self.moving
         index = first + np.arange(count, dtype=np.int32)
-        columns, values = self.ratio.tolist(), lines.coefficient[:count].tolist()
+        columns, values = lines.ratio[:count].tolist(), lines.coefficient[:count].tolist()
         for row, column, value in zip(index.tolist(), columns, values, strict=True):
             self.solver.changeCoeff(row, column, value)
         self.solver.changeRowsBounds(count, index, lines.low[:count], lines.high[:count])

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..problem import Vector
 from .relaxation import Relaxation
-from .shapes import FAR, Mixed
+from .shapes import FAR, Mixed, Table
 from .signomial import Form, Powers
 
 ROUNDS = 20
@@ -47,6 +47,8 @@ class Layout:
             key = tuple((i, round(p / factor, 12)) for i, p in powers)
             number = known.setdefault(key, len(known))
             places.append((number, factor, curve.argument.constant))
+        self.links = relaxation.links
+        self.of_curve = {id(curve): k for k, curve in enumerate(relaxation.curves)}
         self.directions = len(known)
         self.direction = np.array([place[0] for place in places], dtype=np.intp)
         self.factor = np.array([place[1] for place in places])
@@ -59,6 +61,24 @@ class Layout:
         self.form = np.array([entry[0] for entry in entries], dtype=np.intp)
         self.atom = np.array([entry[1] for entry in entries], dtype=np.intp)
         self.power = np.array([entry[2] for entry in entries])
+
+    def ratios(self, box: Box) -> tuple[Vector, Vector]:
+        """Least and largest ratio of every link in a box."""
+        low, high = np.zeros(len(self.links)), np.zeros(len(self.links))
+        for k, link in enumerate(self.links):
+            ends = box.range(link.ratio)
+            if link.curve is not None and isinstance(link.curve.kind, Table):
+                number = self.of_curve[id(link.curve)]
+                first, last = self.arguments(box.low, box.high)
+                table, t = link.curve.kind, first[number]
+                off = table.apart(t, last[number], 1.0)
+                start = float(table.value(np.array([t]))[0]) - t
+                ends = (
+                    ends[0] + start + off[0] - table.room,
+                    ends[1] + start + off[1] + table.room,
+                )
+            low[k], high[k] = ends
+        return np.exp(low), np.exp(high)
 
     @cached_property
     def parts(self) -> tuple[slice, slice, slice]:
@@ -100,6 +120,14 @@ class Box:
         none = np.zeros(layout.directions)
         lower, upper = (np.clip(ends, -FAR, FAR) for ends in (found.lower, found.upper))
         return cls(lower, upper, none - FAR, none + FAR)
+
+    def range(self, form: Form) -> tuple[float, float]:
+        """Range of a monomial's logarithm."""
+        low = high = form.constant
+        for i, power in form.powers:
+            ends = power * self.lower[i], power * self.upper[i]
+            low, high = low + min(ends), high + max(ends)
+        return low, high
 
     def split(self, direction: int, at: float) -> tuple[Box, Box]:
         """The part below and the part above a value of a direction."""

@@ -21,7 +21,7 @@ from ..problem import Vector
 from .intervals import branch, extreme
 from .lone import CAUTION, SAMPLES, Leads, function
 from .shapes import FAR, Kind, Mixed, Table
-from .signomial import Form, Powers, Signomial
+from .signomial import Form, Signomial
 
 WIDEST = 20.0
 """Widest range of a logarithm that is sampled."""
@@ -35,6 +35,18 @@ class Curve(NamedTuple):
     kind: Kind
     argument: Form
     out: Form
+
+
+class Link(NamedTuple):
+    """Two plain atoms: out/base is the exponential of a monomial's logarithm `ratio`.
+
+    Where the ratio is a function of one argument, `table` holds its logarithm less the argument.
+    """
+
+    out: int
+    base: int
+    ratio: Form
+    curve: Curve | None
 
 
 Maker: TypeAlias = Callable[[Sequence[float]], float]
@@ -60,7 +72,9 @@ class Relaxation:
     upper: list[float] = field(default_factory=list)
     rows: list[Row] = field(default_factory=list)
     curves: list[Curve] = field(default_factory=list)
-    plains: dict[Powers, tuple[float, Form]] = field(default_factory=dict)
+    splits: list[tuple[Form, Form, Form]] = field(default_factory=list)
+    """Every sum: whole, and its two parts."""
+    links: list[Link] = field(default_factory=list)
     sums: dict[tuple[Form, Form], Form] = field(default_factory=dict)
 
     def atom(self, low: float, high: float, maker: Maker) -> Form:
@@ -84,41 +98,7 @@ class Relaxation:
         for i, term in enumerate(others):
             last = i == len(others) - 1
             first = self._sum(first, term, low if last else 0.0, high)
-        if others:
-            self.balance(first, terms)
         return first
-
-    def plain(self, form: Form) -> Form:
-        """A monomial itself, not its logarithm, over its largest value."""
-        if not form.powers:
-            return Form(math.exp(form.constant))
-        if form.powers not in self.plains:
-            bare = Form(0.0, form.powers)
-            low, high = self.reach(bare)
-            argument = Form(-high, form.powers)
-            self.lower.append(math.exp(low - high))
-            self.upper.append(1.0)
-            self.makers.append(lambda y: math.exp(argument.at(y)))
-            out = Form(0.0, ((len(self.lower) - 1, 1.0),))
-            self.curves.append(Curve("exp", argument, out))
-            self.plains[form.powers] = (high, out)
-        high, out = self.plains[form.powers]
-        return out.scaled(math.exp(form.constant + high))
-
-    def balance(self, whole: Form, terms: Sequence[Form]) -> None:
-        """State a sum in plain numbers too, where its terms are atoms: exact at their bounds."""
-        forms = [whole, *terms]
-        if not all(len(one.powers) <= 1 and all(p == 1 for _, p in one.powers) for one in forms):
-            return
-        if not all(math.isfinite(end) for one in forms for end in self.reach(one)):
-            return
-        sums = Form(0.0)
-        for one in terms:
-            sums = sums + self.plain(one)
-        own = self.plain(whole)
-        scale = math.exp(-self.reach(whole)[1])
-        own, sums = own.scaled(scale), sums.scaled(scale)
-        self.rows += [Row(own, sums), Row(sums, own)]
 
     def _sum(self, first: Form, second: Form, low: float, high: float) -> Form:
         if first.powers == second.powers:  # a known ratio
@@ -134,6 +114,7 @@ class Relaxation:
     def split(self, whole: Form, part: Form, rest: Form) -> None:
         """State that whole = part + rest."""
         self.curves.append(Curve("softplus", part - rest, whole - rest))
+        self.splits.append((whole, part, rest))
 
 
 def _log_of_sum(first: float, second: float) -> float:
@@ -378,7 +359,6 @@ class Builder:
 
         out = self.found.atom(low, high, apart)
         self.found.split(whole, out, rest)
-        self.found.balance(whole, [out, rest])
         return out
 
     def _chosen(self, node: Symbol) -> tuple[float, Form]:
