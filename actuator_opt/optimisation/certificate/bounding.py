@@ -24,7 +24,7 @@ WIDEST = 40.0
 ROUNDS = 12
 """Most rounds of tangents in one box."""
 
-FIRST = (-1.0, -0.6, -0.3, 0.0, 0.3, 0.6, 1.0)
+FIRST = (0.0,)
 """Places of the first tangents, over half of a range."""
 
 ENOUGH = 2e-5
@@ -33,7 +33,7 @@ ENOUGH = 2e-5
 MISSED = 1e-4
 """Distance from a curve at which a tangent is added."""
 
-MOST = 16
+MOST = 4
 """Lines per curve beyond which those that do not touch are forgotten."""
 
 
@@ -58,11 +58,14 @@ class Bounding:
 
     def __init__(self, layout: Layout, objective: Form) -> None:
         self.layout = layout
-        atoms, ratios, curves = layout.atoms, layout.directions, layout.curves
-        self.columns = atoms + ratios + curves
-        self.ratios = slice(atoms, atoms + ratios)
-        self.ratio = (atoms + layout.direction).astype(np.int32)
-        self.out = atoms + ratios + np.arange(curves, dtype=np.int32)
+        curves = layout.curves
+        own = layout.plain < 0
+        self.columns = layout.atoms + int(own.sum())
+        self.column = np.where(own, layout.atoms + np.cumsum(own) - 1, layout.plain)
+        """Column of every out and direction: that of the atom it is, or its own."""
+        self.out = self.column[:curves].astype(np.int32)
+        self.ways = self.column[curves:]
+        self.ratio = self.ways[layout.direction].astype(np.int32)
         self.cost = np.zeros(self.columns)
         for i, power in objective.powers:
             self.cost[i] = power
@@ -84,16 +87,19 @@ class Bounding:
     def _definitions(self) -> tuple[Any, Vector, Vector]:
         """Outs and directions by their atoms; rows at least zero."""
         layout = self.layout
-        defined = layout.curves + layout.directions
-        columns = np.concatenate([self.out, np.arange(self.ratios.start, self.ratios.stop)])
-        rows = np.concatenate([layout.form, np.arange(defined)])
-        places = np.concatenate([layout.atom, columns])
-        values = np.concatenate([layout.power, np.full(defined, -1.0)])
-        count = len(layout.levels)
-        matrix = sp.csr_matrix((values, (rows, places)), shape=(count, self.columns))
-        high = -layout.levels.copy()
-        high[defined:] = np.inf
-        return matrix, -layout.levels, high
+        new = np.flatnonzero(layout.plain < 0)
+        kept = np.concatenate([new, np.arange(len(layout.plain), len(layout.levels))])
+        place = np.full(len(layout.levels), -1)
+        place[kept] = np.arange(len(kept))
+        some = place[layout.form] >= 0
+        rows = np.concatenate([place[layout.form[some]], np.arange(len(new))])
+        columns = np.concatenate([layout.atom[some], self.column[new]])
+        values = np.concatenate([layout.power[some], np.full(len(new), -1.0)])
+        matrix = sp.csr_matrix((values, (rows, columns)), shape=(len(kept), self.columns))
+        level = -layout.levels[kept]
+        high = level.copy()
+        high[len(new) :] = np.inf
+        return matrix, level, high
 
     def _solver(self) -> highspy.Highs:
         """The programme without bounds and chords, which follow the box."""
@@ -119,7 +125,7 @@ class Bounding:
         return Bound(
             value + self.constant,
             x[: self.layout.atoms],
-            x[self.ratios],
+            x[self.ways],
             np.maximum(-self._missed(x), 0.0),
             np.abs(dual[first : first + self.layout.curves]),
         )
@@ -145,12 +151,12 @@ class Bounding:
         kept[np.array(idle) - len(self.low)] = False
         self.lines = _Lines(*(part[kept] for part in self.lines))
 
-    def extent(self, column: int, ends: tuple[Vector, Vector]) -> tuple[float, float] | None:
-        """Least and largest value of an atom or direction in the box looked at; None of none."""
+    def extent(self, direction: int, ends: tuple[Vector, Vector]) -> tuple[float, float] | None:
+        """Least and largest value of a direction in the box looked at; None of none."""
         cost = np.zeros(self.columns)
         reach = []
         for sign in (1.0, -1.0):
-            cost[column] = sign
+            cost[self.ways[direction]] = sign
             found = self._least(cost, *ends, rounds=1)
             if found is None:
                 return None
@@ -179,9 +185,12 @@ class Bounding:
     def _columns(self, box: Box) -> tuple[Vector, Vector]:
         """Put the ranges of a box."""
         low, high, _, _ = self.layout.reach(box.lower, box.upper)
+        lower, upper = np.full((2, self.columns), np.nan)
+        lower[: len(box.lower)], upper[: len(box.upper)] = box.lower, box.upper
         outs = self.layout.parts[0]
-        lower = np.concatenate([box.lower, box.low, low[outs]])
-        upper = np.concatenate([box.upper, box.high, high[outs]])
+        lows, highs = np.concatenate([low[outs], box.low]), np.concatenate([high[outs], box.high])
+        np.fmax.at(lower, self.column, lows)
+        np.fmin.at(upper, self.column, highs)
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsBounds(self.columns, index, lower, upper)
         return lower, upper

@@ -24,6 +24,12 @@ ROOM = 1e-9
 CROSSED = 1e-8
 """By how much the ends of a range must cross for nothing to be left."""
 
+def _lone(form: Form) -> int:
+    """The atom that a form is by itself; -1 of others."""
+    lone = form.constant == 0 and len(form.powers) == 1 and form.powers[0][1] == 1.0
+    return form.powers[0][0] if lone else -1
+
+
 class Gone(Exception):
     """Nothing is left of a part of the space."""
 
@@ -55,6 +61,7 @@ class Layout:
         self.constant = np.array([place[2] for place in places])
         forms = [curve.out for curve in relaxation.curves]
         forms += [Form(0.0, key) for key in known]
+        self.plain = np.array([_lone(form) for form in forms], dtype=np.intp)
         forms += [row.high - row.low for row in relaxation.rows]
         self.levels = np.array([form.constant for form in forms])
         entries = [(k, i, power) for k, form in enumerate(forms) for i, power in form.powers]

@@ -134,7 +134,7 @@ def squeezed(
             for number in some:
                 if time.perf_counter() > until:
                     return box
-                reach = bounding.extent(layout.atoms + int(number), bounding.enter(box))
+                reach = bounding.extent(int(number), bounding.enter(box))
                 if reach is None:
                     return None
                 box = box.cut(int(number), low=reach[0] - ROOM, high=reach[1] + ROOM)
