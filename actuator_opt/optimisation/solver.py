@@ -30,7 +30,10 @@ RESIDUAL = 1e-6
 FINISH = "active-set Newton"
 
 LOCAL_EVALUATIONS = 150
-"""Most evaluations of one local run of a default algorithm."""
+"""Most evaluations of one local run of SLSQP on the default path."""
+
+LAGRANGIAN_EVALUATIONS = 1000
+"""Most of one run of the augmented Lagrangian: the shipped designs take 300 to 850."""
 
 
 @dataclass
@@ -55,6 +58,7 @@ class _Search:
         self.records: list[StartRecord] = []
         self.warnings: list[str] = []
         self.objective_scale = 0.0
+        self.interrupted = False
 
     @property
     def succeeded(self) -> bool:
@@ -122,8 +126,8 @@ class _Search:
         self.optima.append(optimum)
         return optimum
 
-    def best(self) -> _Optimum | None:
-        """Feasible points by objective, then the least infeasible.
+    def best(self, others: Sequence[_Optimum] = ()) -> _Optimum | None:
+        """Feasible points by objective, then the least infeasible, of the optima and others.
 
         A point whose optimality is proven wins over one that is better by rounding only.
         """
@@ -135,13 +139,12 @@ class _Search:
             missed = point.violation if point.violation > FEASIBLE else 0.0
             return (missed, point.objective)
 
-        first = min(self.optima, key=rank, default=None)
+        found = [*self.optima, *others]
+        first = min(found, key=rank, default=None)
         if first is None or first.good:
             return first
         room = 1e-7 * max(abs(first.point.objective), 1e-300)
-        proven = [
-            o for o in self.optima if o.good and o.point.objective <= first.point.objective + room
-        ]
+        proven = [o for o in found if o.good and o.point.objective <= first.point.objective + room]
         return min(proven, key=rank, default=first)
 
 
@@ -155,6 +158,7 @@ def solve(
     max_evaluations: int | None = None,
     max_seconds: float | None = None,
     more_starts: Sequence[Vector] = (),
+    keep_interrupted: bool = False,
 ) -> Solution:
     """Find the best point of a problem.
 
@@ -167,6 +171,7 @@ def solve(
     seed : of the sweep and of stochastic algorithms; the same seed gives the same result
     max_evaluations, max_seconds : limits of the whole run; the best point so far is kept
     more_starts : further starts (n,)
+    keep_interrupted : whether Ctrl-C ends the search with the best point so far, as a limit does
 
     Raises
     ------
@@ -178,9 +183,10 @@ def solve(
     search = _Search(evaluator, seed)
     if evaluator.space.size == 0:
         return _fixed(search)
-    swept = sweep(evaluator, samples, seed)
-    search.objective_scale = swept.scale
+    swept = _nothing(evaluator)
     try:
+        swept = sweep(evaluator, samples, seed)
+        search.objective_scale = swept.scale
         points = _starts(search, swept, starts, more_starts)
         if points:
             search.warnings += evaluator.check_gradients(points[0])
@@ -190,7 +196,17 @@ def solve(
                 _chosen_path(search, points, chosen)
     except LimitReached:
         pass
+    except KeyboardInterrupt:
+        if not keep_interrupted:
+            raise
+        search.interrupted = True
     return _conclude(search, swept)
+
+
+def _nothing(evaluator: Evaluator) -> Sweep:
+    """A sweep of no points."""
+    size = evaluator.space.size
+    return Sweep(np.empty((size, 0)), np.empty(0), np.empty(0), 0, 0, 0, 0.0, 0.0)
 
 
 def _starts(search: _Search, swept: Sweep, wanted: int, more: Sequence[Vector]) -> list[Point]:
@@ -224,7 +240,7 @@ def _default_path(search: _Search, points: list[Point]) -> None:
     if search.succeeded or not search.feasible:
         return
     for point in failed:
-        if search.descend(point, "AUGLAG+LD_LBFGS", linear=False):
+        if search.descend(point, "AUGLAG+LD_LBFGS", linear=False, most=LAGRANGIAN_EVALUATIONS):
             return
 
 
@@ -254,8 +270,7 @@ def _chosen_path(search: _Search, points: list[Point], chosen: str) -> None:
 def _fixed(search: _Search) -> Solution:
     point = search.evaluator.point(np.empty(0))
     search.optima.append(_Optimum(point, 0.0, "none"))
-    nothing = Sweep(np.empty((0, 0)), np.empty(0), np.empty(0), 0, 0, 0, 0.0, 0.0)
-    return _conclude(search, nothing)
+    return _conclude(search, _nothing(search.evaluator))
 
 
 def _conclude(search: _Search, swept: Sweep) -> Solution:
@@ -263,16 +278,24 @@ def _conclude(search: _Search, swept: Sweep) -> Solution:
     evaluator = search.evaluator
     evaluator.limited = False
     best = search.best()
-    if best is None or not best.point.valid:
-        best = _fallback(search, swept)
+    if best is None or search.interrupted or evaluator.exhausted or not search.feasible:
+        best = _best_seen(search, swept)
     point, idle = _settle(search, best)
     found = None
     if point.valid and evaluator.space.size:
         found = kkt.check(evaluator, point, curvature=True, objective_scale=search.objective_scale)
     outcome = _outcome(search, swept, point, found)
-    if swept.count and swept.valid < swept.count:
-        share = 100 * (1 - swept.valid / swept.count)
-        search.warnings.append(f"the model has no finite values in {share:.3g} % of the box")
+    if not point.valid:
+        labels = np.array(
+            [
+                "the objective",
+                *evaluator.problem.constraint_names,
+                *evaluator.problem.equality_names,
+            ]
+        )
+        lost = labels[~np.isfinite(point.rows)]
+        more = f" and {len(lost) - 3} more" if len(lost) > 3 else ""
+        search.warnings.append(f"no finite value of {', '.join(lost[:3])}{more}")
     if evaluator.bad_slopes:
         search.warnings.append(
             f"{evaluator.bad_slopes} gradients had entries that do not exist (infinite slope)"
@@ -291,6 +314,7 @@ def _conclude(search: _Search, swept: Sweep) -> Solution:
         gradients=evaluator.gradients,
         samples=swept.count,
         feasible_samples=swept.feasible,
+        undefined=1 - swept.valid / swept.count if swept.count else 0.0,
         starts=tuple(search.records),
         optima=_local_optima(search),
         trace=tuple(evaluator.trace),
@@ -302,14 +326,17 @@ def _conclude(search: _Search, swept: Sweep) -> Solution:
     )
 
 
-def _fallback(search: _Search, swept: Sweep) -> _Optimum:
-    """Return the best point of the sweep, or the middle of the box, where no local run ended."""
+def _best_seen(search: _Search, swept: Sweep) -> _Optimum:
+    """The best of all points: also of those a run passed, of the sweep, the start or the middle."""
     evaluator = search.evaluator
-    z = (evaluator.space.lower + evaluator.space.upper) / 2
-    if swept.z.shape[1]:
-        z = swept.z[:, 0].copy()
-    point = evaluator.point(z)
-    return _Optimum(point, search.residual(point), "sweep")
+    space, start = evaluator.space, evaluator.problem.start
+    rest = (space.lower + space.upper) / 2 if start is None else space.to_z(start)
+    seen = [evaluator.point(z) for z in (*swept.z[:, :1].T.copy(), rest)]
+    if evaluator.best is not None:
+        seen.insert(0, evaluator.best)
+    best = search.best([_Optimum(p, search.residual(p), "best point seen") for p in seen])
+    assert best is not None
+    return best
 
 
 def _settle(search: _Search, best: _Optimum) -> tuple[Point, tuple[str, ...]]:
@@ -335,9 +362,11 @@ def _settle(search: _Search, best: _Optimum) -> tuple[Point, tuple[str, ...]]:
 
 def _outcome(search: _Search, swept: Sweep, point: Point, found: kkt.Kkt | None) -> Outcome:
     evaluator = search.evaluator
+    feasible = point.valid and point.violation <= FEASIBLE
+    if search.interrupted:
+        return Outcome.INTERRUPTED if feasible else Outcome.INTERRUPTED_INFEASIBLE
     if not point.valid:
         return Outcome.UNDEFINED
-    feasible = point.violation <= FEASIBLE
     if evaluator.space.size == 0 or found is None:
         return Outcome.NOTHING_FREE if feasible else Outcome.INFEASIBLE
     if evaluator.exhausted and not (feasible and found.residual <= RESIDUAL):
