@@ -207,12 +207,12 @@ class _Run:
         values = np.stack([self.values(assignment) for assignment in chosen], axis=1)
         starts = np.repeat(point.z[:, None], len(chosen), axis=1)
         known = lockstep.resolve_together(parametric, evaluator, point, starts, values)
-        left = [k for k, objective in enumerate(known) if objective is None]
-        near = lockstep.restore_together(parametric, evaluator, point, values[:, left])
-        for assignment, objective in zip(chosen, known, strict=True):
+        left = [k for k, optimum in enumerate(known) if optimum is None]
+        near = lockstep.restore_together(parametric, evaluator, point.z, values[:, left])
+        for assignment, optimum in zip(chosen, known, strict=True):
             self.solves += 1
-            if objective is not None:
-                self.tried[assignment] = objective
+            if optimum is not None:
+                self.tried[assignment] = optimum.objective
         return [
             (chosen[k], None if z is None else evaluator.space.to_x(z[:, None])[:, 0])
             for k, z in zip(left, near, strict=True)
