@@ -29,9 +29,10 @@ import problems
 from actuator_opt import verbs
 from actuator_opt.errors import UsageError
 from actuator_opt.optimisation import actuator, nlopt_wrapper
+from actuator_opt.optimisation.descents import FEASIBLE
 from actuator_opt.optimisation.problem import Problem, Space
 from actuator_opt.optimisation.run import SAMPLES
-from actuator_opt.optimisation.solver import FEASIBLE, solve
+from actuator_opt.optimisation.solver import solve
 
 DESIGNS = Path(__file__).resolve().parent.parent / "designs"
 NEAR = 1e-4
