@@ -218,9 +218,17 @@ def optimise(
         verbs.fitting(trial, actuator)
     with streams.watching():
         result = verbs.optimise(
-            actuator, algorithm=algorithm, starts=starts, seed=seed, whole_plies=whole_plies
+            actuator,
+            algorithm=algorithm,
+            starts=starts,
+            seed=seed,
+            whole_plies=whole_plies,
+            keep_interrupted=True,
         )
-    good = _outcome(result) == ExitCode.MET
+    outcome = _outcome(result)
+    good = outcome == ExitCode.MET or result.status == "interrupted"
+    if outcome == ExitCode.INTERRUPTED:
+        trial, reporting = None, False
     if write is not None and good:
         verbs.save(result.best, write, source=actuator.source)
     with streams.watching():
@@ -245,10 +253,9 @@ def optimise(
     if write is not None and not good:
         why = (result.rounding or result).sentence
         streams.err(f"{write}: not written, there is no design to save: {why}")
-    outcome = _outcome(result)
     if outcome == ExitCode.MET and timed is not None and not timed.met:
         outcome = ExitCode.MISSED
-    raise typer.Exit(outcome)
+    sys.exit(outcome)
 
 
 def _dynamics_tables(timed: Verification | None) -> list[ExtraTable]:
@@ -264,6 +271,8 @@ def _outcome(result: Optimisation) -> ExitCode:
     """The exit status of an optimisation."""
     if result.status == "undefined":
         return ExitCode.SOLVER_FAILED
+    if result.status.startswith("interrupted"):
+        return ExitCode.INTERRUPTED
     infeasible = result.status == "infeasible" or result.status.startswith("limit_inf")
     missed = not result.evaluation.met or (result.rounding is not None and not result.rounding.met)
     return ExitCode.MISSED if infeasible or missed else ExitCode.MET

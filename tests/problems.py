@@ -170,6 +170,22 @@ def thrust_bearing() -> Problem:
     )
 
 
+def two_pieces() -> Problem:
+    """Two discs apart: f* = 4 - 0.3 sqrt(2) in the smaller, at (2 - 0.3/sqrt(2)) twice.
+
+    Minimise x + y inside the disc about (7, 7) of radius 2.5 or that about (2, 2) of radius 0.3:
+    f is least at the centre minus the radius along (1, 1)/sqrt(2), so 10.4645 in the larger one.
+    """
+
+    def evaluate(x):
+        large, small = (
+            (x[0] - c) ** 2 / r**2 + (x[1] - c) ** 2 / r**2 - 1 for c, r in ((7, 2.5), (2, 0.3))
+        )
+        return Values(x[0] + x[1], (-large * small)[None])
+
+    return Problem(("x", "y"), np.full(2, 0.5), np.full(2, 10.0), evaluate, ("in a disc",))
+
+
 def geometric_programme(seed: int, n: int = 12, m: int = 24, q: int = 15) -> ParametricProblem:
     """Return a random posynomial programme in n variables with q limits of m constraints."""
     generator = np.random.default_rng(seed)

@@ -169,3 +169,48 @@ def test_an_interrupt_inside_a_plugin(plugin):
     result = run("evaluate", "-", "--json", "--plugin", path, stdin=BENCH.encode())
     assert result.code == 130
     assert result.errors[0]["message"] == "interrupted"
+
+
+HARD = HEAD + "CALLS = []\n\n\n@ao.metric('own')\ndef own(v):\n    CALLS.append(1)\n    {body}\n"
+WANTED = bench(("requirements:\n", "requirements:\n  own:\n    min: 0\n"))
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "status", "told"),
+    [
+        ("b = v['cylinder.bore']\n    if np.any(b > 0.025): raise ValueError('big')\n    return b",
+         0, "optimal", "% of the points tried, which count as not allowed: "),
+        ("return np.floor(1e9 * v['cylinder.bore'])", 0, "optimal", "falls back to finite differ"),
+        ("return v['cylinder.bore'] * np.nan", 4, "undefined", "own gave no number at 100 %"),
+    ],
+)  # fmt: skip
+def test_faults_during_the_search(plugin, tmp_path, body, code, status, told):
+    """A metric without an answer somewhere: outcome and reason in text and JSON, one report."""
+    path = plugin(HARD.format(body=body))
+    arguments = ("optimise", "-", "--starts", "1", "--plugin", path)
+    result = run(*arguments, "--json", stdin=WANTED.encode())
+    assert (result.code, result.json["status"]) == (code, status)
+    assert any(told in line for line in result.json["warnings"])
+    if status == "undefined":
+        shown = run(*arguments, "--out", tmp_path / "r", stdin=WANTED.encode())
+        assert shown.code == code
+        assert "no usable answer" in shown.out
+        assert "Narrow the bounds to where the model is valid" in " ".join(shown.out.split())
+        assert all(path.stat().st_size > 0 for path in (tmp_path / "r").iterdir())
+
+
+@pytest.mark.parametrize("words", [("--json",), ()])
+def test_an_interrupt_during_the_search(plugin, tmp_path, words):
+    """Ctrl-C in the search: exit 130, the best design so far printed and saved, no report."""
+    body = "if len(CALLS) == 14: raise KeyboardInterrupt\n    return 1 + v['cylinder.bore']"
+    path, file = plugin(HARD.format(body=body)), tmp_path / "best.yaml"
+    targets = ("--out", tmp_path / "r", "--write", file)
+    result = run("optimise", "-", *words, *targets, "--plugin", path, stdin=WANTED.encode())
+    assert result.code == 130
+    assert not (tmp_path / "r").exists()
+    if words:
+        assert result.json["status"] == "interrupted"
+        assert result.json["sensitivities"] == []
+    else:
+        assert "Interrupted; the best point so far meets every requirement." in result.out
+    assert run("evaluate", file, "-q", "--plugin", path).code == 0

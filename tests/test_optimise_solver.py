@@ -133,7 +133,7 @@ def test_nan_in_part_of_the_box():
     found = solve(box(evaluate, constraints=("root",)))
     assert found.outcome is Outcome.OPTIMUM
     np.testing.assert_allclose(found.x, [1.1, 0.1], rtol=1e-9)
-    assert any("no finite values in" in w for w in found.warnings)
+    assert found.undefined == pytest.approx(0.5, abs=0.01)  # x < y in half of a square box
 
 
 def test_nan_everywhere():

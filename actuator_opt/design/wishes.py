@@ -192,7 +192,11 @@ def _start(
         bounds["start"] = 0.0 if start is None else start
     if not isinstance(lower, float) or not isinstance(upper, float):
         return
-    if lower >= upper:
+    if lower == upper:
+        message = f"bounds equal: lower and upper are {quantity.text(lower)}, so nothing may move"
+        remedy = f"widen them, or remove the entry and set {target.path} itself"
+        yield Fault((*loc, "upper"), message, remedy)
+    elif lower > upper:
         yield Fault(
             (*loc, "upper"),
             f"bounds reversed: upper {quantity.text(upper)} is not above lower "

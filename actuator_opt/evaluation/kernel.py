@@ -58,6 +58,8 @@ class Subject:
     factors: Mapping[tuple[str, str, bool], float]
     """Knock-downs of every strength, by (material, property, at the coldest)."""
     plugins: tuple[Plugin, ...] = ()
+    lenient: bool = False
+    """Whether a user's metric that raises is NaN, with the reason, and no fault: in a search."""
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
     """Ply constants by material, filled when first needed."""
     films: dict[Key, Table] = field(default_factory=dict, compare=False)
@@ -222,7 +224,10 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         )
         places = motion.compute(v, design, linear, wanted, out)
         for plugin in subject.plugins:
-            out.put(plugin.name, plugin.call(v, out.metrics))
+            answer = plugin.call(v, out.metrics, lenient=subject.lenient)
+            out.put(plugin.name, answer.value)
+            if answer.raised:
+                out.skip(plugin.name, answer.raised)
     return Pass(
         computed=out,
         geometry=s.base.geometry,

@@ -31,15 +31,22 @@ _MARK = "_actuator_opt_plugin"
 class View:
     """What a user's metric may read: numbers by PATH, metrics by name; SI."""
 
-    def __init__(self, values: Values, metrics: Mapping[str, Mapping[str, Array]]) -> None:
+    def __init__(
+        self,
+        values: Values,
+        metrics: Mapping[str, Mapping[str, Array]],
+        design: tuple[int, int] | None = None,
+    ) -> None:
         self._values = values
         self._metrics = metrics
+        self._design = design
+        """One design by its index, of how many; None for all at once."""
 
     def __getitem__(self, path: str) -> Array:
         """The number at a PATH (``cylinder.bore``), a float or an array of designs."""
         if path not in self._values:
             raise KeyError(f"no number at {path}")
-        return self._values[path]
+        return self._one(self._values[path])
 
     def metric(self, name: str) -> Array:
         """A computed metric; of several places the largest."""
@@ -49,7 +56,16 @@ class View:
         worst = places[0]
         for place in places[1:]:
             worst = maximum(worst, place)
-        return worst
+        return self._one(worst)
+
+    def _one(self, value: Array) -> Array:
+        """A value as the function gets it: of all designs, or of one (a number, or one a case)."""
+        shape = np.shape(value)
+        if self._design is None or not shape:
+            return value
+        index, count = self._design
+        found = value[..., index if shape[-1] == count else 0]
+        return found if found.ndim == 0 else found[:, None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,17 +78,75 @@ class Plugin:
     sense: Literal["min"] | None = None
     file: str = ""
 
-    def call(self, values: Values, metrics: Mapping[str, Mapping[str, Array]]) -> Array:
-        """The metric's value; an exception of the user's function becomes one clear line.
+    def call(
+        self,
+        values: Values,
+        metrics: Mapping[str, Mapping[str, Array]],
+        *,
+        lenient: bool = False,
+    ) -> Answer:
+        """The metric of every design; NaN, with a reason, where the function raised.
 
-        What the function prints goes to standard error: standard output is for data.
+        A function that raises for many designs at once is asked for each alone, so that one it
+        refuses costs no other, and one that takes no arrays can be used. What the function prints
+        goes to standard error: standard output is for data.
+
+        Raises
+        ------
+        PluginError
+            Where it raised for every design and is not `lenient`, or returned what is no number.
         """
+        count = _designs(values)
         with contextlib.redirect_stdout(sys.stderr):
             try:
-                found = self.function(View(values, metrics))
-            except (Exception, SystemExit) as error:  # a stranger's code may raise anything
-                raise _fault(self, error) from error
-        return _checked(self, found, values)
+                found = self._asked(values, metrics)
+            except PluginError as error:
+                answer = self._one_by_one(values, metrics, count, error)
+                if not lenient and np.isnan(answer.value).all():
+                    raise
+                return answer
+        return Answer(_checked(self, found, values, count))
+
+    def _asked(
+        self,
+        values: Values,
+        metrics: Mapping[str, Mapping[str, Array]],
+        design: tuple[int, int] | None = None,
+    ) -> object:
+        try:
+            return self.function(View(values, metrics, design))
+        except (Exception, SystemExit) as error:  # a stranger's code may raise anything
+            raise _fault(self, error) from error
+
+    def _one_by_one(
+        self,
+        values: Values,
+        metrics: Mapping[str, Mapping[str, Array]],
+        count: int,
+        first: PluginError,
+    ) -> Answer:
+        nothing = np.full(1, np.nan * (1 + 1j) if _complex(values) else np.nan)
+        columns: list[Array] = []
+        raised: list[PluginError] = []
+        for k in range(count) if values.varied else ():
+            try:
+                found = self._asked(values, metrics, (k, count))
+                columns.append(np.atleast_1d(_checked(self, found, values, 1)))
+            except PluginError as error:
+                columns.append(nothing)
+                raised.append(error)
+        if len(raised) == len(columns):
+            raised = [first]
+        value = np.concatenate(np.broadcast_arrays(*(columns or [nothing])), axis=-1)
+        return Answer(value, str(raised[0].diagnostics[0]) if raised else "")
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a user's function yields, and what it raised for some of the designs."""
+
+    value: Array
+    raised: str = ""
 
 
 class PluginError(InputError):
@@ -101,13 +175,21 @@ def _fault(plugin: Plugin, error: BaseException) -> PluginError:
     return PluginError(Diagnostic(f"{plugin.name} raised {_said(error)}", remedy, file, line))
 
 
-def _checked(plugin: Plugin, found: object, values: Values) -> Array:
+def _designs(values: Values) -> int:
+    """Number of designs evaluated at once."""
+    return int(np.broadcast_shapes((1,), *[np.shape(v) for v in values.varied.values()])[-1])
+
+
+def _complex(values: Values) -> bool:
+    """Whether slopes are asked for, by complex numbers."""
+    return any(np.iscomplexobj(value) for value in values.varied.values())
+
+
+def _checked(plugin: Plugin, found: object, values: Values, designs: int) -> Array:
     """What a user's function returned, if it is a number for every design (and case)."""
     array = np.asarray(found)
-    varied = [np.shape(value) for value in values.varied.values()]
-    designs = np.broadcast_shapes((1,), *varied)[-1]
     shape = np.broadcast_shapes((1,), array.shape) if array.ndim < 2 else array.shape
-    plain = not any(np.iscomplexobj(value) for value in values.varied.values())
+    plain = not _complex(values)
     message = ""
     if array.dtype.kind not in "biufc":
         message = f"returned {type(found).__name__}, not a number"

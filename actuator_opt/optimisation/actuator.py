@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -80,6 +80,36 @@ def goal_of(subject: Subject) -> Goal:
     return Goal(dict(stated), scales, sign)
 
 
+@dataclass
+class Refusals:
+    """How often the user's own metrics that count gave no number where the models of mass do."""
+
+    names: frozenset[str] = frozenset()
+    points: int = 0
+    missing: dict[str, int] = field(default_factory=dict)
+    raised: dict[str, str] = field(default_factory=dict)
+
+    def add(self, computed: Computed, count: int) -> None:
+        """Count one evaluation."""
+        self.points += count
+        sound = np.isfinite(np.broadcast_to(computed.metrics["mass"][""], (count,)))
+        for name in self.names:
+            value = np.atleast_2d(computed.metrics[name][""])
+            lost = int((sound & np.isnan(value).any(axis=0)).sum())
+            self.missing[name] = self.missing.get(name, 0) + lost
+            if name in computed.why:
+                self.raised.setdefault(name, computed.why[name])
+
+    def warnings(self) -> tuple[str, ...]:
+        """What to tell, one line for each metric that was missing somewhere."""
+        return tuple(
+            f"{name} gave no number at {100 * lost / self.points:.3g} % of the points tried, which "
+            f"count as not allowed" + (f": {self.raised[name]}" if name in self.raised else "")
+            for name, lost in sorted(self.missing.items())
+            if lost
+        )
+
+
 @dataclass(frozen=True)
 class ActuatorProblem:
     """A design with variables, as the generic solver sees it, and back."""
@@ -93,6 +123,8 @@ class ActuatorProblem:
     problem: Problem
     wanted: frozenset[str] | None
     """Metrics of objective and rows; None where a user's own metric may read any."""
+    refusals: Refusals = field(default_factory=Refusals)
+    """What the user's own metrics had no number for."""
 
     def parametric(self, parameters: tuple[str, ...]) -> ParametricProblem:
         """The same problem with prices asked for the numbers at `parameters`."""
@@ -108,10 +140,13 @@ class ActuatorProblem:
         """Objective and constraint margins of points (variables, designs)."""
         varied = dict(parameters or {}) | dict(zip(self.paths, points, strict=True))
         numbers = self.subject.values(varied)
+        count = points.shape[1]
         done = compute(self.subject, numbers, self.wanted)
+        if self.refusals.names and not any(np.iscomplexobj(v) for v in varied.values()):
+            self.refusals.add(done.computed, count)
         return Values(
             self.goal.value(done.computed, self.subject.cases),
-            _margins(self.rows, done.computed, numbers, points.shape[1]),
+            _margins(self.rows, done.computed, numbers, count),
         )
 
 
@@ -204,12 +239,34 @@ def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
         groups=tuple(limits.index(row.limit_of) for row in rows),
     )
     wanted = frozenset({row.limit_of.metric for row in rows} | set(goal.weights))
-    holder.append(
-        ActuatorProblem(
-            subject, goal, paths, rows, fixed, problem, None if subject.plugins else wanted
-        )
-    )
+    own = {plugin.name for plugin in subject.plugins}
+    refusals, lenient = Refusals(wanted & own), replace(subject, lenient=True)
+    asked = None if own else wanted
+    holder.append(ActuatorProblem(lenient, goal, paths, rows, fixed, problem, asked, refusals))
     return holder[0]
+
+
+def require_movable_objective(actuator: ActuatorProblem) -> None:
+    """Some variable must enter the objective, however little it moves it.
+
+    Raises
+    ------
+    InputError
+        none does
+    """
+    start = actuator.problem.start
+    assert start is not None
+    moved = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
+    subject, goal = actuator.subject, actuator.goal
+    value = goal.value(compute(subject, subject.values(moved)).computed, subject.cases)
+    if np.size(value) == 1 and np.isfinite(value).all():
+        raise InputError(
+            Diagnostic(
+                f"no variable affects {' and '.join(goal.weights)}: nothing to search for",
+                "choose another objective, or free a dimension that it depends on",
+                path="objective",
+            )
+        )
 
 
 def _check_read(numbers: Numbers, paths: tuple[str, ...], fault: Fault | None) -> None:

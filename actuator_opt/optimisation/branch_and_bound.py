@@ -18,10 +18,10 @@ import numpy as np
 
 from ..numeric import Array
 from . import elastic, kkt, lockstep, nlopt_wrapper
+from .descents import FEASIBLE, RESIDUAL
 from .evaluator import Evaluator, Point
 from .newton import polish
 from .problem import ParametricProblem, Problem, Values, Vector
-from .solver import FEASIBLE, RESIDUAL
 
 MOST_SOLVES = 400
 """Most re-optimisations of one search."""

@@ -24,8 +24,9 @@ from ..evaluation.build import names_of_materials
 from ..evaluation.limits import all_limits
 from ..evaluation.rows import Row, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of
+from .descents import FEASIBLE
 from .quick_look import DOUBTFUL, Look, Start, look_quickly
-from .solver import FEASIBLE, solve
+from .solver import solve
 
 NEAR = 0.05
 """Distance from the best, relative, within which a combination is solved from many starts."""

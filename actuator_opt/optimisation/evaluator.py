@@ -84,6 +84,7 @@ class Evaluator:
         self.difference_rows = np.zeros(problem.row_count, dtype=bool)
         self.influence = np.zeros((2, self.space.size))
         self.trace: list[tuple[int, float, float]] = []
+        self.best: Point | None = None
         self._cache: dict[bytes, Point] = {}
 
     def check_limits(self) -> None:
@@ -127,12 +128,13 @@ class Evaluator:
         return point
 
     def _note(self, point: Point) -> None:
-        """Add a point to the trace if it improves on the last one there."""
+        """Keep a point and add it to the trace if it improves on the last one there."""
         missed = point.violation if point.violation > 1e-6 else 0.0
         if self.trace:
             _, objective, violation = self.trace[-1]
             if (missed, point.objective) >= (violation if violation > 1e-6 else 0.0, objective):
                 return
+        self.best = point
         self.trace.append((self.evaluations, point.objective, point.violation))
 
     def batch(self, z: Vector) -> Vector:
@@ -284,7 +286,8 @@ class Evaluator:
         labels = ("objective", *self.problem.constraint_names, *self.problem.equality_names)
         return tuple(
             f"the gradient of {labels[i]} falls back to finite differences: the complex step "
-            f"disagrees with them; avoid abs, max, sign and float() in own functions"
+            f"disagrees with them, or has none; avoid abs, max, sign, float() and floor in own "
+            f"functions"
             for i in np.flatnonzero(wrong)
         )
 
@@ -301,7 +304,8 @@ class Evaluator:
             size = np.abs(np.where(known, slopes, 0.0)).max(axis=1, initial=0.0)
             room = 1e-4 * size + 1e-11 / step * (1.0 + np.abs(point.rows))
             far = np.where(known, np.abs(slopes - exact) > room[:, None], False)
-            wrong &= far.any(axis=1)
+            lost = np.isnan(exact).all(axis=1) & np.isfinite(slopes).all(axis=1)
+            wrong &= far.any(axis=1) | lost
             if not wrong.any():
                 break
         return wrong

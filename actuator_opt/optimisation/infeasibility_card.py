@@ -15,7 +15,7 @@ from ..quantities import METRICS, Quantity
 from .actuator import ActuatorProblem
 from .infeasibility import Infeasibility as Explanation
 from .infeasibility import explain
-from .outcome import Solution
+from .outcome import Outcome, Solution
 from .repairs import WIDEST, Opening, Relaxation
 from .result import Infeasibility
 
@@ -31,8 +31,12 @@ _ORIGINS = {"requirement": "requirement", "case": "load case", "check": "check l
 def explained(
     actuator: ActuatorProblem, solution: Solution
 ) -> tuple[Infeasibility | None, Solution]:
-    """Why nothing fits, and the design that needs only the smallest joint relaxation."""
-    if solution.feasible or solution.kkt is None:
+    """Why nothing fits, and the design that needs only the smallest joint relaxation.
+
+    A search stopped by its limit knows neither.
+    """
+    limited = solution.outcome is Outcome.LIMIT_INFEASIBLE
+    if solution.feasible or solution.kkt is None or limited:
         return None, solution
     points = [found.x for found in solution.optima] or [solution.x]
     found = explain(actuator.problem, points)

@@ -21,7 +21,7 @@ class Outcome(Enum):
         "feasible",
         "every requirement is met, but the optimality conditions do not hold to 1e-6",
         "run again with more starts or another seed, or look for a kink (min, max, look-up "
-        "table) in an own metric near this point",
+        "table) in an own metric near this point, or for an edge where it ends",
     )
     SADDLE = (
         "feasible",
@@ -43,6 +43,16 @@ class Outcome(Enum):
         "limit_infeasible",
         "stopped by the evaluation or time limit before any point met every requirement",
         "raise the limit, or give a start that meets the requirements",
+    )
+    INTERRUPTED = (
+        "interrupted",
+        "interrupted; the best point so far meets every requirement",
+        "run again to let the search finish",
+    )
+    INTERRUPTED_INFEASIBLE = (
+        "interrupted_infeasible",
+        "interrupted before any point met every requirement",
+        "run again to let the search finish",
     )
     FLAT = (
         "flat",
@@ -83,6 +93,7 @@ class Outcome(Enum):
             Outcome.NOT_STATIONARY,
             Outcome.SADDLE,
             Outcome.LIMIT,
+            Outcome.INTERRUPTED,
             Outcome.FLAT,
         )
 
@@ -123,6 +134,7 @@ class Solution:
     kkt : optimality conditions at x; None where the model is undefined
     evaluations, gradients : points evaluated and gradients taken in the local phase
     samples, feasible_samples : points of the global sweep, and how many met everything
+    undefined : share of the sweep where the model has no finite values
     starts : where each start led, in order
     optima : distinct local optima, the best first
     trace : (evaluation, objective, violation) of each improvement
@@ -144,6 +156,7 @@ class Solution:
     gradients: int
     samples: int
     feasible_samples: int
+    undefined: float
     starts: tuple[StartRecord, ...]
     optima: tuple[LocalOptimum, ...]
     trace: tuple[tuple[int, float, float], ...]

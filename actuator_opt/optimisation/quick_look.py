@@ -18,12 +18,13 @@ from ..design.choice_list import Value
 from ..evaluation import Subject
 from . import elastic, kkt, nlopt_wrapper
 from .actuator import ActuatorProblem
+from .descents import FEASIBLE
 from .evaluator import Evaluator, LimitReached, Point
 from .outcome import Solution
 from .problem import Vector
 from .result import How
 from .sampling import sweep
-from .solver import FEASIBLE, solve
+from .solver import solve
 
 EVALUATIONS = 40
 """Most evaluations of one descent; from a near design 10 to 30 do."""

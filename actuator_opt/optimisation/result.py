@@ -312,6 +312,7 @@ class Optimisation:
                 "status": self.status,
                 "outcome": self.sentence,
                 "remedy": self.remedy,
+                "warnings": [*self.evaluation.warnings, *self.warnings],
                 "objective": {
                     "metric": self.objective_metric,
                     "value": self.objective_value if isfinite(self.objective_value) else None,

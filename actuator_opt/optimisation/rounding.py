@@ -184,7 +184,8 @@ def design_at(actuator: ActuatorProblem, x: Vector) -> tuple[Design, Evaluation]
     subject = actuator.subject
     values = dict(zip(actuator.paths, x.tolist(), strict=True))
     design = with_values(subject.design, values, metrics=subject.quantities, contradictions=False)
-    return design, evaluate(prepare(design, subject.materials, subject.plugins))
+    found = prepare(design, subject.materials, subject.plugins)
+    return design, evaluate(replace(found, lenient=True))
 
 
 def rounded(

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from ..design import quantity_of
 from ..evaluation import Subject, evaluate
-from .actuator import ActuatorProblem, Fault, build
+from .actuator import ActuatorProblem, Fault, build, require_movable_objective
+from .branch_and_bound import Listed
 from .choice_record import record
 from .choices import Search, Settings, search
 from .infeasibility_card import explained
 from .outcome import Outcome, Solution
 from .price_table import sensitivities
-from .result import Choices, Kkt, Optimisation, Rounding, VariableResult
+from .result import Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
 from .rounding import design_at, listed_variables, rounded
 from .sensitivity import Sensitivity
 from .solver import solve
@@ -32,6 +35,7 @@ def optimise(
     prices: bool = True,
     max_seconds: float | None = None,
     whole_plies: bool = False,
+    keep_interrupted: bool = False,
 ) -> Optimisation:
     """The best design of a subject.
 
@@ -45,6 +49,7 @@ def optimise(
     prices : whether to price requirements and parameters (and re-solve at ±10 %)
     max_seconds : time limit of the search; the best design so far is kept
     whole_plies : whether to look for the best design of whole plies and allowed angles too
+    keep_interrupted : whether Ctrl-C ends the work with the best design so far (without choices)
     """
     began = time.perf_counter()
     until = None if max_seconds is None else began + max_seconds
@@ -60,6 +65,7 @@ def optimise(
         listed = listed_variables(actuator.subject.design, fault) if whole_plies else ()
     else:
         actuator = build(subject, fault)
+        require_movable_objective(actuator)
         solution = solve(
             actuator.problem,
             algorithm=algorithm,
@@ -67,15 +73,61 @@ def optimise(
             samples=SAMPLES,
             seed=seed,
             max_seconds=max_seconds,
+            keep_interrupted=keep_interrupted,
         )
+    after = _After(solution)
+    try:
+        _follow(actuator, after, listed, until, prices=prices)
+    except KeyboardInterrupt:
+        if not keep_interrupted:
+            raise
+        ended = Outcome.INTERRUPTED if solution.feasible else Outcome.INTERRUPTED_INFEASIBLE
+        after = _After(replace(solution, outcome=ended))
+    return _result(subject, actuator, after, choices, seed, began)
+
+
+@dataclass
+class _After:
+    """The solution and what follows from it."""
+
+    solution: Solution
     rounding: Rounding | None = None
-    if listed and solution.feasible:
-        rounding, solution = rounded(actuator, solution, listed, until=until, seed=seed)
-    why, solution = explained(actuator, solution)
-    design, evaluation = design_at(actuator, solution.x)
+    why: Infeasibility | None = None
     rows: tuple[Sensitivity, ...] = ()
-    if prices and solution.outcome is Outcome.OPTIMUM:
-        rows = sensitivities(actuator, solution)
+
+
+def _follow(
+    actuator: ActuatorProblem,
+    after: _After,
+    listed: Sequence[Listed],
+    until: float | None,
+    *,
+    prices: bool,
+) -> None:
+    """Round, explain and price a solution."""
+    solution = after.solution
+    if solution.outcome in (Outcome.INTERRUPTED, Outcome.INTERRUPTED_INFEASIBLE):
+        return
+    if listed and solution.feasible:
+        after.rounding, after.solution = rounded(
+            actuator, solution, listed, until=until, seed=solution.seed
+        )
+    after.why, after.solution = explained(actuator, after.solution)
+    if prices and after.solution.outcome is Outcome.OPTIMUM:
+        after.rows = sensitivities(actuator, after.solution)
+
+
+def _result(
+    subject: Subject,
+    actuator: ActuatorProblem,
+    after: _After,
+    choices: Choices | None,
+    seed: int,
+    began: float,
+) -> Optimisation:
+    """Everything put together."""
+    solution = after.solution
+    design, evaluation = design_at(actuator, solution.x)
     return Optimisation(
         status=solution.outcome.status,
         sentence=solution.outcome.sentence,
@@ -87,18 +139,21 @@ def optimise(
         start=evaluate(subject),
         variables=_variables(actuator, solution),
         kkt=_kkt(solution),
-        sensitivities=rows,
-        infeasibility=why,
+        sensitivities=after.rows,
+        infeasibility=after.why,
         evaluations=solution.evaluations,
         samples=solution.samples,
         starts=tuple(actuator.goal.shown(record.objective) for record in solution.starts),
         trace=solution.trace,
         algorithm=solution.algorithm,
-        warnings=solution.warnings
-        + tuple(f"variable without effect: {name}" for name in solution.without_effect),
+        warnings=(
+            *solution.warnings,
+            *(f"variable without effect: {name}" for name in solution.without_effect),
+            *actuator.refusals.warnings(),
+        ),
         seed=seed,
         seconds=time.perf_counter() - began,
-        rounding=rounding,
+        rounding=after.rounding,
         choices=choices,
     )
 

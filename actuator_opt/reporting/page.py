@@ -58,6 +58,12 @@ def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisati
     return subject, None
 
 
+def warnings(subject: Evaluation | Optimisation) -> list[str]:
+    """What the evaluation warns of, then the optimiser."""
+    evaluation, optimisation = parts_of(subject)
+    return [*evaluation.warnings, *(() if optimisation is None else optimisation.warnings)]
+
+
 def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
     """The badge: state, words, and how many rows and checks stand behind it."""
     evaluation, optimisation = parts_of(subject)
@@ -183,8 +189,8 @@ def page(
 
 def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> list[Block]:
     blocks = []
-    if evaluation.warnings:
-        blocks.append(notes("Warnings", [text.pretty(line) for line in evaluation.warnings]))
+    if lines := warnings(optimisation or evaluation):
+        blocks.append(notes("Warnings", [text.pretty(line) for line in lines]))
     blocks.append(tables.assumptions(evaluation))
     if evaluation.design.notes:
         lines = [line for line in evaluation.design.notes.splitlines() if line.strip()]

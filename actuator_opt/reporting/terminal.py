@@ -6,7 +6,7 @@ Every function takes `colour`, `unicode` and `width`; without `unicode` the text
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypedDict
+from typing import TypedDict, Unpack
 
 from ..evaluation.result import Evaluation, Requirement, StrokeCurve
 from ..optimisation.result import Optimisation
@@ -283,12 +283,11 @@ def stiffness_curve(
     return "\n".join([console.heading(title), *lines, console.paint(console.say(ending), "dim")])
 
 
-def notes(
-    evaluation: Evaluation, *, colour: bool = False, unicode: bool = True, width: int = 100
-) -> str:
+def notes(subject: Evaluation | Optimisation, **style: Unpack[_Style]) -> str:
     """Warnings in full, unverified data counted; empty when there is nothing to say."""
-    console = Console(colour, unicode, width)
-    lines = [console.wrap(f"warning: {w}", "yellow") for w in evaluation.warnings]
+    console = Console(**style)
+    evaluation = page.parts_of(subject)[0]
+    lines = [console.wrap(f"warning: {w}", "yellow") for w in page.warnings(subject)]
     if evaluation.unverified:
         counts: dict[str, int] = {}
         for value in evaluation.unverified:
@@ -335,7 +334,7 @@ def optimisation_text(
         variables_table(optimisation, **style) if optimisation.variables else "",
         prices.terminal(optimisation, **style),
         checks_table(optimisation.evaluation, **style),
-        notes(optimisation.evaluation, **style),
+        notes(optimisation, **style),
         choices_table.terminal(optimisation, **style),
         whole_plies.terminal(optimisation, **style),
         "\n".join(console.wrap(s, "dim") for s in optimum.convergence(optimisation)),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -91,6 +92,24 @@ def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -
 def place(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
     """What makes a fault of a variable's PATH, with its place in the file."""
     return None if actuator.source is None else actuator.source.of_variable
+
+
+@contextmanager
+def located(actuator: Actuator) -> Iterator[None]:
+    """Give faults that know only their PATH the place in the file too."""
+    try:
+        yield
+    except InputError as error:
+        source = actuator.source
+        if source is None or any(fault.file or not fault.path for fault in error.diagnostics):
+            raise
+        raise InputError(
+            [
+                source.diagnostic(fault.path, fault.message, fault.remedy)
+                for fault in error.diagnostics
+                if fault.path
+            ]
+        ) from None
 
 
 def unanswered(actuator: Actuator, subject: Subject) -> list[Diagnostic]:

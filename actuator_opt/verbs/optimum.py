@@ -9,7 +9,7 @@ from ..design import Design
 from ..errors import InputError
 from ..evaluation import Evaluation
 from ..evaluation import evaluate as evaluate_subject
-from .actuator import Actuator, Plugins, as_actuator, place, unanswered
+from .actuator import Actuator, Plugins, as_actuator, located, place, unanswered
 
 if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
@@ -31,6 +31,7 @@ def optimise(
     prices: bool = True,
     max_seconds: float | None = None,
     whole_plies: bool = False,
+    keep_interrupted: bool = False,
 ) -> Optimisation:
     """The best design; parameters as `optimise.run.optimise`."""
     from ..optimisation.run import optimise as run
@@ -40,16 +41,18 @@ def optimise(
     faults = unanswered(actuator, subject)
     if faults:
         raise InputError(faults)
-    return run(
-        subject,
-        fault=place(actuator),
-        algorithm=algorithm,
-        starts=starts,
-        seed=seed,
-        prices=prices,
-        max_seconds=max_seconds,
-        whole_plies=whole_plies,
-    )
+    with located(actuator):
+        return run(
+            subject,
+            fault=place(actuator),
+            algorithm=algorithm,
+            starts=starts,
+            seed=seed,
+            prices=prices,
+            max_seconds=max_seconds,
+            whole_plies=whole_plies,
+            keep_interrupted=keep_interrupted,
+        )
 
 
 def sensitivity(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from ..design import Design, Source
 from ..errors import Diagnostic, UsageError
 from ..evaluation import Evaluation, Subject, prepare
+from ..quantities import METRICS
 from .actuator import Actuator
 
 if TYPE_CHECKING:
@@ -124,7 +125,9 @@ def save(design: Actuator | Design, path: str | Path, *, source: Source | None =
     from ..design.writer import to_yaml
     from ..store import write_text
 
+    metrics = None if source is None else source.metrics
     if isinstance(design, Actuator):
         source = source or design.source
+        metrics = METRICS | {plugin.name: plugin.quantity for plugin in design.plugins}
         design = design.design
-    return write_text(Path(path), to_yaml(design, source))
+    return write_text(Path(path), to_yaml(design, source, metrics=metrics))

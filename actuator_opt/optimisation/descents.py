@@ -1,0 +1,171 @@
+"""Descents from points, and what they ended on: the state of one run of the optimiser."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import elastic, kkt, nlopt_wrapper
+from .evaluator import Evaluator, Point
+from .newton import polish
+from .outcome import StartRecord
+
+FEASIBLE = 1e-6
+"""Worst missed margin that still counts as met (contract)."""
+
+RESIDUAL = 1e-6
+"""Largest residual of the optimality conditions that counts as an optimum."""
+
+FINISH = "active-set Newton"
+
+RESTORATION = "least worst miss by LD_SLSQP"
+
+NEARER = 1e-3
+"""Share by which a worst miss must be less than those known to be another one."""
+
+ELSEWHERE = 1.0
+"""Share by which a worst miss must exceed the least known for its search to count as stuck."""
+
+LOCAL_EVALUATIONS = 150
+"""Most evaluations of one local run of SLSQP on the default path."""
+
+
+@dataclass
+class Found:
+    """A point that runs ended on: how far it is from optimal, what led there, how often."""
+
+    point: Point
+    residual: float
+    algorithm: str
+    hits: int = 1
+
+    @property
+    def good(self) -> bool:
+        """Whether it meets everything and the optimality conditions hold."""
+        return self.point.violation <= FEASIBLE and self.residual <= RESIDUAL
+
+
+class Descents:
+    """The state of one run: the evaluator, what was found, what to tell."""
+
+    def __init__(self, evaluator: Evaluator, seed: int) -> None:
+        self.evaluator = evaluator
+        self.seed = seed
+        self.optima: list[Found] = []
+        self.records: list[StartRecord] = []
+        self.warnings: list[str] = []
+        self.least: list[Point] = []
+        """Where the most missed limit is missed least, though it is missed."""
+        self.objective_scale = 0.0
+        self.interrupted = False
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether an optimum was found."""
+        return any(optimum.good for optimum in self.optima)
+
+    @property
+    def feasible(self) -> bool:
+        """Whether a point that meets everything was found."""
+        return any(optimum.point.violation <= FEASIBLE for optimum in self.optima)
+
+    def residual(self, point: Point) -> float:
+        """How far a point is from optimal; infinite where the model has no values."""
+        if not point.valid:
+            return np.inf
+        return kkt.check(self.evaluator, point, objective_scale=self.objective_scale).residual
+
+    def same(self, point: Point) -> Found | None:
+        """Return the optimum already found that a point has run into."""
+        for optimum in self.optima:
+            known = optimum.point
+            size = max(abs(known.objective), 1e-3 * self.objective_scale, 1e-300)
+            near = abs(point.objective - known.objective) <= 1e-5 * size
+            if optimum.good and near and np.abs(point.z - known.z).max(initial=0.0) <= 1e-3:
+                return optimum
+        return None
+
+    def descend(
+        self, start: Point, algorithm: str, *, linear: bool, most: int | None = None
+    ) -> bool:
+        """One local run with its finish; True where it ended on an optimum."""
+        before = self.evaluator.evaluations
+        good = [o for o in self.optima if o.good]
+        run = nlopt_wrapper.run(
+            self.evaluator,
+            start,
+            algorithm,
+            linear=linear,
+            most=most,
+            seed=self.seed,
+            known=[o.point for o in good],
+        )
+        point, name = run.point, run.algorithm + (" (linear variables)" if linear else "")
+        found = self.same(point) if point.valid and point.violation <= FEASIBLE else None
+        if run.arrived is not None:
+            found = good[run.arrived]
+        if found is not None:
+            found.hits += 1
+            point = found.point
+        else:
+            found = self.finish(point, name)
+        used = self.evaluator.evaluations - before
+        self.records.append(
+            StartRecord(start.x, found.point.objective, found.point.violation, name, used)
+        )
+        return found.good
+
+    def restore(self, point: Point, *, start: Point) -> None:
+        """Go to where the most missed limit is missed least, and on from there if all are met."""
+        before = self.evaluator.evaluations
+        least = min((one.violation for one in self.least), default=np.inf)
+        found = elastic.least_missed(self.evaluator, point, least / 2)
+        if found.violation <= FEASIBLE:
+            self.descend(found, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+            return
+        if found.violation < least * (1 - NEARER):
+            self.optima.append(Found(found, self.residual(found), RESTORATION))
+        self.least.append(found)
+        if found.violation > least * (1 + ELSEWHERE):
+            self.descend(found, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+        elif point is start:
+            used = self.evaluator.evaluations - before
+            self.records.append(
+                StartRecord(start.x, found.objective, found.violation, RESTORATION, used)
+            )
+
+    def finish(self, point: Point, algorithm: str) -> Found:
+        """Polish a point and enter it among the optima."""
+        better = polish(self.evaluator, point)
+        if better is not point:
+            algorithm = f"{algorithm}, {FINISH}"
+        known = self.same(better) if better.valid else None
+        if known is not None:
+            known.hits += 1
+            return known
+        optimum = Found(better, self.residual(better), algorithm)
+        self.optima.append(optimum)
+        return optimum
+
+    def best(self, others: Sequence[Found] = ()) -> Found | None:
+        """Feasible points by objective, then the least infeasible, of the optima and others.
+
+        A point whose optimality is proven wins over one that is better by rounding only.
+        """
+
+        def rank(optimum: Found) -> tuple[float, float]:
+            point = optimum.point
+            if not point.valid:
+                return (np.inf, np.inf)
+            missed = point.violation if point.violation > FEASIBLE else 0.0
+            return (missed, point.objective)
+
+        found = [*self.optima, *others]
+        first = min(found, key=rank, default=None)
+        if first is None or first.good:
+            return first
+        room = 1e-7 * max(abs(first.point.objective), 1e-300)
+        proven = [o for o in found if o.good and o.point.objective <= first.point.objective + room]
+        return min(proven, key=rank, default=first)
