@@ -39,6 +39,7 @@ from .options import (
     Report,
     Seed,
     Set,
+    StandardSizes,
     Starts,
     WholePlies,
     Write,
@@ -188,6 +189,7 @@ def optimise(
     algorithm: Algorithm = "auto",
     starts: Starts = 6,
     whole_plies: WholePlies = False,
+    standard_sizes: StandardSizes = False,
     verify: Annotated[
         str | None,
         typer.Option(
@@ -217,7 +219,12 @@ def optimise(
     if trial is not None:
         verbs.fitting(trial, actuator)
     result = verbs.optimise(
-        actuator, algorithm=algorithm, starts=starts, seed=seed, whole_plies=whole_plies
+        actuator,
+        algorithm=algorithm,
+        starts=starts,
+        seed=seed,
+        whole_plies=whole_plies,
+        standard_sizes=standard_sizes,
     )
     good = _outcome(result) == ExitCode.MET
     if write is not None and good:

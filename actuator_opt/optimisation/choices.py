@@ -24,7 +24,8 @@ from ..evaluation.build import names_of_materials
 from ..evaluation.limits import all_limits
 from ..evaluation.rows import Row, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of
-from .quick_look import DOUBTFUL, Look, Start, look_quickly
+from .nearby import Curvature
+from .quick_look import DOUBTFUL, Look, Start, curvature_of, look_quickly
 from .solver import FEASIBLE, solve
 
 NEAR = 0.05
@@ -69,6 +70,8 @@ class Search:
 
     goal: Goal
     looks: list[Look] = field(default_factory=list)
+    curvature: Curvature | None = None
+    """At the first optimum found."""
 
     def mendable(self) -> frozenset[str]:
         """Missed checks that some combination meets, so that choosing can mend them."""
@@ -87,6 +90,10 @@ class Search:
             return (bool(look.fault), missed, checks, look.objective, look.order)
 
         looks = sorted(self.looks, key=rank)
+        sized = [look for look in looks if look.rounded is not None]
+        if sized:
+            sized.sort(key=lambda look: (len(look.checks & mendable), look.rounded, look.order))
+            return [*sized, *(look for look in looks if look.rounded is None)]
         best = looks[0]
         equal = [
             look
@@ -146,8 +153,14 @@ def _require_one(looks: Sequence[Look]) -> None:
 
 
 @np.errstate(all="ignore")  # what has no finite answer is never the best
-def search(subject: Subject, settings: Settings) -> Search:
+def search(subject: Subject, settings: Settings, most: int = MOST_SOLVED) -> Search:
     """Look at every combination of the choices, solve the best ones from many starts.
+
+    Parameters
+    ----------
+    subject : the design with its choices
+    settings : how the best are solved
+    most : how many of them at most
 
     Raises
     ------
@@ -170,7 +183,7 @@ def search(subject: Subject, settings: Settings) -> Search:
     _require_one(found.looks)
     if moving:
         _look_at_all(found, settings)
-        _solve_best(found, settings)
+        _solve_best(found, settings, most)
     return found
 
 
@@ -220,9 +233,11 @@ def _look_at_all(found: Search, settings: Settings) -> None:
             continue
         left = None if left is None else max(left, LEAST_SECONDS)
         try:
-            look_quickly(look, _starts(found, look), settings.seed, left)
+            look_quickly(look, _starts(found, look), settings.seed, left, found.curvature)
         except InputError as error:
             _give_up(look, error)
+        if found.curvature is None and look.feasible:
+            found.curvature = curvature_of(look)
 
 
 def _any(found: Search) -> bool:
@@ -253,16 +268,16 @@ def _starts(found: Search, look: Look) -> list[Start]:
     return starts or ([] if own is None else [Start(own, descend=True)])
 
 
-def _solve_best(found: Search, settings: Settings) -> None:
+def _solve_best(found: Search, settings: Settings, most: int) -> None:
     """Many starts for the winner and for what comes near it, best first."""
     second = True
-    for _ in range(MOST_SOLVED):
+    for _ in range(most):
         look = _promising(found)
         left = settings.left()
         if look is None or (left is not None and left <= 0):
             break
         before = look.objective if look.feasible else math.inf
-        _solve(look, settings)
+        many_starts(look, settings)
         gained = look.feasible and look.objective < before - BETTER * abs(look.objective)
         if second and gained and look.x is not None:
             second = False
@@ -273,7 +288,7 @@ def _solve_best(found: Search, settings: Settings) -> None:
                     look_quickly(other, [start], settings.seed, settings.left())
     best = found.ranked()[0]
     if best.solution is None:
-        _solve(best, settings)
+        many_starts(best, settings)
 
 
 def _promising(found: Search) -> Look | None:
@@ -297,7 +312,7 @@ def _promising(found: Search) -> Look | None:
     return None
 
 
-def _solve(look: Look, settings: Settings) -> None:
+def many_starts(look: Look, settings: Settings) -> None:
     """Solve a combination from many starts, the best point known among them."""
     assert look.actuator is not None
     left = settings.left()

@@ -53,8 +53,8 @@ def resolve_together(
     parameters: Vector,
     *,
     own: bool = False,
-) -> list[float | None]:
-    """Objectives of the re-solved problems; None where a problem needs the sturdier path.
+) -> list[Point | None]:
+    """Optima of the re-solved problems; None where a problem needs the sturdier path.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def resolve_together(
     own : each problem takes Hessians of its own, dearer and sturdier than the shared one
     """
     count = starts.shape[1]
-    found: list[float | None] = [None] * count
+    found: list[Point | None] = [None] * count
     if count == 0:
         return found
     state = newton.state_at(evaluator, point)
@@ -84,7 +84,7 @@ def resolve_together(
                 continue
             settled = last[k] <= SETTLED and trial.violation <= FEASIBLE
             if settled and kkt.check(evaluator, trial).residual <= RESIDUAL:
-                found[k] = trial.objective
+                found[k] = trial
                 continue
             if own and iteration in RENEWALS:
                 alone = Evaluator(parametric.at(parameters[:, k]))
@@ -103,8 +103,10 @@ def resolve_together(
             going.append(k)
         alive = going
     kept = _unmoved(parametric, evaluator, point, parameters)
-    for k, objective in enumerate(found):
-        if objective is not None and kept[k] < objective * (1 - 1e-9 * np.sign(objective)):
+    for k, optimum in enumerate(found):
+        if optimum is None:
+            continue
+        if kept[k] < optimum.objective * (1 - 1e-9 * np.sign(optimum.objective)):
             found[k] = None  # the old optimum itself is better: another valley
     return found
 

@@ -212,8 +212,8 @@ def _together(
         parameters[k, column] += step
         starts[:, column] += moves[:, k] * step
     found = lockstep.resolve_together(parametric, evaluator, point, starts, parameters)
-    for i, objective in zip(chosen, found, strict=True):
-        known[i] = objective
+    for i, optimum in zip(chosen, found, strict=True):
+        known[i] = None if optimum is None else optimum.objective
     left = [column for column, i in enumerate(chosen) if known[i] is None]
     restored = lockstep.restore_together(parametric, evaluator, point, parameters[:, left])
     feasible = [(column, z) for column, z in zip(left, restored, strict=True) if z is not None]
@@ -225,8 +225,8 @@ def _together(
         again = lockstep.resolve_together(
             parametric, evaluator, point, points, parameters[:, columns], own=True
         )
-        for (column, z), objective in zip(feasible, again, strict=True):
-            known[chosen[column]] = objective
+        for (column, z), optimum in zip(feasible, again, strict=True):
+            known[chosen[column]] = None if optimum is None else optimum.objective
             inside[chosen[column]] = z
     return known, inside
 

@@ -19,6 +19,7 @@ from ..evaluation import Subject
 from . import elastic, kkt, nlopt_wrapper
 from .actuator import ActuatorProblem
 from .evaluator import Evaluator, LimitReached, Point
+from .nearby import ROUGH, Curvature, curvature_at, stepped
 from .outcome import Solution
 from .problem import Vector
 from .result import How
@@ -65,6 +66,10 @@ class Look:
     checks: frozenset[str] = frozenset()
     """Missed checks that no variable can mend."""
     solution: Solution | None = None
+    sizing: str = ""
+    """What the search for listed sizes came to, where there was one."""
+    rounded: float | None = None
+    """Objective of the best design of listed sizes."""
 
     @property
     def feasible(self) -> bool:
@@ -79,7 +84,13 @@ class Start(NamedTuple):
     descend: bool
 
 
-def look_quickly(look: Look, starts: Sequence[Start], seed: int, seconds: float | None) -> None:
+def look_quickly(
+    look: Look,
+    starts: Sequence[Start],
+    seed: int,
+    seconds: float | None,
+    curvature: Curvature | None = None,
+) -> None:
     """Go down from the starts, then from that of a sweep, until the matter is clear.
 
     Parameters
@@ -88,6 +99,7 @@ def look_quickly(look: Look, starts: Sequence[Start], seed: int, seconds: float 
     starts : in order of trust
     seed : of the sweep
     seconds : time limit
+    curvature : of the optimum of another combination, which mostly serves this one too
     """
     assert look.actuator is not None
     evaluator = Evaluator(look.actuator.problem, max_seconds=seconds)
@@ -98,6 +110,8 @@ def look_quickly(look: Look, starts: Sequence[Start], seed: int, seconds: float 
 
     look.how = "quick"
     try:
+        if curvature is not None and _followed(look, evaluator, starts, curvature):
+            return
         for z, descend in _coordinates(evaluator, starts, seed):
             point = _keep(look, evaluator, evaluator.point(z))
             if point.valid and (descend or point.violation <= FEASIBLE):
@@ -112,6 +126,33 @@ def look_quickly(look: Look, starts: Sequence[Start], seed: int, seconds: float 
             _settle(look, evaluator, look.x, seed)
     except LimitReached:
         look.how = "not tried" if look.x is None else "quick"
+
+
+def _followed(
+    look: Look, evaluator: Evaluator, starts: Sequence[Start], curvature: Curvature
+) -> bool:
+    """Whether steps from a neighbour's optimum settle on the optimum of this combination."""
+    near = next((start.x for start in starts if start.descend), None)
+    if near is None or not evaluator.space.size:
+        return False
+    evaluator.eager = True
+    point = evaluator.point(evaluator.space.to_z(near))
+    found = stepped(evaluator, point, curvature, ROUGH) if point.valid else None
+    if found is not None:
+        _keep(look, evaluator, found)
+    return found is not None
+
+
+def curvature_of(look: Look) -> Curvature | None:
+    """The curvature at the optimum of a combination; None where it ended on none."""
+    if look.actuator is None or look.x is None:
+        return None
+    evaluator = Evaluator(look.actuator.problem)
+    point = evaluator.point(evaluator.space.to_z(look.x))
+    if not point.valid or not evaluator.space.size:
+        return None
+    settled = kkt.check(evaluator, point).residual <= SETTLED
+    return curvature_at(evaluator, point) if settled else None
 
 
 def _settle(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:

@@ -79,7 +79,7 @@ class Infeasibility:
 class RoundedVariable:
     """A variable before and after rounding (SI); `discrete` ones only take listed values.
 
-    `plies` counts those of a layer's thickness.
+    `plies` counts those of a layer's thickness, `sizes` names the list or series.
     """
 
     path: str
@@ -88,6 +88,7 @@ class RoundedVariable:
     value: float
     discrete: bool
     plies: int | None
+    sizes: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,13 +103,14 @@ class RunnerUp:
 
 @dataclass(frozen=True, slots=True)
 class Rounding:
-    """The best design of whole plies and allowed angles, and what the rounding costs.
+    """The best design of whole plies, standard or other listed sizes, and what rounding costs.
 
-    `cost` is how much worse the objective gets (≥ 0, in its SI unit), `percent` over the
-    continuous one; None, with `design` and `evaluation`, where nothing tried meets every
-    requirement. `plies` counts those of every layer that states its ply thickness, `tried` and
-    `feasible` count rounded designs, `solves` re-optimisations; `complete` tells that the search
-    did not stop at a limit. Bounds of the search are local optima: the best found, no proof.
+    `name` says which ("whole plies", "standard sizes"). `cost` is how much worse the objective gets
+    (≥ 0, in its SI unit), `percent` over the continuous one; None, with `design` and `evaluation`,
+    where nothing tried meets every requirement. `plies` counts those of every layer that states its
+    ply thickness, `tried` and `feasible` count rounded designs, `solves` re-optimisations;
+    `complete` tells that the search did not stop at a limit. Bounds of the search are local optima:
+    the best found, no proof.
     """
 
     met: bool
@@ -119,6 +121,7 @@ class Rounding:
     feasible: int
     solves: int
     complete: bool
+    name: str = "whole plies"
     notes: tuple[str, ...] = ()
     objective_after: float | None = None
     cost: float | None = None
@@ -147,6 +150,7 @@ class Rounding:
             for name in ("met", "remedy", "cost", "percent", "tried", "feasible", "solves")
         }
         return kept | {
+            "sizes": self.name,
             "outcome": self.sentence,
             "complete": self.complete,
             "objective": {"continuous": self.objective_before, "rounded": self.objective_after},
@@ -156,6 +160,7 @@ class Rounding:
                     "value": v.value,
                     "discrete": v.discrete,
                     "plies": v.plies,
+                    "sizes": v.sizes,
                 }
                 for v in self.variables
             },
@@ -266,13 +271,13 @@ class Optimisation:
     seconds: float
     certificate: None = None
     rounding: Rounding | None = None
-    """The best design of whole plies, where it was asked for and a continuous one exists."""
+    """The best design of listed sizes, where they are asked for and a continuous one exists."""
     choices: Choices | None = None
     """Every combination of the design's choices, where it has some."""
 
     @property
     def best(self) -> Design:
-        """The design to build: that of whole plies, where there is one."""
+        """The design to build: that of listed sizes, where there is one."""
         rounded = None if self.rounding is None else self.rounding.design
         return rounded or self.design
 

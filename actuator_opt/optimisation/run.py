@@ -19,12 +19,13 @@ from ..units import unit
 from . import prices as pricing
 from .actuator import ActuatorProblem, Fault, build
 from .choice_record import record
-from .choices import Search, Settings, search
+from .choice_sizes import Sized, best_of_sizes
+from .choices import MOST_SOLVED, Search, Settings, search
 from .infeasibility import Infeasibility as Explanation
 from .infeasibility import explain
 from .outcome import Outcome, Solution
 from .result import Choices, Infeasibility, Kkt, Optimisation, Rounding, Sensitivity, VariableResult
-from .rounding import design_at, listed_variables, rounded
+from .rounding import Wanted, design_at, rounded, sizes_of
 from .solver import solve
 
 MOST_PARAMETERS = 10
@@ -51,6 +52,7 @@ def optimise(
     prices: bool = True,
     max_seconds: float | None = None,
     whole_plies: bool = False,
+    standard_sizes: bool = False,
 ) -> Optimisation:
     """The best design of a subject.
 
@@ -64,19 +66,23 @@ def optimise(
     prices : whether to price requirements and parameters (and re-solve at ±10 %)
     max_seconds : time limit of the search; the best design so far is kept
     whole_plies : whether to look for the best design of whole plies and allowed angles too
+    standard_sizes : the same, with standard sizes of whatever has some
     """
     began = time.perf_counter()
     until = None if max_seconds is None else began + max_seconds
-    listed = listed_variables(subject.design, fault) if whole_plies else ()
+    wanted = Wanted(whole_plies, standard_sizes)
+    sizes = sizes_of(subject.design, wanted, fault)
+    sized: Sized | None = None
     choices: Choices | None = None
     if subject.design.choices:
         settings = Settings(algorithm, starts, SAMPLES, seed, until)
-        found = search(subject, settings)
+        found = search(subject, settings, MOST_SOLVED if sizes is None else 1)
+        if sizes is not None:
+            sized = best_of_sizes(found, wanted, settings)
         choices, best = record(found, subject.design), found.ranked()[0]
         if best.actuator is None or best.solution is None:
             return _enumerated(subject, found, choices, seed, began)
         actuator, solution = best.actuator, best.solution
-        listed = listed_variables(actuator.subject.design, fault) if whole_plies else ()
     else:
         actuator = build(subject, fault)
         solution = solve(
@@ -88,8 +94,10 @@ def optimise(
             max_seconds=max_seconds,
         )
     rounding: Rounding | None = None
-    if listed and solution.feasible:
-        rounding, solution = rounded(actuator, solution, listed, until=until, seed=seed)
+    if sizes is not None and solution.feasible:
+        known = None if sized is None else sized.found
+        sizes = sizes if sized is None else sized.sizes
+        rounding, solution = rounded(actuator, solution, sizes, until=until, seed=seed, found=known)
     why, solution = _explained(actuator, solution)
     design, evaluation = design_at(actuator, solution.x)
     rows: tuple[Sensitivity, ...] = ()

@@ -30,6 +30,7 @@ def optimise(
     prices: bool = True,
     max_seconds: float | None = None,
     whole_plies: bool = False,
+    standard_sizes: bool = False,
 ) -> Optimisation:
     """The best design; parameters as `optimise.run.optimise`."""
     from ..optimisation.run import optimise as run
@@ -48,6 +49,7 @@ def optimise(
         prices=prices,
         max_seconds=max_seconds,
         whole_plies=whole_plies,
+        standard_sizes=standard_sizes,
     )
 
 

@@ -1,0 +1,173 @@
+"""Re-optimise a problem near a known optimum of another one much like it.
+
+Quadratic steps with the curvature of that optimum, one evaluation each, settle most problems that
+differ in a bound, in a fixed value or in a material. Where they do not, the nearest feasible point
+is sought by shortest steps, and SLSQP goes on from it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from . import elastic, kkt, newton, nlopt_wrapper
+from .evaluator import Evaluator, Point
+from .lockstep import PATIENCE, RESTORATIONS, SETTLED
+from .problem import Vector
+from .solver import FEASIBLE, RESIDUAL
+
+STEPS = 14
+"""Most steps with the curvature of the other optimum."""
+
+MOST_STEPS = 100
+"""Most evaluations of SLSQP where these do not settle."""
+
+DOUBTFUL = 0.01
+"""Violation left up to which shortest steps may have overlooked a feasible point."""
+
+
+class Finish(NamedTuple):
+    """When steps count as settled: length of the last one, violation and residual left."""
+
+    step: float
+    violation: float
+    residual: float
+
+
+EXACT = Finish(SETTLED, 1e-11, RESIDUAL)
+"""For what is kept: the objective is first order in the violation, second in the others."""
+
+ROUGH = Finish(1e-4, 1e-7, 1e-3)
+"""For what is compared: to seven digits."""
+
+
+@dataclass(frozen=True)
+class Curvature:
+    """Scaled Hessian (n, n) of the Lagrangian at an optimum, per x of all variables."""
+
+    hessian: Vector
+    scale: float
+
+    def seen_by(self, evaluator: Evaluator, x: Vector) -> Vector:
+        """In the coordinates of the free variables of a problem, at a point of it (n,)."""
+        space = evaluator.space
+        slope = space.slope(x[:, None])[:, 0]
+        return np.asarray(self.hessian[np.ix_(space.free, space.free)] * np.outer(slope, slope))
+
+
+def curvature_at(evaluator: Evaluator, point: Point) -> Curvature | None:
+    """The curvature at an optimum; None where nothing is free."""
+    space = evaluator.space
+    if not space.size or not point.valid:
+        return None
+    state = newton.state_at(evaluator, point)
+    slope = space.slope(point.x[:, None])[:, 0]
+    hessian = newton.convex_hessian(evaluator, state) / np.outer(slope, slope)
+    full = np.zeros((len(point.x), len(point.x)))
+    full[np.ix_(space.free, space.free)] = hessian
+    return Curvature(full, state.scale)
+
+
+class Nearest(NamedTuple):
+    """The optimum near a point, or None and the least violated point met on the way.
+
+    `followed` tells that steps with the other optimum's curvature settled on it.
+    """
+
+    optimum: Point | None
+    missed: Point | None = None
+    followed: bool = False
+
+
+def resolve(
+    evaluator: Evaluator,
+    start: Point,
+    curvature: Curvature | None,
+    finish: Finish = EXACT,
+    *,
+    hopeless: bool = False,
+) -> Nearest:
+    """The optimum near a point; none where no feasible point is found near it.
+
+    Parameters
+    ----------
+    evaluator : of the problem
+    start : a point of it, as near as is known
+    curvature : of the optimum of the other problem
+    finish : when steps count as settled
+    hopeless : whether the other problem has no feasible point, and the start misses least of it
+    """
+    if evaluator.space.size == 0:
+        return Nearest(start) if _met(start) else Nearest(None, start)
+    if not start.valid:
+        return Nearest(None)
+    if curvature is not None and not hopeless:
+        found = stepped(evaluator, start, curvature, finish)
+        if found is not None:
+            return Nearest(found, followed=True)
+    inside, missed = _restored(evaluator, start, 1 if hopeless else PATIENCE)
+    if inside is None:
+        return Nearest(None, missed)
+    found = nlopt_wrapper.run(evaluator, inside, "LD_SLSQP", most=MOST_STEPS).point
+    found = newton.polish(evaluator, found, iterations=8, tolerance=1e-10)
+    return Nearest(found if _met(found) else inside)
+
+
+def stepped(
+    evaluator: Evaluator, start: Point, curvature: Curvature, finish: Finish
+) -> Point | None:
+    """The optimum that steps with the other's curvature settle on; None where they do not."""
+    space = evaluator.space
+    hessian = curvature.seen_by(evaluator, start.x)
+    if not (np.diag(hessian) > 0).all():  # what is free here was fixed there
+        return None
+    free = np.zeros(len(evaluator.problem.equality_names))
+    last, point, least = np.inf, start, np.inf
+    for iteration in range(STEPS):
+        stuck = iteration > PATIENCE and point.violation > max(0.98 * least, FEASIBLE)
+        if not point.valid or stuck:
+            return None
+        if iteration % PATIENCE == 0:
+            least = point.violation
+        if last <= finish.step and point.violation <= finish.violation:
+            return point if kkt.check(evaluator, point).residual <= finish.residual else None
+        step, _ = newton.quadratic_step(evaluator, point, curvature.scale, hessian, free)
+        longest = float(np.abs(step).max(initial=0.0))
+        if not np.isfinite(longest) or longest > 4 * max(last, 1e-3):
+            return None
+        last = longest
+        share = min(1.0, newton.RADIUS / max(longest, 1e-300))
+        point = evaluator.point(np.clip(point.z + share * step, space.lower, space.upper))
+    return None
+
+
+def _restored(evaluator: Evaluator, start: Point, patience: int) -> tuple[Point | None, Point]:
+    """A feasible point near another, by the shortest steps that meet the linearised rows.
+
+    None, and the least violated point, where the violation stops falling.
+    """
+    space, point, best, least = evaluator.space, start, start, np.inf
+    for iteration in range(RESTORATIONS):
+        if evaluator.problem.equality_names or not point.valid:
+            break
+        if point.violation <= FEASIBLE:
+            return point, point
+        best = point if point.violation < best.violation else best
+        if iteration > patience and point.violation > 0.98 * least:
+            break
+        if iteration % patience == 0:
+            least = point.violation
+        rows = kkt.active_set(evaluator, point, width=1.0)
+        step, _ = newton.quadratic_programme(
+            np.eye(space.size), np.zeros(space.size), rows.gradients, rows.margins - 1e-7
+        )
+        share = min(1.0, newton.RADIUS / max(float(np.abs(step).max(initial=0.0)), 1e-300))
+        point = evaluator.point(np.clip(point.z + share * step, space.lower, space.upper))
+    doubtful = best.violation <= DOUBTFUL or bool(evaluator.problem.equality_names)
+    return (elastic.feasible_point(evaluator, best) if doubtful else None), best
+
+
+def _met(point: Point) -> bool:
+    return point.valid and point.violation <= FEASIBLE
