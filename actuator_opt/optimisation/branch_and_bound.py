@@ -167,6 +167,14 @@ def search(
     return run.found(complete=not boxes or run.beaten(boxes[0][0]))
 
 
+def at(
+    problem: Problem, listed: Sequence[Listed], assignment: Assignment, x: Vector, memory: Memory
+) -> float | None:
+    """The objective of one assignment, re-optimised; None where it is infeasible."""
+    objective = _Run(problem, listed, x, 1, None, np.inf, memory).assigned(assignment, x)
+    return objective if objective < np.inf else None
+
+
 @dataclass
 class Memory:
     """Where the boxes of a search ended, from where those of a problem much like it are near."""

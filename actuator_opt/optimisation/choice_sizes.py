@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..errors import InputError
-from .branch_and_bound import Found, Memory, search
+from .branch_and_bound import Found, Memory, at, search
 from .choices import Search, Settings, many_starts
 from .quick_look import Look
-from .rounding import Sizes, Wanted, sizes_of
+from .rounding import RUNNERS_UP, Sizes, Wanted, sizes_of
 
 
 @dataclass(frozen=True)
@@ -25,30 +26,43 @@ class Sized:
     look: Look
     sizes: Sizes
     found: Found
+    memory: Memory
 
 
 def best_of_sizes(choices: Search, wanted: Wanted, settings: Settings) -> Sized | None:
-    """The combination with the best design of listed sizes; the winner is solved in full.
+    """The combination with the best design of listed sizes, solved from many starts.
 
-    Where no combination has any, that with the best continuous optimum; None where this one has no
-    variable with sizes.
+    Where none has any, that with the best continuous optimum; None where no variable has sizes.
 
     Raises
     ------
     InputError
         the sizes that are asked fit no combination
     """
-    first: Sized | None = None
-    best: Sized | None = None
+    searched = list(_searched(choices, wanted, settings))
+    better = [sized for sized in searched if sized.found.objective is not None]
+    winner = next(iter([*reversed(better), *searched]), None)
+    if winner is None:
+        return None
+    if better:
+        _runners_up(winner, searched)
+    if winner.look.solution is None:
+        many_starts(winner.look, settings)
+    return winner
+
+
+def _searched(choices: Search, wanted: Wanted, settings: Settings) -> Iterator[Sized]:
+    """Every combination that is worth it, searched for something better than those before."""
     error: InputError | None = None
     memories: dict[object, Memory] = {}
     mendable = choices.mendable()
+    best, count = (math.inf, math.inf), 0
     for look in choices.ranked():
         if not look.feasible or look.actuator is None or look.x is None:
             continue
+        checks = len(look.checks & mendable)
         late = settings.until is not None and time.perf_counter() > settings.until
-        worst = (len(look.checks & mendable), look.objective)
-        if late or (best is not None and worst >= _rank(best, mendable)):
+        if (count and late) or (checks, look.objective) >= best:
             break
         try:
             sizes = sizes_of(look.actuator.subject.design, wanted)
@@ -57,32 +71,35 @@ def best_of_sizes(choices: Search, wanted: Wanted, settings: Settings) -> Sized 
             continue
         if sizes is None:
             continue
-        below = (
-            float("inf") if best is None or best.found.objective is None else best.found.objective
-        )
         key = tuple((one.index, one.rows.tobytes()) for one in sizes.listed)
+        memory = memories.setdefault(key, Memory())
         found = search(
             look.actuator.problem,
             sizes.listed,
             look.x,
             until=settings.until,
-            below=math.inf if below is None else below,
-            memory=memories.setdefault(key, Memory()),
+            below=best[1],
+            memory=memory,
         )
-        sized = Sized(look, sizes, found)
-        look.sizing, look.rounded = "none found" if best is None else "none better", found.objective
-        first = first or sized
+        look.rounded, count = found.objective, count + 1
         if found.objective is not None:
-            best = sized
-    if best is None and first is None and error is not None:
+            look.sizing, best = "found", (checks, found.objective)
+        else:
+            look.sizing = "none" if best[1] == math.inf else "none better"
+        yield Sized(look, sizes, found, memory)
+    if not count and error is not None:
         raise error
-    winner = best or first
-    if winner is not None and winner.look.solution is None:
-        many_starts(winner.look, settings)
-    return winner
 
 
-def _rank(sized: Sized, mendable: frozenset[str]) -> tuple[int, float]:
-    objective = sized.found.objective
-    assert objective is not None
-    return len(sized.look.checks & mendable), objective
+def _runners_up(winner: Sized, searched: Sequence[Sized]) -> None:
+    """What the sizes of the best cost in the combinations that come next."""
+    assert winner.found.assignment is not None
+    others = [sized for sized in searched if sized.look.sizing == "none better"]
+    for sized in others[:RUNNERS_UP]:
+        look = sized.look
+        if sized.memory is not winner.memory or look.actuator is None or look.x is None:
+            continue
+        problem, listed = look.actuator.problem, sized.sizes.listed
+        objective = at(problem, listed, winner.found.assignment, look.x, sized.memory)
+        if objective is not None:
+            look.rounded, look.sizing = objective, "sizes of the best"

@@ -184,6 +184,8 @@ class Combination:
     move, "not possible" where its values contradict each other, "not tried" where the time was
     up. `feasible` tells that every requirement is met; `cost` is how much worse than the best the
     objective is (in its SI unit), `percent` over the best; None where there is nothing to compare.
+    `rounded` is the objective with listed sizes, where these are asked and some were found that are
+    better than those of the combinations before; costs then are over the best of these.
     """
 
     values: Mapping[str, choice_list.Value]
@@ -193,6 +195,7 @@ class Combination:
     objective: float | None = None
     cost: float | None = None
     percent: float | None = None
+    rounded: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """The combination in JSON (SI)."""
