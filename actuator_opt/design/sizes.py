@@ -174,7 +174,7 @@ def _paths(tree: Any) -> list[str]:
     good = []
     for path in block if isinstance(block, dict) else ():
         lower, upper = (child_at(tree, ("variables", path, key)) for key in ("lower", "upper"))
-        if not isinstance(lower, float) or not isinstance(upper, float) or lower >= upper:
+        if not isinstance(lower, float) or not isinstance(upper, float) or lower > upper:
             continue
         try:
             target = resolve(path, tree)

@@ -369,7 +369,7 @@ class _Run:
         evaluator = Evaluator(replace(self.problem, lower=least, upper=most, start=None))
         evaluator.complex_works = self.reference.complex_works
         evaluator.difference_rows = self.reference.difference_rows
-        evaluator.eager = True
+        evaluator.eager = evaluator.space.size > 0
         return evaluator.point(evaluator.space.to_z(np.clip(near, least, most))), evaluator
 
     def _descended(

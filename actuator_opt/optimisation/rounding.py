@@ -21,7 +21,8 @@ from ..design.sizes import groups
 from ..errors import Diagnostic, InputError
 from ..evaluation import Evaluation, evaluate, prepare
 from .actuator import ActuatorProblem, Fault
-from .branch_and_bound import SAME, Found, Listed, search
+from .branch_and_bound import Found, search
+from .listed import SAME, Listed
 from .outcome import Solution
 from .problem import Vector
 from .result import Optimisation, RoundedVariable, Rounding, RunnerUp
