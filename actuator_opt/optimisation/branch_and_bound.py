@@ -13,13 +13,13 @@ import itertools
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
 
 import numpy as np
 
 from ..numeric import Array
 from . import lockstep, nearby
 from .evaluator import Evaluator, Point
+from .listed import ON, Assignment, Box, Listed, between, with_rows
 from .problem import ParametricProblem, Problem, Values, Vector
 
 MOST_SOLVES = 400
@@ -28,77 +28,8 @@ MOST_SOLVES = 400
 MOST_NEIGHBOURS = 256
 """Most roundings up and down tried at once: all of them up to eight listed variables."""
 
-ON = 1e-7
-"""Distance from a listed value, over that to the next one, that counts as none."""
-
-SAME = 1e-9
-"""Relative difference of objectives that counts as none."""
-
-Rows: TypeAlias = tuple[int, ...]
-"""Some rows of a group of listed variables, ascending."""
-
 CLOSE = 1e-7
 """Relative difference to a bound that counts as none: bounds are known so well."""
-
-Box: TypeAlias = tuple[Rows, ...]
-"""The rows of every group that are left."""
-
-Assignment: TypeAlias = tuple[int, ...]
-"""A row of every group."""
-
-
-@dataclass(frozen=True, eq=False)
-class Listed:
-    """A group of variables that may only take listed values, those of a row together.
-
-    Parameters
-    ----------
-    index : of the variables (k,)
-    rows : values (c, k) within their bounds, all different
-    """
-
-    index: tuple[int, ...]
-    rows: Vector
-
-    def values(self, column: int, rows: Rows) -> Vector:
-        """The different values of a column in some rows, ascending."""
-        return np.unique(self.rows[list(rows), column])
-
-    def parts(self, rows: Rows, row: int) -> list[Rows]:
-        """The other rows, in parts that one bound of one variable tells from this row."""
-        parts: list[Rows] = []
-        for column, value in enumerate(self.rows[row]):
-            of = self.rows[:, column]
-            parts += [
-                tuple(k for k in rows if of[k] < value),
-                tuple(k for k in rows if of[k] > value),
-            ]
-            rows = tuple(k for k in rows if of[k] == value)
-        return [part for part in parts if part]
-
-    def at(self, x: Vector, rows: Rows) -> int | None:
-        """The row that a point (k,) is at; None where it is at none."""
-        span = np.ptp(self.rows, axis=0)
-        near = np.abs(self.rows[list(rows)] - x) <= ON * span + SAME * np.abs(x)
-        found = np.flatnonzero(near.all(axis=1))
-        return rows[int(found[0])] if len(found) else None
-
-    def around(self, x: Vector) -> list[int]:
-        """The nearest rows of a point (k,) for every choice of up and down; itself if it is one."""
-        every = tuple(range(len(self.rows)))
-        here = self.at(x, every)
-        if here is not None:
-            return [here]
-        span = np.ptp(self.rows, axis=0)
-        off = (self.rows - x) / np.where(span > 0, span, 1.0)
-        distance = np.abs(off).sum(axis=1)
-        found = []
-        for sides in itertools.product((1, -1), repeat=len(x)):
-            there = np.flatnonzero((off * sides >= -ON).all(axis=1))
-            if len(there):
-                found.append(int(there[distance[there].argmin()]))
-        found = found or [int(distance.argmin())]
-        return sorted(dict.fromkeys(found), key=lambda row: float(distance[row]))
 
 
 @dataclass
@@ -326,7 +257,7 @@ class _Run:
         for k, (one, rows) in enumerate(zip(self.listed, box, strict=True)):
             for column, index in enumerate(one.index):
                 values = one.values(column, rows)
-                below, above, share = _between(values, float(x[index]))
+                below, above, share = between(values, float(x[index]))
                 if share > widest:
                     of = one.rows[:, column]
                     widest = share
@@ -336,7 +267,7 @@ class _Run:
                     ]
                     halves = k, parts if x[index] - below > above - x[index] else parts[::-1]
         if halves is not None:  # the nearer one last
-            return [_with(box, halves[0], tuple(half)) for half in halves[1]]
+            return [with_rows(box, halves[0], tuple(half)) for half in halves[1]]
         found = [
             one.at(x[list(one.index)], rows) for one, rows in zip(self.listed, box, strict=True)
         ]
@@ -344,15 +275,15 @@ class _Run:
             k = found.index(None)
             one, rows = self.listed[k], box[k]
             nearest = min(rows, key=lambda r: float(np.abs(one.rows[r] - x[list(one.index)]).sum()))
-            return [_with(box, k, part) for part in [*one.parts(rows, nearest), (nearest,)]]
+            return [with_rows(box, k, part) for part in [*one.parts(rows, nearest), (nearest,)]]
         assignment = tuple(row for row in found if row is not None)
         room = CLOSE * abs(objective)
         if self.assigned(assignment, x) <= objective + room:
             return []  # nothing else in the box can be better
         left = []
         for k, row in enumerate(assignment):
-            left += [_with(box, k, part) for part in self.listed[k].parts(box[k], row)]
-            box = _with(box, k, (row,))
+            left += [with_rows(box, k, part) for part in self.listed[k].parts(box[k], row)]
+            box = with_rows(box, k, (row,))
         return left
 
     def found(self, *, complete: bool) -> Found:
@@ -384,18 +315,3 @@ class _Run:
         near_it = nearby.resolve(evaluator, start, curvature, finish, hopeless=hopeless)
         self.memory.note(box, evaluator, near_it)
         return near_it.optimum
-
-
-def _with(box: Box, k: int, rows: Rows) -> Box:
-    """A box with other rows of one group."""
-    return (*box[:k], rows, *box[k + 1 :])
-
-
-def _between(values: Vector, value: float) -> tuple[float, float, float]:
-    """The values below and above another, and how far it is from both (0 to 0.5)."""
-    if len(values) == 1:
-        return float(values[0]), float(values[0]), 0.0
-    k = int(np.clip(np.searchsorted(values, value), 1, len(values) - 1))
-    low, high = float(values[k - 1]), float(values[k])
-    share = min(value - low, high - value) / (high - low)
-    return low, high, max(share, 0.0)
