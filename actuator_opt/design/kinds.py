@@ -352,7 +352,7 @@ class Sizes(Kind):
         """The name, or the values in SI."""
         if isinstance(value, str):
             return value
-        if not isinstance(value, (list, tuple)) or not all(isinstance(x, float) for x in value):
+        if not isinstance(value, (list, tuple)):  # faults of entries are found where units are
             raise ValueFault(f"need sizes, not {what(value)}", "write a series, or a list")
         return tuple(value)
 

@@ -188,13 +188,18 @@ def _paths(tree: Any) -> list[str]:
 def _rule(view: View, path: str, plies: bool, standard: bool) -> _Rule | None:
     """How a variable gets its sizes: as the file says, else as is asked; None where it is free."""
     sizes, step = (child_at(view.tree, ("variables", path, key)) for key in ("sizes", "step"))
-    if isinstance(step, float) and step > 0:
+    lower, upper = _bounds(view, path)
+    if isinstance(step, float):
+        if (upper - lower) > step * MOST_SIZES:
+            return None  # a fault already
         quantity = resolve(path, view.tree).quantity
         assert quantity is not None
         return _Rule(path, f"steps of {quantity.text(step)}", f"multiple of {quantity.text(step)}",
-                     lambda _: _multiples(step, _bounds(view, path)))  # fmt: skip
+                     lambda _: _multiples(step, (lower, upper)))  # fmt: skip
     if isinstance(sizes, (list, tuple)):
         values = sorted(value for value in sizes if isinstance(value, float))
+        if not values or len(values) < len(sizes):
+            return None  # a fault already
         return _Rule(path, "own list", "size of the list", lambda _: values)
     if isinstance(sizes, str):
         series = SERIES.get(sizes)
@@ -266,7 +271,7 @@ def _group(view: View, members: Sequence[_Rule]) -> Group:
                     wider.append((*row, min(max(value, lower), upper)))
         if not wider:
             raise _none_fits(view, rule, sorted(seen))
-        if len(wider) > MOST_SIZES:
+        if len(rows) > 1 and len(wider) > MOST_SIZES:
             message = f"{len(wider)} sizes go together with those of {rule.parent}: too many"
             raise _NoSize(rule.path, message, f"narrow the bounds, for at most {MOST_SIZES}")
         rows = wider

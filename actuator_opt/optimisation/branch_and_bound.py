@@ -28,6 +28,9 @@ MOST_SOLVES = 400
 MOST_NEIGHBOURS = 256
 """Most roundings up and down tried at once: all of them up to eight listed variables."""
 
+MOST_MISSED = 4
+"""Most assignments looked at closely to say what the nearest one misses."""
+
 CLOSE = 1e-7
 """Relative difference to a bound that counts as none: bounds are known so well."""
 
@@ -42,6 +45,8 @@ class Found:
     tried : objective of each assignment, infinite where none was feasible
     solves : re-optimisations, of boxes and of assignments
     complete : whether the search ended by itself, not at a limit
+    nearest, missed : where nothing feasible was found: the assignment that misses least of those
+        looked at closely, and the point where it does
     """
 
     x: Vector | None
@@ -50,6 +55,8 @@ class Found:
     tried: dict[Assignment, float]
     solves: int
     complete: bool
+    nearest: Assignment | None = None
+    missed: Point | None = None
 
 
 def search(
@@ -130,7 +137,7 @@ class Memory:
         if found.optimum is not None and not (found.followed and box in self.ends):
             self.ends[box] = evaluator, found.optimum
             self.curvatures.pop(box, None)
-        elif found.missed is not None and found.missed.violation > nearby.DOUBTFUL:
+        elif found.optimum is None and found.missed is not None:
             self.missed.setdefault(box, found.missed.x)
 
 
@@ -290,8 +297,27 @@ class _Run:
         """What the search comes to."""
         best = self.confirmed()
         if best is None:
-            return Found(None, None, None, self.tried, self.solves, complete)
+            nearest, missed = (None, None) if self.below < np.inf else self.nearest()
+            return Found(None, None, None, self.tried, self.solves, complete, nearest, missed)
         return Found(self.points[best], self.tried[best], best, self.tried, self.solves, complete)
+
+    def nearest(self) -> tuple[Assignment, Point] | tuple[None, None]:
+        """The assignment that misses least of the first ones, and the point where it does."""
+        found = []
+        for assignment in list(self.tried)[:MOST_MISSED]:
+            box = tuple((row,) for row in assignment)
+            values = self.values(assignment)
+            point, _ = self._within(values, values, self.memory.missed.get(box, self.x))
+            if box not in self.memory.missed and point.valid and not self.exhausted:
+                self.assigned(assignment, self.x)
+                near = self.memory.missed.get(box, self.x)
+                point, _ = self._within(values, values, near)
+            if point.valid:
+                found.append((point.violation, assignment, point))
+        if not found:
+            return None, None
+        _, assignment, point = min(found, key=lambda one: one[0])
+        return assignment, point
 
     def _within(self, lower: Vector, upper: Vector, near: Vector) -> tuple[Point, Evaluator]:
         """The problem with the listed variables in bounds, and its point nearest to another."""

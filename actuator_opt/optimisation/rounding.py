@@ -22,7 +22,7 @@ from ..errors import Diagnostic, InputError
 from ..evaluation import Evaluation, evaluate, prepare
 from .actuator import ActuatorProblem, Fault
 from .branch_and_bound import Found, search
-from .listed import SAME, Listed
+from .listed import SAME, Assignment, Listed
 from .outcome import Solution
 from .problem import Vector
 from .result import Optimisation, RoundedVariable, Rounding, RunnerUp
@@ -30,6 +30,9 @@ from .solver import solve
 
 RUNNERS_UP = 3
 """Next best designs reported."""
+
+MOST_SAID = 4
+"""Most sizes named in a sentence."""
 
 _OF_PLIES = ("whole plies", "allowed angles")
 
@@ -208,7 +211,8 @@ def _rounding(
         met=False,
         sentence=f"no design of {sizes.name} that meets every requirement was "
         f"found among {len(found.tried)} tried"
-        + ("" if found.complete else ", when the search stopped at its limit"),
+        + ("" if found.complete else ", when the search stopped at its limit")
+        + _nearest(actuator, sizes, found),
         remedy=f"{_FINER[sizes.name]}, widen the bounds of these variables, or relax a requirement",
         name=sizes.name,
         objective_before=shown(solution.objective),
@@ -237,6 +241,33 @@ def _rounding(
         design=design,
         evaluation=evaluation,
     )
+
+
+def _nearest(actuator: ActuatorProblem, sizes: Sizes, found: Found) -> str:
+    """What the nearest sizes miss, where nothing was found."""
+    if found.nearest is None or found.missed is None or found.missed.violation <= 0:
+        return ""
+    margins = found.missed.rows[1 : 1 + len(actuator.problem.constraint_names)]
+    worst = actuator.problem.constraint_names[int(np.argmin(margins))]
+    said = [
+        f"{path} {quantity_of(path, actuator.subject.design).text(value)}"
+        for path, value in _chosen(actuator, sizes.listed, found.nearest).items()
+    ]
+    if len(said) > MOST_SAID:
+        said = [*said[:MOST_SAID], "…"]
+    by = 100 * found.missed.violation
+    return f"; the nearest, {', '.join(said)}, misses {worst} by {by:.2g} %"
+
+
+def _chosen(
+    actuator: ActuatorProblem, listed: Sequence[Listed], assignment: Assignment
+) -> dict[str, float]:
+    """The listed variables of an assignment by PATH."""
+    return {
+        actuator.paths[index]: float(value)
+        for one, row in zip(listed, assignment, strict=True)
+        for index, value in zip(one.index, one.rows[row], strict=True)
+    }
 
 
 _FINER = {
@@ -309,11 +340,7 @@ def _runners_up(
     rows = []
     for objective, assignment in others[:RUNNERS_UP]:
         cost = _cost(objective, solution)
-        values = {
-            actuator.paths[index]: float(value)
-            for one, row in zip(listed, assignment, strict=True)
-            for index, value in zip(one.index, one.rows[row], strict=True)
-        }
+        values = _chosen(actuator, listed, assignment)
         shown = actuator.goal.shown(objective)
         rows.append(RunnerUp(shown, cost, _percent(cost, solution), values))
     return tuple(rows)
