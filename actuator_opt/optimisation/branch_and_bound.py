@@ -97,7 +97,10 @@ def search(
             break
         else:
             _, _, box, near = heapq.heappop(boxes)
-        objective, near = run.relaxed(box, near)
+        if remembered and box == whole:
+            objective, near = run.start.objective, run.x
+        else:
+            objective, near = run.relaxed(box, near)
         if objective is None or run.beaten(objective):
             continue
         for part in run.parts(box, near, objective):
@@ -160,7 +163,7 @@ class _Run:
     def __post_init__(self) -> None:
         self.index = np.concatenate([one.index for one in self.listed]).astype(np.intp)
         self.reference = Evaluator(self.problem)
-        start = self.reference.point(self.reference.space.to_z(self.x))
+        self.start = start = self.reference.point(self.reference.space.to_z(self.x))
         self.x = start.x
         if self.memory.curvature is None and start.valid and self.reference.space.size:
             self.reference.check_gradients(start)
@@ -338,6 +341,9 @@ class _Run:
         hopeless = known is None and box in self.memory.missed
         x, curvature = known or (self.memory.missed.get(box, near), self.memory.curvature)
         start, evaluator = self._within(lower, upper, x)
-        near_it = nearby.resolve(evaluator, start, curvature, finish, hopeless=hopeless)
+        above = self.best if finish is nearby.ROUGH else np.inf
+        near_it = nearby.resolve(
+            evaluator, start, curvature, finish, hopeless=hopeless, above=above
+        )
         self.memory.note(box, evaluator, near_it)
         return near_it.optimum

@@ -72,7 +72,7 @@ def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
 
 
 _SIZING = {
-    "found": "the best with listed sizes so far",
+    "found": "the best of its listed sizes",
     "sizes of the best": "with the sizes of the best",
     "none better": "none better with listed sizes",
     "none": "none with listed sizes",

@@ -42,6 +42,12 @@ EXACT = Finish(SETTLED, 1e-11, RESIDUAL)
 ROUGH = Finish(1e-4, 1e-7, 1e-3)
 """For what is compared: to seven digits."""
 
+NEAR = Finish(0.02, 1e-3, np.inf)
+"""For what is clearly worse than what is known, by `WORSE`."""
+
+WORSE = 0.02
+"""Relative loss of the objective that is more than what `NEAR` leaves open."""
+
 
 @dataclass(frozen=True)
 class Curvature:
@@ -88,6 +94,7 @@ def resolve(
     finish: Finish = EXACT,
     *,
     hopeless: bool = False,
+    above: float = np.inf,
 ) -> Nearest:
     """The optimum near a point; none where no feasible point is found near it.
 
@@ -98,13 +105,14 @@ def resolve(
     curvature : of the optimum of the other problem
     finish : when steps count as settled
     hopeless : whether the other problem has no feasible point, and the start misses least of it
+    above : an optimum clearly worse than this objective need not be reached
     """
     if evaluator.space.size == 0:
         return Nearest(start) if _met(start) else Nearest(None, start)
     if not start.valid:
         return Nearest(None)
     if curvature is not None and not hopeless:
-        found = stepped(evaluator, start, curvature, finish)
+        found = stepped(evaluator, start, curvature, finish, above)
         if found is not None:
             return Nearest(found, followed=True)
     inside, missed = _restored(evaluator, start, 1 if hopeless else PATIENCE)
@@ -116,9 +124,17 @@ def resolve(
 
 
 def stepped(
-    evaluator: Evaluator, start: Point, curvature: Curvature, finish: Finish
+    evaluator: Evaluator,
+    start: Point,
+    curvature: Curvature,
+    finish: Finish,
+    above: float = np.inf,
 ) -> Point | None:
-    """The optimum that steps with the other's curvature settle on; None where they do not."""
+    """The optimum that steps with the other's curvature settle on; None where they do not.
+
+    Steps that come near an optimum clearly worse than `above` end there.
+    """
+    clearly = above + WORSE * abs(above) if above < np.inf else np.inf
     space = evaluator.space
     hessian = curvature.seen_by(evaluator, start.x)
     if not (np.diag(hessian) > 0).all():  # what is free here was fixed there
@@ -133,6 +149,8 @@ def stepped(
             least = point.violation
         if last <= finish.step and point.violation <= finish.violation:
             return point if kkt.check(evaluator, point).residual <= finish.residual else None
+        if last <= NEAR.step and point.violation <= NEAR.violation and point.objective > clearly:
+            return point
         step, _ = newton.quadratic_step(evaluator, point, curvature.scale, hessian, free)
         longest = float(np.abs(step).max(initial=0.0))
         if not np.isfinite(longest) or longest > 4 * max(last, 1e-3):
