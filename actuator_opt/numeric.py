@@ -41,7 +41,8 @@ def real(value: Array) -> Array:
 def where(condition: Array, yes: Array, no: Array) -> Array:
     """Elementwise choice; `condition` must come from real parts."""
     if type(condition) is np.ndarray:  # the common case, kept short: models call this most
-        return np.where(condition, yes, no)
+        found = np.where(condition, yes, no)
+        return found.item() if found.dtype.hasobject else found  # a traced value stands alone
     if isinstance(condition, (bool, np.bool_)):
         return yes if condition else no
     return namespace(condition, yes, no).where(condition, yes, no)

@@ -6,8 +6,9 @@ load: `Beam.under`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from ..design.model import Design
 from ..models import beam_column, column, stepped
@@ -50,6 +51,16 @@ class Beam:
         return bent + self.moment * (share - near) / (1 - NEAR) ** 2
 
 
+def lengths(g: Geometry, state: State) -> tuple[Array, Array]:
+    """Lengths of the cylinder, and of the rod outside it, from eye to eye."""
+    cylinder = g.eye_offset + 2 * g.plate + g.barrel_length
+    return cylinder, maximum(state.reach + g.rod_extension + g.eye_offset, LEAST)
+
+
+CriticalLoad: TypeAlias = Callable[[Design, Wall, Rod, tuple[Array, Array]], Array]
+"""Critical load of a design from wall, rod and the lengths of cylinder and rod outside it."""
+
+
 def derive(
     v: Values,
     design: Design,
@@ -58,18 +69,19 @@ def derive(
     wall: Wall,
     rod: Rod,
     parts: Mapping[str, Array],
+    *,
+    critical_load: CriticalLoad,
 ) -> Beam:
     """Column and beam at the position of every case; the actuator lies horizontally (a choice)."""
-    cylinder = g.eye_offset + 2 * g.plate + g.barrel_length
-    exposed = maximum(state.reach + g.rod_extension + g.eye_offset, LEAST)
-    own = _weight(v, design, g, state, rod, parts, (cylinder, exposed))
+    segments = lengths(g, state)
+    own = _weight(v, design, g, state, rod, parts, segments)
     return Beam(
-        critical=_critical_load(design, wall, rod, (cylinder, exposed)),
+        critical=critical_load(design, wall, rod, segments),
         moment=own + state.side_load * overhang(g, state),
     )
 
 
-def _critical_load(design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]) -> Array:
+def critical_load(design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]) -> Array:
     """Column of barrel and rod, or of the rod alone where the head is held; gives in shear too."""
     mount = design.cylinder.mount
     if mount.startswith("head"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -113,15 +113,96 @@ class Base:
     rings: tuple[Ring, ...]
 
 
-def base(subject: Subject, v: Values) -> Base:
+@dataclass(frozen=True, slots=True)
+class Implicit:
+    """The models that are no closed expression of the dimensions: a bound puts its own there."""
+
+    wall: Callable[[Values, Design, Stock, Geometry, State], Wall] = barrel_module.compute
+    critical_load: beam_module.CriticalLoad = beam_module.critical_load
+
+
+IMPLICIT = Implicit()
+
+
+def base(subject: Subject, v: Values, implicit: Implicit = IMPLICIT) -> Base:
     """Dimensions, state, wall and seals of the designs in `v`."""
     design = subject.design
     stock = Stock(v, subject.materials, subject.factors, subject.constants)
     g = geometry_module.derive(v, design)
     case_state = state.derive(v, design, stock, g)
-    wall = barrel_module.compute(v, design, stock, g, case_state)
+    wall = implicit.wall(v, design, stock, g, case_state)
     rings = rings_module.rings(v, design, stock, g, case_state, wall.case_growth)
     return Base(stock, g, case_state, wall, rings)
+
+
+@dataclass(frozen=True, slots=True)
+class Statics:
+    """Everything but where along the stroke the actuator is softest, and what moves."""
+
+    base: Base
+    rod: Rod
+    mass_parts: dict[str, Array]
+    breakaway: Array
+    branches: dict[circuit.Chamber, circuit.Branch]
+    springs: springs.Springs
+    moving: Array
+    """Mass that moves with the rod, the load's included."""
+    beam: Beam
+    damping: Array
+    """Of the oil and the seals, incremental."""
+    leakage: Array
+
+
+def statics(subject: Subject, v: Values, out: Computed, implicit: Implicit = IMPLICIT) -> Statics:
+    """Every metric that needs no search along the stroke, put into `out`."""
+    design = subject.design
+    found = base(subject, v, implicit)
+    stock, g, case_state = found.stock, found.geometry, found.state
+    barrel, rings = found.wall, found.rings
+    oil_range.compute(design.fluid, stock, case_state, out)
+    out.put("bore_growth", barrel.growth)
+    tables = _films(subject)
+    there, back = (sealing.films_of(tables, rings, stroke, len(v.cases)) for stroke in STROKES)
+    friction = sealing.compute(v, design, stock, g, case_state, barrel, rings, there, out)
+    sealing.compute_film(g, case_state, there, back, out)
+    net = _forces(g, case_state, friction, out)
+    joint.compute(design, case_state.joint, case_state.positions, net, out)
+    rod = rods.derive(v, design, stock, g)
+    parts = weight.parts(v, design, g, rod)
+    out.put("mass", sum(parts.values()))
+    out.put("mass_oil", weight.oil(v, design, g))
+    branches = circuit.branches(v, design, case_state)
+    budget = springs.springs(v, design, g, case_state, barrel, rod, friction.breakaway, branches)
+    damping = hydraulics.compute_damping(g, case_state, friction, out)
+    leakage = hydraulics.compute_leakage(v, design, g, case_state, there.get("piston seal"), out)
+    hydraulics.compute_flow(v, design, g, case_state, out)
+    beam = beam_module.derive(
+        v, design, g, case_state, barrel, rod, parts, critical_load=implicit.critical_load
+    )
+    strength.compute(v, design, stock, g, case_state, barrel, rod, beam, out)
+    stop = joint.at_stop(case_state.asked, case_state.push)
+    stop = replace(stop, mass=_moving(stop.mass, parts))
+    duty.compute(v, design, stock, g, case_state, barrel, rod, stop, net, out)
+    thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
+    for name, value in geometry_module.lands(g, thread / 2).items():
+        out.put(name, value)
+    if not g.rod_thicknesses:
+        out.skip("geometry_rod_bore", "the rod has no layers")
+    _manufacture(v, subject, out)
+    out.put("barrel_length", g.barrel_length)
+    out.put("closed_length", g.closed_length)
+    return Statics(
+        base=found,
+        rod=rod,
+        mass_parts=parts,
+        breakaway=friction.breakaway,
+        branches=branches,
+        springs=budget,
+        moving=_moving(case_state.asked[joint.WORST].mass, parts),
+        beam=beam,
+        damping=damping,
+        leakage=leakage,
+    )
 
 
 def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -> Pass:
@@ -132,51 +213,29 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
     design = subject.design
     with np.errstate(all="ignore"):
         out = Computed()
-        found = base(subject, v)
-        stock, g, case_state = found.stock, found.geometry, found.state
-        barrel, rings = found.wall, found.rings
-        oil_range.compute(design.fluid, stock, case_state, out)
-        out.put("bore_growth", barrel.growth)
-        tables = _films(subject)
-        there, back = (sealing.films_of(tables, rings, stroke, len(v.cases)) for stroke in STROKES)
-        friction = sealing.compute(v, design, stock, g, case_state, barrel, rings, there, out)
-        sealing.compute_film(g, case_state, there, back, out)
-        net = _forces(g, case_state, friction, out)
-        joint.compute(design, case_state.joint, case_state.positions, net, out)
-        rod = rods.derive(v, design, stock, g)
-        parts = weight.parts(v, design, g, rod)
-        out.put("mass", sum(parts.values()))
-        out.put("mass_oil", weight.oil(v, design, g))
-        branches = circuit.branches(v, design, case_state)
-        budget = springs.springs(
-            v, design, g, case_state, barrel, rod, friction.breakaway, branches
+        s = statics(subject, v, out)
+        case_state = s.base.state
+        weakest = springs.compute(s.springs, s.moving, out)
+        _at_stops(v, design, s.base, s.rod, s.breakaway, s.mass_parts, out)
+        linear = motion.derive(
+            v, design, case_state, s.springs, s.branches, s.moving, s.damping, s.leakage
         )
-        moving = _moving(case_state.asked[joint.WORST].mass, parts)
-        weakest = springs.compute(budget, moving, out)
-        _at_stops(v, design, found, rod, friction.breakaway, parts, out)
-        damping = hydraulics.compute_damping(g, case_state, friction, out)
-        across = there.get("piston seal")
-        leakage = hydraulics.compute_leakage(v, design, g, case_state, across, out)
-        linear = motion.derive(v, design, case_state, budget, branches, moving, damping, leakage)
         places = motion.compute(v, design, linear, wanted, out)
-        hydraulics.compute_flow(v, design, g, case_state, out)
-        beam = beam_module.derive(v, design, g, case_state, barrel, rod, parts)
-        strength.compute(v, design, stock, g, case_state, barrel, rod, beam, out)
-        stop = joint.at_stop(case_state.asked, case_state.push)
-        stop = replace(stop, mass=_moving(stop.mass, parts))
-        duty.compute(v, design, stock, g, case_state, barrel, rod, stop, net, out)
-        thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
-        for name, value in geometry_module.lands(g, thread / 2).items():
-            out.put(name, value)
-        if not g.rod_thicknesses:
-            out.skip("geometry_rod_bore", "the rod has no layers")
-        _manufacture(v, subject, out)
-        out.put("barrel_length", g.barrel_length)
-        out.put("closed_length", g.closed_length)
         for plugin in subject.plugins:
             out.put(plugin.name, plugin.call(v, out.metrics))
     return Pass(
-        out, g, case_state, barrel, rings, rod, beam, budget, linear, weakest, places, parts
+        computed=out,
+        geometry=s.base.geometry,
+        state=case_state,
+        wall=s.base.wall,
+        rings=s.base.rings,
+        rod=s.rod,
+        beam=s.beam,
+        springs=s.springs,
+        motion=linear,
+        weakest=weakest,
+        places=places,
+        mass_parts=s.mass_parts,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, Final, TypeAlias
 
 Bounds: TypeAlias = tuple[float, float]
@@ -46,18 +47,51 @@ def bounds(op: str, args: tuple[Any, ...]) -> Bounds:
 
 
 def _of_function(op: str, args: tuple[Any, ...]) -> Bounds:
-    if op == "sqrt":
-        low, high = (max(one, 0.0) for one in bounds_of(args[0]))
-        return math.sqrt(low), math.sqrt(high)
-    if op == "exp":
-        return 0.0, math.inf
+    """Bounds of a function of one number, and of a power by a number."""
+    if op in _RISING:
+        domain, function = _RISING[op]
+        low, high = bounds_of(args[0])
+        return _at(function, max(low, domain)), _at(function, max(high, domain))
     if op == "pow" and bounds_of(args[0])[0] >= 0:
-        return 0.0, math.inf
-    if op == "expm1":
-        return -1.0, math.inf
-    if op in ("tanh", "sin", "cos"):
-        return -1.0, 1.0
+        low, high = (_at(lambda x: x ** args[1], end) for end in bounds_of(args[0]))
+        return (low, high) if args[1] > 0 else (high, low)
+    if op in ("sin", "cos"):
+        return _of_wave(op, *bounds_of(args[0]))
     return ANY
+
+
+_RISING: Final[dict[str, tuple[float, Callable[[float], float]]]] = {
+    "sqrt": (0.0, math.sqrt),
+    "exp": (-math.inf, math.exp),
+    "expm1": (-math.inf, math.expm1),
+    "log": (0.0, math.log),
+    "log1p": (-1.0, math.log1p),
+    "tanh": (-math.inf, math.tanh),
+}
+"""Rising functions, with the least argument they have."""
+
+
+def _at(function: Callable[[float], float], value: float) -> float:
+    """A function at an end of its range; without an end where it has none."""
+    try:
+        return function(value)
+    except OverflowError:
+        return math.inf
+    except (ValueError, ZeroDivisionError):  # a logarithm or a negative power of zero
+        return math.inf if function(1.0) == 1.0 else -math.inf
+
+
+def _of_wave(op: str, low: float, high: float) -> Bounds:
+    """Bounds of a sine or cosine over an interval."""
+    if not high - low < 2 * math.pi:
+        return -1.0, 1.0
+    shift = 0.0 if op == "cos" else 0.5 * math.pi
+    low, high = low - shift, high - shift
+    ends = (math.cos(low), math.cos(high))
+    crests = math.floor(high / (2 * math.pi)) - math.ceil(low / (2 * math.pi)) >= 0
+    half = math.pi
+    hollows = math.floor((high - half) / (2 * half)) - math.ceil((low - half) / (2 * half)) >= 0
+    return (-1.0 if hollows else min(ends)), (1.0 if crests else max(ends))
 
 
 def _product(a: float, b: float) -> float:

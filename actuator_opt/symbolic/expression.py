@@ -14,7 +14,7 @@ from functools import partial
 from types import SimpleNamespace
 from typing import Any, Final, TypeAlias
 
-from .bounds import Bounds, bounds, bounds_of
+from .bounds import ANY, Bounds, bounds, bounds_of
 
 Expression: TypeAlias = Any
 """A symbol, or the number it is known to be."""
@@ -43,9 +43,11 @@ class Graph:
     slopes: dict[int, int] = field(default_factory=dict)
     """Number of the function that is the slope of another."""
 
-    def variable(self, name: str) -> Symbol:
-        """A free number, as `name` in the code."""
-        return self.node("variable", (name,))
+    def variable(self, name: str, limits: Bounds = ANY) -> Symbol:
+        """A free number, as `name` in the code, between its limits."""
+        found = self.node("variable", (name,))
+        found.bounds = limits
+        return found
 
     def flag(self, name: str) -> Symbol:
         """A free truth value that does not change between two restarts of an integration."""
@@ -176,7 +178,7 @@ def _number(value: Any) -> Any:
     if isinstance(value, (int, float)):  # of NumPy as well
         return float(value)
     plain = value.item()  # of NumPy
-    return plain if isinstance(plain, bool) else float(plain)
+    return plain if isinstance(plain, (bool, Symbol)) else float(plain)
 
 
 def _graph(*values: Any) -> Graph:

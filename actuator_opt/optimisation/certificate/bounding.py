@@ -1,0 +1,269 @@
+"""The convex problem of one box: the least objective of its relaxation.
+
+A linear programme: the convex side of every curve is a set of tangents, added where the solution
+misses the curve [Kelley1960] and good in every box; the other side is the chord over the box. The
+bound is computed from the multipliers alone, so that it holds whatever the solver's tolerances
+[Neumaier2004].
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import highspy
+import numpy as np
+import scipy.sparse as sp
+
+from ..problem import Vector
+from .box import FAR, Box, Layout
+from .signomial import Form
+
+WIDEST = 40.0
+"""Widest range of an argument that gets a chord; beyond it the chord says nothing."""
+
+ROUNDS = 12
+"""Most rounds of tangents in one box."""
+
+MISSED = 1e-5
+"""Distance from a curve at which a tangent is added."""
+
+MOST = 5
+"""Lines per curve beyond which those that do not touch are forgotten."""
+
+
+class Bound(NamedTuple):
+    """Least objective of a box (its logarithm), and where the relaxation is loose there."""
+
+    value: float
+    atoms: Vector
+    directions: Vector
+    excess: Vector
+    """By how much every curve is missed on the side of its chord."""
+    price: Vector
+    """Multiplier of every chord."""
+
+
+class Bounding:
+    """The relaxation as one linear programme, solved again for every box.
+
+    Columns: atoms, directions, curves. Rows: definitions of directions and curves, limits; then
+    lines, each between a direction and a curve: one chord per curve, and the tangents.
+    """
+
+    def __init__(self, layout: Layout, objective: Form) -> None:
+        self.layout = layout
+        atoms, ratios, curves = layout.atoms, layout.directions, layout.curves
+        self.columns = atoms + ratios + curves
+        self.ratios = slice(atoms, atoms + ratios)
+        self.ratio = (atoms + layout.direction).astype(np.int32)
+        self.out = atoms + ratios + np.arange(curves, dtype=np.int32)
+        self.cost = np.zeros(self.columns)
+        for i, power in objective.powers:
+            self.cost[i] = power
+        self.constant = objective.constant
+        self.matrix, self.low, self.high = self._definitions()
+        none = np.zeros(curves)
+        self.lines = _Lines(self.ratio, none, self.out, none - np.inf, none + np.inf)
+        self.solver = self._solver()
+
+    def _definitions(self) -> tuple[Any, Vector, Vector]:
+        """Outs and directions by their atoms; rows at least zero."""
+        layout = self.layout
+        defined = layout.curves + layout.directions
+        columns = np.concatenate([self.out, np.arange(layout.atoms, layout.atoms + layout.directions)])
+        rows = np.concatenate([layout.form, np.arange(defined)])
+        places = np.concatenate([layout.atom, columns])
+        values = np.concatenate([layout.power, np.full(defined, -1.0)])
+        count = len(layout.levels)
+        matrix = sp.csr_matrix((values, (rows, places)), shape=(count, self.columns))
+        high = -layout.levels.copy()
+        high[defined:] = np.inf
+        return matrix, -layout.levels, high
+
+    def _solver(self) -> highspy.Highs:
+        """The programme without bounds and chords, which follow the box."""
+        solver, m = highspy.Highs(), self.matrix
+        for name, value in _OPTIONS.items():
+            solver.setOptionValue(name, value)
+        none, index = np.empty(0), np.empty(0, dtype=np.int32)
+        ends = np.full(self.columns, FAR)
+        solver.addCols(self.columns, self.cost, -ends, ends, 0, index, index, none)
+        rows = m.indptr[:-1].astype(np.int32), m.indices.astype(np.int32), m.data
+        solver.addRows(len(self.low), self.low, self.high, m.nnz, *rows)
+        _add(solver, self.lines)
+        return solver
+
+    def solve(self, box: Box) -> Bound | None:
+        """The bound of a box; None where the relaxation has no point."""
+        lower, upper = self.enter(box)
+        found = self._least(self.cost, lower, upper)
+        if found is None:
+            return None
+        value, x, dual = found
+        first = len(self.low)
+        return Bound(
+            value + self.constant,
+            x[: self.layout.atoms],
+            x[self.ratios],
+            np.maximum(-self._missed(x), 0.0),
+            np.abs(dual[first : first + self.layout.curves]),
+        )
+
+    def enter(self, box: Box) -> tuple[Vector, Vector]:
+        """Make a box the one that is looked at; the ranges of its columns."""
+        self._purge()
+        ends = self._columns(box)
+        self._chords(box)
+        return ends
+
+    def _purge(self) -> None:
+        """Forget tangents that no longer touch, once there are too many."""
+        first, count = len(self.low) + self.layout.curves, len(self.lines.low)
+        if count < MOST * self.layout.curves:
+            return
+        status = self.solver.getBasis().row_status
+        idle = [r for r in range(first, len(status)) if status[r] == highspy.HighsBasisStatus.kBasic]
+        if not idle:
+            return
+        self.solver.deleteRows(len(idle), np.array(idle, dtype=np.int32))
+        kept = np.ones(count, dtype=bool)
+        kept[np.array(idle) - len(self.low)] = False
+        self.lines = _Lines(*(part[kept] for part in self.lines))
+
+    def extent(self, column: int, ends: tuple[Vector, Vector]) -> tuple[float, float] | None:
+        """Least and largest value of an atom or direction in the box looked at; None of none."""
+        cost = np.zeros(self.columns)
+        reach = []
+        for sign in (1.0, -1.0):
+            cost[column] = sign
+            found = self._least(cost, *ends)
+            if found is None:
+                return None
+            reach.append(sign * found[0])
+        return reach[0], reach[1]
+
+    def _least(
+        self, cost: Vector, lower: Vector, upper: Vector
+    ) -> tuple[float, Vector, Vector] | None:
+        """Least of a linear function: the value that is proven, the point, the multipliers."""
+        index = np.arange(self.columns, dtype=np.int32)
+        self.solver.changeColsCost(self.columns, index, cost)
+        for turn in range(ROUNDS):
+            # a new objective leaves the point feasible, new rows leave the multipliers so
+            self.solver.setOptionValue("simplex_strategy", 1 if turn else 4)
+            self.solver.run()
+            if self.solver.getModelStatus() == highspy.HighsModelStatus.kInfeasible:
+                return None
+            solution = self.solver.getSolution()
+            x, dual = np.array(solution.col_value), np.array(solution.row_dual)
+            more = self._tangents(x, self._missed(x))
+            if more is None:
+                break
+            _add(self.solver, more)
+            self.lines = self.lines.joined(more)
+        return self._safe(cost, dual, lower, upper), x, dual
+
+    def _columns(self, box: Box) -> tuple[Vector, Vector]:
+        """Put the ranges of a box."""
+        low, high, _, _ = self.layout.reach(box.lower, box.upper)
+        outs = self.layout.parts[0]
+        lower = np.concatenate([box.lower, box.low, low[outs]])
+        upper = np.concatenate([box.upper, box.high, high[outs]])
+        index = np.arange(self.columns, dtype=np.int32)
+        self.solver.changeColsBounds(self.columns, index, lower, upper)
+        return lower, upper
+
+    def _chords(self, box: Box) -> None:
+        """Put the chords over a box in place of those of the last one."""
+        layout, lines = self.layout, self.lines
+        first, count = len(self.low), layout.curves
+        low, high = layout.arguments(box.low, box.high)
+        ends = layout.mixed.value(low), layout.mixed.value(high)
+        width = high - low
+        flat = width < 1e-12
+        slope = np.where(flat, 0.0, (ends[1] - ends[0]) / np.where(flat, 1.0, width))
+        level = ends[0] + np.where(flat, 0.0, slope * (layout.constant - low))
+        over, convex = width <= WIDEST, layout.mixed.convex
+        slope = np.where(over, slope, 0.0)
+        lines.coefficient[:count] = -slope * layout.factor
+        lines.low[:count] = np.where(over & ~convex, np.where(flat, np.minimum(*ends), level), -np.inf)
+        lines.high[:count] = np.where(over & convex, np.where(flat, np.maximum(*ends), level), np.inf)
+        index = first + np.arange(count, dtype=np.int32)
+        for row, column, value in zip(
+            index.tolist(), self.ratio.tolist(), lines.coefficient[:count].tolist(), strict=True
+        ):
+            self.solver.changeCoeff(row, column, value)
+        self.solver.changeRowsBounds(count, index, lines.low[:count], lines.high[:count])
+
+    def _argument(self, x: Vector) -> Vector:
+        return self.layout.factor * x[self.ratio] + self.layout.constant
+
+    def _missed(self, x: Vector) -> Vector:
+        """By how much every curve is missed, positive on the side of its tangents."""
+        mixed = self.layout.mixed
+        return np.where(mixed.convex, 1.0, -1.0) * (mixed.value(self._argument(x)) - x[self.out])
+
+    def _tangents(self, x: Vector, missed: Vector) -> _Lines | None:
+        """Tangents where the point lies on their side of a curve."""
+        some = np.flatnonzero(missed > MISSED)
+        if not len(some):
+            return None
+        layout, t = self.layout, self._argument(x)
+        slope = layout.mixed.slope(t)
+        level = (layout.mixed.value(t) + slope * (layout.constant - t))[some]
+        convex = layout.mixed.convex[some]
+        return _Lines(
+            self.ratio[some],
+            (-slope * layout.factor)[some],
+            self.out[some],
+            np.where(convex, level, -np.inf),
+            np.where(convex, np.inf, level),
+        )
+
+    def _safe(self, cost: Vector, dual: Vector, lower: Vector, upper: Vector) -> float:
+        """Least value that the multipliers prove: what rows and bounds contribute."""
+        count, lines = len(self.low), self.lines
+        dual = dual[: count + len(lines.low)]
+        low, high = (
+            np.concatenate([one, two])[: len(dual)]
+            for one, two in ((self.low, lines.low), (self.high, lines.high))
+        )
+        ends = np.where(dual > 0, low, high)
+        dual = np.where(np.isfinite(ends), dual, 0.0)
+        ends = np.where(np.isfinite(ends), ends, 0.0)
+        own = dual[count:]
+        some = slice(0, len(own))
+        rest = cost - self.matrix.T @ dual[:count]
+        np.add.at(rest, lines.ratio[some], -own * lines.coefficient[some])
+        np.add.at(rest, lines.out[some], -own)
+        return float(dual @ ends + np.minimum(rest * lower, rest * upper).sum())
+
+
+_OPTIONS = {
+    "output_flag": False,
+    "presolve": "off",
+    "primal_feasibility_tolerance": 1e-7,
+    "dual_feasibility_tolerance": 1e-9,
+    "threads": 1,
+}
+
+
+class _Lines(NamedTuple):
+    """low <= out + coefficient * ratio <= high, by columns of curve and direction."""
+
+    ratio: Any
+    coefficient: Vector
+    out: Any
+    low: Vector
+    high: Vector
+
+    def joined(self, more: _Lines) -> _Lines:
+        return _Lines(*(np.concatenate(pair) for pair in zip(self, more, strict=True)))
+
+
+def _add(solver: highspy.Highs, lines: _Lines) -> None:
+    count = len(lines.low)
+    indices = np.stack([lines.ratio, lines.out], axis=1).ravel().astype(np.int32)
+    data = np.stack([lines.coefficient, np.ones(count)], axis=1).ravel()
+    starts = 2 * np.arange(count, dtype=np.int32)
+    solver.addRows(count, lines.low, lines.high, 2 * count, starts, indices, data)

@@ -1,0 +1,93 @@
+"""How far a design is from the best possible: a lower bound on the objective, and its gap."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...symbolic.order import needed
+from ..actuator import ActuatorProblem
+from ..problem import Vector
+from .bounding import Bounding
+from .box import Layout
+from .intervals import narrow, tighten
+from .relaxation import Builder, Relaxation, Row, Unknown
+from .search import Found, search
+from .signomial import Form
+from .trace import Claim, Traced, trace
+
+SECONDS = 3.0
+"""Time for the search."""
+
+MET = 1e-6
+"""Relative room of a limit that still counts as met (contract)."""
+
+
+@dataclass(frozen=True)
+class Relaxed:
+    """The relaxation of a traced problem."""
+
+    relaxation: Relaxation
+    objective: Form
+    variables: dict[str, Form]
+    covered: tuple[Claim, ...]
+    dropped: dict[str, str]
+
+
+def relax(traced: Traced, best: float) -> Relaxed:
+    """The relaxation of all designs that meet the limits and are no worse than `best`."""
+    for claim in traced.claims:
+        narrow(claim.value, _ends(claim))
+    for objective in traced.objectives:
+        narrow(objective, (-math.inf, best + MET * abs(best)))
+    values = [claim.value for claim in traced.claims] + traced.objectives
+    values += [value for fact in traced.facts for value in fact]
+    tighten(needed(values), traced.facts)
+    builder = Builder()
+    rows = builder.found.rows
+    covered, dropped = [], dict(traced.dropped)
+    for claim in traced.claims:
+        try:
+            sign, form = builder.form(claim.value)
+        except Unknown as reason:
+            dropped[claim.label] = str(reason)
+            continue
+        covered.append(claim)
+        least, most = _ends(claim)
+        if sign < 0:
+            least, most, form = -most, -least, form
+        if 0 < least < math.inf:
+            rows.append(Row(Form(math.log(least)), form))
+        if 0 < most < math.inf:
+            rows.append(Row(form, Form(math.log(most))))
+    (objective,) = (builder.form(one)[1] for one in set(traced.objectives))
+    return Relaxed(builder.found, objective, builder.variables, tuple(covered), dropped)
+
+
+def _ends(claim: Claim) -> tuple[float, float]:
+    room = MET * abs(claim.bound)
+    if claim.limit.sense == "min":
+        return claim.bound - room, math.inf
+    return -math.inf, claim.bound + room
+
+
+def certify(
+    actuator: ActuatorProblem,
+    x: Vector,
+    objective: float,
+    *,
+    seconds: float = SECONDS,
+    report: Callable[[float], None] | None = None,
+) -> tuple[Relaxed, Found]:
+    """Lower bound on the objective of every design that meets the limits."""
+    began = time.perf_counter()
+    relaxed = relax(trace(actuator, x), objective)
+    layout = Layout(relaxed.relaxation)
+    bounding = Bounding(layout, relaxed.objective)
+    return relaxed, search(
+        layout, bounding, float(np.log(objective)), until=began + seconds, report=report
+    )

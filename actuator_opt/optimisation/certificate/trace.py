@@ -1,0 +1,152 @@
+"""The problem as expressions of its variables, from the same models that evaluate a design.
+
+One load case is traced at a time. What is no closed expression has an envelope here: every design
+that meets the exact limit meets the one traced. What cannot be traced is dropped, by name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from ...evaluation.kernel import Pass, Statics, compute, statics
+from ...evaluation.limits import Limit
+from ...evaluation.rows import Computed
+from ...evaluation.values import Values
+from ...symbolic import Graph, Symbol
+from ..actuator import ActuatorProblem
+from ..problem import Vector
+from .envelopes import at_design
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """A limit on a traced value: value >= limit or value <= limit."""
+
+    limit: Limit
+    label: str
+    value: Symbol
+    bound: float
+
+
+@dataclass
+class Traced:
+    """Objective and limits of a design as expressions of its variables.
+
+    `dropped` tells by name of the limit why it is not traced.
+    """
+
+    graph: Graph
+    variables: dict[str, Symbol]
+    objectives: list[Any] = field(default_factory=list)
+    """The objective is at least each of these."""
+    claims: list[Claim] = field(default_factory=list)
+    facts: list[tuple[Any, Any]] = field(default_factory=list)
+    """Pairs of values: the first is at least the second, by nature."""
+    dropped: dict[str, str] = field(default_factory=dict)
+
+
+def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
+    """Objective and limits of an actuator as expressions.
+
+    Parameters
+    ----------
+    actuator : the problem
+    x : a design, at which envelopes are tight
+    """
+    subject, problem = actuator.subject, actuator.problem
+    graph = Graph()
+    found = Traced(
+        graph,
+        {
+            path: graph.variable(path, (float(low), float(high)))
+            for path, low, high in zip(actuator.paths, problem.lower, problem.upper, strict=True)
+        },
+    )
+    point = {path: np.array([value]) for path, value in zip(actuator.paths, x, strict=True)}
+    there = compute(subject, subject.values(point))
+    positions = _positions(there)
+    limits = dict.fromkeys(row.limit_of for row in actuator.rows)
+    for i, case in enumerate(subject.design.load_cases):
+        design = subject.design.model_copy(update={"load_cases": [case]})
+        one = replace(subject, design=design)
+        values = Values(subject.numbers, one.cases, found.variables)
+        out = Computed()
+        with np.errstate(all="ignore"):
+            done = statics(one, values, out, at_design(subject.design, there, i))
+        found.facts += [(part, 0.0) for part in done.mass_parts.values()]
+        found.facts += _along_the_stroke(done, out, positions)
+        _collect(actuator, found, list(limits), out, values, first=i == 0)
+    return found
+
+
+def _along_the_stroke(
+    done: Statics, out: Computed, positions: tuple[float, ...]
+) -> Iterator[tuple[Any, Any]]:
+    """Stiffness at some positions: the least of all is no larger.
+
+    Facts: walls only add to the compliance of the oil, a matrix of the two chambers, so that its
+    determinant and diagonal are no less than those of the oil.
+    """
+    springs, stroke = done.springs, done.base.geometry.stroke
+    if springs.topology != "per_chamber" or springs.seals is not None:
+        return
+    series = springs.series_compliance()
+    places = {}
+    for share in positions:
+        x = share * stroke
+        places[f"at {100 * share:.3g} % of the stroke"] = 1 / (1 / springs.hydraulic(x) + series)
+        a, b, ab = springs.total().at(x, stroke)
+        oil_a, oil_b, _ = springs.total(springs.oil).at(x, stroke)
+        yield a, oil_a
+        yield b, oil_b
+        yield a * b - ab * ab, oil_a * oil_b
+    out.put("stiffness_min", places)
+    out.put("stiffness_rod", springs.chain["rod"])
+
+
+def _collect(
+    actuator: ActuatorProblem,
+    found: Traced,
+    limits: list[Limit],
+    out: Computed,
+    values: Values,
+    *,
+    first: bool,
+) -> None:
+    """Claims and objectives of one load case."""
+    goal = actuator.goal
+    case = values.cases[0]
+    if goal.single is not None:
+        for value in _applying(out, goal.single, ""):
+            found.objectives.append(goal.sign * value[1])
+    for limit in limits:
+        if limit.case is not None and limit.case != case:
+            continue
+        rows = list(_applying(out, limit.metric, case))
+        bound = float(np.squeeze(limit.value(values)))
+        for place, value in rows:
+            if limit.places is not None and place not in limit.places:
+                continue
+            if isinstance(value, Symbol):
+                where = ", ".join(x for x in (case, place) if x)
+                found.claims.append(Claim(limit, f"{limit.name} ({where})", value, bound))
+        if not rows and first:
+            found.dropped[limit.name] = "its model is no closed expression"
+
+
+def _applying(out: Computed, metric: str, case: str) -> Iterator[tuple[str, Any]]:
+    """Traced values of a metric where it applies."""
+    for place, value in out.metrics.get(metric, {}).items():
+        applies = out.applies_at.get((metric, place), out.applies.get(metric))
+        if applies is None or bool(np.ravel(applies)[0]):
+            yield place, value.item() if isinstance(value, np.ndarray) else value
+
+
+def _positions(there: Pass) -> tuple[float, ...]:
+    """Where the design is softest, as shares of the stroke, of all load cases."""
+    shares = np.ravel(there.weakest / there.geometry.stroke)
+    return tuple(sorted({round(float(share), 6) for share in shares if np.isfinite(share)}))
