@@ -313,6 +313,22 @@ def test_choices_with_sizes_are_those_of_brute_force():
     json.dumps(result.to_dict()["choices"])
 
 
+def test_a_choice_whose_gland_does_not_fit_is_no_combination():
+    """The gland of 1.78 mm rings squeezes by 20 %: not possible below 17 %, and it says so."""
+    more = SQUEEZE.replace("25 %", "17 %") + "    sizes: iso_3601\n"
+    text = sized([], BORE, more=more)
+    place = text.index("  rod:\n    type: o_ring")
+    text = text[:place] + text[place:].replace("section: 1.78 mm", "section: 2.62 mm", 1)
+    text += "choices:\n  seals.rod.section: [1.78 mm, 2.62 mm]\n"
+    result = ao.optimise(ao.read(text), starts=1, prices=False)
+    thick, thin = result.choices.combinations
+    assert thin.values["seals.rod.section"] == pytest.approx(1.78e-3)
+    assert "no ISO 3601 size lies between 5 % and 17 %" in thin.status
+    assert thick.rounded == pytest.approx(result.rounding.objective_after)
+    squeeze = result.best.seals.rod.squeeze
+    assert squeeze == pytest.approx(1 - 2.2605 / 2.62, abs=1e-9)
+
+
 def test_sizes_that_meet_nothing_say_so():
     """Bores too small for the force: the continuous design stands, no design of sizes is found."""
     text = sized(["sizes: [20 mm, 20.1 mm]"], BORE, ("force: 4 kN", "force: 7 kN"))

@@ -87,7 +87,8 @@ class Search:
         def rank(look: Look) -> tuple[bool, float, int, float, int]:
             missed = 0.0 if look.feasible else look.violation
             checks = len(look.checks & mendable)
-            return (bool(look.fault), missed, checks, look.objective, look.order)
+            fault = bool(look.fault) or look.sizing == "no size fits"
+            return (fault, missed, checks, look.objective, look.order)
 
         looks = sorted(self.looks, key=rank)
         sized = [look for look in looks if look.rounded is not None]

@@ -79,7 +79,8 @@ def optimise(
         found = search(subject, settings, MOST_SOLVED if sizes is None else 1)
         if sizes is not None:
             sized = best_of_sizes(found, wanted, settings)
-        choices, best = record(found, subject.design), found.ranked()[0]
+        choices = record(found, subject.design)
+        best = found.ranked()[0] if sized is None else sized.look
         if best.actuator is None or best.solution is None:
             return _enumerated(subject, found, choices, seed, began)
         actuator, solution = best.actuator, best.solution
