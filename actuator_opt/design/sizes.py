@@ -60,8 +60,12 @@ def read(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator[Fault
     here, good = (*loc, "sizes"), f"[{example(quantity)}]"
     if isinstance(sizes, str):
         if sizes not in SERIES:
+            suited = [name for name, one in SERIES.items() if one.paths.fullmatch(str(loc[-1]))]
             message = f'"{suggest.shown(sizes)}" is no series of sizes'
-            yield Fault(here, message, suggest.remedy(sizes, SERIES) + f", or list them: {good}")
+            remedy = suggest.remedy(sizes, suited)
+            yield Fault(
+                here, message, f"{remedy}, or list them: {good}" if remedy else f"write {good}"
+            )
         elif SERIES[sizes].paths.fullmatch(str(loc[-1])) is None:
             series = SERIES[sizes]
             yield Fault(here, f"{sizes} has no sizes of {loc[-1]}", f"it is for {series.suits}")

@@ -162,10 +162,10 @@ def rounded(
     actuator: ActuatorProblem,
     solution: Solution,
     sizes: Sizes,
+    found: Found | None = None,
     *,
     until: float | None = None,
     seed: int = 0,
-    found: Found | None = None,
 ) -> tuple[Rounding, Solution]:
     """The best design that keeps to the sizes, and the continuous optimum.
 
@@ -175,9 +175,9 @@ def rounded(
     ----------
     actuator, solution : the problem and a point that meets every requirement
     sizes : `sizes_of` the design
+    found : what the search came to, where it was made
     until : time of `time.perf_counter` to stop at
     seed : of the sweeps
-    found : what the search came to, where it was made
     """
     problem = actuator.problem
     if found is None:

@@ -96,9 +96,8 @@ def optimise(
         )
     rounding: Rounding | None = None
     if sizes is not None and solution.feasible:
-        known = None if sized is None else sized.found
-        sizes = sizes if sized is None else sized.sizes
-        rounding, solution = rounded(actuator, solution, sizes, until=until, seed=seed, found=known)
+        kept = (sizes, None) if sized is None else (sized.sizes, sized.found)
+        rounding, solution = rounded(actuator, solution, *kept, until=until, seed=seed)
     why, solution = _explained(actuator, solution)
     design, evaluation = design_at(actuator, solution.x)
     rows: tuple[Sensitivity, ...] = ()
