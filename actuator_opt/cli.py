@@ -218,14 +218,15 @@ def optimise(
     trial = None if verify is None else verbs.read_scenario(verify)
     if trial is not None:
         verbs.fitting(trial, actuator)
-    result = verbs.optimise(
-        actuator,
-        algorithm=algorithm,
-        starts=starts,
-        seed=seed,
-        whole_plies=whole_plies,
-        standard_sizes=standard_sizes,
-    )
+    with streams.watching():
+        result = verbs.optimise(
+            actuator,
+            algorithm=algorithm,
+            starts=starts,
+            seed=seed,
+            whole_plies=whole_plies,
+            standard_sizes=standard_sizes,
+        )
     good = _outcome(result) == ExitCode.MET
     if write is not None and good:
         verbs.save(result.best, write, source=actuator.source)
@@ -300,18 +301,21 @@ def sensitivity(
     if report:
         check_targets(out, date)
     actuator = read_actuator(design, sets, plugin)
-    result = verbs.optimise(actuator, seed=seed)
+    with streams.watching():
+        result = verbs.optimise(actuator, seed=seed)
     files = write_report(result, actuator, out, date) if report else []
     if as_json:
         data = result.to_dict()
-        keys = ("name", "version", "status", "outcome", "objective", "sensitivities", "kkt")
-        streams.out_json({key: data[key] for key in keys} | ({"files": files} if files else {}))
+        keys = ["name", "version", "status", "outcome", "objective", "sensitivities"]
+        keys += ["what_buys_most", "kkt", "infeasibility"]
+        kept = {key: data[key] for key in keys if key in data}
+        streams.out_json(kept | ({"files": files} if files else {}))
     elif not quiet:
-        from .reporting.terminal import infeasibility_card, sensitivity_table
+        from .reporting import infeasibility_card, prices
 
         style = streams.style()
-        shown = sensitivity_table(result, **style) if result.sensitivities else ""
-        streams.out(shown or infeasibility_card(result, **style) or result.sentence)
+        shown = prices.terminal(result, moving=True, **style)
+        streams.out(shown or infeasibility_card.terminal(result, **style) or result.sentence)
         say_files(files)
     raise typer.Exit(_outcome(result))
 

@@ -28,9 +28,9 @@ from actuator_opt.optimisation.result import (
     Infeasibility,
     Kkt,
     Optimisation,
-    Sensitivity,
     VariableResult,
 )
+from actuator_opt.optimisation.sensitivity import Sensitivity
 
 SOURCE = """name: robot knee
 fluid:
@@ -612,6 +612,9 @@ def sensitivities() -> tuple[Sensitivity, ...]:
             until,
             then,
             elasticity != 0.0,
+            elasticity * mass / limit,
+            elasticity * mass / limit,
+            {"cylinder.bore": 0.4 * elasticity * 25.04e-3 / limit},
         )
 
     return (
@@ -768,47 +771,53 @@ def build_infeasible() -> Optimisation:
         sensitivities=(),
         infeasibility=Infeasibility(
             joint=(
-                {
-                    "requirement": "friction_running",
-                    "metric": "friction_running",
-                    "limit": 250.0,
-                    "needed": 281.0,
-                    "relaxation": 0.124,
-                },
-                {
-                    "requirement": "stiffness_min",
-                    "metric": "stiffness_min",
-                    "limit": 10.0e6,
-                    "needed": 9.7e6,
-                    "relaxation": -0.03,
-                },
+                relaxed("friction_running", "max", 250.0, 281.0, ("250 N", "281 N")),
+                relaxed("stiffness_min", "min", 10.0e6, 9.7e6, ("10 kN/mm", "9.7 kN/mm")),
             ),
             sole=(
-                {
-                    "requirement": "friction_running",
-                    "metric": "friction_running",
-                    "limit": 250.0,
-                    "needed": 312.0,
-                    "relaxation": 0.248,
-                },
-                {
-                    "requirement": "seal_gap",
-                    "metric": "seal_gap",
-                    "limit": 37e-6,
-                    "needed": None,
-                    "relaxation": None,
-                },
+                relaxed("friction_running", "max", 250.0, 312.0, ("250 N", "312 N")),
+                relaxed("retention_factor", "min", 1.5, 1.2, ("1.5", "1.2"), "check list"),
+                relaxed("seal_gap", "max", 37e-6, None, ("37 um", "")),
             ),
             bounds=(
                 {
                     "variable": "seals.piston.section",
+                    "parameter": "variables.seals.piston.section.lower",
                     "quantity": "cross_section",
                     "bound": "lower",
                     "value": 1.78e-3,
+                    "gain": 0.077,
+                    "needed": 1.6e-3,
+                    "change": -0.101,
+                    "limit_text": "1.78 mm",
+                    "needed_text": "1.6 mm",
                 },
             ),
+            total=0.154,
+            sentence="nothing fits: the smallest change of 2 limits together is"
+            " requirements.friction_running.max 250 N -> 281 N (+12.4 %);"
+            " requirements.stiffness_min.min 10 kN/mm -> 9.7 kN/mm (-3 %)",
+            evidence="no design was found from 6 starts: this is evidence, not proof",
         ),
     )
+
+
+def relaxed(metric, sense, limit, needed, texts, origin="requirement"):
+    """One limit of an infeasibility card."""
+    change = None if needed is None else needed / limit - 1
+    return {
+        "requirement": metric,
+        "parameter": f"requirements.{metric}.{sense}",
+        "origin": origin,
+        "metric": metric,
+        "sense": sense,
+        "limit": limit,
+        "needed": needed,
+        "relaxation": None if change is None else abs(change),
+        "change": change,
+        "limit_text": texts[0],
+        "needed_text": texts[1],
+    }
 
 
 def scaled(bore: float) -> Evaluation:

@@ -103,6 +103,68 @@ def test_binding_bound_is_named_with_its_gain():
     assert card.bounds[0].gain == pytest.approx(0.5, abs=1e-6)
 
 
+@pytest.mark.parametrize("lack", [1e-1, 1e-2, 1e-3, 1e-4, 2e-5])
+def test_sole_repairs_do_not_depend_on_how_little_is_missed(lack):
+    """With a b >= 8 (1 + lack), a <= 2, b <= 4 each limit alone repairs it, and by how much.
+
+    By the product: 1 - 1/(1 + lack); by a or by b: lack, since the other stays at its limit.
+    """
+    card = explained(
+        box(
+            lambda a, b: [a * b / (8 * (1 + lack)) - 1, 1 - a / 2, 1 - b / 4, a / 0.5 - 1],
+            ("product", "a max", "b max", "idle"),
+        )
+    )
+    alone = {r.constraint: r.amount for r in card.sole}
+    expected = {"product": lack / (1 + lack), "a max": lack, "b max": lack}
+    assert alone == pytest.approx(expected, rel=1e-3, abs=1e-8)
+
+
+def test_one_bound_alone():
+    """With a b >= 120 in the box up to 10, either bound opened to 12 is enough; none for 300."""
+    card = explained(box(lambda a, b: [a * b / 120 - 1], ("product",)))
+    assert {(b.variable, b.side): b.needed for b in card.bounds} == pytest.approx(
+        {("a", "upper"): 12.0, ("b", "upper"): 12.0}, rel=1e-6
+    )
+    card = explained(box(lambda a, b: [a * b / 300 - 1], ("product",)))
+    assert [b.needed for b in card.bounds] == [None, None]
+
+
+def test_one_lower_bound_alone():
+    """With a b <= 0.008 in the box from 0.1: the lower bound of either to 0.08."""
+    card = explained(box(lambda a, b: [1 - a * b / 0.008], ("product",)))
+    assert card.joint[0].amount == pytest.approx(0.25, abs=1e-6)
+    assert {(b.variable, b.side): b.needed for b in card.bounds} == pytest.approx(
+        {("a", "lower"): 0.08, ("b", "lower"): 0.08}, rel=1e-6
+    )
+
+
+def test_the_gain_of_a_bound_is_what_opening_it_saves():
+    """Solved again with the bound 0.1 % further out, the relaxation falls by 0.001 x gain."""
+    problem = box(lambda a, b: [a * b**2 / 2000 - 1, 1 - a / 9], ("product", "a max"))
+    before = explained(problem)
+    (bound,) = before.bounds
+    assert (bound.variable, bound.side) == ("b", "upper")
+    wider = problem.upper.copy()
+    wider[bound.index] *= 1.001
+    after = explained(replace(problem, upper=wider))
+    assert before.total - after.total == pytest.approx(0.001 * bound.gain, rel=5e-3)
+
+
+def test_rows_of_one_limit_give_way_together():
+    """A limit that holds in two cases is relaxed once, by its worse case."""
+    problem = box(
+        lambda a, b: [a * b / 12 - 1, a * b / 16 - 1, 1 - a / 2, 1 - b / 4],
+        ("case 1", "case 2", "a max", "b max"),
+    )
+    card = explained(replace(problem, groups=(0, 0, 1, 2)))
+    # a = 2 (1 + s): 8 (1 + s) = 16 (1 - u): u = 1/2 alone is the cheapest, a or b alone double
+    assert {r.constraint: r.amount for r in card.joint} == pytest.approx({"case 1": 0.5}, abs=1e-6)
+    assert {r.constraint: r.amount for r in card.sole} == pytest.approx(
+        {"case 1": 0.5, "a max": 1.0, "b max": 1.0}, abs=1e-6
+    )
+
+
 def test_relaxing_as_told_makes_it_feasible():
     """Lowering the limits of a larger problem by the joint relaxation makes it feasible."""
     parametric = problems.geometric_programme(3)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 import report_fixture as fixture
 
-from actuator_opt.reporting import ExtraTable, optimum
+from actuator_opt.reporting import ExtraTable, infeasibility_card
 from actuator_opt.reporting.page import key_figures, page, verdict
 
 SOURCE = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
@@ -49,7 +49,7 @@ def test_price_is_per_display_unit():
     row = rows_of(page(fixture.build_optimisation(), **SOURCE), "What each")[0]
     assert row[:7] == ["stiffness_min.min", "10 kN/mm", "10.00", "0.0 %", "●", "+15.8", "+0.770"]
     assert row[7:11] == ["221.0", "221.7", "189.4", "190.4"]
-    assert row[11] == "12.1 kN/mm: rod.outer_diameter upper bound"
+    assert row[11] == "12.1 kN/mm, then rod.outer_diameter upper bound"
 
 
 def test_infeasible_resolve_shows_a_dash():
@@ -115,29 +115,26 @@ def test_key_figures_are_five_and_start_with_the_objective():
     assert "stiffness" not in " ".join(tile["label"] for tile in tiles)
 
 
-def test_infeasibility_is_in_the_unit_of_its_metric():
-    """Limit and needed limit carry the metric's unit, the relaxation is a share."""
-    card = replace(
-        fixture.build_infeasible().infeasibility,
-        joint=(
-            {
-                "requirement": "stiffness_min",
-                "metric": "stiffness_min",
-                "limit": 10e6,
-                "needed": 9e6,
-                "relaxation": 0.1,
-            },
-        ),
-        sole=(),
-        bounds=(),
+def test_the_infeasibility_card_reads_as_advice():
+    """Limits by the PATH to set, now and needed with units, signed changes; what alone cannot."""
+    said, joint, alone, bounds, proof = infeasibility_card.blocks(
+        fixture.build_infeasible().infeasibility
     )
-    rows = optimum.infeasibility(card)[0]["rows"]
-    assert [text_of(cell) for cell in rows[0]] == [
-        "stiffness_min",
-        "10.00 kN/mm",
-        "9.000 kN/mm",
-        "+10.0 %",
-    ]
+    assert "250 N → 281 N (+12.4 %)" in text_of(said["items"][0])
+    assert [text_of(cell) for cell in joint["rows"][1]] == [
+        "requirements.stiffness_min.min", "requirement", "10 kN/mm", "9.7 kN/mm", "−3 %",
+    ]  # fmt: skip
+    assert [text_of(cell) for cell in alone["rows"][1]][:2] == [
+        "requirements.retention_factor.min", "check list: retention_factor",
+    ]  # fmt: skip
+    assert len(alone["rows"]) == 2
+    assert alone["note"].endswith("however much it gives way: requirements.seal_gap.max.")
+    # 1 % more room: 0.01 x 0.077 of 0.154, that is 0.5 % of the gap
+    assert [text_of(cell) for cell in bounds["rows"][0]] == [
+        "variables.seals.piston.section.lower", "1.78 mm", "0.50 %", "1.6 mm", "−10.1 %",
+    ]  # fmt: skip
+    assert "15.4 % of the limits" in bounds["note"]
+    assert "evidence, not proof" in text_of(proof["items"][0])
 
 
 def test_nothing_to_say_is_said():

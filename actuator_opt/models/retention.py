@@ -15,7 +15,7 @@ def _edge_ratio(*, loaded: Array, free: Array, reach: Array) -> Array:
     """Edge over mean shear; reach = G L^2/t_a, K of the loaded and of the ending wall."""
     half = sqrt(positive(reach * (1 / loaded + 1 / free))) / 2
     wave = namespace(half).tanh(half)
-    return half * (1 / wave + (free - loaded) / (free + loaded) * wave)
+    return half * ((1 / wave - wave) + 2 * free / (free + loaded) * wave)  # no term below zero
 
 
 def bond_peak_ratio(

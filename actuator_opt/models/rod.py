@@ -207,6 +207,38 @@ def bending_stress(
     return bending_moment * outer_diameter / (2 * moment)
 
 
+def free_modulus(*, wall: Sequence[Array]) -> Array:
+    """Axial modulus of a layer that is free to contract.
+
+    E_z = Czz - (Czt^2 Crr - 2 Czt Czr Ctr + Czr^2 Ctt)/(Ctt Crr - Ctr^2).
+
+    Parameters
+    ----------
+    wall : zz, zt, zr, tt, tr, rr, ... in tube axes, from `solid_ply.solid_rotated` [Pa]
+
+    Returns
+    -------
+    modulus [Pa]
+
+    Notes
+    -----
+    Valid: layers of balanced pairs.
+
+    References
+    ----------
+    [derived] free contraction by Schur complement of the layer's stiffness
+
+    Examples
+    --------
+    >>> steel = (282.7e9, 121.2e9, 121.2e9, 282.7e9, 121.2e9, 282.7e9, 80.77e9)
+    >>> print(f"{free_modulus(wall=steel) / 1e9:.1f} GPa")
+    210.0 GPa
+    """
+    zz, zt, zr, tt, tr, rr = wall[:6]
+    held = (zt * zt * rr - 2 * zt * zr * tr + zr * zr * tt) / (tt * rr - tr * tr)
+    return zz - held
+
+
 def layered_section(
     *, walls: Sequence[Sequence[Any]], thicknesses: Sequence[Array], inner_diameter: Array
 ) -> tuple[Array, Array]:
@@ -245,11 +277,9 @@ def layered_section(
     shear: Array = 0.0
     bore = inner_diameter
     for wall, thickness in zip(walls, thicknesses, strict=True):
-        zz, zt, zr, tt, tr, rr = wall[:6]
-        held = (zt * zt * rr - 2 * zt * zr * tr + zr * zr * tt) / (tt * rr - tr * tr)
         face = bore + 2 * thickness
         size = {"outer_diameter": face, "inner_diameter": bore}
-        bending = bending + (zz - held) * second_moment(**size)
+        bending = bending + free_modulus(wall=wall) * second_moment(**size)
         shear = shear + wall[-1] * section_area(**size)
         bore = face
     return bending, shear

@@ -103,8 +103,9 @@ def trial_mode_load(
     Examples
     --------
     >>> mode = TrialMode(0.5, 0.5, 1.2337, 1.2337)
-    >>> print(f"{trial_mode_load(mode=mode, bending_stiffness_1=1.0, length_1=0.5,
-    ...                          bending_stiffness_2=1.0, length_2=0.5):.4f}")
+    >>> load = trial_mode_load(mode=mode, bending_stiffness_1=1.0, length_1=0.5,
+    ...                        bending_stiffness_2=1.0, length_2=0.5)
+    >>> print(f"{load:.4f}")
     9.8696
     """
     bent = (

@@ -220,7 +220,7 @@ class _Run:
         starts = np.repeat(point.z[:, None], len(chosen), axis=1)
         known = lockstep.resolve_together(parametric, evaluator, point, starts, values)
         left = [k for k, optimum in enumerate(known) if optimum is None]
-        near = lockstep.restore_together(parametric, evaluator, point, values[:, left])
+        near = lockstep.restore_together(parametric, evaluator, point.z, values[:, left])
         for assignment, optimum in zip(chosen, known, strict=True):
             self.solves += 1
             if optimum is not None:

@@ -20,6 +20,18 @@ Indices: TypeAlias = npt.NDArray[np.intp]
 FEASIBLE = 1e-6
 """Slack that counts as none."""
 
+MOST = 200
+"""Most evaluations of one descent; 10 to 50 mostly do."""
+
+FINE = 1e-7
+"""Relative tolerance of a descent before its exact finish."""
+
+EXACT = 1e-9
+"""Optimality of an end, near which no further step of the finish is worth its effort."""
+
+ROUGH = 1e-5
+"""Relative tolerance of a descent that only has to tell whether it leads anywhere."""
+
 
 def common(problem: Problem, room: float) -> Problem:
     """Minimise one slack that every constraint and equality may be missed by."""
@@ -27,7 +39,7 @@ def common(problem: Problem, room: float) -> Problem:
     n = len(problem.names)
 
     def evaluate(x: Array) -> Values:
-        rows = problem.rows(x[:n])
+        rows = _rows_once(problem, x[:n])
         slack = x[n]
         margins = [rows[1 : 1 + m] + slack]
         if e:
@@ -43,7 +55,7 @@ def separate(problem: Problem, groups: Sequence[Indices], room: Sequence[float])
     n, m = len(problem.names), len(problem.constraint_names)
 
     def evaluate(x: Array) -> Values:
-        rows = problem.rows(x[:n])
+        rows = _rows_once(problem, x[:n])
         margins = np.array(rows[1 : 1 + m], dtype=np.result_type(rows, x))
         for slack, group in zip(x[n:], groups, strict=True):
             margins[group] = margins[group] + slack
@@ -53,6 +65,17 @@ def separate(problem: Problem, groups: Sequence[Indices], room: Sequence[float])
     return _extended(
         problem, evaluate, names, room, problem.constraint_names, problem.equality_names
     )
+
+
+def _rows_once(problem: Problem, points: Array) -> npt.NDArray[np.generic]:
+    """Rows of points (n, k) of which many differ in slacks only: the model sees each once."""
+    columns = np.ascontiguousarray(points.T)
+    first: dict[bytes, int] = {}
+    places = [first.setdefault(column.tobytes(), len(first)) for column in columns]
+    if len(first) == len(columns):
+        return problem.rows(points)
+    _, kept = np.unique(places, return_index=True)
+    return problem.rows(points[:, kept])[:, places]
 
 
 def _extended(
@@ -82,20 +105,53 @@ def feasible_point(evaluator: Evaluator, point: Point) -> Point | None:
     """Return a feasible point near `point`, by minimising one common slack, or None."""
     if point.violation <= FEASIBLE:
         return point
-    problem = common(evaluator.problem, 2.0 * point.violation + 1.0)
-    found, used = descend(problem, point.x, [point.violation])
-    evaluator.evaluations += used
+    found = least_missed(evaluator, point)
+    return found if found.violation <= FEASIBLE else None
+
+
+def least_missed(evaluator: Evaluator, point: Point, rough: float = np.inf) -> Point:
+    """The point nearby whose most missed limit is missed least; the point itself where none is.
+
+    An end that misses more than `rough` stays as rough as it is, which saves half the effort.
+    """
+    inner = Evaluator(common(evaluator.problem, 2.0 * point.violation + 1.0))
+    start = found = inner.point(inner.space.to_z(np.append(point.x, point.violation)))
+    if not start.valid:
+        return point
+    inner.eager = True
+    if rough < np.inf:
+        found = run(inner, start, "LD_SLSQP", tolerance=ROUGH, most=MOST, rank=_miss).point
+    if _miss(found) <= rough:
+        led = run(inner, found, "LD_SLSQP", tolerance=FINE, most=MOST, rank=_miss)
+        found = min((led.point, finish(inner, led.point)), key=_miss)
+    evaluator.evaluations += inner.evaluations
     evaluator.check_limits()
-    if not found.valid or found.violation + found.objective > FEASIBLE:
-        return None
-    return evaluator.point(evaluator.space.to_z(found.x[: len(point.x)]))
+    end = evaluator.point(evaluator.space.to_z(found.x[: len(point.x)]))
+    return end if end.valid and end.violation < point.violation else point
 
 
-def descend(problem: Problem, x: Vector, slack: Sequence[float]) -> tuple[Point, int]:
-    """Solve an elastic problem from a point and slacks; also the evaluations used."""
+def _miss(point: Point) -> float:
+    """The most missed limit at a point of a common slack: what is violated the slack could take."""
+    return point.objective + point.violation if point.valid else np.inf
+
+
+def descend(
+    problem: Problem, x: Vector, slack: Sequence[float], known: Sequence[Point] = ()
+) -> Point:
+    """Solve an elastic problem from a point and slacks, unless it arrives at a known end."""
     inner = Evaluator(problem)
     start = inner.point(inner.space.to_z(np.concatenate([x, np.asarray(slack, dtype=float)])))
     if not start.valid:
-        return start, 1
-    found = polish(inner, run(inner, start, "LD_SLSQP", most=400).point)
-    return found, inner.evaluations
+        return start
+    led = run(inner, start, "LD_SLSQP", tolerance=FINE, most=MOST, known=known)
+    return known[led.arrived] if led.arrived is not None else finish(inner, led.point)
+
+
+def go(evaluator: Evaluator, start: Point) -> Point:
+    """One descent with its finish."""
+    return finish(evaluator, run(evaluator, start, "LD_SLSQP", tolerance=FINE, most=MOST).point)
+
+
+def finish(evaluator: Evaluator, point: Point) -> Point:
+    """The end of a descent, exact to `EXACT`."""
+    return polish(evaluator, point, tolerance=EXACT)

@@ -3,49 +3,26 @@
 All amounts are margins, that is fractions of the limits. The smallest joint relaxation minimises
 the sum of the margins given up (an elastic programme [Chinneck2008]), which names few
 requirements rather than a little of each; constraints that are laws (geometry) are never relaxed.
+Every search is local, from the points given: what is found is so, what is not found was only not
+found.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
-from . import elastic, kkt
+from ..progress import tell
+from . import elastic, kkt, repairs
 from .evaluator import Evaluator, Point
-from .problem import Problem, Values, Vector
+from .problem import Problem, Vector
+from .repairs import NOTHING, Opening, Relaxation
 
-NOTHING = 1e-6
-"""A relaxation below this is none."""
-
-
-@dataclass(frozen=True, slots=True)
-class Relaxation:
-    """A constraint and the margin (fraction of its limit) that must be given up.
-
-    `amount` is None where giving up this constraint entirely would not be enough.
-    """
-
-    constraint: str
-    index: int
-    amount: float | None
-
-
-@dataclass(frozen=True, slots=True)
-class BindingBound:
-    """A bound that holds back the joint relaxation.
-
-    Parameters
-    ----------
-    variable, side, value : the bound
-    gain : fall of the total relaxation per unit of relative widening of the bound (0.01 = 1 %)
-    """
-
-    variable: str
-    side: str
-    value: float
-    gain: float
+STARTS = 2
+"""Most points from which the joint relaxation is sought."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +42,7 @@ class Infeasibility:
 
     joint: tuple[Relaxation, ...]
     sole: tuple[Relaxation, ...]
-    bounds: tuple[BindingBound, ...]
+    bounds: tuple[Opening, ...]
     laws: tuple[str, ...]
     x: Vector
     total: float
@@ -80,6 +57,7 @@ def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
     problem : the problem, with `relaxable` telling wishes from laws (None: all are wishes)
     points : where to start, such as the least infeasible points found (n,)
     """
+    tell("nothing fits: what would have to give way")
     m = len(problem.constraint_names)
     mask = np.ones(m, dtype=bool) if problem.relaxable is None else np.array(problem.relaxable)
     everything = _groups(problem)
@@ -99,26 +77,37 @@ def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
     x, amounts = found.x[:n], found.x[n:]
     quality = kkt.check(evaluator, found, objective_scale=1.0)
     joint = [
-        _relaxation(problem, group, float(amount))
+        Relaxation(problem.constraint_names[group[0]], int(group[0]), float(amount))
         for group, amount in zip(groups, amounts, strict=True)
-        if amount > NOTHING and mask[group].all()
+        if amount > NOTHING and mask[group].all() and found.violation <= NOTHING
     ]
     joint.sort(key=lambda r: -(r.amount or 0.0))
     sole: tuple[Relaxation, ...] = ()
-    if not laws:
-        part = quality.multipliers > 1e-7 if quality.unique else np.ones(m, dtype=bool)
-        sole = tuple(
-            _alone(problem, groups, i, x) for i, group in enumerate(groups) if part[group].any()
+    open_bounds = _binding_bounds(problem, evaluator, quality)
+    if joint and not laws:
+        part = _taking_part(evaluator, found, quality)
+        named = {row.index for row in joint}
+        sole = repairs.by_limits(
+            problem,
+            [group for group in groups if part[group].any() or group[0] in named],
+            named,
+            [x, *points[:STARTS]],
         )
+        open_bounds = repairs.by_bounds(problem, open_bounds, x)
     return Infeasibility(
-        tuple(joint),
-        sole,
-        _bounds(problem, evaluator, quality),
-        laws,
-        x,
-        float(found.objective),
-        quality.residual,
+        tuple(joint), sole, open_bounds, laws, x, float(found.objective), quality.residual
     )
+
+
+def _taking_part(evaluator: Evaluator, found: Point, quality: kkt.Kkt) -> npt.NDArray[np.bool_]:
+    """Constraints with a share in the conflict; the others, left out, would leave it as it is.
+
+    The multipliers of the relaxation prove that (in a convex problem, else near the point);
+    without optimality every constraint that binds may take part.
+    """
+    if quality.residual <= NOTHING:
+        return np.asarray(quality.multipliers > 1e-7)
+    return found.rows[1 : 1 + evaluator.constraint_count] <= kkt.ACTIVE
 
 
 def _groups(problem: Problem) -> list[elastic.Indices]:
@@ -128,62 +117,30 @@ def _groups(problem: Problem) -> list[elastic.Indices]:
     return [np.flatnonzero(numbers == number) for number in dict.fromkeys(numbers.tolist())]
 
 
-def _relaxation(problem: Problem, group: elastic.Indices, amount: float | None) -> Relaxation:
-    first = int(group[0])
-    return Relaxation(problem.constraint_names[first], first, amount)
-
-
 def _smallest(
     problem: Problem, groups: list[elastic.Indices], points: Sequence[Vector]
 ) -> tuple[Point, Evaluator]:
     """Return the smallest sum of slacks of the groups, from the best of several points."""
-    best: Point | None = None
     judge = Evaluator(problem)
     room, starts = 1.0, []
-    for x in list(points)[:2] or [(problem.lower + problem.upper) / 2]:
-        rows = judge.point(judge.space.to_z(x)).rows[1 : 1 + len(problem.constraint_names)]
-        missed = np.maximum(-np.nan_to_num(rows, nan=0.0), 0.0)
-        room = max(room, 2.0 * float(missed.max(initial=0.0)))
-        starts.append((x, [float(missed[group].max()) for group in groups]))
+    for x in list(points)[:STARTS] or [(problem.lower + problem.upper) / 2]:
+        lacks = repairs.missed(judge, x, groups)
+        room = max(room, 2.0 * max(lacks, default=0.0))
+        starts.append((x, lacks))
     stretched = elastic.separate(problem, groups, [room] * len(groups))
+    ends: list[Point] = []
     for x, lacks in starts:
-        found, _ = elastic.descend(stretched, x, lacks)
-        key = (max(found.violation - NOTHING, 0.0), found.objective)
-        if best is None or key < (max(best.violation - NOTHING, 0.0), best.objective):
-            best = found
-    assert best is not None
+        found = elastic.descend(stretched, x, lacks, ends)
+        if found.valid and not any(found is end for end in ends):
+            ends.append(found)
+    best = min(ends, key=lambda end: (max(end.violation - NOTHING, 0.0), end.objective))
     return best, Evaluator(stretched)
 
 
-def _alone(problem: Problem, groups: list[elastic.Indices], index: int, x: Vector) -> Relaxation:
-    """Return what one group alone must give up; None where that is not enough."""
-    group = groups[index]
-    others, kept = _without(problem, group)
-    rest, _ = _smallest(others, [kept[g] for i, g in enumerate(groups) if i != index], [x])
-    if rest.violation > NOTHING or rest.objective > NOTHING:
-        return _relaxation(problem, group, None)
-    found, _ = _smallest(problem, [group], [rest.x[: len(problem.names)]])
-    enough = found.violation <= NOTHING
-    return _relaxation(problem, group, float(found.objective) if enough else None)
-
-
-def _without(problem: Problem, group: elastic.Indices) -> tuple[Problem, elastic.Indices]:
-    """Leave a group of constraints out; also the new index of every old row."""
-    m = len(problem.constraint_names)
-    kept = np.setdiff1d(np.arange(m), group)
-    places = np.full(m, -1, dtype=np.intp)
-    places[kept] = np.arange(len(kept))
-
-    def evaluate(points: np.ndarray) -> Values:
-        rows = problem.rows(points)
-        return Values(rows[0], rows[1 : 1 + m][kept], rows[1 + m :])
-
-    names = tuple(problem.constraint_names[i] for i in kept)
-    slim = replace(problem, evaluate=evaluate, constraint_names=names, relaxable=None, groups=None)
-    return slim, places
-
-
-def _bounds(problem: Problem, evaluator: Evaluator, quality: kkt.Kkt) -> tuple[BindingBound, ...]:
+def _binding_bounds(
+    problem: Problem, evaluator: Evaluator, quality: kkt.Kkt
+) -> tuple[Opening, ...]:
+    """Bounds that hold back the joint relaxation, the most gainful first."""
     found = []
     space = evaluator.space
     for k, j in enumerate(space.free):
@@ -195,6 +152,7 @@ def _bounds(problem: Problem, evaluator: Evaluator, quality: kkt.Kkt) -> tuple[B
         ):
             if held > 1e-7:
                 widening = 1.0 if space.logarithmic[k] else abs(limit) / space.scale[k]
-                name = problem.names[j]
-                found.append(BindingBound(name, side, float(limit), float(held * widening)))
+                found.append(
+                    Opening(problem.names[j], int(j), side, float(limit), float(held * widening))
+                )
     return tuple(sorted(found, key=lambda b: -b.gain))

@@ -1,11 +1,14 @@
 """Re-solve many slightly changed problems at once: one model evaluation serves all of them.
 
 Each problem takes the quadratic steps of `newton` with the Hessian of the unchanged optimum,
-which converges linearly and fast for small changes. Those it does not serve go on from a feasible
-point with Hessians of their own, and the rest is left to the sturdier path of `prices.resolved`.
+which converges linearly and fast for small changes. Those it does not serve descend from a feasible
+point within a trusted radius, with a Hessian that learns on the way; what is left is for the search
+of `resolving.resolved`.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,13 +18,19 @@ from .evaluator import Evaluator, Point
 from .problem import ParametricProblem, Vector
 
 ITERATIONS = 10
-"""Most steps with the shared Hessian; 10 % changes mostly take three to five."""
+"""Most full steps with the shared Hessian; 10 % changes mostly take three to five."""
 
-RENEWALS = (0, 5, 10)
-"""Steps before which a problem with a Hessian of its own renews it."""
+LONGEST = 60
+"""Most evaluations of a descent within a trusted radius."""
 
-LONGEST = 16
-"""Most steps with Hessians of one's own."""
+MEMORY = 3
+"""Merits, the worst of which a trial must beat."""
+
+RADIUS = 0.1
+"""First radius trusted, in solver coordinates: 10 % in a logarithmic variable."""
+
+LEAST_RADIUS = 1e-4
+"""Radius at which a descent gives up."""
 
 RESTORATIONS = 24
 """Most steps towards a feasible point."""
@@ -34,6 +43,9 @@ SETTLED = 1e-6
 
 FEASIBLE = 1e-11
 """Violation left: the objective is first order in it."""
+
+MET = 1e-6
+"""Violation of a design that still counts as feasible."""
 
 RESIDUAL = 1e-6
 """Residual of the optimality conditions left: the objective is second order in it."""
@@ -51,10 +63,8 @@ def resolve_together(
     point: Point,
     starts: Vector,
     parameters: Vector,
-    *,
-    own: bool = False,
 ) -> list[Point | None]:
-    """Optima of the re-solved problems; None where a problem needs the sturdier path.
+    """Optima of the changed problems by full steps; None where one needs a sturdier path.
 
     Parameters
     ----------
@@ -62,19 +72,18 @@ def resolve_together(
     evaluator, point : of the unchanged optimum
     starts : coordinates to start from (nf, K)
     parameters : parameter values of each problem (q, K)
-    own : each problem takes Hessians of its own, dearer and sturdier than the shared one
     """
     count = starts.shape[1]
     found: list[Point | None] = [None] * count
     if count == 0:
         return found
     state = newton.state_at(evaluator, point)
-    hessians = [newton.convex_hessian(evaluator, state)] * count
+    hessian = newton.convex_hessian(evaluator, state)
     space = evaluator.space
     z = np.clip(starts, space.lower[:, None], space.upper[:, None])
     last = np.full(count, np.inf)
     alive = list(range(count))
-    for iteration in range(LONGEST if own else ITERATIONS):
+    for _ in range(ITERATIONS):
         if not alive:
             break
         points = _points(parametric, evaluator, z[:, alive], parameters[:, alive])
@@ -82,17 +91,11 @@ def resolve_together(
         for k, trial in zip(alive, points, strict=True):
             if not trial.valid:
                 continue
-            settled = last[k] <= SETTLED and trial.violation <= FEASIBLE
-            if settled and kkt.check(evaluator, trial).residual <= RESIDUAL:
+            if last[k] <= SETTLED and _optimal(evaluator, trial):
                 found[k] = trial
                 continue
-            if own and iteration in RENEWALS:
-                alone = Evaluator(parametric.at(parameters[:, k]))
-                there = newton.state_at(alone, trial)
-                hessians[k] = newton.convex_hessian(alone, there) * (there.scale / state.scale)
-                last[k] = np.inf
             step, _ = newton.quadratic_step(
-                evaluator, trial, state.scale, hessians[k], state.equality_multipliers
+                evaluator, trial, state.scale, hessian, state.equality_multipliers
             )
             longest = float(np.abs(step).max(initial=0.0))
             if not np.isfinite(longest) or longest > 4 * max(last[k], 1e-3):
@@ -102,26 +105,172 @@ def resolve_together(
             z[:, k] = np.clip(z[:, k] + share * step, space.lower, space.upper)
             going.append(k)
         alive = going
-    kept = _unmoved(parametric, evaluator, point, parameters)
-    for k, optimum in enumerate(found):
-        if optimum is None:
-            continue
-        if kept[k] < optimum.objective * (1 - 1e-9 * np.sign(optimum.objective)):
+    rows = standing(parametric, [point], parameters)[:, 0]
+    unmoved = np.where(evaluator.violations(rows, "worst") <= FEASIBLE, rows[0], np.inf)
+    for k, one in enumerate(found):
+        if one is not None and unmoved[k] < one.objective - 1e-9 * abs(one.objective):
             found[k] = None  # the old optimum itself is better: another valley
     return found
 
 
+@dataclass
+class _Descent:
+    """One problem on its way down: the last accepted point and the step tried from it.
+
+    The merit is the objective plus the violations at more than their price; a trial need only
+    beat the worst of the last `MEMORY` merits, so that curved constraints do not shorten good
+    steps [NocedalWright2006] ch. 15. Steps stay within a radius that follows their success.
+    """
+
+    hessian: Vector
+    scale: float
+    rows: int
+    price: float
+    point: Point | None = None
+    step: Vector = field(default_factory=lambda: np.zeros(0))
+    radius: float = RADIUS
+    multipliers: Vector = field(default_factory=lambda: np.zeros(0))
+    past: list[tuple[float, float]] = field(default_factory=list)
+
+    @property
+    def length(self) -> float:
+        """Length of the step now tried, infinite before the first."""
+        return np.inf if self.point is None else float(np.abs(self.step).max(initial=0.0))
+
+    def accepts(self, trial: Point) -> bool:
+        """Whether the trial is good enough to go on from."""
+        if self.point is None or self.length <= SETTLED:
+            return True
+        value, missed = self._measures(trial)
+        merits = [v + self.price * m for v, m in self.past[-MEMORY:]]
+        return value + self.price * missed < max(merits)
+
+    def go_on(self, evaluator: Evaluator, trial: Point) -> None:
+        """Learn from an accepted trial and choose the next step."""
+        jacobian = evaluator.jacobian(trial)
+        if self.point is not None:
+            change = jacobian - evaluator.jacobian(self.point)
+            slopes = change[0] / self.scale - self.multipliers @ change[1 : 1 + self.rows]
+            self._learn(trial.z - self.point.z, slopes)
+        if self.point is not None and self.length > 0.9 * self.radius:
+            self.radius = min(2 * self.radius, newton.RADIUS)
+        self.point = trial
+        self.past.append(self._measures(trial))
+        self.choose(evaluator)
+
+    def choose(self, evaluator: Evaluator) -> None:
+        """Choose the step from the accepted point, within the radius."""
+        assert self.point is not None
+        space, jacobian, unit = (
+            evaluator.space,
+            evaluator.jacobian(self.point),
+            np.eye(len(self.hessian)),
+        )
+        down = np.minimum(self.point.z - space.lower, self.radius)
+        up = np.minimum(space.upper - self.point.z, self.radius)
+        constraints = slice(1, 1 + self.rows)
+        self.step, prices = newton.quadratic_programme(
+            self.hessian,
+            jacobian[0] / self.scale,
+            np.concatenate([jacobian[constraints], unit, -unit]),
+            np.concatenate([self.point.rows[constraints], down, up]),
+        )
+        self.multipliers = prices[: self.rows]
+        self.price = max(self.price, _price(self.multipliers))
+        self.step = self.step * min(1.0, self.radius / max(self.length, 1e-300))
+
+    def _measures(self, trial: Point) -> tuple[float, float]:
+        missed = np.maximum(-trial.rows[1 : 1 + self.rows], 0.0).sum()
+        return trial.objective / self.scale, float(missed)
+
+    def _learn(self, step: Vector, change: Vector) -> None:
+        """Damped update that keeps the Hessian positive [NocedalWright2006] procedure 18.2."""
+        turned = self.hessian @ step
+        bent, straight = float(step @ turned), float(step @ change)
+        if bent <= 1e-20:
+            return
+        if straight < 0.2 * bent:
+            share = 0.8 * bent / (bent - straight)
+            change = share * change + (1 - share) * turned
+        self.hessian = (
+            self.hessian
+            - np.outer(turned, turned) / bent
+            + np.outer(change, change) / float(step @ change)
+        )
+
+
+def descend_together(
+    parametric: ParametricProblem,
+    evaluator: Evaluator,
+    point: Point,
+    starts: Vector,
+    parameters: Vector,
+) -> tuple[list[Point | None], list[Point | None]]:
+    """Optima of the changed problems within trusted radii, and designs on the way to the others.
+
+    Parameters as of `resolve_together`. None where no optimum is reached; the designs on the way
+    are feasible, None where there is none or an optimum is reached.
+    """
+    count = starts.shape[1]
+    found: list[Point | None] = [None] * count
+    if count == 0:
+        return found, []
+    state = newton.state_at(evaluator, point)
+    hessian, rows = newton.convex_hessian(evaluator, state), evaluator.constraint_count
+    price = _price(state.multipliers[: len(state.near.constraint)] / state.scale)
+    descents = [_Descent(hessian, state.scale, rows, price) for _ in range(count)]
+    space = evaluator.space
+    z = np.clip(starts, space.lower[:, None], space.upper[:, None])
+    alive = list(range(count))
+    for _ in range(LONGEST):
+        if not alive:
+            break
+        points = _points(parametric, evaluator, z[:, alive], parameters[:, alive])
+        going = []
+        for k, trial in zip(alive, points, strict=True):
+            one = descents[k]
+            if trial.valid and one.accepts(trial):
+                if one.length <= SETTLED and _optimal(evaluator, trial):
+                    found[k] = trial
+                    continue
+                one.go_on(evaluator, trial)
+            elif one.point is None or one.length <= LEAST_RADIUS:
+                continue
+            else:
+                one.radius = one.length / 2
+                one.choose(evaluator)
+            assert one.point is not None
+            z[:, k] = np.clip(one.point.z + one.step, space.lower, space.upper)
+            going.append(k)
+        alive = going
+    last = [one.point for one in descents]
+    stopped = [
+        at if found[k] is None and at is not None and at.violation <= MET else None
+        for k, at in enumerate(last)
+    ]
+    return found, stopped
+
+
+def _price(multipliers: Vector) -> float:
+    """A price of what is missed above every multiplier."""
+    return 2 * float(multipliers.max(initial=0.0)) + 1.0
+
+
+def _optimal(evaluator: Evaluator, trial: Point) -> bool:
+    return trial.violation <= FEASIBLE and kkt.check(evaluator, trial).residual <= RESIDUAL
+
+
 def restore_together(
-    parametric: ParametricProblem, evaluator: Evaluator, point: Point, parameters: Vector
+    parametric: ParametricProblem, evaluator: Evaluator, start: Vector, parameters: Vector
 ) -> list[Vector | None]:
-    """A feasible point (nf,) near the unchanged optimum for each problem; None where none is.
+    """A feasible point (nf,) near the start for each problem; None where none is.
 
     Every step is the shortest that meets the linearised rows, or misses them least.
     """
     space = evaluator.space
     count = parameters.shape[1]
     found: list[Vector | None] = [None] * count
-    z = np.repeat(point.z[:, None], count, axis=1)
+    z = np.repeat(start[:, None], count, axis=1)
     least = np.full(count, np.inf)
     alive = list(range(count))
     for iteration in range(RESTORATIONS):
@@ -130,7 +279,7 @@ def restore_together(
         points = _points(parametric, evaluator, z[:, alive], parameters[:, alive])
         going = []
         for k, trial in zip(alive, points, strict=True):
-            if trial.valid and trial.violation <= 1e-6:
+            if trial.valid and trial.violation <= MET:
                 found[k] = trial.z
                 continue
             stuck = iteration > PATIENCE and trial.violation > 0.98 * least[k]
@@ -171,12 +320,9 @@ def _points(
     ]
 
 
-def _unmoved(
-    parametric: ParametricProblem, evaluator: Evaluator, point: Point, parameters: Vector
-) -> Vector:
-    """Objective of the unchanged optimum under each problem, infinite where it is infeasible."""
-    count = parameters.shape[1]
-    x = np.repeat(point.x[:, None], count, axis=1)
-    rows = Evaluator.screen(parametric.with_columns(parameters).rows(x))
-    feasible = evaluator.violations(rows, "worst") <= FEASIBLE
-    return np.where(feasible, rows[0], np.inf)
+def standing(parametric: ParametricProblem, points: list[Point], parameters: Vector) -> Vector:
+    """Rows (rows, points, K) of points under each changed problem."""
+    count, size = parameters.shape[1], len(points)
+    x = np.stack([p.x for p in points], axis=1)
+    both = parametric.with_columns(np.tile(parameters, size)).rows(np.repeat(x, count, axis=1))
+    return Evaluator.screen(both).reshape(-1, size, count)

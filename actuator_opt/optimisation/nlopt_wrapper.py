@@ -9,7 +9,7 @@ iterate is kept, and whoever calls judges the point itself.
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -215,6 +215,7 @@ class _Guard:
         self.scale = abs(start.objective) if start.valid and start.objective != 0 else 1.0
         self.worst = 1.0
         self.known: Sequence[Point] = ()
+        self.rank: Callable[[Point], Any] = _rank
         self.arrived: int | None = None
         self.error: BaseException | None = None
         self.best: Point | None = None
@@ -327,12 +328,14 @@ def run(
     most: int | None = None,
     seed: int = 0,
     known: Sequence[Point] = (),
+    rank: Callable[[Point], Any] | None = None,
 ) -> Run:
     """Run one algorithm from one point, at most `most` evaluations (default: its own).
 
-    A run that arrives at one of the `known` optima (see `ARRIVAL`) stops there. Returns the
-    better of NLopt's point and the best feasible iterate. Exceptions of the model,
-    interrupts included, surface here as they were raised; a used-up limit ends the run quietly.
+    A run that arrives at one of the `known` optima (see `ARRIVAL`) stops there. Returns the least
+    by `rank` (default: feasible by objective, else by violation) of NLopt's point, the best
+    feasible iterate, the last one and the start. Exceptions of the model, interrupts included,
+    surface as they were raised; a used-up limit ends the run quietly.
     """
     if evaluator.space.size == 0:
         return Run(start, 1, algorithm)
@@ -341,12 +344,9 @@ def run(
     evaluator.eager = (inner or outer).uses_gradients
     handle = _handle(outer, size, tolerance, most)
     guard = _Guard(evaluator, start, linear=linear, handle=handle)
-    guard.known = known
-    bounds = (
-        (np.zeros(size), np.ones(size))
-        if linear
-        else (evaluator.space.lower, evaluator.space.upper)
-    )
+    guard.known, guard.rank = known, rank or _rank
+    box = evaluator.space
+    bounds = (np.zeros(size), np.ones(size)) if linear else (box.lower, box.upper)
     handle.set_lower_bounds(bounds[0])
     handle.set_upper_bounds(bounds[1])
     handle.set_min_objective(guard.objective)
@@ -388,7 +388,7 @@ def _pick(evaluator: Evaluator, guard: _Guard, found: Vector | None, start: Poin
         candidates.insert(0, guard.point(np.asarray(found)))
         evaluator.limited = limited
     usable = [p for p in candidates if p is not None]
-    return min(usable, key=_rank)
+    return min(usable, key=guard.rank)
 
 
 def _rank(point: Point) -> tuple[float, float]:

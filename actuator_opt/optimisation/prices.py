@@ -12,18 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import elastic, kkt, lockstep, movement, nlopt_wrapper
+from . import kkt, movement, resolving
 from .evaluator import Evaluator, Point
-from .newton import polish
 from .outcome import Solution
-from .parameters import Responses, perturbed, responses, with_bounds
-from .problem import ParametricProblem, Problem, Vector
-
-FEASIBLE = 1e-6
-"""Worst missed margin that still counts as met."""
-
-RESIDUAL = 1e-6
-"""Residual of the optimality conditions that a re-solved optimum must reach."""
+from .parameters import Responses, responses, with_bounds
+from .problem import ParametricProblem, Vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +85,15 @@ def prices(
         given = with_bounds(given, evaluator, found.multipliers[m:])
     moves, shifts = movement.movement(found, given)
     active = np.flatnonzero(found.margins <= kkt.ACTIVE)
-    ends = _resolved_ends(parametric, evaluator, point, given, moves, change if resolve else 0.0)
+    ends = resolving.ends(
+        parametric,
+        evaluator,
+        point,
+        given,
+        moves,
+        change if resolve else 0.0,
+        known=_others(solution),
+    )
     return _rows(
         evaluator,
         point,
@@ -104,6 +105,16 @@ def prices(
         ends=ends,
         reach=movement.reach(found, given, moves, shifts),
     )
+
+
+def _others(solution: Solution) -> list[Vector]:
+    """Local optima of the search besides the one it chose."""
+    good = [
+        one
+        for one in solution.optima
+        if one.violation <= resolving.FEASIBLE and one.residual <= resolving.RESIDUAL
+    ]
+    return [one.x for one in good if not np.array_equal(one.x, solution.x)]
 
 
 def _rows(
@@ -150,143 +161,3 @@ def _rows(
 
 def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
-
-
-def _resolved_ends(
-    parametric: ParametricProblem,
-    evaluator: Evaluator,
-    point: Point,
-    given: Responses,
-    moves: Vector,
-    change: float,
-) -> list[tuple[float | None, float | None]]:
-    """Re-optimised objectives at +change and -change of every parameter."""
-    values = given.values.tolist()
-    ends = {
-        (k, sign): None if change == 0 else point.objective
-        for k in range(len(values))
-        for sign in (1, -1)
-    }
-    wanted = [(k, sign) for k, sign in ends if change != 0 and given.matters(k) and values[k] != 0]
-    known, inside = _together(parametric, evaluator, point, values, moves, change, wanted)
-    for i, (k, sign) in enumerate(wanted):
-        objective = known[i]
-        step = sign * change * values[k]
-        if objective is None and inside[i] is not _NOWHERE:
-            problem = perturbed(parametric, given.names[k], k, values[k] + step)
-            guess = point.z + moves[:, k] * step
-            if problem is not None:
-                objective = resolved(problem, evaluator, guess, point, inside=inside[i])
-        ends[k, sign] = objective
-    return [(ends[k, 1], ends[k, -1]) for k in range(len(values))]
-
-
-_NOWHERE = np.empty(0)
-"""Stands for "no feasible point nearby"."""
-
-
-def _together(
-    parametric: ParametricProblem,
-    evaluator: Evaluator,
-    point: Point,
-    values: list[float],
-    moves: Vector,
-    change: float,
-    wanted: list[tuple[int, int]],
-) -> tuple[list[float | None], list[Vector | None]]:
-    """What re-solving all at once gives, and a feasible point where it does not converge.
-
-    None and None where it does not apply, None and `_NOWHERE` where nothing is feasible nearby.
-    """
-    count = len(parametric.parameters)
-    known: list[float | None] = [None] * len(wanted)
-    inside: list[Vector | None] = [None] * len(wanted)
-    chosen = [i for i, (k, _) in enumerate(wanted) if k < count]
-    if not chosen or not lockstep.applicable(parametric, evaluator):
-        return known, inside
-    parameters = np.repeat(parametric.parameters[:, None], len(chosen), axis=1)
-    starts = np.repeat(point.z[:, None], len(chosen), axis=1)
-    for column, i in enumerate(chosen):
-        k, sign = wanted[i]
-        step = sign * change * values[k]
-        parameters[k, column] += step
-        starts[:, column] += moves[:, k] * step
-    found = lockstep.resolve_together(parametric, evaluator, point, starts, parameters)
-    for i, optimum in zip(chosen, found, strict=True):
-        known[i] = None if optimum is None else optimum.objective
-    left = [column for column, i in enumerate(chosen) if known[i] is None]
-    restored = lockstep.restore_together(parametric, evaluator, point, parameters[:, left])
-    feasible = [(column, z) for column, z in zip(left, restored, strict=True) if z is not None]
-    for column in left:
-        inside[chosen[column]] = _NOWHERE
-    if feasible:
-        columns = [column for column, _ in feasible]
-        points = np.stack([z for _, z in feasible], axis=1)
-        again = lockstep.resolve_together(
-            parametric, evaluator, point, points, parameters[:, columns], own=True
-        )
-        for (column, z), optimum in zip(feasible, again, strict=True):
-            known[chosen[column]] = None if optimum is None else optimum.objective
-            inside[chosen[column]] = z
-    return known, inside
-
-
-def resolved(
-    problem: Problem,
-    evaluator: Evaluator,
-    guess: Vector,
-    point: Point,
-    *,
-    inside: Vector | None = None,
-) -> float | None:
-    """Objective of a slightly changed problem, from the predicted optimum; None if infeasible.
-
-    Newton first; where the active set changes too much for it, a search for a feasible point
-    (whose failure means that the changed problem has none nearby) and SLSQP. With `inside`, a
-    feasible point already found, SLSQP from there at once.
-    """
-    near = Evaluator(problem)
-    if near.space.size != len(guess):  # the changed bound fixes a variable
-        guess = near.space.to_z(near.space.to_x(near.space.lower[:, None])[:, 0])
-    near.complex_works = evaluator.complex_works
-    near.difference_rows = evaluator.difference_rows
-    here = near.point(near.space.to_z(np.clip(point.x, problem.lower, problem.upper)))
-    start = near.point(np.clip(guess, near.space.lower, near.space.upper))
-    if inside is not None:
-        best = _descended(near, near.point(inside))
-        return None if best is None else best.objective
-    best = _refined(near, start if start.valid else here)
-    if best is None or (_met(here) and here.objective < best.objective):
-        best = _refined(near, here) or best  # the guess led nowhere, or uphill
-    return None if best is None else best.objective
-
-
-def _refined(near: Evaluator, start: Point) -> Point | None:
-    """Return an optimum near the start, else a feasible point; None where there is none."""
-    if not start.valid:
-        return None
-    found = polish(near, start, iterations=8, tolerance=1e-10)
-    return found if _optimal(near, found) else _from_feasible(near, found)
-
-
-def _from_feasible(near: Evaluator, start: Point) -> Point | None:
-    """Return an optimum from the nearest feasible point, else that point; None without one."""
-    inside = elastic.feasible_point(near, start) if start.valid else None
-    return None if inside is None else _descended(near, inside)
-
-
-def _descended(near: Evaluator, inside: Point) -> Point | None:
-    """Return an optimum from a feasible point, else that point."""
-    found = nlopt_wrapper.run(near, inside, "LD_SLSQP", most=100).point
-    found = polish(near, found, iterations=8, tolerance=1e-10)
-    if _met(found):
-        return found
-    return inside if _met(inside) else None
-
-
-def _met(point: Point) -> bool:
-    return point.valid and point.violation <= FEASIBLE
-
-
-def _optimal(near: Evaluator, point: Point) -> bool:
-    return _met(point) and kkt.check(near, point).residual <= RESIDUAL

@@ -117,7 +117,7 @@ def look_quickly(
             if point.valid and (descend or point.violation <= FEASIBLE):
                 point = down(point)
             if point.valid and point.violation > FEASIBLE and evaluator.space.size:
-                point = _keep(look, evaluator, _least_missed(evaluator, point))
+                point = _keep(look, evaluator, elastic.least_missed(evaluator, point))
                 if point.violation <= FEASIBLE:
                     down(point)
             if look.feasible or DOUBTFUL < look.violation <= STUCK:
@@ -186,15 +186,6 @@ def _coordinates(
         swept = sweep(evaluator, SAMPLES, seed)
         if swept.z.shape[1]:
             yield swept.z[:, 0].copy(), not starts
-
-
-def _least_missed(evaluator: Evaluator, point: Point) -> Point:
-    """The point nearby whose most missed limit is missed least."""
-    common = elastic.common(evaluator.problem, 2.0 * point.violation + 1.0)
-    found, used = elastic.descend(common, point.x, [point.violation])
-    evaluator.evaluations += used
-    evaluator.check_limits()
-    return evaluator.point(evaluator.space.to_z(found.x[: len(point.x)]))
 
 
 def _keep(look: Look, evaluator: Evaluator, point: Point) -> Point:

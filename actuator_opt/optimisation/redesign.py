@@ -12,6 +12,7 @@ from ..errors import InputError
 from ..evaluation import Evaluation, Subject, evaluate, prepare
 from ..evaluation.result import Requirement
 from ..quantities import Quantity
+from .infeasibility_card import change_text
 from .result import Optimisation
 from .run import optimise
 
@@ -268,13 +269,8 @@ def _repairs(one: Optimisation) -> list[str]:
     """The smallest change of limits that lets a design meet them."""
     if one.infeasibility is None:
         return []
-    found = []
-    for row in one.infeasibility.joint:
-        if row.get("needed") is not None:
-            quantity = one.evaluation.metrics[row["metric"]].quantity
-            limits = f"{quantity.text(row['limit'])} to {quantity.text(row['needed'])}"
-            found.append(f"{row['parameter']} {limits}")
-    return [f"the smallest change of limits that would do: {', '.join(found)}"] if found else []
+    found = [change_text(row) for row in one.infeasibility.joint]
+    return [f"the smallest change of limits that would do: {'; '.join(found)}"] if found else []
 
 
 def _active_words(old: Sequence[str], new: Sequence[str]) -> list[str]:

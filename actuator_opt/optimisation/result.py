@@ -12,6 +12,7 @@ from ..design.model import Design
 from ..evaluation.result import Evaluation
 from ..quantities import INPUTS
 from ..tables import aligned
+from .sensitivity import Offers, Sensitivity, offers
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,40 +40,30 @@ class Kkt:
 
 
 @dataclass(frozen=True, slots=True)
-class Sensitivity:
-    """The price of one requirement limit or one parameter, in SI of the objective per SI of it."""
-
-    parameter: str
-    label: str
-    unit: str
-    """Display unit of the parameter."""
-    scale: float
-    """Display value = SI value / scale."""
-    limit: float
-    price: float
-    percent_per_percent: float
-    predicted_10: float | None
-    resolved_10: float | None
-    predicted_minus10: float | None
-    resolved_minus10: float | None
-    holds_until: float | None
-    next_active: str | None
-    active: bool
-
-
-@dataclass(frozen=True, slots=True)
 class Infeasibility:
     """Why nothing fits: joint relaxation, sole repairs, binding bounds.
 
-    `joint` and `sole` entries hold requirement, parameter (PATH), metric, sense, limit, needed
-    (the limit that would do; None where this one alone cannot help) and relaxation (fraction);
-    `bounds` entries hold path, side, value and gain; `laws` names geometry that conflicts.
+    `joint` and `sole` entries hold requirement, origin, parameter (PATH), metric, sense, limit,
+    needed (the limit that would do; None where this one alone cannot help), relaxation (margin
+    given up, a fraction), change (of the limit, a fraction) and both limits as text in the
+    display unit, the needed one rounded so that it is enough as printed. Where a torque is
+    required through a lever, limit and needed are the torque.
+
+    `bounds` entries hold variable, parameter (PATH), quantity, bound (side), value, gain (fall of
+    `total` per unit of relative opening: 0.01 of it for 1 %), needed (the bound that alone would
+    do, None where none was found), change and texts.
+
+    `laws` names geometry that conflicts, `total` is the sum of the joint relaxations, `sentence`
+    the advice in one line and `evidence` what of it is proven.
     """
 
     joint: tuple[Mapping[str, Any], ...]
     sole: tuple[Mapping[str, Any], ...]
     bounds: tuple[Mapping[str, Any], ...]
     laws: tuple[str, ...] = ()
+    total: float | None = None
+    sentence: str = ""
+    evidence: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -284,6 +275,12 @@ class Optimisation:
         rounded = None if self.rounding is None else self.rounding.design
         return rounded or self.design
 
+    @property
+    def offers(self) -> Offers:
+        """What would buy the most of the objective, by its re-solved prices."""
+        maximised = self.design.objective.maximise is not None
+        return offers(self.sensitivities, self.objective_value, maximised=maximised)
+
     def __str__(self) -> str:
         """Outcome, variables and the evaluation of the best design as tables."""
         rows = [["variable", "value", "lower", "upper", ""]]
@@ -311,6 +308,8 @@ class Optimisation:
             "resolved_minus10": [r.resolved_minus10 for r in rows],
             "holds_until": [r.holds_until for r in rows],
             "next_active": [r.next_active for r in rows],
+            "price_up": [r.price_up for r in rows],
+            "price_down": [r.price_down for r in rows],
         }
 
     def to_dict(self) -> dict[str, Any]:
@@ -335,14 +334,8 @@ class Optimisation:
                     for v in self.variables
                 },
                 "kkt": None if self.kkt is None else asdict(self.kkt),
-                "sensitivities": [
-                    {
-                        key: value
-                        for key, value in asdict(row).items()
-                        if key not in ("label", "unit", "scale")
-                    }
-                    for row in self.sensitivities
-                ],
+                "sensitivities": [row.to_dict(self.objective_value) for row in self.sensitivities],
+                "what_buys_most": self.offers.to_dict(),
                 "certificate": self.certificate,
                 "rounding": None if self.rounding is None else self.rounding.to_dict(),
                 "choices": None if self.choices is None else self.choices.to_dict(),

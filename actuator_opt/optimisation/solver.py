@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..progress import tell
 from . import elastic, kkt, nlopt_wrapper
 from .evaluator import Evaluator, LimitReached, Point
 from .newton import polish
@@ -28,6 +29,14 @@ RESIDUAL = 1e-6
 """Largest residual of the optimality conditions that counts as an optimum."""
 
 FINISH = "active-set Newton"
+
+RESTORATION = "least worst miss by LD_SLSQP"
+
+NEARER = 1e-3
+"""Share by which a worst miss must be less than those known to be another one."""
+
+ELSEWHERE = 1.0
+"""Share by which a worst miss must exceed the least known for its search to count as stuck."""
 
 LOCAL_EVALUATIONS = 150
 """Most evaluations of one local run of a default algorithm."""
@@ -54,6 +63,8 @@ class _Search:
         self.optima: list[_Optimum] = []
         self.records: list[StartRecord] = []
         self.warnings: list[str] = []
+        self.least: list[Point] = []
+        """Where the most missed limit is missed least, though it is missed."""
         self.objective_scale = 0.0
 
     @property
@@ -108,6 +119,25 @@ class _Search:
             StartRecord(start.x, found.point.objective, found.point.violation, name, used)
         )
         return found.good
+
+    def restore(self, point: Point, *, start: Point) -> None:
+        """Go to where the most missed limit is missed least, and on from there if all are met."""
+        before = self.evaluator.evaluations
+        least = min((one.violation for one in self.least), default=np.inf)
+        found = elastic.least_missed(self.evaluator, point, least / 2)
+        if found.violation <= FEASIBLE:
+            self.descend(found, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+            return
+        if found.violation < least * (1 - NEARER):
+            self.optima.append(_Optimum(found, self.residual(found), RESTORATION))
+        self.least.append(found)
+        if found.violation > least * (1 + ELSEWHERE):
+            self.descend(found, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+        elif point is start:
+            used = self.evaluator.evaluations - before
+            self.records.append(
+                StartRecord(start.x, found.objective, found.violation, RESTORATION, used)
+            )
 
     def finish(self, point: Point, algorithm: str) -> _Optimum:
         """Polish a point and enter it among the optima."""
@@ -206,16 +236,25 @@ def _starts(search: _Search, swept: Sweep, wanted: int, more: Sequence[Vector]) 
 
 
 def _default_path(search: _Search, points: list[Point]) -> None:
-    """SLSQP in logarithmic variables; what failed again, by other means."""
-    failed = [
-        point
-        for point in points
-        if not search.descend(point, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
-    ]
-    if not search.succeeded:
-        restored = _restore(search)
-        if restored is not None:
-            search.descend(restored, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
+    """SLSQP in logarithmic variables; what failed again, by other means.
+
+    Where the first start leads to no feasible point, neither itself nor from where its most
+    missed limit is missed least, the others look for a feasible point first.
+    """
+    failed = []
+    for number, point in enumerate(points):
+        tell("searching for a design", number / len(points))
+        if search.least and not search.feasible:
+            search.restore(point, start=point)
+        elif not search.descend(point, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS):
+            failed.append(point)
+            if not search.feasible:
+                search.restore(search.optima[-1].point, start=point)
+    if search.least and not search.feasible:
+        return
+    best = search.best()
+    if best is not None and best.point.violation <= FEASIBLE and not search.succeeded:
+        search.descend(best.point, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
     failed = [
         point
         for point in failed[:2]
@@ -226,16 +265,6 @@ def _default_path(search: _Search, points: list[Point]) -> None:
     for point in failed:
         if search.descend(point, "AUGLAG+LD_LBFGS", linear=False):
             return
-
-
-def _restore(search: _Search) -> Point | None:
-    """Return a feasible point from the least infeasible ones, by minimising one common slack."""
-    for optimum in sorted(search.optima, key=lambda o: o.point.violation)[:3]:
-        if optimum.point.valid:
-            found = elastic.feasible_point(search.evaluator, optimum.point)
-            if found is not None:
-                return found
-    return None
 
 
 def _chosen_path(search: _Search, points: list[Point], chosen: str) -> None:

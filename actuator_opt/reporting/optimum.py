@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from ..optimisation.result import Infeasibility, Optimisation, Sensitivity
+from ..optimisation.result import Optimisation
 from . import text
 from .blocks import Block, Cell, clean, column, soft, table
-from .text import DASH
 
 
 def variables(optimisation: Optimisation) -> Block:
@@ -46,77 +45,6 @@ def variables(optimisation: Optimisation) -> Block:
     return table("Design variables", columns, rows, note=note)
 
 
-def _parameter(row: Sensitivity, value: float | None) -> float | None:
-    """A parameter in its display unit; temperatures have an offset."""
-    if value is None:
-        return None
-    offset = 273.15 if row.unit in ("degC", "°C") else 0.0
-    return value / row.scale - offset
-
-
-def sensitivities(optimisation: Optimisation) -> Block:
-    """Price of every limit and parameter, checked by solving again at ±10 %."""
-    objective = text.metric(optimisation.objective_metric)
-    rows_by_path = {row.path: row for row in optimisation.evaluation.requirements}
-    per_display = objective.to_display(1.0) - objective.to_display(0.0)
-    rows: list[list[Cell]] = []
-    for row in optimisation.sensitivities:
-        found = rows_by_path.get(row.parameter)
-        unit = text.unit_text(row.unit)
-        value = None if found is None else found.value
-        pairs = (
-            (row.predicted_10, row.resolved_10),
-            (row.predicted_minus10, row.resolved_minus10),
-        )
-        until = text.with_unit(text.trimmed(_parameter(row, row.holds_until)), unit)
-        rows.append(
-            [
-                soft(row.parameter.removeprefix("requirements.")),
-                text.with_unit(text.trimmed(_parameter(row, row.limit)), unit),
-                DASH if found is None else text.number(_parameter(row, value)),
-                DASH if found is None else text.margin_text(found.margin, met=found.met),
-                "●" if row.active else "",
-                text.number(row.price * row.scale * per_display, 3, signed=True),
-                text.number(row.percent_per_percent, 3, signed=True),
-                *(text.number(text.display(objective, v)) for pair in pairs for v in pair),
-                soft(until if row.next_active is None else f"{until}: {row.next_active}"),
-            ]
-        )
-    unit = text.unit_text(objective.unit) or objective.name
-    columns = [
-        column("requirement or parameter", "left", 1.25, mono=True),
-        column("limit", "right"),
-        column("value", "right"),
-        column("margin", "right"),
-        column("active", "center"),
-        column(f"price,\n{unit}/unit", "right"),
-        column("% per\n+1 %", "right"),
-        column("+10 %\npredicted", "right"),
-        column("+10 %\nsolved", "right", strong=True),
-        column("−10 %\npredicted", "right"),
-        column("−10 %\nsolved", "right", strong=True),
-        column("holds until: next active", "left", 1.05),
-    ]
-    return table(
-        f"What each requirement costs ({objective.label}, {unit})",
-        columns,
-        rows,
-        note=quality(optimisation),
-    )
-
-
-def quality(optimisation: Optimisation) -> str:
-    """The quality line under the prices."""
-    kkt = optimisation.kkt
-    if kkt is None:
-        return "Quality: no multipliers (the design is not an optimum); prices are not exact."
-    return (
-        f"Quality: KKT residual {text.number(kkt.residual, 2)}, {len(kkt.active)} active rows of"
-        f" rank {kkt.rank}, {kkt.curvature}. Prices are per unit shown in the limit column;"
-        f" {DASH} under solved: no feasible design found nearby."
-    )
-
-
 def sentence(words: str) -> str:
     """Words with a capital letter and a full stop; a name as pressure_a stays as it is.
 
@@ -137,7 +65,10 @@ def convergence(optimisation: Optimisation) -> list[str]:
         f"{optimisation.algorithm}, seed {optimisation.seed},"
         f" {optimisation.evaluations} evaluations."
     ]
-    if optimisation.starts:
+    if optimisation.infeasibility is not None:
+        count = len(optimisation.starts)
+        lines.append(f"None of {count} starts led to a design that meets every requirement.")
+    elif optimisation.starts:
         best = min(optimisation.starts, key=lambda v: abs(v - optimisation.objective_value))
         same = sum(abs(v - best) <= 1e-3 * abs(best) for v in optimisation.starts)
         found = ", ".join(text.value_text(objective, v) for v in optimisation.starts[:8])
@@ -159,31 +90,3 @@ def convergence(optimisation: Optimisation) -> list[str]:
     if optimisation.kkt is not None and optimisation.kkt.active:
         lines.append(f"Active at the optimum: {', '.join(optimisation.kkt.active)}.")
     return lines
-
-
-_HEADS = {
-    "joint": ("Smallest joint relaxation", "Relax all of these together and a design exists."),
-    "sole": ("One requirement alone", f"{DASH}: no design found by relaxing only this one."),
-    "bounds": ("Bounds in the way", "Dimensions that stand at a bound of theirs."),
-}
-
-
-def infeasibility(card: Infeasibility) -> list[Block]:
-    """The card of an infeasible design: what conflicts, by how much, what would repair it."""
-    blocks = []
-    for name, (title, note) in _HEADS.items():
-        records = getattr(card, name)
-        if not records:
-            continue
-        keys = list(dict.fromkeys(key for record in records for key in record))
-        keys = [key for key in keys if key not in ("metric", "quantity", "index")]
-        rows: list[list[Cell]] = [
-            [soft(text.record_text(key, record.get(key), record)) for key in keys]
-            for record in records
-        ]
-        heads = [
-            column(key.replace("_", " "), "left", 1.0, mono=index == 0)
-            for index, key in enumerate(keys)
-        ]
-        blocks.append(table(title, heads, rows, note=note))
-    return blocks

@@ -11,7 +11,9 @@ from ..optimisation.result import Optimisation
 from . import (
     choices_table,
     dynamics_page,
+    infeasibility_card,
     optimum,
+    prices,
     seal_sheet,
     stiffness_page,
     tables,
@@ -105,7 +107,7 @@ def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
         elif row is not None:
             state = "met" if row.met else "missed"
             limit = text.limit_text(quantity, row.sense, row.limit)
-            note = f"{limit}, margin {text.margin_text(row.margin, met=row.met)}"
+            note = f"{limit}, margin {text.margin_of(quantity, row.limit, row.margin, met=row.met)}"
         elif name == "mass" and metric.value is not None:
             oil = evaluation.metrics.get("mass_oil")
             if oil is not None and oil.value is not None:
@@ -139,7 +141,7 @@ def page(
     kind = "Optimisation report" if optimisation is not None else "Evaluation report"
     blocks: list[Block] = []
     if optimisation is not None and optimisation.infeasibility is not None:
-        blocks += optimum.infeasibility(optimisation.infeasibility)
+        blocks += infeasibility_card.blocks(optimisation.infeasibility)
     blocks.append(tables.requirements(evaluation))
     if optimisation is not None and (chosen := choices_table.block(optimisation)) is not None:
         blocks.append(chosen)
@@ -151,8 +153,8 @@ def page(
     else:
         blocks.append(tables.masses(evaluation))
     blocks += stiffness_page.blocks(evaluation) + dynamics_page.blocks(evaluation)
-    if optimisation is not None and optimisation.sensitivities:
-        blocks.append(optimum.sensitivities(optimisation))
+    if optimisation is not None:
+        blocks += prices.blocks(optimisation)
     if optimisation is not None and optimisation.variables:
         blocks.append(tables.masses(evaluation))
     blocks += seal_sheet.sheets(seals) + wall.blocks(evaluation)

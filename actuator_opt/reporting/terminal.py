@@ -9,8 +9,18 @@ from collections.abc import Sequence
 from typing import TypedDict
 
 from ..evaluation.result import Evaluation, Requirement, StrokeCurve
-from ..optimisation.result import Infeasibility, Optimisation
-from . import choices_table, optimum, page, plot, stiffness_page, text, whole_plies
+from ..optimisation.result import Optimisation
+from . import (
+    choices_table,
+    infeasibility_card,
+    optimum,
+    page,
+    plot,
+    prices,
+    stiffness_page,
+    text,
+    whole_plies,
+)
 from .console import Column, Console
 from .places import brief
 from .text import DASH
@@ -108,7 +118,7 @@ def evaluation_table(
                     text.number(quantity.to_display(metric.value)) if index == 0 else "",
                     text.unit_text(quantity.unit) if index == 0 else "",
                     limit,
-                    text.margin_text(margin, met=met) if row is not None else "",
+                    text.margin_of(quantity, row.limit, margin, met=met) if row else "",
                     console.margin_bar(margin, half),
                     case if row is None else brief(row.case, row.place) or case,
                     quantity.label if index == 0 else "",
@@ -155,7 +165,7 @@ def requirements_table(
                 row.name,
                 text.limit_text(quantity, row.sense, row.limit),
                 why or text.value_text(quantity, row.value),
-                text.margin_text(row.margin, met=row.met),
+                text.margin_of(quantity, row.limit, row.margin, met=row.met),
                 console.margin_bar(row.margin, half),
                 brief(row.case, row.place),
             ]
@@ -246,72 +256,6 @@ def _slot(console: Console, value: float, lower: float, upper: float, size: int 
     return line * place + dot + line * (size - 1 - place)
 
 
-def sensitivity_table(
-    optimisation: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
-) -> str:
-    """Prices of limits and parameters, predicted against re-solved, with the quality line."""
-    console = Console(colour, unicode, width)
-    block = optimum.sensitivities(optimisation)
-    unit = text.unit_text(text.metric(optimisation.objective_metric).unit)
-    columns = [
-        Column("parameter", flexible=True, least=34),
-        Column("limit", "right"),
-        Column("value", "right", drop=4),
-        Column("margin", "right", drop=3),
-        Column("active" if unicode else "act"),
-        Column(f"{unit}/unit", "right"),
-        Column("%/%", "right"),
-        Column("at +10 %", "right", drop=1),
-        Column("+ solved", "right"),
-        Column("at -10 %", "right", drop=1),
-        Column("- solved", "right"),
-        Column("holds until: next active", flexible=True, drop=2),
-    ]
-    rows, styles = [], []
-    for cells in block["rows"]:
-        row = [cell if isinstance(cell, str) else "".join(cell) for cell in cells]
-        active = row[4] != ""
-        row[4] = "" if not active else "●" if unicode else "*"
-        rows.append(row)
-        strong = "bold" if active else ""
-        styles.append(
-            [
-                strong,
-                "",
-                "dim",
-                "dim",
-                "yellow",
-                strong,
-                strong,
-                "dim",
-                strong,
-                "dim",
-                strong,
-                "dim",
-            ]
-        )
-    lines = [console.heading(block["title"]), *console.table(columns, rows, styles)]
-    lines.append(console.wrap(block["note"], "dim"))
-    return "\n".join(lines)
-
-
-def infeasibility_card(
-    subject: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
-) -> str:
-    """Why nothing fits: what to relax together, what alone would do, which bounds bind."""
-    console = Console(colour, unicode, width)
-    card: Infeasibility | None = subject.infeasibility
-    if card is None:
-        return ""
-    lines = []
-    for block in optimum.infeasibility(card):
-        columns = [Column(c["head"], c["align"], flexible=True) for c in block["columns"]]
-        rows = [["".join(cell) for cell in row] for row in block["rows"]]
-        lines += ["", console.heading(block["title"]), *console.table(columns, rows)]
-        lines.append(console.wrap(block["note"], "dim"))
-    return "\n".join(lines[1:])
-
-
 def stiffness_curve(
     curve: StrokeCurve,
     requirement: Requirement | None = None,
@@ -386,10 +330,10 @@ def optimisation_text(
     console = Console(**style)
     parts: Sequence[str] = [
         verdict(optimisation, **style),
-        infeasibility_card(optimisation, **style),
+        infeasibility_card.terminal(optimisation, **style),
         requirements_table(optimisation.evaluation, **style),
         variables_table(optimisation, **style) if optimisation.variables else "",
-        sensitivity_table(optimisation, **style) if optimisation.sensitivities else "",
+        prices.terminal(optimisation, **style),
         checks_table(optimisation.evaluation, **style),
         notes(optimisation.evaluation, **style),
         choices_table.terminal(optimisation, **style),

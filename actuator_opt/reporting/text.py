@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
-from typing import Any
 
 from .. import quantities
 from ..quantities import Quantity
@@ -205,6 +203,20 @@ def margin_text(margin: float | None, *, met: bool = True) -> str:
     return f"{_tenth(percent)} %"
 
 
+def margin_of(
+    quantity: Quantity, limit: float | None, margin: float | None, *, met: bool = True
+) -> str:
+    """A margin in per cent of its limit; of a limit of 0 the room itself, in its unit.
+
+    >>> margin_of(metric("pressure_loss"), 2.0, 0.031), margin_of(metric("bore_growth"), 0.0, -3e-5)
+    ('+3.1 %', '−30.0 µm')
+    """
+    if limit != 0 or margin is None or math.isnan(margin):
+        return margin_text(margin, met=met)
+    room = quantity.to_display(margin) - quantity.to_display(0.0)
+    return with_unit(number(room, 3, signed=True), unit_text(quantity.unit))
+
+
 def _tenth(percent: float) -> str:
     return f"{percent:+.1f}".replace("-", MINUS)
 
@@ -218,21 +230,3 @@ def plain(text: str) -> str:
     """The same text for an ASCII stream."""
     text = _POWER.sub(lambda m: f"e{m[1].translate(_DIGITS)}", text)
     return text.translate(_ASCII).encode("ascii", "backslashreplace").decode("ascii")
-
-
-def record_text(name: str, value: Any, record: Mapping[str, Any]) -> str:
-    """One field of a free-form record (an infeasibility row) with the unit of its metric."""
-    if value is None:
-        return DASH
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if not isinstance(value, (int, float)):
-        return str(value)
-    if name in ("relative", "relaxation", "violation", "margin", "fraction", "amount", "gain"):
-        return f"{number(100 * value, 3, signed=True)} %"
-    known = record.get("metric") or record.get("quantity")
-    if isinstance(known, str):
-        quantity = quantities.METRICS.get(known) or quantities.INPUTS.get(known)
-        if quantity is not None:
-            return value_text(quantity, value)
-    return number(value)

@@ -12,7 +12,8 @@ from ..evaluation import evaluate as evaluate_subject
 from .actuator import Actuator, Plugins, as_actuator, place, unanswered
 
 if TYPE_CHECKING:
-    from ..optimisation.result import Optimisation, Sensitivity
+    from ..optimisation.result import Optimisation
+    from ..optimisation.sensitivity import Sensitivity
 
 
 def evaluate(design: Actuator | Design | str | Path, *, plugins: Plugins = ()) -> Evaluation:

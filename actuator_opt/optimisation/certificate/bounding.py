@@ -24,10 +24,16 @@ WIDEST = 40.0
 ROUNDS = 12
 """Most rounds of tangents in one box."""
 
-MISSED = 1e-5
+FIRST = (-1.0, -0.6, -0.3, 0.0, 0.3, 0.6, 1.0)
+"""Places of the first tangents, over half of a range."""
+
+ENOUGH = 2e-5
+"""Gain of the bound by a round of tangents below which there is no other."""
+
+MISSED = 1e-4
 """Distance from a curve at which a tangent is added."""
 
-MOST = 5
+MOST = 16
 """Lines per curve beyond which those that do not touch are forgotten."""
 
 
@@ -53,24 +59,34 @@ class Bounding:
     def __init__(self, layout: Layout, objective: Form) -> None:
         self.layout = layout
         atoms, ratios, curves = layout.atoms, layout.directions, layout.curves
-        self.columns = atoms + ratios + curves
+        self.columns = atoms + ratios + curves + layout.bands
         self.ratios = slice(atoms, atoms + ratios)
         self.ratio = (atoms + layout.direction).astype(np.int32)
         self.out = atoms + ratios + np.arange(curves, dtype=np.int32)
+        self.band_ratio = (atoms + layout.band).astype(np.int32)
+        self.band_out = atoms + ratios + curves + np.arange(layout.bands, dtype=np.int32)
+        self.fitted = curves + layout.bands
         self.cost = np.zeros(self.columns)
         for i, power in objective.powers:
             self.cost[i] = power
         self.constant = objective.constant
         self.matrix, self.low, self.high = self._definitions()
-        none = np.zeros(curves)
-        self.lines = _Lines(self.ratio, none, self.out, none - np.inf, none + np.inf)
+        none = np.zeros(self.fitted)
+        self.lines = _Lines(
+            np.concatenate([self.ratio, self.band_ratio]),
+            none,
+            np.concatenate([self.out, self.band_out]),
+            none - np.inf,
+            none + np.inf,
+        )
         self.solver = self._solver()
 
     def _definitions(self) -> tuple[Any, Vector, Vector]:
         """Outs and directions by their atoms; rows at least zero."""
         layout = self.layout
-        defined = layout.curves + layout.directions
-        columns = np.concatenate([self.out, np.arange(layout.atoms, layout.atoms + layout.directions)])
+        defined = layout.curves + layout.directions + layout.bands
+        ratios = np.arange(self.ratios.start, self.ratios.stop)
+        columns = np.concatenate([self.out, ratios, self.band_out])
         rows = np.concatenate([layout.form, np.arange(defined)])
         places = np.concatenate([layout.atom, columns])
         values = np.concatenate([layout.power, np.full(defined, -1.0)])
@@ -96,7 +112,7 @@ class Bounding:
     def solve(self, box: Box) -> Bound | None:
         """The bound of a box; None where the relaxation has no point."""
         lower, upper = self.enter(box)
-        found = self._least(self.cost, lower, upper)
+        found = self._least(self.cost, lower, upper, rounds=ROUNDS)
         if found is None:
             return None
         value, x, dual = found
@@ -105,8 +121,8 @@ class Bounding:
             value + self.constant,
             x[: self.layout.atoms],
             x[self.ratios],
-            np.maximum(-self._missed(x), 0.0),
-            np.abs(dual[first : first + self.layout.curves]),
+            self._excess(x),
+            np.abs(dual[first : first + self.fitted]),
         )
 
     def enter(self, box: Box) -> tuple[Vector, Vector]:
@@ -118,8 +134,8 @@ class Bounding:
 
     def _purge(self) -> None:
         """Forget tangents that no longer touch, once there are too many."""
-        first, count = len(self.low) + self.layout.curves, len(self.lines.low)
-        if count < MOST * self.layout.curves:
+        first, count = len(self.low) + self.fitted, len(self.lines.low)
+        if count < MOST * self.fitted:
             return
         status = self.solver.getBasis().row_status
         idle = [r for r in range(first, len(status)) if status[r] == highspy.HighsBasisStatus.kBasic]
@@ -136,39 +152,37 @@ class Bounding:
         reach = []
         for sign in (1.0, -1.0):
             cost[column] = sign
-            found = self._least(cost, *ends)
+            found = self._least(cost, *ends, rounds=1)
             if found is None:
                 return None
             reach.append(sign * found[0])
         return reach[0], reach[1]
 
     def _least(
-        self, cost: Vector, lower: Vector, upper: Vector
+        self, cost: Vector, lower: Vector, upper: Vector, *, rounds: int
     ) -> tuple[float, Vector, Vector] | None:
         """Least of a linear function: the value that is proven, the point, the multipliers."""
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsCost(self.columns, index, cost)
-        for turn in range(ROUNDS):
-            # a new objective leaves the point feasible, new rows leave the multipliers so
-            self.solver.setOptionValue("simplex_strategy", 1 if turn else 4)
+        last = -np.inf
+        for _ in range(rounds):
             self.solver.run()
             if self.solver.getModelStatus() == highspy.HighsModelStatus.kInfeasible:
                 return None
             solution = self.solver.getSolution()
             x, dual = np.array(solution.col_value), np.array(solution.row_dual)
-            more = self._tangents(x, self._missed(x))
-            if more is None:
+            value = float(cost @ x)
+            if rounds == 1 or value - last < ENOUGH or not self._tangents(x):
                 break
-            _add(self.solver, more)
-            self.lines = self.lines.joined(more)
+            last = value
         return self._safe(cost, dual, lower, upper), x, dual
 
     def _columns(self, box: Box) -> tuple[Vector, Vector]:
         """Put the ranges of a box."""
         low, high, _, _ = self.layout.reach(box.lower, box.upper)
-        outs = self.layout.parts[0]
-        lower = np.concatenate([box.lower, box.low, low[outs]])
-        upper = np.concatenate([box.upper, box.high, high[outs]])
+        outs, _, bands, _ = self.layout.parts
+        lower = np.concatenate([box.lower, box.low, low[outs], low[bands]])
+        upper = np.concatenate([box.upper, box.high, high[outs], high[bands]])
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsBounds(self.columns, index, lower, upper)
         return lower, upper
@@ -188,12 +202,15 @@ class Bounding:
         lines.coefficient[:count] = -slope * layout.factor
         lines.low[:count] = np.where(over & ~convex, np.where(flat, np.minimum(*ends), level), -np.inf)
         lines.high[:count] = np.where(over & convex, np.where(flat, np.maximum(*ends), level), np.inf)
-        index = first + np.arange(count, dtype=np.int32)
-        for row, column, value in zip(
-            index.tolist(), self.ratio.tolist(), lines.coefficient[:count].tolist(), strict=True
-        ):
+        secants = layout.secants(box.low, box.high)
+        fitted = self.fitted
+        lines.coefficient[count:fitted] = -secants.slope
+        lines.low[count:fitted], lines.high[count:fitted] = secants.least, secants.most
+        index = first + np.arange(fitted, dtype=np.int32)
+        columns, values = lines.ratio[:fitted].tolist(), lines.coefficient[:fitted].tolist()
+        for row, column, value in zip(index.tolist(), columns, values, strict=True):
             self.solver.changeCoeff(row, column, value)
-        self.solver.changeRowsBounds(count, index, lines.low[:count], lines.high[:count])
+        self.solver.changeRowsBounds(fitted, index, lines.low[:fitted], lines.high[:fitted])
 
     def _argument(self, x: Vector) -> Vector:
         return self.layout.factor * x[self.ratio] + self.layout.constant
@@ -203,12 +220,38 @@ class Bounding:
         mixed = self.layout.mixed
         return np.where(mixed.convex, 1.0, -1.0) * (mixed.value(self._argument(x)) - x[self.out])
 
-    def _tangents(self, x: Vector, missed: Vector) -> _Lines | None:
-        """Tangents where the point lies on their side of a curve."""
-        some = np.flatnonzero(missed > MISSED)
-        if not len(some):
-            return None
-        layout, t = self.layout, self._argument(x)
+    def lay(self, box: Box) -> None:
+        """Tangents of every curve over a box, to begin with."""
+        low, high = self.layout.arguments(box.low, box.high)
+        middle, reach = (low + high) / 2, np.minimum((high - low) / 2, 0.5 * WIDEST)
+        for share in FIRST:
+            self._append(self._touching(middle + share * reach, np.arange(self.layout.curves)))
+
+    def _append(self, more: _Lines) -> None:
+        _add(self.solver, more)
+        self.lines = self.lines.joined(more)
+
+    def _excess(self, x: Vector) -> Vector:
+        """By how much every curve and band is missed on the side of its chord or secants."""
+        functions, columns = self.layout.relaxation.bands, zip(
+            self.band_ratio, self.band_out, strict=True
+        )
+        bands = [
+            abs(float(band.function(x[[ratio]])[0]) - x[out])
+            for band, (ratio, out) in zip(functions, columns, strict=True)
+        ]
+        return np.concatenate([np.maximum(-self._missed(x), 0.0), bands])
+
+    def _tangents(self, x: Vector) -> bool:
+        """Add tangents where the point lies on their side of a curve; whether there are any."""
+        some = np.flatnonzero(self._missed(x) > MISSED)
+        if len(some):
+            self._append(self._touching(self._argument(x), some))
+        return len(some) > 0
+
+    def _touching(self, t: Vector, some: Any) -> _Lines:
+        """Tangents of some curves at arguments of all."""
+        layout = self.layout
         slope = layout.mixed.slope(t)
         level = (layout.mixed.value(t) + slope * (layout.constant - t))[some]
         convex = layout.mixed.convex[some]
@@ -242,6 +285,7 @@ class Bounding:
 _OPTIONS = {
     "output_flag": False,
     "presolve": "off",
+    "simplex_strategy": 0,
     "primal_feasibility_tolerance": 1e-7,
     "dual_feasibility_tolerance": 1e-9,
     "threads": 1,

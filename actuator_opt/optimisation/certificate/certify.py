@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,8 @@ from ..problem import Vector
 from .bounding import Bounding
 from .box import Layout
 from .intervals import narrow, tighten
-from .relaxation import Builder, Relaxation, Row, Unknown
+from .lone import ranges
+from .relaxation import Builder, Relaxation, Unknown
 from .search import Found, search
 from .signomial import Form
 from .trace import Claim, Traced, trace
@@ -38,7 +40,7 @@ class Relaxed:
     dropped: dict[str, str]
 
 
-def relax(traced: Traced, best: float) -> Relaxed:
+def relax(traced: Traced, best: float, near=None) -> Relaxed:
     """The relaxation of all designs that meet the limits and are no worse than `best`."""
     for claim in traced.claims:
         narrow(claim.value, _ends(claim))
@@ -46,24 +48,28 @@ def relax(traced: Traced, best: float) -> Relaxed:
         narrow(objective, (-math.inf, best + MET * abs(best)))
     values = [claim.value for claim in traced.claims] + traced.objectives
     values += [value for fact in traced.facts for value in fact]
-    tighten(needed(values), traced.facts)
+    nodes = needed(values)
+    for node, ends in ranges(nodes).items():
+        narrow(node, ends)
+    tighten(nodes, traced.facts)
     builder = Builder()
-    rows = builder.found.rows
     covered, dropped = [], dict(traced.dropped)
     for claim in traced.claims:
+        if near is not None and claim.limit.name not in near:
+            continue
+        least, most = _ends(claim)
         try:
-            sign, form = builder.form(claim.value)
+            if math.isfinite(least):
+                builder.at_least(claim.value, least)
+            else:
+                builder.at_least(-claim.value, -most)
         except Unknown as reason:
             dropped[claim.label] = str(reason)
             continue
         covered.append(claim)
-        least, most = _ends(claim)
-        if sign < 0:
-            least, most, form = -most, -least, form
-        if 0 < least < math.inf:
-            rows.append(Row(Form(math.log(least)), form))
-        if 0 < most < math.inf:
-            rows.append(Row(form, Form(math.log(most))))
+    for more, less in traced.facts:
+        with suppress(Unknown):
+            builder.at_least(more, less)
     (objective,) = (builder.form(one)[1] for one in set(traced.objectives))
     return Relaxed(builder.found, objective, builder.variables, tuple(covered), dropped)
 

@@ -2,63 +2,188 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
 
 import numpy as np
 
 from ...design.model import Design
-from ...evaluation import beam
-from ...evaluation.barrel import Wall
+from ...evaluation import Subject, beam, plies
+from ...evaluation.allow import Stock
+from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind
+from ...evaluation.barrel import load_path
+from ...evaluation.geometry import Geometry
 from ...evaluation.kernel import Implicit, Pass
 from ...evaluation.rods import Rod
-from ...models import column, stepped
+from ...evaluation.state import State
+from ...evaluation.values import Values
+from ...models import column, stepped, tube_bounds
+from ...models import rod as rod_models
+from ...models.layered_tube import layered_tube, tube_state
+from ...models.solid_ply import solid_rotated
 from ...models.trial_mode import TrialMode, buckled_mode, trial_mode_load
 from ...numeric import Array, maximum
+from ...symbolic import Symbol
+
+LEAST_DECAY = 1e-3
+"""Least decay of the displacement through a layer, so that no power is zero."""
 
 
-def at_design(design: Design, done: Pass, case: int) -> Implicit:
-    """Envelopes that are tight at an evaluated design of one column, in one load case."""
-    return Implicit(critical_load=_column(_mode(design, done, case)))
+class Problem(Protocol):
+    """Where envelopes leave their unknowns and what is known of them."""
+
+    facts: list[tuple[Any, Any]]
+
+    def unknown(self, name: str, exact: Callable[[Pass], float]) -> Symbol:
+        """A further unknown, above zero."""
 
 
-def _pinned(design: Design) -> bool:
-    return design.cylinder.mount == "cap_clevis"
+class Envelopes:
+    """Envelopes of one load case, tight at an evaluated design of one column."""
 
+    def __init__(
+        self, problem: Problem, subject: Subject, there: Pass, decays: Sequence[float], case: int
+    ) -> None:
+        self.problem, self.subject, self.there = problem, subject, there
+        self.decays, self.case = decays, case
 
-def _mode(design: Design, done: Pass, case: int) -> TrialMode | None:
-    """The shape in which a design buckles."""
-    if not _pinned(design):
-        return None
-
-    def number(value: Array) -> float:
-        rows = np.atleast_2d(np.asarray(value, dtype=float))
-        return float(rows[min(case, len(rows) - 1), 0])
-
-    lengths = beam.lengths(done.geometry, done.state)
-    segments = {
-        "bending_stiffness_1": number(done.wall.bending_stiffness),
-        "length_1": number(lengths[0]),
-        "bending_stiffness_2": number(done.rod.bending_stiffness),
-        "length_2": number(lengths[1]),
-    }
-    load = float(stepped.stepped_column_load(**segments))
-    return buckled_mode(critical_load=load, **segments)
-
-
-def _column(mode: TrialMode | None) -> Callable[..., Array]:
-    """Critical load from above: bent in a given shape, sheared with the stiffer segment's ease."""
-
-    def critical(design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]) -> Array:
-        if mode is None:
-            return beam.critical_load(design, wall, rod, lengths)
-        load = trial_mode_load(
-            mode=mode,
-            bending_stiffness_1=wall.bending_stiffness,
-            length_1=lengths[0],
-            bending_stiffness_2=rod.bending_stiffness,
-            length_2=lengths[1],
+    def implicit(self) -> Implicit:
+        """The models to evaluate with."""
+        return Implicit(
+            wall=self.laminate if layered(self.subject) else compute,
+            critical_load=self.column(self._mode()),
         )
-        stiffer = maximum(wall.shear_stiffness, rod.shear_stiffness)
-        return column.engesser_load(critical_load=load, shear_stiffness=stiffer)
 
-    return critical
+    def _number(self, value: Array) -> float:
+        """A value of an evaluated design in this load case."""
+        rows = np.atleast_2d(np.asarray(value, dtype=float))
+        return float(rows[min(self.case, len(rows) - 1), 0])
+
+    def _unknown(self, name: str, exact: Callable[[Pass], Array]) -> Symbol:
+        """An unknown of this load case."""
+        return self.problem.unknown(
+            f"{name}_{self.case}", lambda done: self._number(exact(done))
+        )
+
+    def _mode(self) -> TrialMode | None:
+        """The shape in which the evaluated design buckles between its pins."""
+        if self.subject.design.cylinder.mount != "cap_clevis":
+            return None
+        lengths = beam.lengths(self.there.geometry, self.there.state)
+        segments = {
+            "bending_stiffness_1": self._number(self.there.wall.bending_stiffness),
+            "length_1": self._number(lengths[0]),
+            "bending_stiffness_2": self._number(self.there.rod.bending_stiffness),
+            "length_2": self._number(lengths[1]),
+        }
+        load = float(stepped.stepped_column_load(**segments))
+        return buckled_mode(critical_load=load, **segments)
+
+    @staticmethod
+    def column(mode: TrialMode | None) -> Callable[..., Array]:
+        """Critical load from above: bent in one shape, sheared as easily as the stiffer segment."""
+
+        def critical(
+            design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]
+        ) -> Array:
+            if mode is None:
+                return beam.critical_load(design, wall, rod, lengths)
+            load = trial_mode_load(
+                mode=mode,
+                bending_stiffness_1=wall.bending_stiffness,
+                length_1=lengths[0],
+                bending_stiffness_2=rod.bending_stiffness,
+                length_2=lengths[1],
+            )
+            stiffer = maximum(wall.shear_stiffness, rod.shear_stiffness)
+            return column.engesser_load(critical_load=load, shear_stiffness=stiffer)
+
+        return critical
+
+    def laminate(
+        self, v: Values, design: Design, stock: Stock, g: Geometry, state: State
+    ) -> Wall:
+        """A laminated wall: growth and axial stiffness unknown between their bounds.
+
+        It does not stretch under axial force (stiffer than it is); its strength is left out.
+        """
+        layers = plies.layers(v, stock, design.barrel.layup, "barrel.layup", (), [])
+        walls = [solid_rotated(stiffness=layer.solid, angle=layer.angle) for layer in layers]
+        thicknesses = [layer.thickness for layer in layers]
+        growth = self.problem.unknown(
+            "growth", lambda done: self._number(done.wall.swelling.growth)
+        )
+        least = tube_bounds.least_growth(
+            hoop=[one[3] for one in walls],
+            cross=[one[4] for one in walls],
+            radial=[one[5] for one in walls],
+            decays=self.decays,
+            thicknesses=thicknesses,
+            inner_radius=g.inner_radius,
+        )
+        stiffness = self.problem.unknown(
+            "axial_stiffness", lambda done: self._number(1 / done.wall.swelling.stretch)
+        )
+        low, high = tube_bounds.axial_stiffness_bounds(
+            free=[rod_models.free_modulus(wall=one) for one in walls],
+            held=[_held(one, 0.2) for one in walls],
+            thicknesses=thicknesses,
+            inner_radius=g.inner_radius,
+        )
+        supply = self._unknown("grown", lambda done: done.wall.growth)
+        own = supply
+        if not np.array_equal(np.ravel(state.driven_pressure), np.ravel(v["supply.pressure"])):
+            own = self._unknown("grown_own", lambda done: done.wall.case_growth)
+        self.problem.facts += [
+            (growth, least),
+            (stiffness, low),
+            (high, stiffness),
+            (supply, v["supply.pressure"] * growth),
+            (own, state.driven_pressure * growth),
+        ]
+        bending, shear = rod_models.layered_section(
+            walls=walls, thicknesses=thicknesses, inner_diameter=2 * g.inner_radius
+        )
+        rigid = Swelling(growth=growth, shortening=0.0, stretch=0.0, growth_by_force=0.0)
+        pulled = Swelling(growth, 0.0, 1 / stiffness, 0.0)
+        return Wall(
+            swelling=rigid,
+            path=load_path.derive(v, design, stock, g, state, pulled),
+            growth=supply,
+            case_growth=own,
+            bending_stiffness=bending,
+            shear_stiffness=shear,
+            thin_ratio=(g.outer_radius - g.inner_radius) / g.inner_radius,
+            layered=len(layers) > 1,
+            axial_line_stiffness=stiffness / (math.pi * (g.inner_radius + g.outer_radius)),
+            why_no_mismatch="the relaxation leaves it out",
+            missing=["the relaxation leaves it out"],
+        )
+
+
+def layered(subject: Subject) -> bool:
+    """Whether the wall of a design is of layers."""
+    return kind(subject.design, subject.materials) in LAMINATES
+
+
+def decays(subject: Subject, v: Values, there: Pass) -> list[float]:
+    """How the displacement falls through each layer of an evaluated design under pressure."""
+    if not layered(subject):
+        return []
+    stock = Stock(v, subject.materials, subject.factors, subject.constants)
+    plain = plies.layers(v, stock, subject.design.barrel.layup, "barrel.layup", (), [])
+    tube = layered_tube(
+        layers=[layer.as_tube() for layer in plain], inner_radius=there.geometry.inner_radius
+    )
+    state = tube_state(tube=tube, inner_pressure=1.0)
+    radius = np.asarray(state.radius).reshape(2, -1)
+    moved = np.asarray(state.hoop_strain).reshape(2, -1) * radius
+    falls = -np.log(moved[1] / moved[0]) / np.log(radius[1] / radius[0])
+    return [float(fall) if abs(fall) > LEAST_DECAY else LEAST_DECAY for fall in falls]
+
+
+def _held(wall: Sequence[Array], contraction: float) -> Array:
+    """Axial modulus of a layer that contracts by a given share of its strain."""
+    zz, zt, zr, tt, tr, rr = wall[:6]
+    return zz - 2 * contraction * (zt + zr) + contraction**2 * (tt + 2 * tr + rr)

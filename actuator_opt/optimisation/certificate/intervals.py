@@ -13,12 +13,16 @@ from typing import Any
 
 from ...symbolic import Symbol
 from ...symbolic.bounds import Bounds, bounds, bounds_of
+from .signomial import Form, Signomial
 
 ROUNDS = 30
 """Most passes over all values."""
 
 WORTH = 1e-3
 """Relative gain of a bound below which another pass is not worth it."""
+
+LARGEST = 80
+"""Most terms of a sum that is expanded."""
 
 SLACK = 1e-9
 """Relative room given to every bound for rounding."""
@@ -41,11 +45,14 @@ def tighten(nodes: Sequence[Symbol], facts: Sequence[tuple[Any, Any]] = ()) -> N
     Empty
         some value has no room left
     """
+    sums = cancelling(nodes)
     for _ in range(ROUNDS):
         gained = False
         for node in nodes:
             if node.operands:
                 gained |= narrow(node, _forward(node))
+            if node in sums:
+                gained |= narrow(node, _of_terms(sums[node], node.graph.nodes))
         for more, less in facts:
             gained |= narrow(more, (bounds_of(less)[0], math.inf))
             gained |= narrow(less, (-math.inf, bounds_of(more)[1]))
@@ -53,6 +60,70 @@ def tighten(nodes: Sequence[Symbol], facts: Sequence[tuple[Any, Any]] = ()) -> N
             gained |= _backward(node)
         if not gained:
             return
+
+
+def cancelling(nodes: Sequence[Symbol]) -> dict[Symbol, Signomial]:
+    """Sums whose terms cancel in part when expanded, which plain bounds do not see."""
+    known: dict[int, Signomial | None] = {}
+
+    def expanded(value: Any) -> Signomial | None:
+        if isinstance(value, Symbol):
+            return known[value.index]
+        return Signomial.number(value) if math.isfinite(value) else None
+
+    found = {}
+    for node in nodes:
+        parts = [expanded(one) for one in node.args] if node.op in _ALGEBRA else [None]
+        whole = None if None in parts else _ALGEBRA[node.op](*parts)
+        if whole is not None and len(whole.terms) <= LARGEST:
+            sizes = sum(part.size for part in parts if part is not None)
+            if node.op in ("add", "sub") and whole.size < (1 - 1e-9) * sizes:
+                found[node] = whole
+            known[node.index] = whole
+        else:
+            known[node.index] = Signomial({((node.index, 1.0),): 1.0})
+    return found
+
+
+def _quotient(first: Signomial, second: Signomial) -> Signomial | None:
+    known = second.single
+    if known is None:
+        return None
+    sign, form = known
+    return first.times(Signomial.monomial(sign, Form(0.0) - form))
+
+
+def _product(first: Signomial, second: Signomial) -> Signomial | None:
+    if len(first.terms) * len(second.terms) > 2 * LARGEST:
+        return None
+    return first.times(second)
+
+
+_ALGEBRA: dict[str, Callable[..., Signomial | None]] = {
+    "add": lambda a, b: a.plus(b),
+    "sub": lambda a, b: a.plus(b, -1.0),
+    "neg": lambda a: Signomial({}).plus(a, -1.0),
+    "mul": _product,
+    "div": _quotient,
+}
+
+
+def _of_terms(parts: Signomial, nodes: Sequence[Symbol]) -> Bounds:
+    """Bounds of a sum of products of values."""
+    low = high = 0.0
+    for powers, factor in parts.terms.items():
+        least = most = 1.0
+        for index, power in powers:
+            a, b = nodes[index].bounds
+            if a < 0 or (power < 0 and a <= 0):
+                return -math.inf, math.inf
+            ends = (a**power, b**power) if b < math.inf else (0.0, math.inf)
+            least, most = least * min(ends), most * max(ends)
+        ends = (factor * least, factor * most)
+        low, high = low + min(ends), high + max(ends)
+    if low != low or high != high:
+        return -math.inf, math.inf
+    return low, high
 
 
 def narrow(value: Any, found: Bounds) -> bool:
@@ -147,27 +218,21 @@ def _forward(node: Symbol) -> Bounds:
 def _difference(node: Symbol) -> Bounds:
     """Bounds of a difference; of two squares also as (a - b)(a + b), where a - b is traced."""
     low, high = bounds("sub", node.args)
-    roots = [_root_of(one) for one in node.args]
-    if None not in roots:
-        apart = node.graph.known.get(("sub", *(("#", one.index) for one in roots)))
+    first, second = (_root_of(one) for one in node.args)
+    if first is not None and second is not None:
+        apart = node.graph.known.get(("sub", ("#", first.index), ("#", second.index)))
         if apart is not None:
-            (a, b), (c, d) = (one.bounds for one in roots)
-            least, most = bounds("mul", (apart, _Bounded((a + c, b + d))))
-            return max(low, least), min(high, most)
+            total = first.bounds[0] + second.bounds[0], first.bounds[1] + second.bounds[1]
+            ends = [a * b for a in apart.bounds for b in total]
+            return max(low, min(ends)), min(high, max(ends))
     return low, high
 
 
-class _Bounded:
-    """Bounds that belong to no traced value."""
-
-    def __init__(self, limits: Bounds) -> None:
-        self.bounds = limits
-
-
-def _root_of(value: Any) -> Any:
+def _root_of(value: Any) -> Symbol | None:
     """x of x * x."""
     if isinstance(value, Symbol) and value.op == "mul" and value.args[0] is value.args[1]:
-        return value.args[0]
+        root: Symbol = value.args[0]
+        return root
     return None
 
 

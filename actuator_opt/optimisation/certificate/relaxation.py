@@ -16,22 +16,31 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from ...symbolic import Symbol
-from ...symbolic.bounds import bounds_of
+from ..problem import Vector
 from .intervals import branch, extreme
+from .lone import Alone, function, sampled, samples
 from .shapes import SHAPES, Kind
-from .signomial import Form, Signomial
+from .signomial import Form, Powers, Signomial
 
-LARGEST = 24
+LARGEST = 8
 """Most terms of a sum that is kept expanded, so that its terms may cancel."""
-
-HIGHEST = 4.0
-"""Highest whole power that is expanded."""
-
 
 class Curve(NamedTuple):
     """out = function(argument), both affine in the atoms' logarithms."""
 
     kind: Kind
+    argument: Form
+    out: Form
+
+
+class Band(NamedTuple):
+    """out = function(argument) of one variable, any smooth function of its logarithm.
+
+    `bend` bounds its second derivative, so that a band around a secant holds it.
+    """
+
+    function: Callable[[Vector], Vector]
+    bend: float
     argument: Form
     out: Form
 
@@ -59,6 +68,8 @@ class Relaxation:
     upper: list[float] = field(default_factory=list)
     rows: list[Row] = field(default_factory=list)
     curves: list[Curve] = field(default_factory=list)
+    bands: list[Band] = field(default_factory=list)
+    plains: dict[Powers, tuple[float, Form]] = field(default_factory=dict)
     sums: dict[tuple[Form, Form], Form] = field(default_factory=dict)
 
     def atom(self, low: float, high: float, maker: Maker) -> Form:
@@ -82,7 +93,41 @@ class Relaxation:
         for i, term in enumerate(others):
             last = i == len(others) - 1
             first = self._sum(first, term, low if last else 0.0, high)
+        if others:
+            self.balance(first, terms)
         return first
+
+    def plain(self, form: Form) -> Form:
+        """A monomial itself, not its logarithm, over its largest value."""
+        if not form.powers:
+            return Form(math.exp(form.constant))
+        if form.powers not in self.plains:
+            bare = Form(0.0, form.powers)
+            low, high = self.reach(bare)
+            argument = Form(-high, form.powers)
+            self.lower.append(math.exp(low - high))
+            self.upper.append(1.0)
+            self.makers.append(lambda y: math.exp(argument.at(y)))
+            out = Form(0.0, ((len(self.lower) - 1, 1.0),))
+            self.curves.append(Curve("exp", argument, out))
+            self.plains[form.powers] = (high, out)
+        high, out = self.plains[form.powers]
+        return out.scaled(math.exp(form.constant + high))
+
+    def balance(self, whole: Form, terms: Sequence[Form]) -> None:
+        """State a sum in plain numbers too, where its terms are atoms: exact at their bounds."""
+        forms = [whole, *terms]
+        if not all(len(one.powers) <= 1 and all(p == 1 for _, p in one.powers) for one in forms):
+            return
+        if not all(math.isfinite(end) for one in forms for end in self.reach(one)):
+            return
+        sums = Form(0.0)
+        for one in terms:
+            sums = sums + self.plain(one)
+        own = self.plain(whole)
+        scale = math.exp(-self.reach(whole)[1])
+        own, sums = own.scaled(scale), sums.scaled(scale)
+        self.rows += [Row(own, sums), Row(sums, own)]
 
     def _sum(self, first: Form, second: Form, low: float, high: float) -> Form:
         if first.powers == second.powers:  # a known ratio
@@ -116,6 +161,7 @@ class Builder:
         self.found = Relaxation()
         self._forms: dict[int, tuple[float, Form] | Unknown] = {}
         self._sums: dict[int, Signomial | None] = {}
+        self._alone = Alone()
         self.variables: dict[str, Form] = {}
 
     def form(self, value: Any) -> tuple[float, Form]:
@@ -135,7 +181,10 @@ class Builder:
             try:
                 self._forms[value.index] = self._made(value)
             except Unknown as reason:
-                self._forms[value.index] = reason
+                try:
+                    self._forms[value.index] = self._band(value)
+                except Unknown:
+                    self._forms[value.index] = reason
         known = self._forms[value.index]
         if isinstance(known, Unknown):
             raise known
@@ -169,6 +218,31 @@ class Builder:
         form = self.found.atom(low, high, lambda y: math.nan)  # the design's own
         self.variables[node.args[0]] = form
         return 1.0, form
+
+    def _band(self, node: Symbol) -> tuple[float, Form]:
+        """A function of one variable, as sampled."""
+        variable = self._alone.variable(node)
+        if variable is None or variable is node:
+            raise Unknown("it depends on several variables")
+        _, argument = self.form(variable)
+        values, t = function([node], variable), samples(variable)
+        rows = values(t)[0]
+        found = sampled(rows)
+        sign = 1.0 if found.low > found.room else -1.0
+        if not (found.low > found.room or found.high < -found.room):
+            raise Unknown("its sign is open")
+        if not np.isfinite(rows).all() or not t[-1] > t[0]:
+            raise Unknown("it has no value everywhere")
+        logs = sampled(np.log(np.abs(rows)))
+        bend = 8 * logs.room / (t[1] - t[0]) ** 2
+
+        def logarithm(t: Vector) -> Vector:
+            return np.log(np.abs(values(t)[0]))
+
+        ends = math.exp(logs.low - logs.room), math.exp(logs.high + logs.room)
+        out = self.found.atom(*ends, lambda y: float(logarithm(np.array([argument.at(y)]))[0]))
+        self.found.bands.append(Band(logarithm, bend, argument, out))
+        return sign, out
 
     def expanded(self, value: Any) -> Signomial | None:
         """A value as a sum of monomials; None where that has too many terms."""
@@ -241,15 +315,22 @@ class Builder:
         parts = [self.expanded(one) for one in (node, *node.args)]
         if None in parts:
             return None
-        whole, *sizes = (sum(map(abs, part.terms.values())) for part in parts if part is not None)
+        whole, *sizes = (part.size for part in parts if part is not None)
         return parts[0] if whole < (1 - 1e-9) * sum(sizes) else None
 
     def _terms(self, node: Symbol) -> Signomial:
         """A sum by its operands, each an atom; those whose sign is open are opened up."""
-        first, second = (self._opened(one) for one in node.args)
+        first, second = (self.opened(one) for one in node.args)
         return first.plus(second, -1.0 if node.op == "sub" else 1.0)
 
-    def _opened(self, value: Any) -> Signomial:
+    def opened(self, value: Any) -> Signomial:
+        """A value as a sum of monomials, whatever its sign; of as few as can be.
+
+        Raises
+        ------
+        Unknown
+            a model under it has no relaxation
+        """
         try:
             return Signomial.monomial(*self.form(value))
         except Unknown:
@@ -263,14 +344,30 @@ class Builder:
             if value.op in ("add", "sub"):
                 return self._terms(value)
             if value.op == "neg":
-                return Signomial({}).plus(self._opened(value.args[0]), -1.0)
+                return Signomial({}).plus(self.opened(value.args[0]), -1.0)
             if value.op == "mul":
-                return self._opened(value.args[0]).times(self._opened(value.args[1]))
+                return self.opened(value.args[0]).times(self.opened(value.args[1]))
             if value.op == "div":
                 sign, form = self.form(value.args[1])
                 inverse = Signomial.monomial(sign, Form(0.0) - form)
-                return self._opened(value.args[0]).times(inverse)
+                return self.opened(value.args[0]).times(inverse)
             raise
+
+    def at_least(self, value: Any, bound: Any) -> None:
+        """State that a value is no less than another, or a number.
+
+        Raises
+        ------
+        Unknown
+            a model under them has no relaxation
+        """
+        plus, minus = self.opened(value).plus(self.opened(bound), -1.0).sides()
+        if minus and not plus:
+            raise Unknown("it is below its limit")
+        if minus:
+            most = math.inf
+            whole, rest = (self.found.total(side, 0.0, most) for side in (plus, minus))
+            self.found.rows.append(Row(rest, whole))
 
     def _difference(
         self, plus: Sequence[Form], minus: Sequence[Form], low: float, high: float
@@ -285,6 +382,7 @@ class Builder:
 
         out = self.found.atom(low, high, apart)
         self.found.split(whole, out, rest)
+        self.found.balance(whole, [out, rest])
         return out
 
     def _chosen(self, node: Symbol) -> tuple[float, Form]:
@@ -315,9 +413,9 @@ class Builder:
             return self._logarithm(argument.graph, argument, low, high)
         if op == "exp":
             return 1.0, self._exponential(argument, low, high)
-        if op in ("cos", "sin") and low > 0 and bounds_of(argument)[0] > 0:
+        if op == "tanh" and low > 0:
             _, form = self.form(argument)
-            return 1.0, self._curve(op, form, low, high)
+            return 1.0, self._curve("tanh", form, low, high)
         raise Unknown(f"{op} has no relaxation")
 
     def _logarithm(

@@ -27,6 +27,9 @@ WORTH = 1e-9
 """Least excess times price that a split can gain."""
 
 
+FLOOR = 0.01
+"""Least price of a curve in the choice of a direction: several loose ones in a row have none."""
+
 SQUEEZES = 8
 """Most rounds of cutting the first box."""
 
@@ -68,9 +71,8 @@ def search(
 
     def add(box: Box, parent: float) -> None:
         nonlocal solved, least
-        try:
-            box = box.tightened(layout)
-        except Gone:
+        box = squeezed(layout, bounding, box, until, rounds=ROUNDS2, ways=WAYS2)
+        if box is None:
             return
         bound = bounding.solve(box)
         solved += 1
@@ -102,19 +104,32 @@ def search(
     return Found(bottom + math.log1p(-GUARD), solved, bottom >= goal)
 
 
-def squeezed(layout: Layout, bounding: Bounding, box: Box, until: float) -> Box | None:
+ROUNDS2, WAYS2 = 1, 2
+
+
+def squeezed(
+    layout: Layout,
+    bounding: Bounding,
+    box: Box,
+    until: float,
+    *,
+    rounds: int = SQUEEZES,
+    ways: int = WAYS,
+) -> Box | None:
     """A box cut to where designs no worse than the best known one can be; None of none.
 
     Bound by optimisation of the directions in which the relaxation is loosest, over and over.
     """
     try:
         box = box.tightened(layout)
-        for _ in range(SQUEEZES):
+        if rounds == SQUEEZES:
+            bounding.lay(box)
+        for _ in range(rounds):
             bound = bounding.solve(box)
             if bound is None:
                 return None
-            gain = np.bincount(layout.direction, bound.excess * bound.price, layout.directions)
-            some = np.argsort(-gain, kind="stable")[:WAYS]
+            gain = np.bincount(layout.ways, bound.excess * (bound.price + FLOOR), layout.directions)
+            some = np.argsort(-gain, kind="stable")[:ways]
             size = float((box.high - box.low)[some].sum())
             for number in some:
                 if time.perf_counter() > until:
@@ -133,7 +148,7 @@ def squeezed(layout: Layout, bounding: Bounding, box: Box, until: float) -> Box 
 
 def _choice(layout: Layout, box: Box, bound: Bound) -> tuple[int, float] | None:
     """Direction and place of the split that can gain most; None where nothing is loose."""
-    gain = np.bincount(layout.direction, bound.excess * bound.price, layout.directions)
+    gain = np.bincount(layout.ways, bound.excess * (bound.price + FLOOR), layout.directions)
     number = int(np.argmax(gain))
     if gain[number] <= WORTH:
         return None

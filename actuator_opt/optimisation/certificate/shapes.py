@@ -1,4 +1,4 @@
-"""The functions of curves, of arrays: of a log ratio, or of an angle's logarithm."""
+"""The functions of curves, of arrays."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from ..problem import Vector
 
-Kind: TypeAlias = Literal["softplus", "exp", "log", "cos", "sin"]
+Kind: TypeAlias = Literal["softplus", "exp", "log", "tanh"]
 Function: TypeAlias = Callable[[Vector], Vector]
 
 LEAST = 1e-300
@@ -50,20 +50,14 @@ SHAPES: dict[Kind, Shape] = {
     ),
     "exp": Shape(_exp, _exp, _log, True),
     "log": Shape(_log, lambda x: 1 / np.maximum(x, LEAST), _exp, False),
-    "cos": Shape(
-        lambda x: _log(np.cos(_exp(x))),
-        lambda x: -_exp(x) * np.tan(_exp(x)),
-        lambda y: _log(np.arccos(np.minimum(_exp(y), 1.0))),
-        False,
-    ),
-    "sin": Shape(
-        lambda x: _log(np.sin(_exp(x))),
-        lambda x: _exp(x) / np.tan(_exp(x)),
-        lambda y: _log(np.arcsin(np.minimum(_exp(y), 1.0))),
+    "tanh": Shape(
+        lambda x: _log(np.tanh(_exp(x))),
+        lambda x: 2 * _exp(x) / np.sinh(np.minimum(2 * _exp(x), 700.0)),
+        lambda y: _log(np.arctanh(np.minimum(_exp(y), 1 - 1e-16))),
         False,
     ),
 }
-"""The functions of curves; of an angle below a right one, by its logarithm."""
+"""The functions of curves; of the hyperbolic tangent, the logarithm by that of its argument."""
 
 
 class Mixed:

@@ -68,6 +68,11 @@ class Signomial(NamedTuple):
         ((powers, factor),) = self.terms.items()
         return math.copysign(1.0, factor), Form(math.log(abs(factor)), powers)
 
+    @property
+    def size(self) -> float:
+        """Sum of the terms' factors."""
+        return sum(map(abs, self.terms.values()))
+
     def plus(self, other: Signomial, sign: float = 1.0) -> Signomial:
         """Sum or difference; what cancels to rounding is gone."""
         total = dict(self.terms)

@@ -6,7 +6,8 @@ that meets the exact limit meets the one traced. What cannot be traced is droppe
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -19,7 +20,7 @@ from ...evaluation.values import Values
 from ...symbolic import Graph, Symbol
 from ..actuator import ActuatorProblem
 from ..problem import Vector
-from .envelopes import at_design
+from .envelopes import Envelopes, decays
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,12 +42,21 @@ class Traced:
 
     graph: Graph
     variables: dict[str, Symbol]
+    """The design's, by PATH."""
+    unknowns: dict[str, tuple[Symbol, Callable[[Pass], float]]] = field(default_factory=dict)
+    """Further unknowns of envelopes by name, with what they are in an evaluated design."""
     objectives: list[Any] = field(default_factory=list)
     """The objective is at least each of these."""
     claims: list[Claim] = field(default_factory=list)
     facts: list[tuple[Any, Any]] = field(default_factory=list)
     """Pairs of values: the first is at least the second, by nature."""
     dropped: dict[str, str] = field(default_factory=dict)
+
+    def unknown(self, name: str, exact: Callable[[Pass], float]) -> Symbol:
+        """A further unknown, above zero; `exact` finds it in an evaluated design."""
+        if name not in self.unknowns:
+            self.unknowns[name] = self.graph.variable(name, (0.0, math.inf)), exact
+        return self.unknowns[name][0]
 
 
 def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
@@ -62,21 +72,25 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
     found = Traced(
         graph,
         {
-            path: graph.variable(path, (float(low), float(high)))
-            for path, low, high in zip(actuator.paths, problem.lower, problem.upper, strict=True)
+            path: graph.variable(f"x{k}", (float(low), float(high)))
+            for k, (path, low, high) in enumerate(
+                zip(actuator.paths, problem.lower, problem.upper, strict=True)
+            )
         },
     )
     point = {path: np.array([value]) for path, value in zip(actuator.paths, x, strict=True)}
     there = compute(subject, subject.values(point))
+    falls = decays(subject, subject.values(point), there)
     positions = _positions(there)
     limits = dict.fromkeys(row.limit_of for row in actuator.rows)
     for i, case in enumerate(subject.design.load_cases):
         design = subject.design.model_copy(update={"load_cases": [case]})
         one = replace(subject, design=design)
         values = Values(subject.numbers, one.cases, found.variables)
+        envelopes = Envelopes(found, subject, there, falls, i)
         out = Computed()
         with np.errstate(all="ignore"):
-            done = statics(one, values, out, at_design(subject.design, there, i))
+            done = statics(one, values, out, envelopes.implicit())
         found.facts += [(part, 0.0) for part in done.mass_parts.values()]
         found.facts += _along_the_stroke(done, out, positions)
         _collect(actuator, found, list(limits), out, values, first=i == 0)

@@ -1,0 +1,246 @@
+"""What alone would make an infeasible problem feasible: one requirement, or one opened bound.
+
+First a point that meets everything but the one requirement (or lies beyond the one bound), by the
+shortest steps to the linearised rows, for all candidates at once; where that finds none, by the
+least worst miss, from several points. From there the least amount that must be given up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..numeric import Array
+from ..progress import tell
+from . import elastic, kkt, lockstep
+from .evaluator import Evaluator
+from .problem import ParametricProblem, Problem, Values, Vector
+
+NOTHING = 1e-6
+"""A relaxation below this is none."""
+
+SETTLED = 1e-6
+"""Residual of the optimality conditions up to which an end counts as an optimum."""
+
+CHALLENGE = 0.99
+"""Share of an amount that must not be enough."""
+
+FAINT = 1e-3
+"""Amounts below are not challenged: a hundredth of them is near what counts as met."""
+
+CHALLENGES = 8
+"""Most rounds of this; halving comes within a per cent in seven."""
+
+WIDEST = 2.0
+"""A bound is opened to at most twice, or half, its value: beyond, it is another actuator."""
+
+_FREED = 1e9
+"""Margin granted to a requirement that is left out: no value misses it by as much."""
+
+
+@dataclass(frozen=True, slots=True)
+class Relaxation:
+    """A constraint and the margin (fraction of its limit) that must be given up.
+
+    `amount` is None where giving up this constraint entirely would not be enough.
+    """
+
+    constraint: str
+    index: int
+    amount: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """A bound that holds back the joint relaxation.
+
+    Parameters
+    ----------
+    variable, index, side, value : the bound
+    gain : fall of the total relaxation per unit of relative opening of the bound (0.01 = 1 %)
+    needed : value of the bound that alone would do; None where none was found up to `WIDEST`
+    """
+
+    variable: str
+    index: int
+    side: str
+    value: float
+    gain: float
+    needed: float | None = None
+
+
+def missed(evaluator: Evaluator, x: Vector, groups: Sequence[elastic.Indices]) -> list[float]:
+    """The largest margin missed in each group at a point."""
+    rows = evaluator.point(evaluator.space.to_z(x)).rows[1 : 1 + evaluator.constraint_count]
+    lacks = np.maximum(-np.nan_to_num(rows, nan=0.0), 0.0)
+    return [float(lacks[group].max(initial=0.0)) for group in groups]
+
+
+def by_limits(
+    problem: Problem,
+    groups: Sequence[elastic.Indices],
+    named: set[int],
+    points: Sequence[Vector],
+) -> tuple[Relaxation, ...]:
+    """What each group of constraints must give up alone.
+
+    Parameters
+    ----------
+    problem : the infeasible problem
+    groups : rows of the candidates
+    named : first rows of the groups to look into from every point
+    points : where to start, the point of the smallest joint relaxation first
+    """
+    amounts: list[float | None] = []
+    near = _nearby(problem, groups, points[0])
+    for number, (group, x) in enumerate(zip(groups, near, strict=True)):
+        tell("nothing fits: which requirement alone would do", number / len(groups))
+        if x is None:
+            x = _without(problem, group, points if int(group[0]) in named else points[:1])
+        amounts.append(None if x is None else _least_of_all(problem, group, x, points[1:]))
+    amounts = _challenged(problem, groups, amounts, points)
+    return tuple(
+        Relaxation(problem.constraint_names[int(group[0])], int(group[0]), amount)
+        for group, amount in zip(groups, amounts, strict=True)
+    )
+
+
+def _challenged(
+    problem: Problem,
+    groups: Sequence[elastic.Indices],
+    amounts: Sequence[float | None],
+    points: Sequence[Vector],
+) -> list[float | None]:
+    """The amounts, less where `CHALLENGE` of one is enough as well.
+
+    A descent may end on a kink, or in a valley that is not the deepest; then halving finds less.
+    """
+    enough = {k: amount for k, amount in enumerate(amounts) if amount is not None}
+    tried = {k: CHALLENGE * amount for k, amount in enough.items() if amount > FAINT}
+    short = dict.fromkeys(enough, 0.0)
+    for _ in range(CHALLENGES):
+        if not tried:
+            break
+        near: dict[int, Vector | None] = dict.fromkeys(tried)
+        for x in points:
+            left = [k for k in tried if near[k] is None]
+            reached = _nearby(problem, [groups[k] for k in left], x, [tried[k] for k in left])
+            near |= dict(zip(left, reached, strict=True))
+        for k, amount in tried.items():
+            found = near[k]
+            if found is None:
+                short[k] = amount
+                continue
+            less, _ = _least(problem, groups[k], found)
+            enough[k] = amount if less is None else min(amount, less)
+        tried = {k: (short[k] + enough[k]) / 2 for k in tried if short[k] < CHALLENGE * enough[k]}
+    return [enough.get(k) for k in range(len(groups))]
+
+
+def _nearby(
+    problem: Problem,
+    groups: Sequence[elastic.Indices],
+    x: Vector,
+    granted: Sequence[float] | None = None,
+) -> list[Vector | None]:
+    """For each group a point where all is met but for the margin granted to it (None: any)."""
+    evaluator = Evaluator(problem)
+    point = evaluator.point(evaluator.space.to_z(x))
+    freed = np.zeros((len(problem.constraint_names), len(groups)))
+    for k, group in enumerate(groups):
+        freed[group, k] = _FREED if granted is None else granted[k]
+
+    def evaluate(points: Array, margins: Array) -> Values:
+        rows = problem.rows(points)
+        m = len(problem.constraint_names)
+        return Values(rows[0], rows[1 : 1 + m] + margins, rows[1 + m :])
+
+    labels = problem.constraint_names
+    parametric = ParametricProblem(problem, labels, np.zeros(len(labels)), evaluate)
+    evaluator.check_gradients(point)
+    if not groups or not lockstep.applicable(parametric, evaluator):
+        return [None] * len(groups)
+    found = lockstep.restore_together(parametric, evaluator, point, freed)
+    return [None if z is None else evaluator.space.to_x(z[:, None])[:, 0] for z in found]
+
+
+def _without(problem: Problem, group: elastic.Indices, points: Sequence[Vector]) -> Vector | None:
+    """A point that meets everything but one group, None where none was found."""
+    m = len(problem.constraint_names)
+    kept = np.setdiff1d(np.arange(m), group)
+
+    def evaluate(at: Array) -> Values:
+        rows = problem.rows(at)
+        return Values(rows[0], rows[1 : 1 + m][kept], rows[1 + m :])
+
+    names = tuple(problem.constraint_names[i] for i in kept)
+    slim = replace(problem, evaluate=evaluate, constraint_names=names, relaxable=None, groups=None)
+    evaluator = Evaluator(slim)
+    for x in points:
+        start = evaluator.point(evaluator.space.to_z(x))
+        end = elastic.least_missed(evaluator, start, start.violation / 4)
+        if end.violation <= NOTHING:
+            return end.x
+    return None
+
+
+def _least_of_all(
+    problem: Problem, group: elastic.Indices, x: Vector, others: Sequence[Vector]
+) -> float | None:
+    """The least that one group must give up; from other points too where a descent got stuck."""
+    amount, settled = _least(problem, group, x)
+    for other in others:
+        if settled:
+            break
+        start = _without(problem, group, [other])
+        if start is not None:
+            again, settled = _least(problem, group, start)
+            amount = again if amount is None else min(amount, again or amount)
+    return amount
+
+
+def _least(problem: Problem, group: elastic.Indices, x: Vector) -> tuple[float | None, bool]:
+    """The least one group must give up, near a point that meets the others; whether optimal."""
+    lacks = missed(Evaluator(problem), x, [group])
+    stretched = elastic.separate(problem, [group], [2.0 * max(*lacks, 0.5)])
+    found = elastic.descend(stretched, x, lacks)
+    if found.violation > NOTHING:
+        return None, False
+    residual = kkt.check(Evaluator(stretched), found, objective_scale=1.0).residual
+    return float(found.objective), residual <= SETTLED
+
+
+def by_bounds(problem: Problem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
+    """The bounds again, each with the value that alone would do."""
+    found = []
+    for number, bound in enumerate(bounds):
+        tell("nothing fits: which bound alone would do", number / len(bounds))
+        found.append(replace(bound, needed=_opened(problem, bound, x)))
+    return tuple(found)
+
+
+def _opened(problem: Problem, bound: Opening, x: Vector) -> float | None:
+    """The value nearest to a bound at which a variable beyond it meets every requirement."""
+    j, upper = bound.index, bound.side == "upper"
+    if bound.value <= 0:
+        return None
+    lower, above = problem.lower.copy(), problem.upper.copy()
+    lower[j], above[j] = (
+        (bound.value, bound.value * WIDEST) if upper else (bound.value / WIDEST, bound.value)
+    )
+
+    def evaluate(points: Array) -> Values:
+        rows = problem.rows(points)
+        m = len(problem.constraint_names)
+        return Values(points[j] if upper else -points[j], rows[1 : 1 + m], rows[1 + m :])
+
+    opened = replace(problem, lower=lower, upper=above, evaluate=evaluate, start=None)
+    near = _nearby(opened, [np.empty(0, dtype=np.intp)], x)[0]
+    if near is None:
+        return None
+    evaluator = Evaluator(opened)
+    start = evaluator.point(evaluator.space.to_z(near))
+    found = elastic.go(evaluator, start)
+    return float(found.x[j]) if found.violation <= NOTHING else None

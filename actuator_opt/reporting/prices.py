@@ -1,0 +1,298 @@
+"""What each requirement and parameter costs: table, which dimensions move, what buys the most."""
+
+from __future__ import annotations
+
+from ..evaluation.result import Requirement
+from ..optimisation.result import Optimisation
+from ..optimisation.sensitivity import CHANGE, STRAIGHT, Offer, Sensitivity
+from ..quantities import Quantity
+from . import text, tornado
+from .blocks import Block, Cell, column, notes, soft, table
+from .console import Column, Console
+from .text import DASH
+from .words import display_of, short_name
+
+MOVING = 3
+"""Most dimensions named per row of the table of movements."""
+
+MOST_MOVES = 8
+"""Most rows of that table: those that change the most."""
+
+LEAST_MOVE = 1e-4
+"""Relative movement per +1 % below which a dimension stands still."""
+
+PER_CENT = round(100 * CHANGE)
+
+
+def blocks(optimisation: Optimisation) -> list[Block]:
+    """Prices, the tornado of their re-solved ends, and which dimensions move."""
+    if not optimisation.sensitivities:
+        return []
+    found = [
+        sensitivities(optimisation),
+        notes("What would buy the most", buys_most(optimisation)),
+        tornado.block(optimisation),
+        moves(optimisation),
+    ]
+    return [one for one in found if one is not None]
+
+
+def terminal(
+    optimisation: Optimisation,
+    *,
+    moving: bool = False,
+    colour: bool = False,
+    unicode: bool = True,
+    width: int = 100,
+) -> str:
+    """Prices, predicted against re-solved, with the quality line and what buys the most.
+
+    With `moving` also which dimensions move.
+    """
+    if not optimisation.sensitivities:
+        return ""
+    console = Console(colour, unicode, width)
+    block = sensitivities(optimisation)
+    unit = text.unit_text(text.metric(optimisation.objective_metric).unit)
+    columns = [
+        Column("parameter", flexible=True, least=34),
+        Column("limit", "right"),
+        Column("value", "right", drop=4),
+        Column("margin", "right", drop=3),
+        Column("active" if unicode else "act"),
+        Column(f"{unit}/unit", "right"),
+        Column("%/%", "right"),
+        Column(f"at +{PER_CENT} %", "right", drop=1),
+        Column("+ solved", "right"),
+        Column(f"at -{PER_CENT} %", "right", drop=1),
+        Column("- solved", "right"),
+        Column("holds until, then active", flexible=True, drop=2),
+    ]
+    rows, styles = [], []
+    for cells in block["rows"]:
+        row = [cell if isinstance(cell, str) else "".join(cell) for cell in cells]
+        active = row[4] != ""
+        row[4] = "" if not active else "●" if unicode else "*"
+        rows.append(row)
+        strong = "bold" if active else ""
+        styles.append(
+            [strong, "", "dim", "dim", "yellow", strong, strong, *("dim", strong) * 2, "dim"]
+        )
+    lines = [console.heading(block["title"]), *console.table(columns, rows, styles)]
+    lines += [
+        console.wrap(quality(optimisation), "dim"),
+        "",
+        *map(console.wrap, buys_most(optimisation)),
+    ]
+    moved = moves(optimisation) if moving else None
+    if moved is not None:
+        heads = [
+            Column(c["head"], c["align"], flexible=not k) for k, c in enumerate(moved["columns"])
+        ]
+        heads[-1] = Column(heads[-1].head, flexible=True)
+        body = [["".join(cell) for cell in row] for row in moved["rows"]]
+        lines += ["", console.heading(moved["title"]), *console.table(heads, body)]
+    return "\n".join(lines)
+
+
+def sensitivities(optimisation: Optimisation) -> Block:
+    """Price of every limit and parameter, checked by solving again at ±10 %."""
+    objective = text.metric(optimisation.objective_metric)
+    required = {row.path: row for row in optimisation.evaluation.requirements}
+    rows: list[list[Cell]] = []
+    for row in optimisation.sensitivities:
+        found, unit = required.get(row.parameter), text.unit_text(row.unit)
+        value = None if found is None else found.value
+        solved = [text.number(text.display(objective, v)) for end in row.ends for v in end[1:]]
+        rows.append(
+            [
+                soft(row.parameter.removeprefix("requirements.")),
+                text.with_unit(text.trimmed(display_of(row, row.limit)), unit),
+                DASH if found is None else text.number(display_of(row, value)),
+                DASH if found is None else _margin(found),
+                "●" if row.active else "",
+                _price(optimisation, row, objective),
+                text.number(row.percent_per_percent, 3, signed=True),
+                *(solved or [""] * 4),
+                _reach(optimisation, row),
+            ]
+        )
+    unit = text.unit_text(objective.unit) or objective.name
+    columns = [
+        column("requirement or parameter", "left", 1.0, mono=True),
+        column("limit", "right"),
+        column("value", "right"),
+        column("margin", "right"),
+        column("act.", "center"),
+        column(f"price,\n{unit}/unit", "right"),
+        column("% per\n+1 %", "right"),
+        column(f"+{PER_CENT} %\npredicted", "right"),
+        column(f"+{PER_CENT} %\nsolved", "right", strong=True),
+        column(f"−{PER_CENT} %\npredicted", "right"),
+        column(f"−{PER_CENT} %\nsolved", "right", strong=True),
+        column("holds until, then active", "left", 1.25),
+    ]
+    title = f"What each requirement costs ({objective.label}, {unit})"
+    return table(title, columns, rows, note=quality(optimisation))
+
+
+def _margin(found: Requirement) -> str:
+    quantity = text.metric(found.metric)
+    return text.margin_of(quantity, found.limit, found.margin, met=found.met)
+
+
+def _price(optimisation: Optimisation, row: Sensitivity, objective: Quantity) -> Cell:
+    """The price per unit shown, both sides of a kink, marked where its line does not hold."""
+    factor = row.scale * (objective.to_display(1.0) - objective.to_display(0.0))
+
+    def shown(price: float | None) -> str:
+        return "∞" if price is None else text.number(price * factor, 3, signed=True)
+
+    mark = "" if row.straight(optimisation.objective_value) else "~ "
+    if row.one_sided:
+        return [f"{mark}{shown(row.price_up)} up, ", f"{shown(row.price_down)} down"]
+    return mark + shown(row.price)
+
+
+def _reach(optimisation: Optimisation, row: Sensitivity) -> Cell:
+    unit = text.unit_text(row.unit)
+    until = text.with_unit(text.trimmed(display_of(row, row.holds_until)), unit)
+    if row.next_active is None:
+        return until
+    only = "" if row.straight(optimisation.objective_value) else "only to "
+    gone = row.next_active.removesuffix(" stops being active")
+    words = f"without {gone}" if gone != row.next_active else gone.removesuffix(" becomes active")
+    return soft(f"{only}{until}, then {words}")
+
+
+def quality(optimisation: Optimisation) -> str:
+    """The quality line under the prices."""
+    kkt = optimisation.kkt
+    if kkt is None:
+        return "Quality: no multipliers (the design is not an optimum); prices are not exact."
+    parts = [
+        f"Quality: KKT residual {text.number(kkt.residual, 2)}, {len(kkt.active)} active rows of"
+        f" rank {kkt.rank}, {kkt.curvature}."
+    ]
+    if len(kkt.active) > kkt.rank:
+        kinks = sum(row.one_sided for row in optimisation.sensitivities)
+        sides = (
+            "every price here is the same upwards and downwards"
+            if not kinks
+            else f"{kinks} prices differ upwards and downwards"
+        )
+        parts.append(f"A degenerate vertex, more rows than dimensions they hold: {sides}.")
+    parts.append(
+        "Prices are per unit shown in the limit column; rows are ranked by what ±"
+        f"{PER_CENT} % changes when solved; {DASH} under solved: no feasible design found."
+    )
+    if not all(row.straight(optimisation.objective_value) for row in optimisation.sensitivities):
+        parts.append(
+            f"~: at ±{PER_CENT} % the price misses more than {round(100 * STRAIGHT)} % of the"
+            " change or one end has no design; trust the solved columns."
+        )
+    return " ".join(parts)
+
+
+def buys_most(optimisation: Optimisation) -> list[str]:
+    """What would buy the most of the objective, and which requirements cannot be tightened."""
+    if not optimisation.sensitivities:
+        return []
+    found, parts = optimisation.offers, []
+    if (best := found.requirement) is not None:
+        name, value = short_name(best.row), _value(best)
+        gain = _gain(optimisation, best)
+        parts.append(
+            f"Giving up {PER_CENT} % of {name} (to {value}) {gain}, the most of any requirement."
+        )
+    else:
+        parts.append(f"Giving up {PER_CENT} % of any one requirement buys nothing.")
+    for best, group in (
+        (found.parameter, "Of the design's fixed numbers"),
+        (found.material, "Of the materials"),
+    ):
+        if best is not None:
+            more = "more" if best.change > 0 else "less"
+            parts.append(
+                f"{group}, {PER_CENT} % {more} {short_name(best.row)} ({_value(best)})"
+                f" {_gain(optimisation, best)}."
+            )
+    if found.no_design:
+        lost = ", ".join(
+            f"{short_name(row)} at {_at(row, row.limit * (1 + sign * CHANGE))}"
+            for row, sign in found.no_design
+        )
+        parts.append(f"No design was found with {lost}.")
+    return parts
+
+
+def _at(row: Sensitivity, value: float) -> str:
+    return text.with_unit(text.trimmed(display_of(row, value)), text.unit_text(row.unit))
+
+
+def _value(offer: Offer) -> str:
+    return _at(offer.row, offer.value)
+
+
+def _gain(optimisation: Optimisation, offer: Offer) -> str:
+    """What an offer buys: "saves 19.7 g (7.5 %)"."""
+    objective = text.metric(optimisation.objective_metric)
+    per_display = objective.to_display(1.0) - objective.to_display(0.0)
+    unit = text.unit_text(objective.unit)
+    amount = text.with_unit(text.number(offer.gain * per_display, 3), unit)
+    if optimisation.objective_value:
+        share = text.number(100 * offer.gain / abs(optimisation.objective_value), 2)
+        amount += f" ({share} %)"
+    if optimisation.design.objective.maximise is not None:
+        return f"adds {amount}"
+    return f"saves {amount}"
+
+
+def moves(optimisation: Optimisation) -> Block | None:
+    """Which dimensions the optimum moves, per +1 % of each requirement or parameter."""
+    variables = {row.path: row for row in optimisation.variables}
+    rows: list[list[Cell]] = []
+    for row in optimisation.sensitivities:
+        found = []
+        for path, slope in row.movement.items():
+            variable = variables.get(path)
+            if variable is None:
+                continue
+            step = 0.01 * row.limit * slope
+            share = step / variable.value if variable.value else 0.0
+            found.append((abs(share), path, step, share))
+        found = sorted((one for one in found if one[0] > LEAST_MOVE), reverse=True)[:MOVING]
+        if not found or len(rows) == MOST_MOVES:
+            continue
+        words = []
+        for _, path, step, share in found:
+            quantity = text.input_quantity(variables[path].quantity)
+            shown = text.number(
+                quantity.to_display(step) - quantity.to_display(0.0), 2, signed=True
+            )
+            unit = text.unit_text(quantity.unit)
+            percent = text.number(100 * share, 2, signed=True)
+            words.append(f"{path} {text.with_unit(shown, unit)} ({percent} %)")
+        rows.append(
+            [
+                soft(row.parameter.removeprefix("requirements.")),
+                text.with_unit(
+                    text.trimmed(abs(0.01 * row.limit) / row.scale, 3), text.unit_text(row.unit)
+                ),
+                soft(
+                    ("" if row.straight(optimisation.objective_value) else "~ ") + ", ".join(words)
+                ),
+            ]
+        )
+    if not rows:
+        return None
+    columns = [
+        column("requirement or parameter", "left", 0.9, mono=True),
+        column("1 % of it", "right"),
+        column("which dimensions move, per +1 %", "left", 3.0),
+    ]
+    note = (
+        f"Derivative of the optimum: the {MOVING} largest movements of the first {MOST_MOVES} rows"
+        " that move any; ~ only as far as the price holds."
+    )
+    return table("Which dimension moves", columns, rows, note=note)
