@@ -82,30 +82,26 @@ def search(
     memory : of searches of problems much like this one, with the same rows; gets what this finds
     """
     remembered = memory is not None and memory.curvature is not None
-    objective: float | None
     run = _Run(problem, listed, x, most, until, below, memory or Memory())
     if not remembered:
         run.neighbours()
-    count = itertools.count()
     whole = tuple(tuple(range(len(one.rows))) for one in listed)
-    boxes: list[tuple[float, int, Box, Vector]] = [(-np.inf, next(count), whole, run.x)]
+    first = (run.start.objective, run.x) if remembered else run.relaxed([whole], run.x)[0]
+    boxes = [] if first is None else [(first[0], 0, whole, first[1])]
+    count = itertools.count(1)
     while boxes and not run.exhausted:
         if run.best == np.inf:  # depth first until there is a design to beat
-            _, _, box, near = boxes.pop(max(range(len(boxes)), key=lambda k: boxes[k][1]))
+            bound, _, box, x = boxes.pop(max(range(len(boxes)), key=lambda k: boxes[k][1]))
             heapq.heapify(boxes)
-        elif run.beaten(boxes[0][0]):
-            break
         else:
-            _, _, box, near = heapq.heappop(boxes)
-        if remembered and box == whole:
-            objective, near = run.start.objective, run.x
-        else:
-            objective, near = run.relaxed(box, near)
-        if objective is None or run.beaten(objective):
+            bound, _, box, x = heapq.heappop(boxes)
+        if run.beaten(bound):
             continue
-        for part in run.parts(box, near, objective):
-            heapq.heappush(boxes, (objective, next(count), part, near))
-    return run.found(complete=not boxes or run.beaten(boxes[0][0]))
+        parts = run.parts(box, x, bound)
+        for part, found in zip(parts, run.relaxed(parts, x), strict=True):
+            if found is not None and not run.beaten(found[0]):
+                heapq.heappush(boxes, (found[0], next(count), part, found[1]))
+    return run.found(complete=all(run.beaten(bound) for bound, *_ in boxes))
 
 
 def at(
@@ -204,7 +200,7 @@ class _Run:
     def together(self, chosen: list[Assignment]) -> list[tuple[Assignment, Vector | None]]:
         """Re-optimise assignments at once; what is left, with a start each (None: none nearby)."""
         here = self.x[self.index]
-        point, evaluator = self._within(here, here, self.x)
+        point, evaluator = self._near(here, here, self.x)
         names = [self.problem.names[i] for i in self.index]
 
         def evaluate(points: Array, values: Array) -> Values:
@@ -234,9 +230,8 @@ class _Run:
         """Re-optimise the other variables of an assignment; infinite where that is infeasible."""
         if assignment not in self.points:
             values = self.values(assignment)
-            found = self._descended(
-                tuple((row,) for row in assignment), values, values, near, nearby.EXACT
-            )
+            box = tuple((row,) for row in assignment)
+            (found,) = self._descended([(box, values, values)], near, nearby.EXACT)
             self.tried[assignment] = np.inf if found is None else found.objective
             if found is not None:
                 self.points[assignment] = found.x
@@ -252,13 +247,16 @@ class _Run:
                 return best
             self.assigned(best, self.near.get(best, self.x))
 
-    def relaxed(self, box: Box, near: Vector) -> tuple[float | None, Vector]:
-        """Objective and point of the continuous optimum in a box; None where it is infeasible."""
-        left = [one.rows[list(rows)] for one, rows in zip(self.listed, box, strict=True)]
-        lower = np.concatenate([rows.min(axis=0) for rows in left])
-        upper = np.concatenate([rows.max(axis=0) for rows in left])
-        found = self._descended(box, lower, upper, near, nearby.ROUGH)
-        return (None, near) if found is None else (found.objective, found.x)
+    def relaxed(self, boxes: Sequence[Box], near: Vector) -> list[tuple[float, Vector] | None]:
+        """Objective and point of the continuous optimum in boxes; None where it is infeasible."""
+        bounds = []
+        for box in boxes:
+            left = [one.rows[list(rows)] for one, rows in zip(self.listed, box, strict=True)]
+            lower = np.concatenate([rows.min(axis=0) for rows in left])
+            upper = np.concatenate([rows.max(axis=0) for rows in left])
+            bounds.append((box, lower, upper))
+        found = self._descended(bounds, near, nearby.ROUGH)
+        return [None if point is None else (point.objective, point.x) for point in found]
 
     def parts(self, box: Box, x: Vector, objective: float) -> list[Box]:
         """What is left to search of a box, given its continuous optimum."""
@@ -310,11 +308,11 @@ class _Run:
         for assignment in list(self.tried)[:MOST_MISSED]:
             box = tuple((row,) for row in assignment)
             values = self.values(assignment)
-            point, _ = self._within(values, values, self.memory.missed.get(box, self.x))
+            point, _ = self._near(values, values, self.memory.missed.get(box, self.x))
             if box not in self.memory.missed and point.valid and not self.exhausted:
                 self.assigned(assignment, self.x)
                 near = self.memory.missed.get(box, self.x)
-                point, _ = self._within(values, values, near)
+                point, _ = self._near(values, values, near)
             if point.valid:
                 found.append((point.violation, assignment, point))
         if not found:
@@ -322,28 +320,36 @@ class _Run:
         _, assignment, point = min(found, key=lambda one: one[0])
         return assignment, point
 
-    def _within(self, lower: Vector, upper: Vector, near: Vector) -> tuple[Point, Evaluator]:
-        """The problem with the listed variables in bounds, and its point nearest to another."""
+    def _within(self, lower: Vector, upper: Vector) -> Evaluator:
+        """The problem with the listed variables in bounds."""
         least, most = self.problem.lower.copy(), self.problem.upper.copy()
         least[self.index], most[self.index] = lower, upper
         evaluator = Evaluator(replace(self.problem, lower=least, upper=most, start=None))
         evaluator.complex_works = self.reference.complex_works
         evaluator.difference_rows = self.reference.difference_rows
-        evaluator.eager = evaluator.space.size > 0
-        return evaluator.point(evaluator.space.to_z(np.clip(near, least, most))), evaluator
+        evaluator.eager = True
+        return evaluator
+
+    def _near(self, lower: Vector, upper: Vector, near: Vector) -> tuple[Point, Evaluator]:
+        """The point within bounds of the listed variables that is nearest to another."""
+        evaluator = self._within(lower, upper)
+        return evaluator.point(evaluator.space.to_z(evaluator.problem.inside(near))), evaluator
 
     def _descended(
-        self, box: Box, lower: Vector, upper: Vector, near: Vector, finish: nearby.Finish
-    ) -> Point | None:
-        """The optimum in a box, near a point or where a like problem ended; None without."""
-        self.solves += 1
-        known = self.memory.near(box)
-        hopeless = known is None and box in self.memory.missed
-        x, curvature = known or (self.memory.missed.get(box, near), self.memory.curvature)
-        start, evaluator = self._within(lower, upper, x)
+        self, bounds: Sequence[tuple[Box, Vector, Vector]], near: Vector, finish: nearby.Finish
+    ) -> list[Point | None]:
+        """The optimum in boxes, near a point or where a like problem ended; None without."""
         above = self.best if finish is nearby.ROUGH else np.inf
-        near_it = nearby.resolve(
-            evaluator, start, curvature, finish, hopeless=hopeless, above=above
-        )
-        self.memory.note(box, evaluator, near_it)
-        return near_it.optimum
+        tasks = []
+        for box, lower, upper in bounds:
+            known = self.memory.near(box)
+            hopeless = known is None and box in self.memory.missed
+            x, curvature = known or (self.memory.missed.get(box, near), self.memory.curvature)
+            evaluator = self._within(lower, upper)
+            x = evaluator.problem.inside(x)
+            tasks.append(nearby.Task(evaluator, x, curvature, finish, hopeless, above))
+        self.solves += len(tasks)
+        ends = nearby.resolve(tasks)
+        for (box, _, _), task, end in zip(bounds, tasks, ends, strict=True):
+            self.memory.note(box, task.evaluator, end)
+        return [end.optimum for end in ends]

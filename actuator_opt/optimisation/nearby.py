@@ -7,13 +7,14 @@ is sought by shortest steps, and SLSQP goes on from it.
 
 from __future__ import annotations
 
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from . import elastic, kkt, newton, nlopt_wrapper
-from .evaluator import Evaluator, Point
+from .evaluator import Evaluator, Point, points_together
 from .lockstep import PATIENCE, RESTORATIONS, SETTLED
 from .problem import Vector
 from .solver import FEASIBLE, RESIDUAL
@@ -87,49 +88,84 @@ class Nearest(NamedTuple):
     followed: bool = False
 
 
-def resolve(
-    evaluator: Evaluator,
-    start: Point,
-    curvature: Curvature | None,
-    finish: Finish = EXACT,
-    *,
-    hopeless: bool = False,
-    above: float = np.inf,
-) -> Nearest:
-    """The optimum near a point; none where no feasible point is found near it.
+Steps = Generator[Vector, Point, Point | None]
+"""Asks for points by their coordinates, is given them, ends on one or none."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A problem to re-optimise near a known optimum of another.
 
     Parameters
     ----------
     evaluator : of the problem
-    start : a point of it, as near as is known
+    x : a point (n,), as near as is known
     curvature : of the optimum of the other problem
     finish : when steps count as settled
-    hopeless : whether the other problem has no feasible point, and the start misses least of it
+    hopeless : whether the other problem has no feasible point, and `x` misses least of it
     above : an optimum clearly worse than this objective need not be reached
     """
+
+    evaluator: Evaluator
+    x: Vector
+    curvature: Curvature | None
+    finish: Finish = EXACT
+    hopeless: bool = False
+    above: float = np.inf
+
+
+def resolve(tasks: Sequence[Task]) -> list[Nearest]:
+    """The optimum of every task; none where no feasible point is found near it.
+
+    Their problems differ in nothing but their bounds, so that one call of the model serves the
+    steps of all.
+    """
+    ends: list[Nearest | None] = [None] * len(tasks)
+    running = {k: _approach(task) for k, task in enumerate(tasks)}
+    asked = {k: next(steps) for k, steps in running.items()}
+    while asked:
+        points = points_together([(tasks[k].evaluator, z) for k, z in asked.items()])
+        following = {}
+        for k, point in zip(asked, points, strict=True):
+            try:
+                following[k] = running[k].send(point)
+            except StopIteration as end:
+                ends[k] = end.value
+        asked = following
+    return [_finished(task, end) for task, end in zip(tasks, ends, strict=True) if end is not None]
+
+
+def _finished(task: Task, end: Nearest) -> Nearest:
+    """Go on by SLSQP from a point that only meets every requirement."""
+    if end.optimum is None or end.followed:
+        return end
+    found = nlopt_wrapper.run(task.evaluator, end.optimum, "LD_SLSQP", most=MOST_STEPS).point
+    found = newton.polish(task.evaluator, found, iterations=8, tolerance=1e-10)
+    return Nearest(found if _met(found) else end.optimum)
+
+
+def _approach(task: Task) -> Generator[Vector, Point, Nearest]:
+    """Steps with the other's curvature, else to a feasible point."""
+    evaluator = task.evaluator
+    start = yield evaluator.space.to_z(task.x)
     if evaluator.space.size == 0:
-        return Nearest(start) if _met(start) else Nearest(None, start)
+        return Nearest(start, followed=True) if _met(start) else Nearest(None, start)
     if not start.valid:
         return Nearest(None)
-    if curvature is not None and not hopeless:
-        found = stepped(evaluator, start, curvature, finish, above)
+    if task.curvature is not None and not task.hopeless:
+        found = yield from steps(evaluator, start, task.curvature, task.finish, task.above)
         if found is not None:
             return Nearest(found, followed=True)
-    inside, missed = _restored(evaluator, start, 1 if hopeless else PATIENCE)
-    if inside is None:
-        return Nearest(None, missed)
-    found = nlopt_wrapper.run(evaluator, inside, "LD_SLSQP", most=MOST_STEPS).point
-    found = newton.polish(evaluator, found, iterations=8, tolerance=1e-10)
-    return Nearest(found if _met(found) else inside)
+    return (yield from _restored(evaluator, start, 1 if task.hopeless else PATIENCE))
 
 
-def stepped(
+def steps(
     evaluator: Evaluator,
     start: Point,
     curvature: Curvature,
     finish: Finish,
     above: float = np.inf,
-) -> Point | None:
+) -> Steps:
     """The optimum that steps with the other's curvature settle on; None where they do not.
 
     Steps that come near an optimum clearly worse than `above` end there.
@@ -157,11 +193,27 @@ def stepped(
             return None
         last = longest
         share = min(1.0, newton.RADIUS / max(longest, 1e-300))
-        point = evaluator.point(np.clip(point.z + share * step, space.lower, space.upper))
+        point = yield np.clip(point.z + share * step, space.lower, space.upper)
     return None
 
 
-def _restored(evaluator: Evaluator, start: Point, patience: int) -> tuple[Point | None, Point]:
+def stepped(
+    evaluator: Evaluator, start: Point, curvature: Curvature, finish: Finish
+) -> Point | None:
+    """`steps` of one problem alone."""
+    going = steps(evaluator, start, curvature, finish)
+    try:
+        z = next(going)
+        while True:
+            z = going.send(evaluator.point(z))
+    except StopIteration as end:
+        found: Point | None = end.value
+        return found
+
+
+def _restored(
+    evaluator: Evaluator, start: Point, patience: int
+) -> Generator[Vector, Point, Nearest]:
     """A feasible point near another, by the shortest steps that meet the linearised rows.
 
     None, and the least violated point, where the violation stops falling.
@@ -171,7 +223,7 @@ def _restored(evaluator: Evaluator, start: Point, patience: int) -> tuple[Point 
         if evaluator.problem.equality_names or not point.valid:
             break
         if point.violation <= FEASIBLE:
-            return point, point
+            return Nearest(point)
         best = point if point.violation < best.violation else best
         if iteration > patience and point.violation > 0.98 * least:
             break
@@ -182,9 +234,9 @@ def _restored(evaluator: Evaluator, start: Point, patience: int) -> tuple[Point 
             np.eye(space.size), np.zeros(space.size), rows.gradients, rows.margins - 1e-7
         )
         share = min(1.0, newton.RADIUS / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-        point = evaluator.point(np.clip(point.z + share * step, space.lower, space.upper))
+        point = yield np.clip(point.z + share * step, space.lower, space.upper)
     doubtful = best.violation <= DOUBTFUL or bool(evaluator.problem.equality_names)
-    return (elastic.feasible_point(evaluator, best) if doubtful else None), best
+    return Nearest(elastic.feasible_point(evaluator, best) if doubtful else None, best)
 
 
 def _met(point: Point) -> bool:
