@@ -24,7 +24,6 @@ from ..evaluation.build import names_of_materials
 from ..evaluation.limits import all_limits
 from ..evaluation.rows import Row, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of
-from .nearby import Curvature
 from .quick_look import DOUBTFUL, Look, Start, curvature_of, look_quickly
 from .solver import FEASIBLE, solve
 
@@ -70,8 +69,6 @@ class Search:
 
     goal: Goal
     looks: list[Look] = field(default_factory=list)
-    curvature: Curvature | None = None
-    """At the first optimum found."""
 
     def mendable(self) -> frozenset[str]:
         """Missed checks that some combination meets, so that choosing can mend them."""
@@ -234,11 +231,11 @@ def _look_at_all(found: Search, settings: Settings) -> None:
             continue
         left = None if left is None else max(left, LEAST_SECONDS)
         try:
-            look_quickly(look, _starts(found, look), settings.seed, left, found.curvature)
+            look_quickly(look, _starts(found, look), settings.seed, left)
         except InputError as error:
             _give_up(look, error)
-        if found.curvature is None and look.feasible:
-            found.curvature = curvature_of(look)
+        if look.curvature is None and look.feasible:
+            look.curvature = curvature_of(look)
 
 
 def _any(found: Search) -> bool:
@@ -249,7 +246,7 @@ def _starts(found: Search, look: Look) -> list[Start]:
     """Where the combinations that differ in the fewest values ended.
 
     A neighbour that meets everything is gone down from; one as near that does not tells best how
-    near this one comes to it.
+    near this one comes to it. The last one as near, whose values change least, may be followed.
     """
     known = [other for other in found.looks if other.x is not None and other is not look]
 
@@ -265,6 +262,13 @@ def _starts(found: Search, look: Look) -> list[Start]:
         starts.append(Start(bad.x, descend=False))
     if good is not None and good.x is not None:
         starts.append(Start(good.x, descend=True))
+    last = min(
+        (other for other in known if other.curvature is not None),
+        key=lambda other: (distance(other)[0], -other.order),
+        default=None,
+    )
+    if last is not None and last.x is not None:
+        starts.append(Start(last.x, descend=True, curvature=last.curvature))
     own = None if look.actuator is None else look.actuator.problem.start
     return starts or ([] if own is None else [Start(own, descend=True)])
 

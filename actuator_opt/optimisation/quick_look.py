@@ -66,6 +66,8 @@ class Look:
     checks: frozenset[str] = frozenset()
     """Missed checks that no variable can mend."""
     solution: Solution | None = None
+    curvature: Curvature | None = None
+    """At its optimum, or at the one it was followed from."""
     sizing: str = ""
     """What the search for listed sizes came to, where there was one."""
     rounded: float | None = None
@@ -82,6 +84,8 @@ class Start(NamedTuple):
 
     x: Vector
     descend: bool
+    curvature: Curvature | None = None
+    """At the optimum that the point is, which mostly serves its neighbours too."""
 
 
 def look_quickly(
@@ -89,7 +93,6 @@ def look_quickly(
     starts: Sequence[Start],
     seed: int,
     seconds: float | None,
-    curvature: Curvature | None = None,
 ) -> None:
     """Go down from the starts, then from that of a sweep, until the matter is clear.
 
@@ -99,7 +102,6 @@ def look_quickly(
     starts : in order of trust
     seed : of the sweep
     seconds : time limit
-    curvature : of the optimum of another combination, which mostly serves this one too
     """
     assert look.actuator is not None
     evaluator = Evaluator(look.actuator.problem, max_seconds=seconds)
@@ -110,7 +112,7 @@ def look_quickly(
 
     look.how = "quick"
     try:
-        if curvature is not None and _followed(look, evaluator, starts, curvature):
+        if _followed(look, evaluator, starts):
             return
         for z, descend in _coordinates(evaluator, starts, seed):
             point = _keep(look, evaluator, evaluator.point(z))
@@ -128,18 +130,17 @@ def look_quickly(
         look.how = "not tried" if look.x is None else "quick"
 
 
-def _followed(
-    look: Look, evaluator: Evaluator, starts: Sequence[Start], curvature: Curvature
-) -> bool:
+def _followed(look: Look, evaluator: Evaluator, starts: Sequence[Start]) -> bool:
     """Whether steps from a neighbour's optimum settle on the optimum of this combination."""
-    near = next((start.x for start in starts if start.descend), None)
-    if near is None or not evaluator.space.size:
+    near = next((start for start in starts if start.curvature is not None), None)
+    if near is None or near.curvature is None or not evaluator.space.size:
         return False
     evaluator.eager = True
-    point = evaluator.point(evaluator.space.to_z(near))
-    found = stepped(evaluator, point, curvature, ROUGH) if point.valid else None
+    point = evaluator.point(evaluator.space.to_z(near.x))
+    found = stepped(evaluator, point, near.curvature, ROUGH) if point.valid else None
     if found is not None:
         _keep(look, evaluator, found)
+        look.curvature = near.curvature
     return found is not None
 
 
@@ -180,7 +181,7 @@ def _coordinates(
     evaluator: Evaluator, starts: Sequence[Start], seed: int
 ) -> Iterator[tuple[Vector, bool]]:
     """The starts given, then the best of a small sweep."""
-    for x, descend in starts:
+    for x, descend, _ in starts:
         yield evaluator.space.to_z(x), descend
     if evaluator.space.size:
         swept = sweep(evaluator, SAMPLES, seed)
