@@ -41,7 +41,7 @@ def real(value: Array) -> Array:
 def where(condition: Array, yes: Array, no: Array) -> Array:
     """Elementwise choice; `condition` must come from real parts."""
     if type(condition) is np.ndarray:  # the common case, kept short: models call this most
-        found = np.where(condition, yes, no)
+        found: Any = np.where(condition, yes, no)
         return found.item() if found.dtype.hasobject else found  # a traced value stands alone
     if isinstance(condition, (bool, np.bool_)):
         return yes if condition else no

@@ -162,7 +162,7 @@ def _nearby(
     evaluator.check_gradients(point)
     if not groups or not lockstep.applicable(parametric, evaluator):
         return [None] * len(groups)
-    found = lockstep.restore_together(parametric, evaluator, point, freed)
+    found = lockstep.restore_together(parametric, evaluator, point.z, freed)
     return [None if z is None else evaluator.space.to_x(z[:, None])[:, 0] for z in found]
 
 

@@ -32,16 +32,23 @@ def function(
     outputs : expressions
     """
     scope: dict[str, Any] = {f"_{key}": getattr(math, key) for key in _MATH}
-    return _compiled(name, arguments, unpack, outputs, scope, many=False)
+    return _compiled(name, arguments, unpack, outputs, scope, {}, many=False)
 
 
 def vectorised(
-    name: str, arguments: str, unpack: Mapping[str, str], outputs: Sequence[Any]
+    name: str,
+    arguments: str,
+    unpack: Mapping[str, str],
+    outputs: Sequence[Any],
+    known: Mapping[Symbol, str] | None = None,
 ) -> Callable[..., Any]:
-    """As `function`, of NumPy arrays; both branches of every choice are computed."""
+    """As `function`, of NumPy arrays; both branches of every choice are computed.
+
+    `known` expressions are not computed but taken from the code given for them.
+    """
     scope: dict[str, Any] = {f"_{key}": getattr(np, _NUMPY.get(key, key)) for key in _MATH}
     scope["_where"], scope["_not"] = np.where, np.logical_not
-    return _compiled(name, arguments, unpack, outputs, scope, many=True)
+    return _compiled(name, arguments, unpack, outputs, scope, known or {}, many=True)
 
 
 _MATH = ("sqrt", "exp", "expm1", "log", "log1p", "tanh", "sin", "cos", "atan2", "pow")
@@ -54,10 +61,11 @@ def _compiled(
     unpack: Mapping[str, str],
     outputs: Sequence[Any],
     scope: dict[str, Any],
+    known: Mapping[Symbol, str],
     *,
     many: bool,
 ) -> Callable[..., Any]:
-    nodes = needed(outputs)
+    nodes = needed(outputs, known)
     scope["_nan"], scope["_inf"] = math.nan, math.inf
     if nodes:
         scope |= {f"_table{i}": one for i, one in enumerate(nodes[0].graph.tables)}
@@ -67,14 +75,16 @@ def _compiled(
         for names, code in unpack.items()
         if any(one.strip() in used for one in names.split(","))
     ]
-    lines += _lines(nodes, outputs, many)
+    lines += _lines(nodes, outputs, known, many)
     source = f"def {name}({arguments}):\n" + "\n".join(lines)
     exec(compile(source, f"<{name}>", "exec"), scope)  # our own text: operations and numbers
     found: Callable[..., Any] = scope[name]
     return found
 
 
-def _lines(nodes: Sequence[Symbol], outputs: Sequence[Any], many: bool) -> list[str]:
+def _lines(
+    nodes: Sequence[Symbol], outputs: Sequence[Any], known: Mapping[Symbol, str], many: bool
+) -> list[str]:
     """A line for every node that is needed twice or stands deep, then the return."""
     uses: dict[int, int] = {}
     for node in nodes:
@@ -84,8 +94,8 @@ def _lines(nodes: Sequence[Symbol], outputs: Sequence[Any], many: bool) -> list[
         if isinstance(out, Symbol):
             uses[out.index] = uses.get(out.index, 0) + 1
     lines: list[str] = []
-    text: dict[int, str] = {}
-    depth: dict[int, int] = {}
+    text = {one.index: code for one, code in known.items()}
+    depth = {one.index: 0 for one in known}
 
     def said(value: Any) -> str:
         return text[value.index] if isinstance(value, Symbol) else _literal(value)

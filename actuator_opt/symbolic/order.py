@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from .expression import Symbol
@@ -15,9 +15,9 @@ def is_boolean(symbol: Symbol) -> bool:
     return symbol.op in _BOOLEAN
 
 
-def needed(outputs: Sequence[Any]) -> list[Symbol]:
-    """The nodes that some outputs need, operands before results."""
-    seen: set[int] = set()
+def needed(outputs: Sequence[Any], known: Iterable[Symbol] = ()) -> list[Symbol]:
+    """The nodes that some outputs need, operands before results; of `known` ones nothing more."""
+    seen: set[int] = {one.index for one in known}
     found: list[Symbol] = []
     stack = [out for out in outputs if isinstance(out, Symbol)]
     while stack:

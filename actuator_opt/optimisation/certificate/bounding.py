@@ -59,23 +59,23 @@ class Bounding:
     def __init__(self, layout: Layout, objective: Form) -> None:
         self.layout = layout
         atoms, ratios, curves = layout.atoms, layout.directions, layout.curves
-        self.columns = atoms + ratios + curves + layout.bands
+        self.columns = atoms + ratios + curves
         self.ratios = slice(atoms, atoms + ratios)
         self.ratio = (atoms + layout.direction).astype(np.int32)
         self.out = atoms + ratios + np.arange(curves, dtype=np.int32)
-        self.band_ratio = (atoms + layout.band).astype(np.int32)
-        self.band_out = atoms + ratios + curves + np.arange(layout.bands, dtype=np.int32)
-        self.fitted = curves + layout.bands
         self.cost = np.zeros(self.columns)
         for i, power in objective.powers:
             self.cost[i] = power
         self.constant = objective.constant
         self.matrix, self.low, self.high = self._definitions()
-        none = np.zeros(self.fitted)
+        bases = np.array([link.base for link in layout.links], dtype=np.int32)
+        outs = np.array([link.out for link in layout.links], dtype=np.int32)
+        self.moving = curves + 2 * len(outs)
+        none = np.zeros(self.moving)
         self.lines = _Lines(
-            np.concatenate([self.ratio, self.band_ratio]),
+            np.concatenate([self.ratio, bases, bases]),
             none,
-            np.concatenate([self.out, self.band_out]),
+            np.concatenate([self.out, outs, outs]),
             none - np.inf,
             none + np.inf,
         )
@@ -84,9 +84,8 @@ class Bounding:
     def _definitions(self) -> tuple[Any, Vector, Vector]:
         """Outs and directions by their atoms; rows at least zero."""
         layout = self.layout
-        defined = layout.curves + layout.directions + layout.bands
-        ratios = np.arange(self.ratios.start, self.ratios.stop)
-        columns = np.concatenate([self.out, ratios, self.band_out])
+        defined = layout.curves + layout.directions
+        columns = np.concatenate([self.out, np.arange(self.ratios.start, self.ratios.stop)])
         rows = np.concatenate([layout.form, np.arange(defined)])
         places = np.concatenate([layout.atom, columns])
         values = np.concatenate([layout.power, np.full(defined, -1.0)])
@@ -121,8 +120,8 @@ class Bounding:
             value + self.constant,
             x[: self.layout.atoms],
             x[self.ratios],
-            self._excess(x),
-            np.abs(dual[first : first + self.fitted]),
+            np.maximum(-self._missed(x), 0.0),
+            np.abs(dual[first : first + self.layout.curves]),
         )
 
     def enter(self, box: Box) -> tuple[Vector, Vector]:
@@ -134,8 +133,8 @@ class Bounding:
 
     def _purge(self) -> None:
         """Forget tangents that no longer touch, once there are too many."""
-        first, count = len(self.low) + self.fitted, len(self.lines.low)
-        if count < MOST * self.fitted:
+        first, count = len(self.low) + self.moving, len(self.lines.low)
+        if count < MOST * self.moving:
             return
         status = self.solver.getBasis().row_status
         idle = [r for r in range(first, len(status)) if status[r] == highspy.HighsBasisStatus.kBasic]
@@ -180,9 +179,9 @@ class Bounding:
     def _columns(self, box: Box) -> tuple[Vector, Vector]:
         """Put the ranges of a box."""
         low, high, _, _ = self.layout.reach(box.lower, box.upper)
-        outs, _, bands, _ = self.layout.parts
-        lower = np.concatenate([box.lower, box.low, low[outs], low[bands]])
-        upper = np.concatenate([box.upper, box.high, high[outs], high[bands]])
+        outs = self.layout.parts[0]
+        lower = np.concatenate([box.lower, box.low, low[outs]])
+        upper = np.concatenate([box.upper, box.high, high[outs]])
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsBounds(self.columns, index, lower, upper)
         return lower, upper
@@ -192,25 +191,27 @@ class Bounding:
         layout, lines = self.layout, self.lines
         first, count = len(self.low), layout.curves
         low, high = layout.arguments(box.low, box.high)
-        ends = layout.mixed.value(low), layout.mixed.value(high)
-        width = high - low
-        flat = width < 1e-12
-        slope = np.where(flat, 0.0, (ends[1] - ends[0]) / np.where(flat, 1.0, width))
-        level = ends[0] + np.where(flat, 0.0, slope * (layout.constant - low))
-        over, convex = width <= WIDEST, layout.mixed.convex
-        slope = np.where(over, slope, 0.0)
-        lines.coefficient[:count] = -slope * layout.factor
-        lines.low[:count] = np.where(over & ~convex, np.where(flat, np.minimum(*ends), level), -np.inf)
-        lines.high[:count] = np.where(over & convex, np.where(flat, np.maximum(*ends), level), np.inf)
-        secants = layout.secants(box.low, box.high)
-        fitted = self.fitted
-        lines.coefficient[count:fitted] = -secants.slope
-        lines.low[count:fitted], lines.high[count:fitted] = secants.least, secants.most
-        index = first + np.arange(fitted, dtype=np.int32)
-        columns, values = lines.ratio[:fitted].tolist(), lines.coefficient[:fitted].tolist()
+        mixed, width = layout.mixed, high - low
+        first_value, last_value = mixed.value(low), mixed.value(high)
+        flat = width < 1e-9
+        slope = np.where(flat, 0.0, (last_value - first_value) / np.where(flat, 1.0, width))
+        level = first_value + slope * (layout.constant - low)
+        off = mixed.room + np.where(flat, np.abs(last_value - first_value), 0.0)
+        below, above = mixed.apart(low, high, slope)
+        over = width <= WIDEST
+        lines.coefficient[:count] = np.where(over, -slope * layout.factor, 0.0)
+        lines.low[:count] = np.where(over & (mixed.convex <= 0), level + below - off, -np.inf)
+        lines.high[:count] = np.where(over & (mixed.convex >= 0), level + above + off, np.inf)
+        ratios = layout.ratios(box)
+        least, most = slice(count, count + len(ratios[0])), slice(count + len(ratios[0]), self.moving)
+        lines.coefficient[least], lines.low[least] = -ratios[0], 0.0
+        lines.coefficient[most], lines.high[most] = -ratios[1], 0.0
+        count = self.moving
+        index = first + np.arange(count, dtype=np.int32)
+        columns, values = lines.ratio[:count].tolist(), lines.coefficient[:count].tolist()
         for row, column, value in zip(index.tolist(), columns, values, strict=True):
             self.solver.changeCoeff(row, column, value)
-        self.solver.changeRowsBounds(fitted, index, lines.low[:fitted], lines.high[:fitted])
+        self.solver.changeRowsBounds(count, index, lines.low[:count], lines.high[:count])
 
     def _argument(self, x: Vector) -> Vector:
         return self.layout.factor * x[self.ratio] + self.layout.constant
@@ -218,29 +219,20 @@ class Bounding:
     def _missed(self, x: Vector) -> Vector:
         """By how much every curve is missed, positive on the side of its tangents."""
         mixed = self.layout.mixed
-        return np.where(mixed.convex, 1.0, -1.0) * (mixed.value(self._argument(x)) - x[self.out])
+        off = mixed.value(self._argument(x)) - x[self.out]
+        return np.where(mixed.convex == 0, -np.abs(off), mixed.convex * off)
 
     def lay(self, box: Box) -> None:
         """Tangents of every curve over a box, to begin with."""
         low, high = self.layout.arguments(box.low, box.high)
         middle, reach = (low + high) / 2, np.minimum((high - low) / 2, 0.5 * WIDEST)
+        some = np.flatnonzero(self.layout.mixed.convex)
         for share in FIRST:
-            self._append(self._touching(middle + share * reach, np.arange(self.layout.curves)))
+            self._append(self._touching(middle + share * reach, some))
 
     def _append(self, more: _Lines) -> None:
         _add(self.solver, more)
         self.lines = self.lines.joined(more)
-
-    def _excess(self, x: Vector) -> Vector:
-        """By how much every curve and band is missed on the side of its chord or secants."""
-        functions, columns = self.layout.relaxation.bands, zip(
-            self.band_ratio, self.band_out, strict=True
-        )
-        bands = [
-            abs(float(band.function(x[[ratio]])[0]) - x[out])
-            for band, (ratio, out) in zip(functions, columns, strict=True)
-        ]
-        return np.concatenate([np.maximum(-self._missed(x), 0.0), bands])
 
     def _tangents(self, x: Vector) -> bool:
         """Add tangents where the point lies on their side of a curve; whether there are any."""
@@ -253,8 +245,9 @@ class Bounding:
         """Tangents of some curves at arguments of all."""
         layout = self.layout
         slope = layout.mixed.slope(t)
-        level = (layout.mixed.value(t) + slope * (layout.constant - t))[some]
-        convex = layout.mixed.convex[some]
+        mixed = layout.mixed
+        level = mixed.value(t) - mixed.convex * mixed.room + slope * (layout.constant - t)
+        level, convex = level[some], mixed.convex[some] > 0
         return _Lines(
             self.ratio[some],
             (-slope * layout.factor)[some],

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from ..problem import Vector
 from .relaxation import Relaxation
-from .shapes import Mixed
+from .shapes import FAR, Mixed, Table
 from .signomial import Form, Powers
 
 ROUNDS = 20
@@ -25,24 +24,6 @@ ROOM = 1e-9
 CROSSED = 1e-8
 """By how much the ends of a range must cross for nothing to be left."""
 
-FAR = 200.0
-"""Largest logarithm of an atom or a ratio; e^200 is beyond any quantity."""
-
-
-GRID = 33
-"""Samples of a band's function over a box."""
-
-
-class Secants(NamedTuple):
-    """slope t + least <= out <= slope t + most for every band, and the range low to high of out."""
-
-    slope: Vector
-    least: Vector
-    most: Vector
-    low: Vector
-    high: Vector
-
-
 class Gone(Exception):
     """Nothing is left of a part of the space."""
 
@@ -51,7 +32,7 @@ class Layout:
     """A relaxation as arrays: every distinct direction in the space of logarithms once.
 
     A direction is a log ratio, such as log(t/r): all curves of powers of one ratio share it.
-    Forms are, in order: outs of curves, directions, outs of bands, rows (each >= 0).
+    Forms are, in order: outs of curves, directions, rows (each >= 0).
     """
 
     def __init__(self, relaxation: Relaxation) -> None:
@@ -66,17 +47,14 @@ class Layout:
             key = tuple((i, round(p / factor, 12)) for i, p in powers)
             number = known.setdefault(key, len(known))
             places.append((number, factor, curve.argument.constant))
-        ways = [known.setdefault(band.argument.powers, len(known)) for band in relaxation.bands]
-        self.band = np.array(ways, dtype=np.intp)
-        self.bands = len(ways)
+        self.links = relaxation.links
+        self.of_curve = {id(curve): k for k, curve in enumerate(relaxation.curves)}
         self.directions = len(known)
         self.direction = np.array([place[0] for place in places], dtype=np.intp)
-        self.ways = np.concatenate([self.direction, self.band])
         self.factor = np.array([place[1] for place in places])
         self.constant = np.array([place[2] for place in places])
         forms = [curve.out for curve in relaxation.curves]
         forms += [Form(0.0, key) for key in known]
-        forms += [band.out for band in relaxation.bands]
         forms += [row.high - row.low for row in relaxation.rows]
         self.levels = np.array([form.constant for form in forms])
         entries = [(k, i, power) for k, form in enumerate(forms) for i, power in form.powers]
@@ -84,16 +62,29 @@ class Layout:
         self.atom = np.array([entry[1] for entry in entries], dtype=np.intp)
         self.power = np.array([entry[2] for entry in entries])
 
+    def ratios(self, box: Box) -> tuple[Vector, Vector]:
+        """Least and largest ratio of every link in a box."""
+        low, high = np.zeros(len(self.links)), np.zeros(len(self.links))
+        for k, link in enumerate(self.links):
+            ends = box.range(link.ratio)
+            if link.curve is not None and isinstance(link.curve.kind, Table):
+                number = self.of_curve[id(link.curve)]
+                first, last = self.arguments(box.low, box.high)
+                table, t = link.curve.kind, first[number]
+                off = table.apart(t, last[number], 1.0)
+                start = float(table.value(np.array([t]))[0]) - t
+                ends = (
+                    ends[0] + start + off[0] - table.room,
+                    ends[1] + start + off[1] + table.room,
+                )
+            low[k], high[k] = ends
+        return np.exp(low), np.exp(high)
+
     @cached_property
-    def parts(self) -> tuple[slice, slice, slice, slice]:
-        """Forms of curves' outs, of directions, of bands' outs and of rows."""
-        ends = np.cumsum([0, self.curves, self.directions, self.bands]).tolist()
-        return (
-            slice(ends[0], ends[1]),
-            slice(ends[1], ends[2]),
-            slice(ends[2], ends[3]),
-            slice(ends[3], len(self.levels)),
-        )
+    def parts(self) -> tuple[slice, slice, slice]:
+        """Forms of outs, of directions and of rows."""
+        first, second = self.curves, self.curves + self.directions
+        return slice(0, first), slice(first, second), slice(second, len(self.levels))
 
     def arguments(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
         """Ranges of the curves' arguments from those of the directions."""
@@ -102,19 +93,6 @@ class Layout:
             self.factor * high[self.direction] + self.constant,
         )
         return np.minimum(*ends), np.maximum(*ends)
-
-    def secants(self, low: Vector, high: Vector) -> Secants:
-        """Bands over ranges of the directions: two parallel lines around each function."""
-        found = np.zeros((5, self.bands))
-        for k, (band, number) in enumerate(zip(self.relaxation.bands, self.band, strict=True)):
-            t = np.linspace(low[number], high[number], GRID)
-            values = band.function(t)
-            step = (high[number] - low[number]) / (GRID - 1)
-            slope = (values[-1] - values[0]) / (t[-1] - t[0]) if step > 1e-12 else 0.0
-            off, room = values - slope * t, band.bend * step * step / 8 + ROOM
-            ends = off.min() - room, off.max() + room, values.min() - room, values.max() + room
-            found[:, k] = slope, *ends
-        return Secants(*found)
 
     def reach(self, lower: Vector, upper: Vector) -> tuple[Vector, Vector, Vector, Vector]:
         """Ranges of all forms, and of their entries."""
@@ -142,6 +120,14 @@ class Box:
         none = np.zeros(layout.directions)
         lower, upper = (np.clip(ends, -FAR, FAR) for ends in (found.lower, found.upper))
         return cls(lower, upper, none - FAR, none + FAR)
+
+    def range(self, form: Form) -> tuple[float, float]:
+        """Range of a monomial's logarithm."""
+        low = high = form.constant
+        for i, power in form.powers:
+            ends = power * self.lower[i], power * self.upper[i]
+            low, high = low + min(ends), high + max(ends)
+        return low, high
 
     def split(self, direction: int, at: float) -> tuple[Box, Box]:
         """The part below and the part above a value of a direction."""
@@ -188,20 +174,15 @@ class _Work:
     def round(self) -> None:
         """One pass over all forms and curves."""
         layout = self.layout
-        outs, ways, bands, rows = layout.parts
+        outs, ways, rows = layout.parts
         low, high, least, most = layout.reach(self.lower, self.upper)
         self._raise(self.low, self.high, low[ways], high[ways])
-        ends = layout.arguments(self.low, self.high)
-        values = layout.mixed.value(ends[0]), layout.mixed.value(ends[1])
+        values = layout.mixed.hull(*layout.arguments(self.low, self.high))
         goal_low, goal_high = low.copy(), high.copy()
-        goal_low[outs] = np.maximum(low[outs], np.minimum(*values))
-        goal_high[outs] = np.minimum(high[outs], np.maximum(*values))
+        goal_low[outs] = np.maximum(low[outs], values[0])
+        goal_high[outs] = np.minimum(high[outs], values[1])
         self._back(goal_low[outs], goal_high[outs])
         goal_low[ways], goal_high[ways] = self.low, self.high
-        if layout.bands:
-            secants = layout.secants(self.low, self.high)
-            goal_low[bands] = np.maximum(low[bands], secants.low)
-            goal_high[bands] = np.minimum(high[bands], secants.high)
         goal_low[rows] = np.maximum(low[rows], 0.0)
         if (goal_low > goal_high + CROSSED).any():
             raise Gone
@@ -219,9 +200,8 @@ class _Work:
     def _back(self, low: Vector, high: Vector) -> None:
         """What the outs of curves say about the directions."""
         layout = self.layout
-        ends = [
-            (layout.mixed.inverse(end) - layout.constant) / layout.factor for end in (low, high)
-        ]
+        inner = layout.mixed.within(low, high)
+        ends = [(end - layout.constant) / layout.factor for end in inner]
         lows, highs = self.low.copy(), self.high.copy()
         np.maximum.at(lows, layout.direction, np.minimum(*ends) - ROOM)
         np.minimum.at(highs, layout.direction, np.maximum(*ends) + ROOM)

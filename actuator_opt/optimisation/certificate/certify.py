@@ -14,9 +14,10 @@ from ...symbolic.order import needed
 from ..actuator import ActuatorProblem
 from ..problem import Vector
 from .bounding import Bounding
-from .box import Layout
+from .box import Box, Layout
 from .intervals import narrow, tighten
 from .lone import ranges
+from .plain import straighten
 from .relaxation import Builder, Relaxation, Unknown
 from .search import Found, search
 from .signomial import Form
@@ -71,6 +72,9 @@ def relax(traced: Traced, best: float, near=None) -> Relaxed:
         with suppress(Unknown):
             builder.at_least(more, less)
     (objective,) = (builder.form(one)[1] for one in set(traced.objectives))
+    box = Box.whole(Layout(builder.found)).tightened(Layout(builder.found))
+    builder.found.lower, builder.found.upper = box.lower.tolist(), box.upper.tolist()
+    straighten(builder.found)
     return Relaxed(builder.found, objective, builder.variables, tuple(covered), dropped)
 
 

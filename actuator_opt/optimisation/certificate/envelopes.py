@@ -13,6 +13,7 @@ from ...evaluation import Subject, beam, plies
 from ...evaluation.allow import Stock
 from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind
 from ...evaluation.barrel import load_path
+from ...evaluation.barrel.load_path import LoadPath
 from ...evaluation.geometry import Geometry
 from ...evaluation.kernel import Implicit, Pass
 from ...evaluation.rods import Rod
@@ -146,10 +147,9 @@ class Envelopes:
             walls=walls, thicknesses=thicknesses, inner_diameter=2 * g.inner_radius
         )
         rigid = Swelling(growth=growth, shortening=0.0, stretch=0.0, growth_by_force=0.0)
-        pulled = Swelling(growth, 0.0, 1 / stiffness, 0.0)
         return Wall(
             swelling=rigid,
-            path=load_path.derive(v, design, stock, g, state, pulled),
+            path=self._path(v, design, stock, g, state, rigid),
             growth=supply,
             case_growth=own,
             bending_stiffness=bending,
@@ -160,6 +160,29 @@ class Envelopes:
             why_no_mismatch="the relaxation leaves it out",
             missing=["the relaxation leaves it out"],
         )
+
+    def _path(
+        self,
+        v: Values,
+        design: Design,
+        stock: Stock,
+        g: Geometry,
+        state: State,
+        swelling: Swelling,
+    ) -> LoadPath:
+        """Axial force in a laminated wall; between tie rods its share is unknown."""
+        if not load_path.tied(design):
+            return load_path.derive(v, design, stock, g, state, swelling)
+        name = load_path.STOP if design.cylinder.end_stop == "internal" else load_path.LARGEST
+        share = self.problem.unknown(
+            "barrel_share", lambda done: self._number(done.wall.path.per_pressure[name])
+        )
+        supply = v["supply.pressure"]
+        proof = v["supply.proof_ratio"] * supply
+        preload = v.get("retention.preload", proof * share)
+        largest = supply * (load_path.largest_area(design, g) - share) + preload
+        rods = load_path.TieRods(preload, largest, preload / (proof * share))
+        return load_path.LoadPath({name: share}, 0.0, 0.0, rods)
 
 
 def layered(subject: Subject) -> bool:

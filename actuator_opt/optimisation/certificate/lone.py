@@ -1,51 +1,40 @@
-"""Traced values of one variable alone: sampled, with room for what lies between the samples."""
+"""Traced values that depend on one other value alone: sampled, with room between the samples."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from ...symbolic import Symbol, vectorised
 from ..problem import Vector
 
-SAMPLES = 2001
-"""Samples over the range of the variable."""
+SAMPLES = 1001
+"""Samples over the range of what a value depends on."""
 
 CAUTION = 1.5
 """Largest second derivative over that of the samples."""
 
+_LOGIC = ("lt", "le", "and", "or", "not")
 
-class Alone:
-    """Which variable a value depends on, where it is one."""
+
+class Leads:
+    """For each value the one through which it depends on all variables: its lead, or itself."""
 
     def __init__(self) -> None:
-        self._known: dict[int, Symbol | None] = {}
+        self._known: dict[int, Symbol] = {}
 
-    def variable(self, node: Symbol) -> Symbol | None:
-        """The only variable under a value; None of several, or of none."""
+    def of(self, node: Symbol) -> Symbol:
+        """The lead of a value."""
         if node.index not in self._known:
-            if node.op == "variable":
-                self._known[node.index] = node
-            else:
-                under = {self.variable(one) for one in node.operands}
-                self._known[node.index] = under.pop() if len(under) == 1 else None
+            under = {self.of(one) for one in node.operands}
+            self._known[node.index] = under.pop() if len(under) == 1 else node
         return self._known[node.index]
 
 
-class Sampled(NamedTuple):
-    """A function of the logarithm of a variable: its range, and the room that the samples need."""
-
-    low: float
-    high: float
-    room: float
-    """Most that it leaves its secant between two samples."""
-
-
-def function(nodes: Sequence[Symbol], variable: Symbol) -> Callable[[Vector], Vector]:
-    """Values (nodes, n) of nodes of one variable, from its logarithms (n,)."""
-    code = vectorised("alone", "value", {str(variable.args[0]): "value"}, nodes)
+def function(nodes: Sequence[Symbol], lead: Symbol) -> Callable[[Vector], Vector]:
+    """Values (nodes, n) of nodes with one lead, from its logarithms (n,)."""
+    code = vectorised("lone", "value", {}, nodes, known={lead: "value"})
 
     def values(t: Vector) -> Vector:
         with np.errstate(all="ignore"):
@@ -55,32 +44,26 @@ def function(nodes: Sequence[Symbol], variable: Symbol) -> Callable[[Vector], Ve
     return values
 
 
-def samples(variable: Symbol) -> Vector:
-    """Logarithms over the range of a variable."""
-    low, high = np.log(variable.bounds)
+def samples(lead: Symbol) -> Vector:
+    """Logarithms over the range of a positive value."""
+    low, high = np.log(lead.bounds)
     return np.linspace(low, high, SAMPLES)
 
 
-def sampled(values: Vector) -> Sampled:
-    """What equally spaced samples say of a smooth function."""
-    room = CAUTION * float(np.abs(np.diff(values, 2)).max()) / 8
-    return Sampled(float(values.min()), float(values.max()), room)
-
-
 def ranges(nodes: Sequence[Symbol]) -> dict[Symbol, tuple[float, float]]:
-    """Ranges of all values that depend on one positive variable, where they are finite."""
-    alone = Alone()
+    """Ranges of all values with a positive lead, where they are finite."""
+    leads = Leads()
     groups: dict[Symbol, list[Symbol]] = {}
     for node in nodes:
-        variable = alone.variable(node)
-        if variable is None or node.op in ("variable", "lt", "le", "and", "or", "not"):
+        lead = leads.of(node)
+        if lead is node or node.op in _LOGIC:
             continue
-        if 0 < variable.bounds[0] < variable.bounds[1] < np.inf:
-            groups.setdefault(variable, []).append(node)
+        if 0 < lead.bounds[0] < lead.bounds[1] < np.inf:
+            groups.setdefault(lead, []).append(node)
     found = {}
-    for variable, some in groups.items():
-        for node, row in zip(some, function(some, variable)(samples(variable)), strict=True):
+    for lead, some in groups.items():
+        for node, row in zip(some, function(some, lead)(samples(lead)), strict=True):
             if np.isfinite(row).all():
-                one = sampled(row)
-                found[node] = (one.low - one.room, one.high + one.room)
+                room = CAUTION * float(np.abs(np.diff(row, 2)).max()) / 8
+                found[node] = (float(row.min()) - room, float(row.max()) + room)
     return found

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 
@@ -18,9 +19,12 @@ import numpy as np
 from ...symbolic import Symbol
 from ..problem import Vector
 from .intervals import branch, extreme
-from .lone import Alone, function, sampled, samples
-from .shapes import SHAPES, Kind
-from .signomial import Form, Powers, Signomial
+from .lone import CAUTION, SAMPLES, Leads, function
+from .shapes import FAR, Kind, Mixed, Table
+from .signomial import Form, Signomial
+
+WIDEST = 20.0
+"""Widest range of a logarithm that is sampled."""
 
 LARGEST = 8
 """Most terms of a sum that is kept expanded, so that its terms may cancel."""
@@ -33,16 +37,16 @@ class Curve(NamedTuple):
     out: Form
 
 
-class Band(NamedTuple):
-    """out = function(argument) of one variable, any smooth function of its logarithm.
+class Link(NamedTuple):
+    """Two plain atoms: out/base is the exponential of a monomial's logarithm `ratio`.
 
-    `bend` bounds its second derivative, so that a band around a secant holds it.
+    Where the ratio is a function of one argument, `table` holds its logarithm less the argument.
     """
 
-    function: Callable[[Vector], Vector]
-    bend: float
-    argument: Form
-    out: Form
+    out: int
+    base: int
+    ratio: Form
+    curve: Curve | None
 
 
 Maker: TypeAlias = Callable[[Sequence[float]], float]
@@ -68,8 +72,9 @@ class Relaxation:
     upper: list[float] = field(default_factory=list)
     rows: list[Row] = field(default_factory=list)
     curves: list[Curve] = field(default_factory=list)
-    bands: list[Band] = field(default_factory=list)
-    plains: dict[Powers, tuple[float, Form]] = field(default_factory=dict)
+    splits: list[tuple[Form, Form, Form]] = field(default_factory=list)
+    """Every sum: whole, and its two parts."""
+    links: list[Link] = field(default_factory=list)
     sums: dict[tuple[Form, Form], Form] = field(default_factory=dict)
 
     def atom(self, low: float, high: float, maker: Maker) -> Form:
@@ -93,41 +98,7 @@ class Relaxation:
         for i, term in enumerate(others):
             last = i == len(others) - 1
             first = self._sum(first, term, low if last else 0.0, high)
-        if others:
-            self.balance(first, terms)
         return first
-
-    def plain(self, form: Form) -> Form:
-        """A monomial itself, not its logarithm, over its largest value."""
-        if not form.powers:
-            return Form(math.exp(form.constant))
-        if form.powers not in self.plains:
-            bare = Form(0.0, form.powers)
-            low, high = self.reach(bare)
-            argument = Form(-high, form.powers)
-            self.lower.append(math.exp(low - high))
-            self.upper.append(1.0)
-            self.makers.append(lambda y: math.exp(argument.at(y)))
-            out = Form(0.0, ((len(self.lower) - 1, 1.0),))
-            self.curves.append(Curve("exp", argument, out))
-            self.plains[form.powers] = (high, out)
-        high, out = self.plains[form.powers]
-        return out.scaled(math.exp(form.constant + high))
-
-    def balance(self, whole: Form, terms: Sequence[Form]) -> None:
-        """State a sum in plain numbers too, where its terms are atoms: exact at their bounds."""
-        forms = [whole, *terms]
-        if not all(len(one.powers) <= 1 and all(p == 1 for _, p in one.powers) for one in forms):
-            return
-        if not all(math.isfinite(end) for one in forms for end in self.reach(one)):
-            return
-        sums = Form(0.0)
-        for one in terms:
-            sums = sums + self.plain(one)
-        own = self.plain(whole)
-        scale = math.exp(-self.reach(whole)[1])
-        own, sums = own.scaled(scale), sums.scaled(scale)
-        self.rows += [Row(own, sums), Row(sums, own)]
 
     def _sum(self, first: Form, second: Form, low: float, high: float) -> Form:
         if first.powers == second.powers:  # a known ratio
@@ -143,11 +114,16 @@ class Relaxation:
     def split(self, whole: Form, part: Form, rest: Form) -> None:
         """State that whole = part + rest."""
         self.curves.append(Curve("softplus", part - rest, whole - rest))
+        self.splits.append((whole, part, rest))
 
 
 def _log_of_sum(first: float, second: float) -> float:
     high, low = max(first, second), min(first, second)
     return high + math.log1p(math.exp(low - high))
+
+
+_MONOMIAL = ("variable", "mul", "div", "neg", "sqrt", "pow")
+"""Operations that keep a monomial a monomial."""
 
 
 class Unknown(Exception):
@@ -161,7 +137,7 @@ class Builder:
         self.found = Relaxation()
         self._forms: dict[int, tuple[float, Form] | Unknown] = {}
         self._sums: dict[int, Signomial | None] = {}
-        self._alone = Alone()
+        self._leads = Leads()
         self.variables: dict[str, Form] = {}
 
     def form(self, value: Any) -> tuple[float, Form]:
@@ -179,16 +155,20 @@ class Builder:
             return math.copysign(1.0, number), Form(math.log(abs(number)))
         if value.index not in self._forms:
             try:
-                self._forms[value.index] = self._made(value)
+                self._forms[value.index] = self._either(value)
             except Unknown as reason:
-                try:
-                    self._forms[value.index] = self._band(value)
-                except Unknown:
-                    self._forms[value.index] = reason
+                self._forms[value.index] = reason
         known = self._forms[value.index]
         if isinstance(known, Unknown):
             raise known
         return known
+
+    def _either(self, node: Symbol) -> tuple[float, Form]:
+        """Sampled where that says more than its parts, else by its parts."""
+        if node.op not in _MONOMIAL:
+            with suppress(Unknown):
+                return self._sampled(node)
+        return self._made(node)
 
     def _made(self, node: Symbol) -> tuple[float, Form]:
         op, args = node.op, node.args
@@ -219,30 +199,27 @@ class Builder:
         self.variables[node.args[0]] = form
         return 1.0, form
 
-    def _band(self, node: Symbol) -> tuple[float, Form]:
-        """A function of one variable, as sampled."""
-        variable = self._alone.variable(node)
-        if variable is None or variable is node:
-            raise Unknown("it depends on several variables")
-        _, argument = self.form(variable)
-        values, t = function([node], variable), samples(variable)
-        rows = values(t)[0]
-        found = sampled(rows)
-        sign = 1.0 if found.low > found.room else -1.0
-        if not (found.low > found.room or found.high < -found.room):
-            raise Unknown("its sign is open")
-        if not np.isfinite(rows).all() or not t[-1] > t[0]:
+    def _sampled(self, node: Symbol) -> tuple[float, Form]:
+        """A function of one other value, as sampled."""
+        lead = self._leads.of(node)
+        if lead is node:
+            raise Unknown("it depends on several values")
+        sign, argument = self.form(lead)
+        if sign < 0:
+            raise Unknown("its argument is negative")
+        t = np.linspace(*self.found.reach(argument), SAMPLES)
+        if not 0 < t[-1] - t[0] < WIDEST:
+            raise Unknown("its argument is fixed, or has no end")
+        values = function([node], lead)(t)[0]
+        with np.errstate(all="ignore"):
+            logs = np.log(np.abs(values))
+        if not np.isfinite(logs).all():
             raise Unknown("it has no value everywhere")
-        logs = sampled(np.log(np.abs(rows)))
-        bend = 8 * logs.room / (t[1] - t[0]) ** 2
-
-        def logarithm(t: Vector) -> Vector:
-            return np.log(np.abs(values(t)[0]))
-
-        ends = math.exp(logs.low - logs.room), math.exp(logs.high + logs.room)
-        out = self.found.atom(*ends, lambda y: float(logarithm(np.array([argument.at(y)]))[0]))
-        self.found.bands.append(Band(logarithm, bend, argument, out))
-        return sign, out
+        table = Table.of(t, logs, CAUTION)
+        if (values[0] > 0) != (values[-1] > 0) or values.min() * values.max() <= 0:
+            raise Unknown("its sign is open")
+        least, most = float(logs.min()) - table.room, float(logs.max()) + table.room
+        return math.copysign(1.0, values[0]), self._curve(table, argument, least, most)
 
     def expanded(self, value: Any) -> Signomial | None:
         """A value as a sum of monomials; None where that has too many terms."""
@@ -382,7 +359,6 @@ class Builder:
 
         out = self.found.atom(low, high, apart)
         self.found.split(whole, out, rest)
-        self.found.balance(whole, [out, rest])
         return out
 
     def _chosen(self, node: Symbol) -> tuple[float, Form]:
@@ -415,7 +391,7 @@ class Builder:
             return 1.0, self._exponential(argument, low, high)
         if op == "tanh" and low > 0:
             _, form = self.form(argument)
-            return 1.0, self._curve("tanh", form, low, high)
+            return 1.0, self._curve("tanh", form, math.log(low), math.log(high))
         raise Unknown(f"{op} has no relaxation")
 
     def _logarithm(
@@ -433,21 +409,24 @@ class Builder:
         sign = 1.0 if low > 0 else -1.0
         inner = form if sign > 0 else Form(0.0) - form
         ends = (low, high) if sign > 0 else (-high, -low)
-        return sign, self._curve("log", inner, *ends)
+        return sign, self._curve("log", inner, math.log(ends[0]), math.log(ends[1]))
 
     def _exponential(self, argument: Any, low: float, high: float) -> Form:
         """e^x: its logarithm is x, a curve of the logarithm of x."""
         sign, form = self.form(argument)
         if sign > 0:
-            return self._curve("exp", form, low, high)
+            return self._curve("exp", form, math.log(low) if low > 0 else -FAR, math.log(high))
         out = self.found.atom(low, high, lambda y: -math.exp(form.at(y)))
         self.found.curves.append(Curve("exp", form, Form(0.0) - out))
         return out
 
     def _curve(self, kind: Kind, argument: Form, low: float, high: float) -> Form:
-        """A new atom that is a function of a monomial's logarithm."""
+        """A new atom that is a function of a monomial's logarithm; ends are logarithms."""
+        one = Mixed([kind])
         out = self.found.atom(
-            low, high, lambda y: float(SHAPES[kind].value(np.array([argument.at(y)]))[0])
+            math.exp(low),
+            math.exp(high),
+            lambda y: float(one.value(np.array([argument.at(y)]))[0]),
         )
         self.found.curves.append(Curve(kind, argument, out))
         return out

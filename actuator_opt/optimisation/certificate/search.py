@@ -128,7 +128,7 @@ def squeezed(
             bound = bounding.solve(box)
             if bound is None:
                 return None
-            gain = np.bincount(layout.ways, bound.excess * (bound.price + FLOOR), layout.directions)
+            gain = np.bincount(layout.direction, bound.excess * (bound.price + FLOOR), layout.directions)
             some = np.argsort(-gain, kind="stable")[:ways]
             size = float((box.high - box.low)[some].sum())
             for number in some:
@@ -148,7 +148,7 @@ def squeezed(
 
 def _choice(layout: Layout, box: Box, bound: Bound) -> tuple[int, float] | None:
     """Direction and place of the split that can gain most; None where nothing is loose."""
-    gain = np.bincount(layout.ways, bound.excess * (bound.price + FLOOR), layout.directions)
+    gain = np.bincount(layout.direction, bound.excess * (bound.price + FLOOR), layout.directions)
     number = int(np.argmax(gain))
     if gain[number] <= WORTH:
         return None
