@@ -30,6 +30,7 @@ from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from .options import (
     REPORTS,
     Algorithm,
+    Certify,
     Date,
     DesignFile,
     Json,
@@ -39,6 +40,7 @@ from .options import (
     Report,
     Seed,
     Set,
+    StandardSizes,
     Starts,
     WholePlies,
     Write,
@@ -188,6 +190,8 @@ def optimise(
     algorithm: Algorithm = "auto",
     starts: Starts = 6,
     whole_plies: WholePlies = False,
+    standard_sizes: StandardSizes = False,
+    certify: Certify = False,
     verify: Annotated[
         str | None,
         typer.Option(
@@ -224,6 +228,8 @@ def optimise(
             seed=seed,
             whole_plies=whole_plies,
             keep_interrupted=True,
+            standard_sizes=standard_sizes,
+            certify=certify,
         )
     outcome = _outcome(result)
     good = outcome == ExitCode.MET or result.status == "interrupted"

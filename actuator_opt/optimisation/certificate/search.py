@@ -128,7 +128,9 @@ def squeezed(
             bound = bounding.solve(box)
             if bound is None:
                 return None
-            gain = np.bincount(layout.direction, bound.excess * (bound.price + FLOOR), layout.directions)
+            gain = np.bincount(
+                layout.direction, bound.excess * (bound.price + FLOOR), layout.directions
+            )
             some = np.argsort(-gain, kind="stable")[:ways]
             size = float((box.high - box.low)[some].sum())
             for number in some:
