@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from ..progress import tell
 from .actuator import ActuatorProblem
 from .outcome import Solution
 from .result import Certificate
@@ -32,16 +33,14 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
 
     quantity = actuator.subject.quantities[actuator.goal.single or ""]
     best = solution.objective
-    with watch("proving how good that is") as tell:
-        try:
-            relaxed, found = certify(
-                actuator,
-                solution.x,
-                best,
-                report=lambda value: tell(math.exp(value - math.log(best))),
-            )
-        except Unknown as error:
-            return Certificate(f"nothing is proven: {error}", evidence)
+
+    def told(value: float) -> None:
+        tell("proving how good that is", math.exp(value) / best)
+
+    try:
+        relaxed, found = certify(actuator, solution.x, best, report=told)
+    except Unknown as error:
+        return Certificate(f"nothing is proven: {error}", evidence)
     bound = min(math.exp(found.bound), best)
     gap = max(1 - bound / best, 0.0)
     words = (
