@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -111,7 +112,7 @@ def optimise(
         streams.err(f"{write}: not written, there is no design to save: {why}")
     if outcome == ExitCode.MET and timed is not None and not timed.met:
         outcome = ExitCode.MISSED
-    sys.exit(outcome)
+    sys.exit(outcome)  # an Exit with the status of an interrupt would be told as one
 
 
 def _dynamics_tables(timed: Verification | None) -> list[ExtraTable]:
