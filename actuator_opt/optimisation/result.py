@@ -281,7 +281,7 @@ class Optimisation:
     starts: tuple[float, ...]
     """Objective of the local optimum reached from each start."""
     trace: tuple[tuple[int, float, float], ...]
-    """(evaluation, objective, worst margin) of each improvement."""
+    """(evaluation, objective, worst violation) of each improvement."""
     algorithm: str
     warnings: tuple[str, ...]
     seed: int
