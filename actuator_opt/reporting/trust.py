@@ -41,24 +41,20 @@ def lines(optimisation: Optimisation) -> list[str]:
     return [*proof(optimisation), *convergence(optimisation)]
 
 
-def proof(optimisation: Optimisation) -> list[str]:
-    """What the certificate says; without one, how to get it."""
+def proof(optimisation: Optimisation, *, brief: bool = False) -> list[str]:
+    """What the certificate says; without one, how to get it. `brief` leaves the covered limits."""
     certificate = optimisation.certificate
     if certificate is None:
         if optimisation.infeasibility is not None or not optimisation.variables:
             return []
-        return [
-            "No bound was asked for: `optimise --certify` proves how far this is from the best."
-        ]
+        return ["Not proven: optimise --certify tells how far this is from the best possible."]
     said = [sentence(certificate.sentence)]
-    if certificate.covers:
+    if certificate.covers and not brief:
         said.append(f"The proof covers: {', '.join(certificate.covers)}.")
     if certificate.dropped:
-        parts = [f"{name} ({why})" for name, why in certificate.dropped.items()]
-        said.append(
-            "It does without the following, which can only make the best possible worse than the"
-            f" bound: {'; '.join(parts)}."
-        )
+        shown = [name if brief else f"{name} ({why})" for name, why in certificate.dropped.items()]
+        covered = f"It covers {len(certificate.covers)} limits and does" if brief else "It does"
+        said.append(f"{covered} without these, which can only lower the bound: {'; '.join(shown)}.")
     if certificate.evidence:
         said.append(sentence(certificate.evidence))
     return said
@@ -92,39 +88,39 @@ def _marks(optimisation: Optimisation) -> list[tuple[float, str]]:
 
 
 def _scale_block(optimisation: Optimisation) -> list[Block]:
-    """What is proven, the optimum and what comes near, on one scale."""
-    certificate, best = optimisation.certificate, optimisation.objective_value
-    bound = None if certificate is None else certificate.lower_bound
-    marks = _marks(optimisation)
-    if bound is None and not marks:
+    """What is proven, the optimum and what comes near, with a title."""
+    bound = _bound(optimisation)
+    if bound is None and not _marks(optimisation):
         return []
-    quantity = _quantity(optimisation)
-    unit = text.unit_text(quantity.unit)
-    values = [quantity.to_display(one) for one, _ in marks]
-    middle = quantity.to_display(best)
-    ends = [middle, *values] + ([] if bound is None else [quantity.to_display(bound)])
-    low, high = min(ends), max(ends)
-    room = 0.04 * ((high - low) or abs(middle) or 1.0)
-    names = [
-        (middle, "optimum found", True),
-        *zip(values, [w for _, w in marks], [False] * 9, strict=False),
-    ]
+    note = "Left of the bound no design meets the covered limits; right of it a better one may."
+    title = "Proven, found, and what comes near"
+    return [figure(title, scale(optimisation), "" if bound is None else note)]
+
+
+def _bound(optimisation: Optimisation) -> float | None:
+    certificate = optimisation.certificate
+    return None if certificate is None else certificate.lower_bound
+
+
+def scale(optimisation: Optimisation) -> Ink:
+    """What is proven, the optimum and what comes near, on one scale."""
+    quantity, bound = _quantity(optimisation), _bound(optimisation)
+    names = [(quantity.to_display(optimisation.objective_value), "optimum found", True)]
+    names += [(quantity.to_display(value), words, False) for value, words in _marks(optimisation)]
+    if bound is not None:
+        names.append((quantity.to_display(bound), "proven bound", False))
+    low, high = min(name[0] for name in names), max(name[0] for name in names)
+    room = 0.04 * ((high - low) or abs(high) or 1.0)
     ink = Ink(WIDTH, 34.0)
     axes = Axes(ink, (4.0, 14.0, WIDTH - 8.0, 8.0), (low - room, high + room), (0.0, 1.0))
     places = [(value, text.trimmed(value)) for value in ticks(*axes.x_range, 8)]
-    label = quantity.label + (f", {unit}" if unit else "")
-    axes.frame_at("", label, places, [], upright=True)
+    unit = text.unit_text(quantity.unit)
+    axes.frame_at("", quantity.label + (f", {unit}" if unit else ""), places, [], upright=True)
     if bound is not None:
-        edge = quantity.to_display(bound)
-        ink.box(axes.left, axes.top, axes.x(edge) - axes.left, axes.height, fill=PALE, pen=0.1)
-        words = "proven: no design here"
-        if axes.x(edge) - axes.left > text_width(words, 6.5) + 2.0:
-            ink.text(axes.x(edge) - 1.0, axes.top + 4.0, words, anchor="right", color=GREY)
-        ink.line((axes.x(edge), axes.top), (axes.x(edge), axes.top + axes.height), pen=0.4)
-        names.append((edge, "proven bound", False))
+        edge = axes.x(quantity.to_display(bound))
+        ink.box(axes.left, axes.top, edge - axes.left, axes.height, fill=PALE, pen=0.1)
     _labelled(ink, axes, sorted(names))
-    note = "Left of the bound no design meets the covered limits; right of it a better one may."
-    return [figure("Proven, found, and what comes near", ink, note if bound is not None else "")]
+    return ink
 
 
 def _labelled(ink: Ink, axes: Axes, names: Sequence[tuple[float, str, bool]]) -> None:
