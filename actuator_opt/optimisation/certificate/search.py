@@ -71,8 +71,9 @@ def search(
 
     def add(box: Box, parent: float) -> None:
         nonlocal solved, least
-        box = squeezed(layout, bounding, box, until, rounds=ROUNDS2, ways=WAYS2)
-        if box is None:
+        try:
+            box = box.tightened(layout)
+        except Gone:
             return
         bound = bounding.solve(box)
         solved += 1
@@ -82,7 +83,8 @@ def search(
         if value >= goal:
             least = min(least, value)
             return
-        heapq.heappush(heap, (value, next(order), box, bound))
+        trimmed = bounding.trimmed(box, bound, best)
+        heapq.heappush(heap, (value, next(order), trimmed, bound))
 
     whole = squeezed(layout, bounding, Box.whole(layout), until)
     if whole is None:
