@@ -8,8 +8,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 
-import numpy as np
-
 from ...symbolic.order import needed
 from ..actuator import ActuatorProblem
 from ..problem import Vector
@@ -19,7 +17,7 @@ from .intervals import narrow, tighten
 from .lone import ranges
 from .plain import straighten
 from .relaxation import Builder, Relaxation, Unknown
-from .search import Found, search
+from .search import Found, Search
 from .signomial import Form
 from .trace import Claim, Traced, trace
 
@@ -91,13 +89,23 @@ def certify(
     objective: float,
     *,
     seconds: float = SECONDS,
+    most: float = math.inf,
     report: Callable[[float], None] | None = None,
 ) -> tuple[Relaxed, Found]:
-    """Lower bound on the objective of every design that meets the limits."""
+    """Lower bound on the objective of every design that meets the limits.
+
+    Parameters
+    ----------
+    actuator : the problem
+    x, objective : the best known design
+    seconds, most : time and boxes to spend
+    report : called with the logarithm of every better bound
+    """
     began = time.perf_counter()
     relaxed = relax(trace(actuator, x), objective)
     layout = Layout(relaxed.relaxation)
     bounding = Bounding(layout, relaxed.objective)
-    return relaxed, search(
-        layout, bounding, float(np.log(objective)), until=began + seconds, report=report
+    search = Search(
+        layout, bounding, math.log(objective), until=began + seconds, most=most
     )
+    return relaxed, search.run(report)
