@@ -9,12 +9,13 @@ from __future__ import annotations
 import sys
 from os.path import relpath
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from typer.exceptions import TyperException
 
 from . import cli_materials, streams
+from .cli_optimise import optimise, sensitivity
 from .cli_records import calibrate, identify
 from .cli_seal import seal
 from .cli_shared import (
@@ -29,7 +30,6 @@ from .cli_simulate import simulate
 from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from .options import (
     REPORTS,
-    Algorithm,
     Date,
     DesignFile,
     Json,
@@ -39,16 +39,11 @@ from .options import (
     Report,
     Seed,
     Set,
-    Starts,
-    WholePlies,
-    Write,
 )
 from .version import VERSION
 
 if TYPE_CHECKING:
-    from .optimisation.result import Optimisation
-    from .reporting import ExtraTable
-    from .simulation.verification import Verification
+    pass
 
 app = typer.Typer(
     name="actuator-opt",
@@ -181,145 +176,13 @@ def evaluate(
     leave_by(evaluation)
 
 
-@app.command()
-def optimise(
-    design: DesignFile,
-    sets: Set = None,
-    algorithm: Algorithm = "auto",
-    starts: Starts = 6,
-    whole_plies: WholePlies = False,
-    verify: Annotated[
-        str | None,
-        typer.Option(
-            "--verify-dynamics",
-            metavar="SCENARIO",
-            help="Simulate the best design in this scenario: does each dynamic requirement hold?",
-        ),
-    ] = None,
-    write: Write = None,
-    out: Out = REPORTS,
-    report: Annotated[
-        bool, typer.Option("--report", help="Write the report although --json is given.")
-    ] = False,
-    date: Date = None,
-    seed: Seed = 0,
-    plugin: PluginFile = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
-    """Find the best design, price its limits, write the report."""
-    from . import verbs
-
-    reporting = report or not as_json
-    check_targets(out if reporting else None, date, write)
-    actuator = read_actuator(design, sets, plugin)
-    trial = None if verify is None else verbs.read_scenario(verify)
-    if trial is not None:
-        verbs.fitting(trial, actuator)
-    with streams.watching():
-        result = verbs.optimise(
-            actuator,
-            algorithm=algorithm,
-            starts=starts,
-            seed=seed,
-            whole_plies=whole_plies,
-            keep_interrupted=True,
-        )
-    outcome = _outcome(result)
-    good = outcome == ExitCode.MET or result.status == "interrupted"
-    if outcome == ExitCode.INTERRUPTED:
-        trial, reporting = None, False
-    if write is not None and good:
-        verbs.save(result.best, write, source=actuator.source)
-    with streams.watching():
-        timed = None if trial is None else verbs.verify_dynamics(trial, result.best)
-    tables = _dynamics_tables(timed)
-    files = write_report(result, actuator, out, date, tables) if reporting else []
-    if as_json:
-        more: dict[str, Any] = {} if timed is None else {"dynamics_verified": timed.to_dict()}
-        streams.out_json(result.to_dict() | more | ({"files": files} if files else {}))
-    elif not quiet:
-        from .optimisation.rounding import unrounded
-        from .reporting.terminal import optimisation_text
-
-        streams.out(optimisation_text(result, **streams.style()), end="")
-        if timed is not None:
-            from .reporting.verification_text import verification_text
-
-            streams.out("\n" + verification_text(timed, **streams.style()), end="")
-        if remark := unrounded(result):
-            streams.err(remark)
-        say_files(([{"path": write}] if write is not None and good else []) + files)
-    if write is not None and not good:
-        why = (result.rounding or result).sentence
-        streams.err(f"{write}: not written, there is no design to save: {why}")
-    if outcome == ExitCode.MET and timed is not None and not timed.met:
-        outcome = ExitCode.MISSED
-    sys.exit(outcome)
-
-
-def _dynamics_tables(timed: Verification | None) -> list[ExtraTable]:
-    """What the time domain says of the best design, for its report."""
-    if timed is None:
-        return []
-    from .reporting.verification_rows import verification_rows
-
-    return [*verification_rows(timed)]
-
-
-def _outcome(result: Optimisation) -> ExitCode:
-    """The exit status of an optimisation."""
-    if result.status == "undefined":
-        return ExitCode.SOLVER_FAILED
-    if result.status.startswith("interrupted"):
-        return ExitCode.INTERRUPTED
-    infeasible = result.status == "infeasible" or result.status.startswith("limit_inf")
-    missed = not result.evaluation.met or (result.rounding is not None and not result.rounding.met)
-    return ExitCode.MISSED if infeasible or missed else ExitCode.MET
-
-
+app.command()(optimise)
 app.command("optimize", hidden=True)(optimise)
 app.command()(seal)
 app.command()(identify)
 app.command()(calibrate)
 app.command()(simulate)
-
-
-@app.command()
-def sensitivity(
-    design: DesignFile,
-    sets: Set = None,
-    plugin: PluginFile = None,
-    report: Report = False,
-    out: Out = REPORTS,
-    date: Date = None,
-    seed: Seed = 0,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
-    """What each requirement and parameter costs at the optimum."""
-    from . import verbs
-
-    if report:
-        check_targets(out, date)
-    actuator = read_actuator(design, sets, plugin)
-    with streams.watching():
-        result = verbs.optimise(actuator, seed=seed)
-    files = write_report(result, actuator, out, date) if report else []
-    if as_json:
-        data = result.to_dict()
-        keys = ["name", "version", "status", "outcome", "objective", "sensitivities"]
-        keys += ["what_buys_most", "kkt", "infeasibility"]
-        kept = {key: data[key] for key in keys if key in data}
-        streams.out_json(kept | ({"files": files} if files else {}))
-    elif not quiet:
-        from .reporting import infeasibility_card, prices
-
-        style = streams.style()
-        shown = prices.terminal(result, moving=True, **style)
-        streams.out(shown or infeasibility_card.terminal(result, **style) or result.sentence)
-        say_files(files)
-    raise typer.Exit(_outcome(result))
+app.command()(sensitivity)
 
 
 @app.command()

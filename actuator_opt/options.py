@@ -62,5 +62,18 @@ WholePlies = Annotated[
         help="Also find the best design of whole plies and allowed angles; --write saves that.",
     ),
 ]
+StandardSizes = Annotated[
+    bool,
+    typer.Option(
+        "--standard-sizes",
+        help="Also find the best design of standard sizes (ISO 3320, ISO 3601) and whole plies.",
+    ),
+]
+Certify = Annotated[
+    bool,
+    typer.Option(
+        "--certify", help="Prove how far the best design is from the best possible (seconds)."
+    ),
+]
 Report = Annotated[bool, typer.Option("--report", help="Write the report (PDF and PNG) too.")]
 REPORTS = Path("reports")

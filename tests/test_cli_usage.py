@@ -190,7 +190,7 @@ def test_materials_in_every_form():
     assert run("materials", "show", "steel_42crm04", "--json").errors
 
 
-HEAVY = ("scipy", "matplotlib", "typst", "cvxpy", "nlopt")
+HEAVY = ("scipy", "matplotlib", "typst", "cvxpy", "highspy", "nlopt")
 WATCH = (
     "import sys; sys.argv[1:] = {arguments!r}\n"
     "from actuator_opt.cli import main\n"

@@ -3,8 +3,11 @@
 import numpy as np
 import problems
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
-from actuator_opt.optimisation import movement
+from actuator_opt.optimisation import lockstep, movement
 from actuator_opt.optimisation.prices import prices
 from actuator_opt.optimisation.problem import ParametricProblem, Problem, Values
 from actuator_opt.optimisation.solver import solve
@@ -260,3 +263,16 @@ def test_equality_prices():
     assert slope == pytest.approx(row.price, rel=1e-6)
     assert abs(row.price) == pytest.approx(0.161469, abs=1e-6)
     assert "x1 lower" in rows
+
+
+@given(
+    steps=arrays(float, (30, 4), elements=st.floats(-1, 1)),
+    changes=arrays(float, (30, 4), elements=st.floats(-1e8, 1e8)),
+)
+@settings(max_examples=60, deadline=None)
+def test_a_learnt_curvature_stays_positive(steps, changes):
+    """Whatever slopes are learnt, steep, flat or bent down, the next step has a unique answer."""
+    descent = lockstep._Descent(np.eye(4), 1.0, 0, 0.0)
+    for step, change in zip(steps, changes, strict=True):
+        descent._learn(step, change)
+        np.linalg.cholesky(descent.hessian)

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from actuator_opt.optimisation.listed import Listed
 from cli_runner import bench, run
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -18,11 +19,12 @@ from actuator_opt.design import read_design
 from actuator_opt.design.model import Ply
 from actuator_opt.errors import InputError
 from actuator_opt.optimisation.actuator import build
-from actuator_opt.optimisation.branch_and_bound import Listed, search
+from actuator_opt.optimisation.branch_and_bound import search
 from actuator_opt.optimisation.problem import Problem, Values
-from actuator_opt.optimisation.rounding import listed_variables, misfits, plies, rounded
+from actuator_opt.optimisation.rounding import Wanted, misfits, plies, rounded, sizes_of
 from actuator_opt.optimisation.solver import solve
 
+PLIES = Wanted(whole_plies=True)
 HOOP = "      angle: 88 deg\n      thickness: 1.2 mm\n"
 AXIAL = "      angle: 25 deg\n      thickness: 1.6 mm\n"
 WALL = "  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n"
@@ -54,6 +56,11 @@ def with_angle(*changes):
 def optimum(text, **options):
     """Continuous optimum and rounding of a design text."""
     return ao.optimise(ao.read(text), starts=2, prices=False, whole_plies=True, **options)
+
+
+def alone(index, values):
+    """A single variable that takes some values."""
+    return Listed((index,), np.array(values, dtype=float)[:, None])
 
 
 def quadratic(weights, middle, coupling, total):
@@ -97,7 +104,7 @@ def test_convex_problems_against_enumeration(weights, middle, coupling, total, f
     lists = [sorted(map(float, first)), [1.0, 2.5, 3.0, 6.0, 7.5]]
     problem = quadratic(weights, middle, coupling, total)
     start = solve(problem, starts=2, samples=64)
-    listed = [Listed(k, np.array(values)) for k, values in enumerate(lists)]
+    listed = [alone(k, values) for k, values in enumerate(lists)]
     found = search(problem, listed, start.x)
     wanted = enumerated(np.array(weights), np.array(middle), coupling, total, lists)
     assert found.objective == pytest.approx(wanted, rel=1e-7, abs=1e-9)
@@ -114,7 +121,7 @@ def test_every_variable_may_be_listed():
     weights, middle = np.array([1.0, 2.0, 1.5]), np.array([2.6, 3.4, 5.5])
     problem = quadratic(weights, middle, 1.3, 14.0)
     grid = np.arange(1.0, 9.0)
-    found = search(problem, [Listed(k, grid) for k in range(3)], solve(problem, samples=64).x)
+    found = search(problem, [alone(k, grid) for k in range(3)], solve(problem, samples=64).x)
     points = np.array(list(itertools.product(grid, repeat=3)))
     values = (points - middle) ** 2 @ weights + 1.3 * (points.sum(axis=1) - 14.0) ** 2
     assert found.objective == pytest.approx(values.min(), rel=1e-12)
@@ -122,25 +129,27 @@ def test_every_variable_may_be_listed():
 
 
 @settings(max_examples=25)
-@given(middle=st.tuples(places, places, places), freeing=st.sampled_from([(), (0,), (2,), (0, 3)]))
-def test_restricted_choices_against_enumeration(middle, freeing):
-    """Odd values only beside some values of the partner: no other combination is taken."""
-    weights = np.array([1.0, 1.7, 0.8])
-    partner, counts = [1.0, 3.0, 5.0, 8.0], [float(k) for k in range(1, 9)]
-    problem = quadratic(weights, middle, 0.6, 11.0)
-    listed = [
-        Listed(0, np.array(partner)),
-        Listed(1, np.array(counts), [k % 2 == 1 for k in counts], 0, frozenset(freeing)),
-    ]
+@given(
+    middle=st.tuples(places, places, places),
+    pairs=st.lists(
+        st.tuples(st.integers(1, 8), st.integers(1, 8)), min_size=1, max_size=12, unique=True
+    ),
+)
+def test_pairs_against_enumeration(middle, pairs):
+    """Two variables of a catalogue of pairs, a third alone: no other combination is taken."""
+    weights, counts = np.array([1.0, 1.7, 0.8, 1.2]), [1.0, 3.0, 6.0]
+    middle = np.array([*middle, 4.3])
+    problem = quadratic(weights, middle, 0.6, 14.0)
+    listed = [Listed((0, 2), np.array(sorted(pairs), dtype=float)), alone(1, counts)]
     found = search(problem, listed, solve(problem, starts=2, samples=64).x)
     wanted = min(
-        enumerated(weights, np.array(middle), 0.6, 11.0, [[p], [c]])
-        for k, p in enumerate(partner)
+        enumerated(weights, middle, 0.6, 14.0, [[float(p)], [c], [float(q)]])
+        for p, q in pairs
         for c in counts
-        if c % 2 == 0 or k in freeing
     )
     assert found.objective == pytest.approx(wanted, rel=1e-7)
-    assert found.x[1] % 2 == 0 or found.assignment[0] in freeing
+    assert (found.x[0], found.x[2]) in pairs
+    assert found.complete
 
 
 def held(problem, least):
@@ -157,7 +166,7 @@ def test_nothing_fits():
     problem = held(quadratic([1.0, 1.0], [2.0, 2.0], 0.0, 0.0), 9.5)
     start = solve(problem, samples=64)
     assert start.feasible
-    found = search(problem, [Listed(0, np.array([0.5, 0.8])), Listed(1, np.array([3.0]))], start.x)
+    found = search(problem, [alone(0, [0.5, 0.8]), alone(1, [3.0])], start.x)
     assert (found.x, found.objective, found.complete) == (None, None, True)
     assert set(found.tried.values()) == {np.inf}
 
@@ -166,7 +175,7 @@ def test_limits_are_told():
     """A search cut short keeps its best and says that it did not end by itself."""
     rng = np.random.default_rng(3)
     problem = quadratic(rng.uniform(0.5, 2, 4), rng.uniform(2, 7, 4), 2.0, 19.3)
-    grid = [Listed(k, np.arange(1.0, 9.0)) for k in range(4)]
+    grid = [alone(k, np.arange(1.0, 9.0)) for k in range(4)]
     x = solve(problem, samples=64).x
     short, full = search(problem, grid, x, most=1), search(problem, grid, x)
     assert full.complete
@@ -198,10 +207,10 @@ def test_choices_are_the_whole_plies_within_bounds(one, lower, room, balanced, a
     wanted = [k * step for k in range(1, 100) if lower - 1e-9 * step <= k * step <= lower + room]
     if not wanted:
         with pytest.raises(InputError, match="no whole number of"):
-            listed_variables(changed)
+            sizes_of(changed, PLIES)
         return
-    (listed,) = listed_variables(changed)
-    np.testing.assert_allclose(listed.choices, wanted, rtol=1e-9)
+    (listed,) = sizes_of(changed, PLIES).listed
+    np.testing.assert_allclose(listed.rows[:, 0], wanted, rtol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -226,14 +235,14 @@ def test_an_angle_that_may_be_straight_frees_single_plies():
     """Odd ply counts are choices only beside 0 or 90 deg, where these are allowed."""
     text = two_layers((FREE_AXIAL, FREE_AXIAL + FREE_ANGLE.replace("15 deg", "0 deg")),
                       ("rod:\n", "  allowed_angles: [0 deg, 30 deg]\nrod:\n"))  # fmt: skip
-    angle, hoop, axial = listed_variables(read_design(text).design)
-    np.testing.assert_allclose(np.degrees(angle.choices), [0, 30], atol=1e-12)
-    assert hoop.restricted is None
-    np.testing.assert_allclose(np.diff(hoop.choices), 0.4e-3)
-    np.testing.assert_allclose(np.diff(axial.choices), 0.2e-3)
-    assert (axial.partner, axial.freeing) == (0, {0})
-    counts = np.round(axial.choices / 0.2e-3).astype(int)
-    assert list(axial.restricted) == [count % 2 == 1 for count in counts]
+    sizes = sizes_of(read_design(text).design, PLIES)
+    hoop, axial = sorted(sizes.listed, key=lambda one: len(one.index))
+    np.testing.assert_allclose(np.diff(hoop.rows[:, 0]), 0.4e-3)
+    degrees, counts = np.degrees(axial.rows[:, 1]), np.round(axial.rows[:, 0] / 0.2e-3)
+    if axial.index[0] > axial.index[1]:
+        degrees, counts = np.degrees(axial.rows[:, 0]), np.round(axial.rows[:, 1] / 0.2e-3)
+    found = set(zip(np.round(degrees), counts, strict=True))
+    assert found == {(0, n) for n in range(2, 16)} | {(30, n) for n in range(2, 16, 2)}
 
 
 @pytest.fixture(scope="module")
@@ -352,7 +361,7 @@ def test_a_better_valley_replaces_the_continuous_optimum():
     values = actuator.evaluate(heavy[:, None])
     assert values.constraints.min() >= -1e-6
     poor = replace(best, x=heavy, objective=float(values.objective[0]))
-    rounding, solution = rounded(actuator, poor, listed_variables(subject.design))
+    rounding, solution = rounded(actuator, poor, sizes_of(subject.design, PLIES))
     assert solution.objective == pytest.approx(best.objective, rel=1e-6)
     assert rounding.cost >= 0
     assert rounding.objective_before == solution.objective

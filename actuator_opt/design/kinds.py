@@ -342,6 +342,21 @@ class MaterialName(Text):
         self.example = MATERIAL_EXAMPLES[role]
 
 
+class Sizes(Kind):
+    """The sizes of a variable: a series by name, or a list."""
+
+    help = "sizes it may take: a series such as iso_3320, or a list of values"
+    example = "iso_3320"
+
+    def validate(self, value: Any) -> str | tuple[float, ...]:
+        """The name, or the values in SI."""
+        if isinstance(value, str):
+            return value
+        if not isinstance(value, (list, tuple)):  # faults of entries are found where units are
+            raise ValueFault(f"need sizes, not {what(value)}", "write a series, or a list")
+        return tuple(value)
+
+
 class Goal(Kind):
     """A metric, or a block of metrics with weights above zero."""
 

@@ -17,6 +17,7 @@ from .kinds import CaseName, Flag, Fraction, Goal, MaterialName, Of, Position, P
 from .linkage import Linkage, Load
 from .seals import Seals
 from .section import Section
+from .variable import Measured, Variable
 
 
 class FluidSection(Section):
@@ -299,25 +300,6 @@ class LoadCase(Section):
     def moves(self) -> bool:
         """Whether the piston or the joint has a speed."""
         return self.speed > 0 or (self.joint_speed or 0.0) > 0
-
-
-class Variable(Section):
-    """Bounds and start (SI) of a dimension the optimiser may move; in the file, units by PATH."""
-
-    lower: float
-    upper: float
-    start: float
-
-
-class Measured(Section):
-    """What a test record says of a value of the design: bounds that hold it with 95 %.
-
-    SI; in the file, units by PATH.
-    """
-
-    lower: float
-    upper: float
-    record: Annotated[str, Text("the record, as a report names it", 200)]
 
 
 class Limit(Section):

@@ -24,7 +24,10 @@ from .structure import Entry, Loc, child, child_at, entries, leaves, number_of
 
 _PATH = re.compile(r"[^.\[\]=]+(\[[^\[\]=]+\])?(\.[^.\[\]=]+(\[[^\[\]=]+\])?)*")
 _TOKEN = re.compile(r"\[([^\[\]]+)\]|([^.\[\]]+)")
-_ENDS = {"variables": ("lower", "upper", "start"), "measured": ("lower", "upper", "record")}
+_ENDS = {
+    "variables": ("lower", "upper", "start", "step", "sizes"),
+    "measured": ("lower", "upper", "record"),
+}
 _LIMITS = ("min", "max")
 _TEXTS = ("waivers", "set")
 _TABLES = (*_ENDS, *_TEXTS, "requirements", "materials", "objective")
@@ -165,7 +168,7 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
         if not name or last not in _ENDS[head]:
             raise ValueFault(f"{path}: no such PATH", f"end it with .{', .'.join(_ENDS[head])}")
         target = resolve(name, tree, metrics)
-        quantity = None if last == "record" else target.quantity
+        quantity = None if last in ("record", "sizes") else target.quantity
         return Target(f"{head}.{target.path}.{last}", (head, target.path, last), quantity)
     if head == "requirements":
         if last not in _LIMITS or not name:

@@ -14,10 +14,12 @@ from dataclasses import replace
 from .. import quantities
 from ..quantities import Quantity
 from . import choice_list, wishes
-from .kinds import MaterialName, Of, Text
+from .kinds import MaterialName, Of, Sizes, Text
 from .model import Design
 from .schema_values import Schema, entry_schema, quantity_schema, section_schema, text_of
 from .section import Section
+from .size_series import SERIES
+from .sizes import MOST_SIZES
 from .structure import Entry, entries
 from .view import Materials
 
@@ -108,20 +110,34 @@ def _bounds(kind: Of, path: str, definitions: Schema) -> Schema:
         "type": "object",
         "additionalProperties": False,
         "required": ["lower", "upper"],
-        "properties": {
-            key: {"$ref": f"#/definitions/{name}"} for key in ("lower", "upper", "start")
-        },
+        "properties": {key: {"$ref": f"#/definitions/{name}"} for key in ("lower", "upper")},
     }
 
 
 def _variables(definitions: Schema) -> Schema:
-    movable = {
-        path: _bounds(entry.kind, path, definitions)
-        for path, entry in _of_parts().items()
-        if isinstance(entry.kind, Of) and entry.kind.quantity.dimension != "count"
-    }
+    movable: Schema = {}
+    for path, entry in _of_parts().items():
+        if isinstance(entry.kind, Of) and entry.kind.quantity.dimension != "count":
+            movable[path] = bounds = _bounds(entry.kind, path, definitions)
+            bounds["not"] = {"required": ["sizes", "step"]}
+            bounds["properties"] |= _start_and_sizes(entry.kind.quantity, path)
     help = "What the optimiser may move: PATH with lower and upper bound."
     return {"description": help} | _by_path(movable)
+
+
+def _start_and_sizes(quantity: Quantity, path: str) -> Schema:
+    """What a variable may state beside its bounds."""
+    value = {"$ref": f"#/definitions/{quantity.name}"}
+    suited = [s for s in SERIES.values() if s.paths.fullmatch(path.replace("[*]", "[0]"))]
+    some = {"type": "array", "minItems": 1, "maxItems": MOST_SIZES, "uniqueItems": True}
+    series: Schema = {"enum": [s.name for s in suited]}
+    series["enumDescriptions"] = [s.label for s in suited]
+    options = [series] if suited else []
+    return {
+        "start": value,
+        "step": {"description": "the variable takes multiples of it", "allOf": [value]},
+        "sizes": {"description": Sizes.help, "anyOf": [*options, some | {"items": value}]},
+    }
 
 
 def _measured(definitions: Schema) -> Schema:
@@ -130,7 +146,6 @@ def _measured(definitions: Schema) -> Schema:
         if isinstance(entry.kind, Of):
             known[path] = bounds = _bounds(entry.kind, path, definitions)
             bounds["required"] = [*bounds["required"], "record"]
-            del bounds["properties"]["start"]
             bounds["properties"]["record"] = {
                 "type": "string",
                 "description": "the record, as a report names it",

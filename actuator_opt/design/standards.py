@@ -164,6 +164,11 @@ def rods() -> tuple[StandardSize, ...]:
     return _series("rods")
 
 
+def tube_walls() -> tuple[StandardSize, ...]:
+    """Wall thicknesses of EN 10305-1 steel tube, ascending, m; not all are made at any diameter."""
+    return _series("tube_walls")
+
+
 @functools.cache
 def cylinder_pairs(series: str | None = None) -> tuple[CylinderPair, ...]:
     """Bore and rod pairs of ISO 6020-2 (160 bar) and ISO 6022 (250 bar); of one series if named."""
@@ -189,6 +194,11 @@ def o_rings() -> tuple[ORing, ...]:
         for group in table["series"]
         for inside in group["inside_diameters"]
     )  # fmt: skip
+
+
+def ring_sections() -> tuple[float, ...]:
+    """Nominal sections of ISO 3601-1 O-rings, ascending, m."""
+    return tuple(sorted(metres(size) for size, _ in tables()["section_tolerances"]["rows"]))
 
 
 def section_tolerance(section: float) -> StandardSize:

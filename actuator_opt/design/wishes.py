@@ -12,6 +12,7 @@ from typing import Any
 
 from .. import quantities, suggest
 from ..quantities import Quantity
+from . import sizes
 from .kinds import ValueFault, example, read_quantity, what
 from .model import Design
 from .paths import Target, resolve
@@ -102,6 +103,8 @@ def variables(tree: dict[str, Any]) -> Iterator[Fault]:
         faults = [_number(bounds, (*loc, key), quantity) for key in ("lower", "upper", "start")]
         yield from (fault for fault in faults if fault)
         yield from _start(loc, bounds, target, tree)
+        yield from sizes.read(loc, bounds, quantity)
+    yield from sizes.groups(tree)[1]
 
 
 def measured(tree: dict[str, Any]) -> Iterator[Fault]:

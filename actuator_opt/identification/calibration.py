@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..design.model import Design, Measured
+from ..design.model import Design
+from ..design.variable import Measured
 from ..errors import Diagnostic, InputError
 from ..evaluation.study.bench import Bench
 from ..least_squares import Parameter, quantile, rated

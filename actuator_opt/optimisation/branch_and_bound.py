@@ -1,8 +1,9 @@
 """The best point of a problem some of whose variables may only take listed values.
 
-Branch and bound from the continuous optimum, the most promising box first: the bound of a box is
-its continuous optimum, re-optimised from that of the box around it. That optimum is a local one,
-so what is found is the best found and no proof. All roundings up and down come before, at once.
+Branch and bound from the continuous optimum, depth first to a first design and then the most
+promising box first: the bound of a box is its continuous optimum, re-optimised from that of the box
+around it. That optimum is a local one, so what is found is the best found and no proof. All
+roundings up and down come before, at once.
 """
 
 from __future__ import annotations
@@ -12,15 +13,13 @@ import itertools
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
 
 import numpy as np
 
 from ..numeric import Array
-from . import elastic, kkt, lockstep, nlopt_wrapper
-from .descents import FEASIBLE, RESIDUAL
+from . import lockstep, nearby
 from .evaluator import Evaluator, Point
-from .newton import polish
+from .listed import ON, Assignment, Box, Listed, between, with_rows
 from .problem import ParametricProblem, Problem, Values, Vector
 
 MOST_SOLVES = 400
@@ -29,40 +28,11 @@ MOST_SOLVES = 400
 MOST_NEIGHBOURS = 256
 """Most roundings up and down tried at once: all of them up to eight listed variables."""
 
-MOST_STEPS = 100
-"""Most evaluations of SLSQP where Newton does not end on an optimum."""
+MOST_MISSED = 4
+"""Most assignments looked at closely to say what the nearest one misses."""
 
-ON = 1e-7
-"""Distance from a listed value, over that to the next one, that counts as none."""
-
-SAME = 1e-9
-"""Relative difference of objectives that counts as none."""
-
-Box: TypeAlias = tuple[tuple[int, int], ...]
-"""First and last choice of every listed variable."""
-
-Assignment: TypeAlias = tuple[int, ...]
-"""A choice of every listed variable."""
-
-
-@dataclass(frozen=True, eq=False)
-class Listed:
-    """A variable that may only take listed values.
-
-    Parameters
-    ----------
-    index : of the variable
-    choices : ascending values (c,) within its bounds
-    restricted : choices (c,) that need `partner` at one of its `freeing` choices; None for none
-    partner : which of the listed variables that is
-    freeing : choices of the partner
-    """
-
-    index: int
-    choices: Vector
-    restricted: Sequence[bool] | None = None
-    partner: int | None = None
-    freeing: frozenset[int] = frozenset()
+CLOSE = 1e-7
+"""Relative difference to a bound that counts as none: bounds are known so well."""
 
 
 @dataclass
@@ -75,6 +45,8 @@ class Found:
     tried : objective of each assignment, infinite where none was feasible
     solves : re-optimisations, of boxes and of assignments
     complete : whether the search ended by itself, not at a limit
+    nearest, missed : where nothing feasible was found: the assignment that misses least of those
+        looked at closely, and the point where it does
     """
 
     x: Vector | None
@@ -83,6 +55,8 @@ class Found:
     tried: dict[Assignment, float]
     solves: int
     complete: bool
+    nearest: Assignment | None = None
+    missed: Point | None = None
 
 
 def search(
@@ -92,30 +66,78 @@ def search(
     *,
     most: int = MOST_SOLVES,
     until: float | None = None,
+    below: float = np.inf,
+    memory: Memory | None = None,
 ) -> Found:
-    """The best point with every listed variable at one of its choices.
+    """The best point with every listed variable at one of its values.
 
     Parameters
     ----------
     problem : the continuous problem
-    listed : its listed variables
+    listed : the groups of its listed variables
     x : the continuous optimum (n,)
     most : limit of re-optimisations
     until : time of `time.perf_counter` to stop at
+    below : only a better objective than this one is of interest
+    memory : of searches of problems much like this one, with the same rows; gets what this finds
     """
-    run = _Run(problem, listed, x, most, until)
-    run.neighbours()
-    count = itertools.count()
-    whole = tuple((0, len(one.choices) - 1) for one in listed)
-    boxes: list[tuple[float, int, Box, Vector]] = [(-np.inf, next(count), whole, run.x)]
-    while boxes and not run.exhausted and not run.beaten(boxes[0][0]):
-        _, _, box, near = heapq.heappop(boxes)
-        objective, near = run.relaxed(box, near)
-        if objective is None or run.beaten(objective):
+    remembered = memory is not None and memory.curvature is not None
+    run = _Run(problem, listed, x, most, until, below, memory or Memory())
+    if not remembered:
+        run.neighbours()
+    whole = tuple(tuple(range(len(one.rows))) for one in listed)
+    first = (run.start.objective, run.x) if remembered else run.relaxed([whole], run.x)[0]
+    boxes = [] if first is None else [(first[0], 0, whole, first[1])]
+    count = itertools.count(1)
+    while boxes and not run.exhausted:
+        if run.best == np.inf:  # depth first until there is a design to beat
+            bound, _, box, x = boxes.pop(max(range(len(boxes)), key=lambda k: boxes[k][1]))
+            heapq.heapify(boxes)
+        else:
+            bound, _, box, x = heapq.heappop(boxes)
+        if run.beaten(bound):
             continue
-        for part in run.parts(box, near, objective):
-            heapq.heappush(boxes, (objective, next(count), part, near))
-    return run.found(complete=not boxes or run.beaten(boxes[0][0]))
+        parts = run.parts(box, x, bound)
+        for part, found in zip(parts, run.relaxed(parts, x), strict=True):
+            if found is not None and not run.beaten(found[0]):
+                heapq.heappush(boxes, (found[0], next(count), part, found[1]))
+    return run.found(complete=all(run.beaten(bound) for bound, *_ in boxes))
+
+
+def at(
+    problem: Problem, listed: Sequence[Listed], assignment: Assignment, x: Vector, memory: Memory
+) -> float | None:
+    """The objective of one assignment, re-optimised; None where it is infeasible."""
+    objective = _Run(problem, listed, x, 1, None, np.inf, memory).assigned(assignment, x)
+    return objective if objective < np.inf else None
+
+
+@dataclass
+class Memory:
+    """Where the boxes of a search ended, from where those of a problem much like it are near."""
+
+    curvature: nearby.Curvature | None = None
+    ends: dict[Box, tuple[Evaluator, Point]] = field(default_factory=dict)
+    curvatures: dict[Box, nearby.Curvature | None] = field(default_factory=dict)
+    missed: dict[Box, Vector] = field(default_factory=dict)
+    """The least violated points of boxes without a feasible one."""
+
+    def near(self, box: Box) -> tuple[Vector, nearby.Curvature | None] | None:
+        """The optimum in a box of another problem, and its curvature."""
+        end = self.ends.get(box)
+        if end is None:
+            return None
+        if box not in self.curvatures:
+            self.curvatures[box] = nearby.curvature_at(*end)
+        return end[1].x, self.curvatures[box]
+
+    def note(self, box: Box, evaluator: Evaluator, found: nearby.Nearest) -> None:
+        """Keep where a box ended, unless it was easily reached from what is known."""
+        if found.optimum is not None and not (found.followed and box in self.ends):
+            self.ends[box] = evaluator, found.optimum
+            self.curvatures.pop(box, None)
+        elif found.optimum is None and found.missed is not None:
+            self.missed.setdefault(box, found.missed.x)
 
 
 @dataclass
@@ -127,17 +149,21 @@ class _Run:
     x: Vector
     most: int
     until: float | None
+    below: float
+    memory: Memory
     solves: int = 0
     tried: dict[Assignment, float] = field(default_factory=dict)
     points: dict[Assignment, Vector] = field(default_factory=dict)
+    near: dict[Assignment, Vector] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.index = np.array([one.index for one in self.listed], dtype=np.intp)
+        self.index = np.concatenate([one.index for one in self.listed]).astype(np.intp)
         self.reference = Evaluator(self.problem)
-        start = self.reference.point(self.reference.space.to_z(self.x))
+        self.start = start = self.reference.point(self.reference.space.to_z(self.x))
         self.x = start.x
-        if start.valid and self.reference.space.size:
+        if self.memory.curvature is None and start.valid and self.reference.space.size:
             self.reference.check_gradients(start)
+            self.memory.curvature = nearby.curvature_at(self.reference, start)
 
     @property
     def exhausted(self) -> bool:
@@ -145,44 +171,25 @@ class _Run:
         late = self.until is not None and time.perf_counter() > self.until
         return late or self.solves >= self.most
 
+    @property
+    def best(self) -> float:
+        """The objective to beat."""
+        return min(self.below, min(self.tried.values(), default=np.inf))
+
     def beaten(self, bound: float) -> bool:
         """Whether nothing above a bound can improve on what is known."""
-        best = min(self.tried.values(), default=np.inf)
-        return best < np.inf and bound >= best - SAME * abs(best)
-
-    def allowed(self, box: Box) -> list[list[int]]:
-        """The choices of every listed variable that a box holds."""
-        result = []
-        for one, (first, last) in zip(self.listed, box, strict=True):
-            choices = list(range(first, last + 1))
-            if one.partner is not None and one.restricted is not None:
-                low, high = box[one.partner]
-                if not any(low <= choice <= high for choice in one.freeing):
-                    choices = [choice for choice in choices if not one.restricted[choice]]
-            result.append(choices)
-        return result
-
-    def consistent(self, assignment: Assignment) -> bool:
-        """Whether every restricted choice has the partner it needs."""
-        return all(self.allowed(tuple((choice, choice) for choice in assignment)))
+        best = self.best
+        return best < np.inf and bound >= best - CLOSE * abs(best)
 
     def values(self, assignment: Assignment) -> Vector:
         """Values of the listed variables (d,)."""
         pairs = zip(self.listed, assignment, strict=True)
-        return np.array([one.choices[choice] for one, choice in pairs], dtype=float)
+        return np.concatenate([one.rows[row] for one, row in pairs])
 
     def neighbours(self) -> None:
         """Try every rounding up and down, all at once where the problem allows."""
-        sides = []
-        for one in self.listed:
-            value = float(self.x[one.index])
-            side = _around(one, value, range(len(one.choices)))
-            if one.restricted is not None:
-                free = [k for k, bound in enumerate(one.restricted) if not bound]
-                side = list(dict.fromkeys([*side, *_around(one, value, free)]))
-            sides.append(side)
-        every = itertools.product(*sides)
-        chosen = list(itertools.islice(filter(self.consistent, every), MOST_NEIGHBOURS))
+        sides = [one.around(self.x[list(one.index)]) for one in self.listed]
+        chosen = list(itertools.islice(itertools.product(*sides), MOST_NEIGHBOURS))
         for assignment, near in self.together(chosen):
             if near is None:
                 self.tried[assignment] = np.inf
@@ -192,7 +199,8 @@ class _Run:
 
     def together(self, chosen: list[Assignment]) -> list[tuple[Assignment, Vector | None]]:
         """Re-optimise assignments at once; what is left, with a start each (None: none nearby)."""
-        point, evaluator = self._fixed(self.x[self.index], self.x)
+        here = self.x[self.index]
+        point, evaluator = self._near(here, here, self.x)
         names = [self.problem.names[i] for i in self.index]
 
         def evaluate(points: Array, values: Array) -> Values:
@@ -200,7 +208,7 @@ class _Run:
             full[self.index] = values
             return self.problem.evaluate(full)
 
-        parametric = ParametricProblem(evaluator.problem, names, self.x[self.index], evaluate)
+        parametric = ParametricProblem(evaluator.problem, names, here, evaluate)
         suits = point.valid and evaluator.space.size and lockstep.applicable(parametric, evaluator)
         if not suits or not chosen:
             return [(assignment, self.x) for assignment in chosen]
@@ -212,7 +220,7 @@ class _Run:
         for assignment, optimum in zip(chosen, known, strict=True):
             self.solves += 1
             if optimum is not None:
-                self.tried[assignment] = optimum.objective
+                self.tried[assignment], self.near[assignment] = optimum.objective, optimum.x
         return [
             (chosen[k], None if z is None else evaluator.space.to_x(z[:, None])[:, 0])
             for k, z in zip(left, near, strict=True)
@@ -221,8 +229,9 @@ class _Run:
     def assigned(self, assignment: Assignment, near: Vector) -> float:
         """Re-optimise the other variables of an assignment; infinite where that is infeasible."""
         if assignment not in self.points:
-            point, evaluator = self._fixed(self.values(assignment), near)
-            found = self._descended(evaluator, point)
+            values = self.values(assignment)
+            box = tuple((row,) for row in assignment)
+            (found,) = self._descended([(box, values, values)], near, nearby.EXACT)
             self.tried[assignment] = np.inf if found is None else found.objective
             if found is not None:
                 self.points[assignment] = found.x
@@ -232,114 +241,115 @@ class _Run:
         """The best assignment, once its point is known too; None where none is feasible."""
         while True:
             best = min(self.tried, key=lambda one: self.tried[one], default=None)
-            if best is None or self.tried[best] == np.inf:
+            if best is None or not self.tried[best] < self.below:
                 return None
             if best in self.points:
                 return best
-            self.assigned(best, self.x)
+            self.assigned(best, self.near.get(best, self.x))
 
-    def relaxed(self, box: Box, near: Vector) -> tuple[float | None, Vector]:
-        """Objective and point of the continuous optimum in a box; None where it is infeasible."""
-        lower, upper = self.problem.lower.copy(), self.problem.upper.copy()
-        for one, choices in zip(self.listed, self.allowed(box), strict=True):
-            lower[one.index] = one.choices[choices[0]]
-            upper[one.index] = one.choices[choices[-1]]
-        point, evaluator = self._near(lower, upper, near)
-        found = self._descended(evaluator, point)
-        return (None, near) if found is None else (found.objective, found.x)
+    def relaxed(self, boxes: Sequence[Box], near: Vector) -> list[tuple[float, Vector] | None]:
+        """Objective and point of the continuous optimum in boxes; None where it is infeasible."""
+        bounds = []
+        for box in boxes:
+            left = [one.rows[list(rows)] for one, rows in zip(self.listed, box, strict=True)]
+            lower = np.concatenate([rows.min(axis=0) for rows in left])
+            upper = np.concatenate([rows.max(axis=0) for rows in left])
+            bounds.append((box, lower, upper))
+        found = self._descended(bounds, near, nearby.ROUGH)
+        return [None if point is None else (point.objective, point.x) for point in found]
 
     def parts(self, box: Box, x: Vector, objective: float) -> list[Box]:
         """What is left to search of a box, given its continuous optimum."""
-        allowed = self.allowed(box)
-        widest, cut = ON, None
-        for k, (one, choices) in enumerate(zip(self.listed, allowed, strict=True)):
-            below, above, share = _between(one, float(x[one.index]), choices)
-            if share > widest:
-                widest, cut = share, (k, below, above)
-        if cut is not None:
-            k, below, above = cut
-            return self._cut(box, k, (box[k][0], below), (above, box[k][1]))
-        assignment = tuple(
-            _around(one, float(x[one.index]), choices)[0]
-            for one, choices in zip(self.listed, allowed, strict=True)
-        )
-        if np.array_equal(self.values(assignment), x[self.index]) and self.consistent(assignment):
-            self.tried[assignment], self.points[assignment] = objective, x
-        room = SAME * abs(objective)
-        if self.consistent(assignment) and self.assigned(assignment, x) <= objective + room:
+        widest: float = ON
+        halves: tuple[int, list[list[int]]] | None = None
+        for k, (one, rows) in enumerate(zip(self.listed, box, strict=True)):
+            for column, index in enumerate(one.index):
+                values = one.values(column, rows)
+                below, above, share = between(values, float(x[index]))
+                if share > widest:
+                    of = one.rows[:, column]
+                    widest = share
+                    parts = [
+                        [r for r in rows if of[r] <= below],
+                        [r for r in rows if of[r] >= above],
+                    ]
+                    halves = k, parts if x[index] - below > above - x[index] else parts[::-1]
+        if halves is not None:  # the nearer one last
+            return [with_rows(box, halves[0], tuple(half)) for half in halves[1]]
+        found = [
+            one.at(x[list(one.index)], rows) for one, rows in zip(self.listed, box, strict=True)
+        ]
+        if None in found:  # every value is listed, but not together
+            k = found.index(None)
+            one, rows = self.listed[k], box[k]
+            nearest = min(rows, key=lambda r: float(np.abs(one.rows[r] - x[list(one.index)]).sum()))
+            return [with_rows(box, k, part) for part in [*one.parts(rows, nearest), (nearest,)]]
+        assignment = tuple(row for row in found if row is not None)
+        room = CLOSE * abs(objective)
+        if self.assigned(assignment, x) <= objective + room:
             return []  # nothing else in the box can be better
-        parts = []
-        for k, choice in enumerate(assignment):
-            parts += self._cut(box, k, (box[k][0], choice - 1), (choice + 1, box[k][1]))
-            box = (*box[:k], (choice, choice), *box[k + 1 :])
-        return parts
-
-    def _cut(self, box: Box, k: int, *ranges: tuple[int, int]) -> list[Box]:
-        parts = [(*box[:k], one, *box[k + 1 :]) for one in ranges if one[0] <= one[1]]
-        return [part for part in parts if all(self.allowed(part))]
+        left = []
+        for k, row in enumerate(assignment):
+            left += [with_rows(box, k, part) for part in self.listed[k].parts(box[k], row)]
+            box = with_rows(box, k, (row,))
+        return left
 
     def found(self, *, complete: bool) -> Found:
         """What the search comes to."""
         best = self.confirmed()
         if best is None:
-            return Found(None, None, None, self.tried, self.solves, complete)
+            nearest, missed = (None, None) if self.below < np.inf else self.nearest()
+            return Found(None, None, None, self.tried, self.solves, complete, nearest, missed)
         return Found(self.points[best], self.tried[best], best, self.tried, self.solves, complete)
 
-    def _fixed(self, values: Vector, near: Vector) -> tuple[Point, Evaluator]:
-        lower, upper = self.problem.lower.copy(), self.problem.upper.copy()
-        lower[self.index] = upper[self.index] = values
-        return self._near(lower, upper, near)
+    def nearest(self) -> tuple[Assignment, Point] | tuple[None, None]:
+        """The assignment that misses least of the first ones, and the point where it does."""
+        found = []
+        for assignment in list(self.tried)[:MOST_MISSED]:
+            box = tuple((row,) for row in assignment)
+            values = self.values(assignment)
+            point, _ = self._near(values, values, self.memory.missed.get(box, self.x))
+            if box not in self.memory.missed and point.valid and not self.exhausted:
+                self.assigned(assignment, self.x)
+                near = self.memory.missed.get(box, self.x)
+                point, _ = self._near(values, values, near)
+            if point.valid:
+                found.append((point.violation, assignment, point))
+        if not found:
+            return None, None
+        _, assignment, point = min(found, key=lambda one: one[0])
+        return assignment, point
 
-    def _near(self, lower: Vector, upper: Vector, near: Vector) -> tuple[Point, Evaluator]:
-        """The problem in a box, and the point of it nearest to another point."""
-        evaluator = Evaluator(replace(self.problem, lower=lower, upper=upper, start=None))
+    def _within(self, lower: Vector, upper: Vector) -> Evaluator:
+        """The problem with the listed variables in bounds."""
+        least, most = self.problem.lower.copy(), self.problem.upper.copy()
+        least[self.index], most[self.index] = lower, upper
+        evaluator = Evaluator(replace(self.problem, lower=least, upper=most, start=None))
         evaluator.complex_works = self.reference.complex_works
         evaluator.difference_rows = self.reference.difference_rows
-        point = evaluator.point(evaluator.space.to_z(np.clip(near, lower, upper)))
-        return point, evaluator
+        evaluator.eager = True
+        return evaluator
 
-    def _descended(self, evaluator: Evaluator, start: Point) -> Point | None:
-        """The optimum near a point: Newton from an infeasible one, else SLSQP; None without."""
-        self.solves += 1
-        if evaluator.space.size == 0:
-            return start if _met(start) else None
-        found = start if _met(start) else polish(evaluator, start, iterations=8, tolerance=1e-10)
-        if _met(found) and kkt.check(evaluator, found).residual <= RESIDUAL:
-            return found
-        inside = next(
-            (
-                inside
-                for point in (found, start)
-                if point.valid and (inside := elastic.feasible_point(evaluator, point)) is not None
-            ),
-            None,
-        )
-        if inside is None:
-            return None
-        found = nlopt_wrapper.run(evaluator, inside, "LD_SLSQP", most=MOST_STEPS).point
-        found = polish(evaluator, found, iterations=8, tolerance=1e-10)
-        return found if _met(found) else inside
+    def _near(self, lower: Vector, upper: Vector, near: Vector) -> tuple[Point, Evaluator]:
+        """The point within bounds of the listed variables that is nearest to another."""
+        evaluator = self._within(lower, upper)
+        return evaluator.point(evaluator.space.to_z(evaluator.problem.inside(near))), evaluator
 
-
-def _met(point: Point) -> bool:
-    return point.valid and point.violation <= FEASIBLE
-
-
-def _between(one: Listed, value: float, choices: Sequence[int]) -> tuple[int, int, float]:
-    """The choices below and above a value, and how far it is from both (0 to 0.5)."""
-    values = one.choices[list(choices)]
-    k = int(np.clip(np.searchsorted(values, value), 1, max(len(values) - 1, 1)))
-    if len(values) == 1:
-        return choices[0], choices[0], 0.0
-    low, high = float(values[k - 1]), float(values[k])
-    share = min(value - low, high - value) / (high - low)
-    return choices[k - 1], choices[k], max(share, 0.0)
-
-
-def _around(one: Listed, value: float, choices: Sequence[int]) -> list[int]:
-    """The choices next to a value, the nearest first; one alone where the value is it."""
-    if not choices:
-        return []
-    below, above, share = _between(one, value, choices)
-    pair = sorted({below, above}, key=lambda k: abs(float(one.choices[k]) - value))
-    return pair[:1] if share <= ON else pair
+    def _descended(
+        self, bounds: Sequence[tuple[Box, Vector, Vector]], near: Vector, finish: nearby.Finish
+    ) -> list[Point | None]:
+        """The optimum in boxes, near a point or where a like problem ended; None without."""
+        above = self.best if finish is nearby.ROUGH else np.inf
+        tasks = []
+        for box, lower, upper in bounds:
+            known = self.memory.near(box)
+            hopeless = known is None and box in self.memory.missed
+            x, curvature = known or (self.memory.missed.get(box, near), self.memory.curvature)
+            evaluator = self._within(lower, upper)
+            x = evaluator.problem.inside(x)
+            tasks.append(nearby.Task(evaluator, x, curvature, finish, hopeless, above))
+        self.solves += len(tasks)
+        ends = nearby.resolve(tasks)
+        for (box, _, _), task, end in zip(bounds, tasks, ends, strict=True):
+            self.memory.note(box, task.evaluator, end)
+        return [end.optimum for end in ends]

@@ -23,29 +23,32 @@ def record(found: Search, design: Design) -> Choices:
     """
     ranked, mendable = found.ranked(), found.mendable()
     best, rows = ranked[0], []
+    least = best.objective if best.rounded is None else best.rounded
     for look in ranked:
         cost = None
-        if look.feasible and best.feasible:
-            cost = look.objective - best.objective
-            cost = 0.0 if abs(cost) <= EQUAL * abs(best.objective) else cost
+        reached = look.objective if look.rounded is None else look.rounded
+        if look.feasible and best.feasible and look.sizing not in _WITHOUT:
+            cost = reached - least
+            cost = 0.0 if abs(cost) <= EQUAL * abs(least) else cost
         rows.append(
             Combination(
                 values=look.values,
                 how=look.how,
                 feasible=look.feasible,
-                status=_status(look, mendable),
+                status=_status(look, mendable, best.rounded is not None),
                 objective=found.goal.shown(look.objective)
                 if math.isfinite(look.objective)
                 else None,
                 cost=cost,
-                percent=100 * cost / abs(best.objective) if cost and best.objective else cost,
+                percent=100 * cost / abs(least) if cost and least else cost,
+                rounded=None if look.rounded is None else found.goal.shown(look.rounded),
             )
         )
     made = Choices("", tuple(rows), left_out(design))
     return replace(made, sentence=_sentence(made))
 
 
-def _status(look: Look, mendable: frozenset[str]) -> str:
+def _status(look: Look, mendable: frozenset[str], sized: bool) -> str:
     """How a combination was looked into, and what it came to."""
     if look.fault:
         return f"not possible: {look.fault}"
@@ -56,6 +59,10 @@ def _status(look: Look, mendable: frozenset[str]) -> str:
         said = (
             "every requirement is met" if look.solution is None else look.solution.outcome.sentence
         )
+        if look.sizing:
+            said = f"{said}; {_SIZING[look.sizing]}"
+        elif look.rounded is None and sized:
+            said = f"{said}; left, as listed sizes cannot better this"
         if checks:
             said = f"misses the check {checks}, which other choices meet; {said}"
     else:
@@ -63,6 +70,18 @@ def _status(look: Look, mendable: frozenset[str]) -> str:
         said = f"misses {look.missed}{by}" if look.missed else "no point has finite values"
     return _WAYS[look.how] + said
 
+
+_SIZING = {
+    "found": "the best of its listed sizes",
+    "sizes of the best": "with the sizes of the best",
+    "none better": "none better with listed sizes",
+    "none": "none with listed sizes",
+    "no size fits": "its bounds hold no listed size",
+}
+"""What the search for listed sizes came to."""
+
+_WITHOUT = ("none", "none better", "no size fits")
+"""Where there is no design to compare."""
 
 _WAYS: dict[How, str] = {"multistart": "many starts: ", "quick": "quick look: ", "evaluated": ""}
 

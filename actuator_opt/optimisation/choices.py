@@ -25,7 +25,7 @@ from ..evaluation.limits import all_limits
 from ..evaluation.rows import Row, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of
 from .descents import FEASIBLE
-from .quick_look import DOUBTFUL, Look, Start, look_quickly
+from .quick_look import DOUBTFUL, Look, Start, curvature_of, look_quickly
 from .solver import solve
 
 NEAR = 0.05
@@ -85,9 +85,14 @@ class Search:
         def rank(look: Look) -> tuple[bool, float, int, float, int]:
             missed = 0.0 if look.feasible else look.violation
             checks = len(look.checks & mendable)
-            return (bool(look.fault), missed, checks, look.objective, look.order)
+            fault = bool(look.fault) or look.sizing == "no size fits"
+            return (fault, missed, checks, look.objective, look.order)
 
         looks = sorted(self.looks, key=rank)
+        sized = [look for look in looks if look.rounded is not None]
+        if sized:
+            sized.sort(key=lambda look: (len(look.checks & mendable), look.rounded, look.order))
+            return [*sized, *(look for look in looks if look.rounded is None)]
         best = looks[0]
         equal = [
             look
@@ -147,8 +152,14 @@ def _require_one(looks: Sequence[Look]) -> None:
 
 
 @np.errstate(all="ignore")  # what has no finite answer is never the best
-def search(subject: Subject, settings: Settings) -> Search:
+def search(subject: Subject, settings: Settings, most: int = MOST_SOLVED) -> Search:
     """Look at every combination of the choices, solve the best ones from many starts.
+
+    Parameters
+    ----------
+    subject : the design with its choices
+    settings : how the best are solved
+    most : how many of them at most
 
     Raises
     ------
@@ -171,7 +182,7 @@ def search(subject: Subject, settings: Settings) -> Search:
     _require_one(found.looks)
     if moving:
         _look_at_all(found, settings)
-        _solve_best(found, settings)
+        _solve_best(found, settings, most)
     return found
 
 
@@ -224,6 +235,8 @@ def _look_at_all(found: Search, settings: Settings) -> None:
             look_quickly(look, _starts(found, look), settings.seed, left)
         except InputError as error:
             _give_up(look, error)
+        if look.curvature is None and look.feasible:
+            look.curvature = curvature_of(look)
 
 
 def _any(found: Search) -> bool:
@@ -234,7 +247,7 @@ def _starts(found: Search, look: Look) -> list[Start]:
     """Where the combinations that differ in the fewest values ended.
 
     A neighbour that meets everything is gone down from; one as near that does not tells best how
-    near this one comes to it.
+    near this one comes to it. The last one as near, whose values change least, may be followed.
     """
     known = [other for other in found.looks if other.x is not None and other is not look]
 
@@ -250,20 +263,27 @@ def _starts(found: Search, look: Look) -> list[Start]:
         starts.append(Start(bad.x, descend=False))
     if good is not None and good.x is not None:
         starts.append(Start(good.x, descend=True))
+    last = min(
+        (other for other in known if other.curvature is not None),
+        key=lambda other: (distance(other)[0], -other.order),
+        default=None,
+    )
+    if last is not None and last.x is not None:
+        starts.append(Start(last.x, descend=True, curvature=last.curvature))
     own = None if look.actuator is None else look.actuator.problem.start
     return starts or ([] if own is None else [Start(own, descend=True)])
 
 
-def _solve_best(found: Search, settings: Settings) -> None:
+def _solve_best(found: Search, settings: Settings, most: int) -> None:
     """Many starts for the winner and for what comes near it, best first."""
     second = True
-    for _ in range(MOST_SOLVED):
+    for _ in range(most):
         look = _promising(found)
         left = settings.left()
         if look is None or (left is not None and left <= 0):
             break
         before = look.objective if look.feasible else math.inf
-        _solve(look, settings)
+        many_starts(look, settings)
         gained = look.feasible and look.objective < before - BETTER * abs(look.objective)
         if second and gained and look.x is not None:
             second = False
@@ -274,7 +294,7 @@ def _solve_best(found: Search, settings: Settings) -> None:
                     look_quickly(other, [start], settings.seed, settings.left())
     best = found.ranked()[0]
     if best.solution is None:
-        _solve(best, settings)
+        many_starts(best, settings)
 
 
 def _promising(found: Search) -> Look | None:
@@ -298,7 +318,7 @@ def _promising(found: Search) -> Look | None:
     return None
 
 
-def _solve(look: Look, settings: Settings) -> None:
+def many_starts(look: Look, settings: Settings) -> None:
     """Solve a combination from many starts, the best point known among them."""
     assert look.actuator is not None
     left = settings.left()

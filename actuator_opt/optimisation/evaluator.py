@@ -8,6 +8,7 @@ finite-difference check fall back to central differences.
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,32 +101,42 @@ class Evaluator:
 
     def point(self, z: Vector) -> Point:
         """Return the evaluated point at z (nf,); evaluated once."""
-        key = z.tobytes()
-        found = self._cache.get(key)
+        found = self._cache.get(z.tobytes())
         if found is not None:
             return found
         self.check_limits()
-        x = self.space.to_x(z[:, None])
         slopes = None
-        if self.eager and self.complex_works and not self.difference_rows.any():
-            rows, slopes = self._value_and_slopes(z[:, None])
+        if self.eager and self.exact:
+            rows, slopes = self.values_and_slopes(self.problem.rows(self.columns(z[:, None])))
         else:
-            rows = self.screen(self.problem.rows(x))
+            rows = self.screen(self.problem.rows(self.space.to_x(z[:, None])))
+        return self._enter(z, rows, slopes)
+
+    @property
+    def exact(self) -> bool:
+        """Whether every gradient comes from the complex step."""
+        return self.complex_works and not self.difference_rows.any() and self.space.size > 0
+
+    def _enter(self, z: Vector, rows: Vector, slopes: Vector | None) -> Point:
+        """A point with its rows, remembered."""
         valid = bool(np.isfinite(rows).all())
         self.evaluations += 1
         self.invalid += not valid
-        point = Point(
-            z.copy(), x[:, 0], rows[:, 0], valid, float(self.violations(rows, "worst")[0])
-        )
+        x = self.space.to_x(z[:, None])[:, 0]
+        point = Point(z.copy(), x, rows[:, 0], valid, float(self.violations(rows, "worst")[0]))
         if slopes is not None and valid:
             self.gradients += 1
             self._keep(point, slopes)
         if len(self._cache) >= 256:
             self._cache.clear()
-        self._cache[key] = point
+        self._cache[z.tobytes()] = point
         if valid:
             self._note(point)
         return point
+
+    def entered(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
+        """The point at z (nf,) whose `columns` have these rows."""
+        return self._enter(z, *self.values_and_slopes(rows))
 
     def _note(self, point: Point) -> None:
         """Keep a point and add it to the trace if it improves on the last one there."""
@@ -181,17 +192,20 @@ class Evaluator:
         self.influence[1] = np.maximum(self.influence[1], row.max(axis=0))
         return slopes
 
-    def _value_and_slopes(self, z: Vector) -> tuple[Vector, Vector]:
-        """Rows (rows, 1) and gradients (rows, nf) of one point from one complex evaluation.
-
-        An imaginary part that is not tiny betrays a root or logarithm outside its domain, which
-        complex arithmetic would otherwise hide: such rows become NaN.
-        """
+    def columns(self, z: Vector) -> npt.NDArray[np.complex128]:
+        """Complex points (n, nf) whose rows hold value and gradient at coordinates (nf, 1)."""
         x = self.space.to_x(z)
         batch = np.repeat(x.astype(complex), z.shape[0], axis=1)
         columns = np.arange(z.shape[0])
         batch[self.space.free, columns] += 1j * STEP * self.space.slope(x)[:, 0]
-        rows = self.problem.rows(batch)
+        return batch
+
+    def values_and_slopes(self, rows: npt.NDArray[np.generic]) -> tuple[Vector, Vector]:
+        """Rows (rows, 1) and gradients (rows, nf) of one point from the rows of its `columns`.
+
+        An imaginary part that is not tiny betrays a root or logarithm outside its domain, which
+        complex arithmetic would otherwise hide: such rows become NaN.
+        """
         hidden = (np.abs(rows.imag) > 1e-9 * (1.0 + np.abs(rows.real))).any(axis=1)
         values = self.screen(np.where(hidden, np.nan, rows.real[:, 0])[:, None])
         return values, np.asarray(rows.imag / STEP, dtype=float)
@@ -309,3 +323,19 @@ class Evaluator:
             if not wrong.any():
                 break
         return wrong
+
+
+def points_together(wanted: Sequence[tuple[Evaluator, Vector]]) -> list[Point]:
+    """The point at z (nf,) of each evaluator with its gradients, from one call of the model.
+
+    The problems differ in nothing but their bounds.
+    """
+    if len(wanted) == 1 or not all(evaluator.exact for evaluator, _ in wanted):
+        return [evaluator.point(z) for evaluator, z in wanted]
+    parts = [evaluator.columns(z[:, None]) for evaluator, z in wanted]
+    rows = wanted[0][0].problem.rows(np.concatenate(parts, axis=1))
+    ends = np.cumsum([part.shape[1] for part in parts])[:-1]
+    return [
+        evaluator.entered(z, part)
+        for (evaluator, z), part in zip(wanted, np.split(rows, ends, axis=1), strict=True)
+    ]

@@ -113,6 +113,10 @@ def resolve_together(
     return found
 
 
+LEAST_CURVATURE = 1e-10
+"""Smallest over largest curvature of a learnt Hessian: well above rounding."""
+
+
 @dataclass
 class _Descent:
     """One problem on its way down: the last accepted point and the step tried from it.
@@ -192,11 +196,14 @@ class _Descent:
         if straight < 0.2 * bent:
             share = 0.8 * bent / (bent - straight)
             change = share * change + (1 - share) * turned
-        self.hessian = (
+        learnt = (
             self.hessian
             - np.outer(turned, turned) / bent
             + np.outer(change, change) / float(step @ change)
         )
+        curvatures = np.linalg.eigvalsh(learnt)
+        if curvatures[0] > LEAST_CURVATURE * curvatures[-1]:  # else rounding has eaten it
+            self.hessian = learnt
 
 
 def descend_together(

@@ -171,6 +171,11 @@ class Solution:
         """Whether every margin is at least -1e-6 and every equality within 1e-6."""
         return self.violation <= 1e-6
 
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended the search."""
+        return self.outcome in (Outcome.INTERRUPTED, Outcome.INTERRUPTED_INFEASIBLE)
+
     def at_bound(self, index: int) -> str | None:
         """``"lower"``, ``"upper"`` or None for variable `index`."""
         low, high = self.problem.lower[index], self.problem.upper[index]

@@ -98,6 +98,10 @@ class Problem:
             )
         object.__setattr__(self, "start", np.clip(start, self.lower, self.upper))
 
+    def inside(self, x: Vector) -> Vector:
+        """The point of the box nearest to another (n,)."""
+        return np.clip(x, self.lower, self.upper)
+
     @property
     def row_count(self) -> int:
         """Number of rows of an evaluation: objective, constraints, equalities."""

@@ -20,6 +20,7 @@ from . import elastic, kkt, nlopt_wrapper
 from .actuator import ActuatorProblem
 from .descents import FEASIBLE
 from .evaluator import Evaluator, LimitReached, Point
+from .nearby import ROUGH, Curvature, curvature_at, stepped
 from .outcome import Solution
 from .problem import Vector
 from .result import How
@@ -66,6 +67,12 @@ class Look:
     checks: frozenset[str] = frozenset()
     """Missed checks that no variable can mend."""
     solution: Solution | None = None
+    curvature: Curvature | None = None
+    """At its optimum, or at the one it was followed from."""
+    sizing: str = ""
+    """What the search for listed sizes came to, where there was one."""
+    rounded: float | None = None
+    """Objective of the best design of listed sizes."""
 
     @property
     def feasible(self) -> bool:
@@ -78,9 +85,16 @@ class Start(NamedTuple):
 
     x: Vector
     descend: bool
+    curvature: Curvature | None = None
+    """At the optimum that the point is, which mostly serves its neighbours too."""
 
 
-def look_quickly(look: Look, starts: Sequence[Start], seed: int, seconds: float | None) -> None:
+def look_quickly(
+    look: Look,
+    starts: Sequence[Start],
+    seed: int,
+    seconds: float | None,
+) -> None:
     """Go down from the starts, then from that of a sweep, until the matter is clear.
 
     Parameters
@@ -99,6 +113,8 @@ def look_quickly(look: Look, starts: Sequence[Start], seed: int, seconds: float 
 
     look.how = "quick"
     try:
+        if _followed(look, evaluator, starts):
+            return
         for z, descend in _coordinates(evaluator, starts, seed):
             point = _keep(look, evaluator, evaluator.point(z))
             if point.valid and (descend or point.violation <= FEASIBLE):
@@ -113,6 +129,32 @@ def look_quickly(look: Look, starts: Sequence[Start], seed: int, seconds: float 
             _settle(look, evaluator, look.x, seed)
     except LimitReached:
         look.how = "not tried" if look.x is None else "quick"
+
+
+def _followed(look: Look, evaluator: Evaluator, starts: Sequence[Start]) -> bool:
+    """Whether steps from a neighbour's optimum settle on the optimum of this combination."""
+    near = next((start for start in starts if start.curvature is not None), None)
+    if near is None or near.curvature is None or not evaluator.space.size:
+        return False
+    evaluator.eager = True
+    point = evaluator.point(evaluator.space.to_z(near.x))
+    found = stepped(evaluator, point, near.curvature, ROUGH) if point.valid else None
+    if found is not None:
+        _keep(look, evaluator, found)
+        look.curvature = near.curvature
+    return found is not None
+
+
+def curvature_of(look: Look) -> Curvature | None:
+    """The curvature at the optimum of a combination; None where it ended on none."""
+    if look.actuator is None or look.x is None:
+        return None
+    evaluator = Evaluator(look.actuator.problem)
+    point = evaluator.point(evaluator.space.to_z(look.x))
+    if not point.valid or not evaluator.space.size:
+        return None
+    settled = kkt.check(evaluator, point).residual <= SETTLED
+    return curvature_at(evaluator, point) if settled else None
 
 
 def _settle(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
@@ -140,7 +182,7 @@ def _coordinates(
     evaluator: Evaluator, starts: Sequence[Start], seed: int
 ) -> Iterator[tuple[Vector, bool]]:
     """The starts given, then the best of a small sweep."""
-    for x, descend in starts:
+    for x, descend, _ in starts:
         yield evaluator.space.to_z(x), descend
     if evaluator.space.size:
         swept = sweep(evaluator, SAMPLES, seed)

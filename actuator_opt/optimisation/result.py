@@ -67,10 +67,33 @@ class Infeasibility:
 
 
 @dataclass(frozen=True, slots=True)
+class Certificate:
+    """How far a design is from the best possible: what is proven, and what only speaks for it.
+
+    No design that meets the covered limits has an objective below `lower_bound` (SI); `gap` is
+    what is left to the design found, over its objective. Both are None where nothing could be
+    proven; `sentence` then says why. `dropped` tells by limit why the proof does without it, which
+    can only lower the bound. `evidence` is the statistic of the starts: no proof.
+    """
+
+    sentence: str
+    evidence: str
+    lower_bound: float | None = None
+    gap: float | None = None
+    covers: tuple[str, ...] = ()
+    dropped: Mapping[str, str] = field(default_factory=dict)
+    boxes: int = 0
+
+    def to_dict(self) -> dict[str, Any]:
+        """The "certificate" of `optimise --json` (SI)."""
+        return asdict(self) | {"covers": list(self.covers), "dropped": dict(self.dropped)}
+
+
+@dataclass(frozen=True, slots=True)
 class RoundedVariable:
     """A variable before and after rounding (SI); `discrete` ones only take listed values.
 
-    `plies` counts those of a layer's thickness.
+    `plies` counts those of a layer's thickness, `sizes` names the list or series.
     """
 
     path: str
@@ -79,6 +102,7 @@ class RoundedVariable:
     value: float
     discrete: bool
     plies: int | None
+    sizes: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,13 +117,14 @@ class RunnerUp:
 
 @dataclass(frozen=True, slots=True)
 class Rounding:
-    """The best design of whole plies and allowed angles, and what the rounding costs.
+    """The best design of whole plies, standard or other listed sizes, and what rounding costs.
 
-    `cost` is how much worse the objective gets (≥ 0, in its SI unit), `percent` over the
-    continuous one; None, with `design` and `evaluation`, where nothing tried meets every
-    requirement. `plies` counts those of every layer that states its ply thickness, `tried` and
-    `feasible` count rounded designs, `solves` re-optimisations; `complete` tells that the search
-    did not stop at a limit. Bounds of the search are local optima: the best found, no proof.
+    `name` says which ("whole plies", "standard sizes"). `cost` is how much worse the objective gets
+    (≥ 0, in its SI unit), `percent` over the continuous one; None, with `design` and `evaluation`,
+    where nothing tried meets every requirement. `plies` counts those of every layer that states its
+    ply thickness, `tried` and `feasible` count rounded designs, `solves` re-optimisations;
+    `complete` tells that the search did not stop at a limit. Bounds of the search are local optima:
+    the best found, no proof.
     """
 
     met: bool
@@ -110,6 +135,7 @@ class Rounding:
     feasible: int
     solves: int
     complete: bool
+    name: str = "whole plies"
     notes: tuple[str, ...] = ()
     objective_after: float | None = None
     cost: float | None = None
@@ -138,6 +164,7 @@ class Rounding:
             for name in ("met", "remedy", "cost", "percent", "tried", "feasible", "solves")
         }
         return kept | {
+            "sizes": self.name,
             "outcome": self.sentence,
             "complete": self.complete,
             "objective": {"continuous": self.objective_before, "rounded": self.objective_after},
@@ -147,6 +174,7 @@ class Rounding:
                     "value": v.value,
                     "discrete": v.discrete,
                     "plies": v.plies,
+                    "sizes": v.sizes,
                 }
                 for v in self.variables
             },
@@ -170,6 +198,8 @@ class Combination:
     move, "not possible" where its values contradict each other, "not tried" where the time was
     up. `feasible` tells that every requirement is met; `cost` is how much worse than the best the
     objective is (in its SI unit), `percent` over the best; None where there is nothing to compare.
+    `rounded` is the objective with listed sizes, where these are asked and some were found that are
+    better than those of the combinations before; costs then are over the best of these.
     """
 
     values: Mapping[str, choice_list.Value]
@@ -179,6 +209,7 @@ class Combination:
     objective: float | None = None
     cost: float | None = None
     percent: float | None = None
+    rounded: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """The combination in JSON (SI)."""
@@ -255,15 +286,16 @@ class Optimisation:
     warnings: tuple[str, ...]
     seed: int
     seconds: float
-    certificate: None = None
+    certificate: Certificate | None = None
+    """How far the design is from the best possible, where that was asked for."""
     rounding: Rounding | None = None
-    """The best design of whole plies, where it was asked for and a continuous one exists."""
+    """The best design of listed sizes, where they are asked for and a continuous one exists."""
     choices: Choices | None = None
     """Every combination of the design's choices, where it has some."""
 
     @property
     def best(self) -> Design:
-        """The design to build: that of whole plies, where there is one."""
+        """The design to build: that of listed sizes, where there is one."""
         rounded = None if self.rounding is None else self.rounding.design
         return rounded or self.design
 
@@ -329,7 +361,7 @@ class Optimisation:
                 "kkt": None if self.kkt is None else asdict(self.kkt),
                 "sensitivities": [row.to_dict(self.objective_value) for row in self.sensitivities],
                 "what_buys_most": self.offers.to_dict(),
-                "certificate": self.certificate,
+                "certificate": None if self.certificate is None else self.certificate.to_dict(),
                 "rounding": None if self.rounding is None else self.rounding.to_dict(),
                 "choices": None if self.choices is None else self.choices.to_dict(),
                 "evaluations": self.evaluations,

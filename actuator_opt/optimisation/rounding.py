@@ -1,27 +1,28 @@
-"""From the continuous optimum to whole plies and allowed angles, and what that costs.
+"""From the continuous optimum to sizes that can be made or bought, and what that costs.
 
-A layer that states ``ply_thickness`` is whole where its thickness is a whole number of plies, of
-pairs of plies where it is balanced at an angle other than 0 and 90 degrees. An angle that is a
-variable takes those of ``barrel.allowed_angles``, where they are given. Everything else stays
-continuous and is optimised again. The search is no proof: see `branch_and_bound`.
+Variables keep to the sizes their file states (a list, a step, a series of a standard), to whole
+plies and allowed angles, or to every standard there is, as is asked: `design.sizes` lists them.
+Everything else stays continuous and is optimised again. The search is no proof: see
+`branch_and_bound`.
 """
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from decimal import Decimal
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..design import Design, quantity_of, with_values
 from ..design.model import Ply
+from ..design.size_series import WHOLE, along
+from ..design.sizes import groups
 from ..errors import Diagnostic, InputError
 from ..evaluation import Evaluation, evaluate, prepare
 from .actuator import ActuatorProblem, Fault
-from .branch_and_bound import SAME, Found, Listed, search
+from .branch_and_bound import Found, search
+from .listed import SAME, Assignment, Listed
 from .outcome import Solution
 from .problem import Vector
 from .result import Optimisation, RoundedVariable, Rounding, RunnerUp
@@ -30,10 +31,33 @@ from .solver import solve
 RUNNERS_UP = 3
 """Next best designs reported."""
 
-WHOLE = 1e-6
-"""Part of a ply, and angle (rad), that counts as none."""
+MOST_SAID = 4
+"""Most sizes named in a sentence."""
 
-_LAYER = re.compile(r"((?:barrel|rod)\.layup\[\d+\])\.(thickness|angle)")
+_OF_PLIES = ("whole plies", "allowed angles")
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which sizes a design must keep to, beside those its file states."""
+
+    whole_plies: bool = False
+    standard: bool = False
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """The listed variables of a design: groups as the search takes them, the series of each."""
+
+    listed: tuple[Listed, ...]
+    labels: dict[str, str]
+    """How each listed variable gets its sizes, by PATH."""
+
+    @property
+    def name(self) -> str:
+        """What is rounded to, in two words."""
+        plies = set(self.labels.values()) <= set(_OF_PLIES)
+        return "whole plies" if plies else "standard sizes"
 
 
 def layers(design: Design) -> Iterator[tuple[str, Ply]]:
@@ -47,7 +71,7 @@ def plies(ply: Ply) -> int | None:
     """Number of plies of a layer; None where it is not whole, or states no ply thickness."""
     if ply.ply_thickness is None:
         return None
-    step = 2 if ply.balanced and not _along(ply.angle) else 1
+    step = 2 if ply.balanced and not along(ply.angle) else 1
     count = step * round(ply.thickness / ply.ply_thickness / step)
     return count if abs(ply.thickness / ply.ply_thickness - count) <= WHOLE and count else None
 
@@ -76,107 +100,54 @@ def unrounded(optimisation: Optimisation) -> str:
     return f"{', '.join(left)}: not whole plies or allowed angles yet; see --whole-plies"
 
 
-def listed_variables(design: Design, fault: Fault | None = None) -> tuple[Listed, ...]:
-    """The variables that only take listed values, angles first.
+def sizes_of(design: Design, wanted: Wanted, fault: Fault | None = None) -> Sizes | None:
+    """The variables that only take listed values; None where there are none, and none is asked.
 
     Parameters
     ----------
     design : the design with its variables
+    wanted : what is asked beside the sizes of the file
     fault : places a variable's fault in its file; default: by PATH only
 
     Raises
     ------
     InputError
-        no such variable, or one whose bounds hold no whole ply, or no allowed angle
+        sizes are asked and no variable has any, or the bounds of one hold none
     """
-    known = dict(layers(design))
-    found: list[Listed] = []
-    angles: dict[str, int] = {}
-    faults: list[Diagnostic] = []
-    numbered = list(enumerate(design.variables))
-    for wanted in ("angle", "thickness"):
-        for index, path in numbered:
-            match = _LAYER.fullmatch(path)
-            if match is None or match[2] != wanted:
-                continue
-            ply = known[match[1]]
-            if wanted == "angle" and design.barrel.allowed_angles is not None:
-                one = _angles(design, index, path)
-                angles[match[1]] = len(found)
-            elif wanted == "thickness" and ply.ply_thickness is not None:
-                partner = angles.get(match[1])
-                angle = None if partner is None else found[partner]
-                one = replace(_thicknesses(design, index, path, ply, angle), partner=partner)
-            else:
-                continue
-            found.append(one)
-            if len(one.choices) == 0:
-                faults.append(_none_fits(design, path, ply, fault))
+    found, faults = groups(design, plies=wanted.whole_plies, standard=wanted.standard)
     if faults:
-        raise InputError(faults)
-    if not found:
         raise InputError(
-            Diagnostic(
-                "nothing to round: no variable is a layer that states ply_thickness, or an angle "
-                "of a barrel with allowed_angles",
-                "add ply_thickness to a layer whose thickness is a variable",
-                path="variables",
-            )
+            [
+                (fault(str(one.loc[1]), one.message, one.remedy) if fault else None)
+                or Diagnostic(one.message, one.remedy, path=f"variables.{one.loc[1]}")
+                for one in faults
+            ]
         )
-    return tuple(found)
+    if not found and (wanted.whole_plies or wanted.standard):
+        raise InputError(_nothing(wanted))
+    place = {path: index for index, path in enumerate(design.variables)}
+    listed = tuple(
+        Listed(tuple(place[path] for path in group.paths), np.array(group.rows)) for group in found
+    )
+    labels = {
+        path: label
+        for group in found
+        for path, label in zip(group.paths, group.labels, strict=True)
+    }
+    return Sizes(listed, labels) if found else None
 
 
-def _along(angle: float) -> bool:
-    """Whether an angle is 0 or 90 degrees, where a pair is two equal plies."""
-    return abs(math.sin(2 * angle)) <= WHOLE
-
-
-def _angles(design: Design, index: int, path: str) -> Listed:
-    """Allowed angles of both signs within the bounds."""
-    lower, upper = design.variables[path].lower, design.variables[path].upper
-    both = [sign * angle + 0.0 for angle in design.barrel.allowed_angles or () for sign in (1, -1)]
-    room = 1e-9 * max(abs(lower), abs(upper))
-    kept = {min(max(v, lower), upper) for v in both if lower - room <= v <= upper + room}
-    return Listed(index, np.array(sorted(kept), dtype=float))
-
-
-def _thicknesses(design: Design, index: int, path: str, ply: Ply, angle: Listed | None) -> Listed:
-    """Whole plies; of a balanced layer in pairs, unless its angle is, or can be, 0 or 90 deg."""
-    assert ply.ply_thickness is not None
-    bounds, one = design.variables[path], ply.ply_thickness
-    first = max(1, math.ceil(bounds.lower / one - 1e-9))
-    counts = range(first, math.floor(bounds.upper / one + 1e-9) + 1)
-    along = frozenset[int]()
-    if angle is not None:
-        along = frozenset(k for k, value in enumerate(angle.choices) if _along(float(value)))
-    varied = path.removesuffix("thickness") + "angle" in design.variables
-    singly = not ply.balanced or (not varied and _along(ply.angle))
-    singly = singly or (angle is not None and len(along) == len(angle.choices))
-    if not singly and not along:
-        counts = range(first + first % 2, counts.stop, 2)
-    # in decimals, so that 26 plies of 0.125 mm are 3.25 mm to the last digit
-    values = np.array([float(count * Decimal(repr(one))) for count in counts], dtype=float)
-    values = np.clip(values, bounds.lower, bounds.upper)
-    if singly or not along:
-        return Listed(index, values)
-    restricted = [count % 2 == 1 for count in counts]
-    return Listed(index, values, restricted=restricted, freeing=along)
-
-
-def _none_fits(design: Design, path: str, ply: Ply, fault: Fault | None) -> Diagnostic:
-    """The fault of a variable whose bounds hold no value it may take."""
-    bounds, quantity = design.variables[path], quantity_of(path, design)
-    between = f"between {quantity.text(bounds.lower)} and {quantity.text(bounds.upper)}"
-    if path.endswith("angle"):
-        message, remedy = f"no allowed angle lies {between}", "allow another angle"
+def _nothing(wanted: Wanted) -> Diagnostic:
+    if wanted.standard:
+        message = "nothing to round: no variable has standard sizes"
+        remedy = "make cylinder.bore or rod.outer_diameter a variable, or give a variable sizes"
     else:
-        each = quantity.text(ply.ply_thickness or 0.0)
-        pairs = "" if not ply.balanced or _along(ply.angle) else "pairs of "
-        message = f"no whole number of {pairs}plies of {each} lies {between}"
-        remedy = "state a thinner ply_thickness"
-    remedy = f"widen the bounds, or {remedy}"
-    place = fault(path, message, remedy) if fault else None
-    return place or Diagnostic(message, remedy, path=f"variables.{path}")
+        message = (
+            "nothing to round: no variable is a layer that states ply_thickness, or an angle of a "
+            "barrel with allowed_angles"
+        )
+        remedy = "add ply_thickness to a layer whose thickness is a variable"
+    return Diagnostic(message, remedy, path="variables")
 
 
 def design_at(actuator: ActuatorProblem, x: Vector) -> tuple[Design, Evaluation]:
@@ -191,32 +162,35 @@ def design_at(actuator: ActuatorProblem, x: Vector) -> tuple[Design, Evaluation]
 def rounded(
     actuator: ActuatorProblem,
     solution: Solution,
-    listed: Sequence[Listed],
+    sizes: Sizes,
+    found: Found | None = None,
     *,
     until: float | None = None,
     seed: int = 0,
 ) -> tuple[Rounding, Solution]:
-    """The best design of whole plies and allowed angles, and the continuous optimum.
+    """The best design that keeps to the sizes, and the continuous optimum.
 
-    That is the one given, unless the search for whole plies runs into a better one.
+    That is the one given, unless the search runs into a better one.
 
     Parameters
     ----------
     actuator, solution : the problem and a point that meets every requirement
-    listed : `listed_variables` of the design
+    sizes : `sizes_of` the design
+    found : what the search came to, where it was made
     until : time of `time.perf_counter` to stop at
     seed : of the sweeps
     """
     problem = actuator.problem
-    found = search(problem, listed, solution.x, until=until)
+    if found is None:
+        found = search(problem, sizes.listed, solution.x, until=until)
     better = found.objective is not None and _cost(found.objective, solution) < 0
     if better and found.x is not None:
         again = solve(problem, starts=1, seed=seed, more_starts=[found.x])
         if again.feasible and again.objective < solution.objective:
             starts = (*solution.starts, *again.starts)
             solution = replace(again, samples=solution.samples, starts=starts)
-            found = search(problem, listed, solution.x, until=until)
-    return _rounding(actuator, solution, listed, found), solution
+            found = search(problem, sizes.listed, solution.x, until=until)
+    return _rounding(actuator, solution, sizes, found), solution
 
 
 def _cost(objective: float, solution: Solution) -> float:
@@ -230,17 +204,18 @@ def _percent(cost: float, solution: Solution) -> float | None:
 
 
 def _rounding(
-    actuator: ActuatorProblem, solution: Solution, listed: Sequence[Listed], found: Found
+    actuator: ActuatorProblem, solution: Solution, sizes: Sizes, found: Found
 ) -> Rounding:
     shown = actuator.goal.shown
     feasible = sum(math.isfinite(objective) for objective in found.tried.values())
     before = Rounding(
         met=False,
-        sentence=f"no design of whole plies and allowed angles that meets every requirement was "
+        sentence=f"no design of {sizes.name} that meets every requirement was "
         f"found among {len(found.tried)} tried"
-        + ("" if found.complete else ", when the search stopped at its limit"),
-        remedy="use thinner plies or allow more angles, widen the bounds of these layers, or "
-        "relax a requirement",
+        + ("" if found.complete else ", when the search stopped at its limit")
+        + _nearest(actuator, sizes, found),
+        remedy=f"{_FINER[sizes.name]}, widen the bounds of these variables, or relax a requirement",
+        name=sizes.name,
         objective_before=shown(solution.objective),
         tried=len(found.tried),
         feasible=feasible,
@@ -252,7 +227,7 @@ def _rounding(
         return before
     design, evaluation = design_at(actuator, found.x)
     cost = _cost(found.objective, solution)
-    sentence, remedy = _sentence(evaluation.met, found.complete)
+    sentence, remedy = _sentence(sizes.name, evaluation.met, found.complete)
     return replace(
         before,
         met=evaluation.met,
@@ -261,26 +236,59 @@ def _rounding(
         objective_after=shown(found.objective),
         cost=cost,
         percent=_percent(cost, solution),
-        variables=_variables(actuator, solution, listed, found.x, design),
+        variables=_variables(actuator, solution, sizes, found.x, design),
         plies={path: count for path, ply in layers(design) if (count := plies(ply)) is not None},
-        runners_up=_runners_up(actuator, solution, listed, found),
+        runners_up=_runners_up(actuator, solution, sizes.listed, found),
         design=design,
         evaluation=evaluation,
     )
 
 
-def _sentence(met: bool, complete: bool) -> tuple[str, str]:
+def _nearest(actuator: ActuatorProblem, sizes: Sizes, found: Found) -> str:
+    """What the nearest sizes miss, where nothing was found."""
+    if found.nearest is None or found.missed is None or found.missed.violation <= 0:
+        return ""
+    margins = found.missed.rows[1 : 1 + len(actuator.problem.constraint_names)]
+    worst = actuator.problem.constraint_names[int(np.argmin(margins))]
+    said = [
+        f"{path} {quantity_of(path, actuator.subject.design).text(value)}"
+        for path, value in _chosen(actuator, sizes.listed, found.nearest).items()
+    ]
+    if len(said) > MOST_SAID:
+        said = [*said[:MOST_SAID], "…"]
+    by = 100 * found.missed.violation
+    return f"; the nearest, {', '.join(said)}, misses {worst} by {by:.2g} %"
+
+
+def _chosen(
+    actuator: ActuatorProblem, listed: Sequence[Listed], assignment: Assignment
+) -> dict[str, float]:
+    """The listed variables of an assignment by PATH."""
+    return {
+        actuator.paths[index]: float(value)
+        for one, row in zip(listed, assignment, strict=True)
+        for index, value in zip(one.index, one.rows[row], strict=True)
+    }
+
+
+_FINER = {
+    "whole plies": "use thinner plies or allow more angles",
+    "standard sizes": "allow more sizes",
+}
+
+
+def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
     """What the search came to and what to do about it."""
     if not met:
-        return "the design of whole plies misses a requirement", "relax it, or use thinner plies"
+        return f"the design of {name} misses a requirement", f"relax it, or {_FINER[name]}"
     if not complete:
         return (
-            "every requirement is met with whole plies; the search stopped at its limit, and the "
+            f"every requirement is met with {name}; the search stopped at its limit, and the "
             "best design so far is kept",
-            "raise the time limit, or make fewer layers variables",
+            "raise the time limit, or let fewer variables keep to sizes",
         )
     return (
-        "every requirement is met with whole plies; the best found by branch and bound, which is "
+        f"every requirement is met with {name}; the best found by branch and bound, which is "
         "no proof, as its bounds are local optima",
         "",
     )
@@ -299,11 +307,10 @@ def _fixed_misfits(design: Design) -> tuple[str, ...]:
 def _variables(
     actuator: ActuatorProblem,
     solution: Solution,
-    listed: Sequence[Listed],
+    sizes: Sizes,
     x: Vector,
     design: Design,
 ) -> tuple[RoundedVariable, ...]:
-    chosen = {one.index for one in listed}
     known = dict(layers(design))
     rows = []
     for i, path in enumerate(actuator.paths):
@@ -314,8 +321,9 @@ def _variables(
                 quantity=quantity_of(path, design).name,
                 continuous=float(solution.x[i]),
                 value=float(x[i]),
-                discrete=i in chosen,
+                discrete=path in sizes.labels,
                 plies=None if ply is None else plies(ply),
+                sizes=sizes.labels.get(path),
             )
         )
     return tuple(rows)
@@ -333,10 +341,7 @@ def _runners_up(
     rows = []
     for objective, assignment in others[:RUNNERS_UP]:
         cost = _cost(objective, solution)
-        values = {
-            actuator.paths[one.index]: float(one.choices[choice])
-            for one, choice in zip(listed, assignment, strict=True)
-        }
+        values = _chosen(actuator, listed, assignment)
         shown = actuator.goal.shown(objective)
         rows.append(RunnerUp(shown, cost, _percent(cost, solution), values))
     return tuple(rows)

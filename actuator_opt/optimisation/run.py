@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from ..design import quantity_of
 from ..evaluation import Subject, evaluate
 from .actuator import ActuatorProblem, Fault, build, require_movable_objective
-from .branch_and_bound import Listed
+from .certified import certified
 from .choice_record import record
-from .choices import Search, Settings, search
+from .choice_sizes import Sized, best_of_sizes
+from .choices import MOST_SOLVED, Search, Settings, search
 from .infeasibility_card import explained
 from .outcome import Outcome, Solution
 from .price_table import sensitivities
-from .result import Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
-from .rounding import design_at, listed_variables, rounded
+from .result import (
+    Certificate,
+    Choices,
+    Infeasibility,
+    Kkt,
+    Optimisation,
+    Rounding,
+    VariableResult,
+)
+from .rounding import Wanted, design_at, rounded, sizes_of
 from .sensitivity import Sensitivity
 from .solver import solve
 
@@ -35,6 +43,8 @@ def optimise(
     prices: bool = True,
     max_seconds: float | None = None,
     whole_plies: bool = False,
+    standard_sizes: bool = False,
+    certify: bool = False,
     keep_interrupted: bool = False,
 ) -> Optimisation:
     """The best design of a subject.
@@ -49,20 +59,26 @@ def optimise(
     prices : whether to price requirements and parameters (and re-solve at ±10 %)
     max_seconds : time limit of the search; the best design so far is kept
     whole_plies : whether to look for the best design of whole plies and allowed angles too
+    standard_sizes : the same, with standard sizes of whatever has some
+    certify : whether to prove how far the design is from the best possible
     keep_interrupted : whether Ctrl-C ends the work with the best design so far (without choices)
     """
     began = time.perf_counter()
     until = None if max_seconds is None else began + max_seconds
-    listed = listed_variables(subject.design, fault) if whole_plies else ()
+    wanted = Wanted(whole_plies, standard_sizes)
+    sizes = sizes_of(subject.design, wanted, fault)
+    sized: Sized | None = None
     choices: Choices | None = None
     if subject.design.choices:
         settings = Settings(algorithm, starts, SAMPLES, seed, until)
-        found = search(subject, settings)
-        choices, best = record(found, subject.design), found.ranked()[0]
+        found = search(subject, settings, MOST_SOLVED if sizes is None else 1)
+        if sizes is not None:
+            sized = best_of_sizes(found, wanted, settings)
+        choices = record(found, subject.design)
+        best = found.ranked()[0] if sized is None else sized.look
         if best.actuator is None or best.solution is None:
             return _enumerated(subject, found, choices, seed, began)
         actuator, solution = best.actuator, best.solution
-        listed = listed_variables(actuator.subject.design, fault) if whole_plies else ()
     else:
         actuator = build(subject, fault)
         require_movable_objective(actuator)
@@ -77,7 +93,12 @@ def optimise(
         )
     after = _After(solution)
     try:
-        _follow(actuator, after, listed, until, prices=prices)
+        if sizes is not None and solution.feasible and not solution.interrupted:
+            kept = (sizes, None) if sized is None else (sized.sizes, sized.found)
+            after.rounding, after.solution = rounded(
+                actuator, solution, *kept, until=until, seed=seed
+            )
+        _follow(actuator, after, prices=prices, certify=certify)
     except KeyboardInterrupt:
         if not keep_interrupted:
             raise
@@ -94,25 +115,16 @@ class _After:
     rounding: Rounding | None = None
     why: Infeasibility | None = None
     rows: tuple[Sensitivity, ...] = ()
+    certificate: Certificate | None = None
 
 
-def _follow(
-    actuator: ActuatorProblem,
-    after: _After,
-    listed: Sequence[Listed],
-    until: float | None,
-    *,
-    prices: bool,
-) -> None:
-    """Round, explain and price a solution."""
-    solution = after.solution
-    if solution.outcome in (Outcome.INTERRUPTED, Outcome.INTERRUPTED_INFEASIBLE):
+def _follow(actuator: ActuatorProblem, after: _After, *, prices: bool, certify: bool) -> None:
+    """Explain, certify and price a solution."""
+    if after.solution.interrupted:
         return
-    if listed and solution.feasible:
-        after.rounding, after.solution = rounded(
-            actuator, solution, listed, until=until, seed=solution.seed
-        )
     after.why, after.solution = explained(actuator, after.solution)
+    if certify and after.solution.feasible:
+        after.certificate = certified(actuator, after.solution)
     if prices and after.solution.outcome is Outcome.OPTIMUM:
         after.rows = sensitivities(actuator, after.solution)
 
@@ -153,6 +165,7 @@ def _result(
         ),
         seed=seed,
         seconds=time.perf_counter() - began,
+        certificate=after.certificate,
         rounding=after.rounding,
         choices=choices,
     )

@@ -58,10 +58,16 @@ def _rows(optimisation: Optimisation, choices: Choices, most: int) -> list[list[
         if len(paths) > MOST_COLUMNS:
             values = [", ".join(f"{n} {v}" for n, v in zip(names, values, strict=True))]
         share = DASH if one.percent is None else f"{text.number(one.percent, 3, signed=True)} %"
-        known = DASH if one.objective is None else text.value_text(objective, one.objective)
-        return [*values, known, share, sentence(one.status)]
+        numbers = [one.objective, one.rounded] if sized(choices) else [one.objective]
+        known = [DASH if x is None else text.value_text(objective, x) for x in numbers]
+        return [*values, *known, share, sentence(one.status)]
 
     return [cells(one) for one in choices.combinations[:most]]
+
+
+def sized(choices: Choices) -> bool:
+    """Whether variables keep to listed sizes in some combination."""
+    return any(one.rounded is not None for one in choices.combinations)
 
 
 def _value_heads(choices: Choices) -> list[str]:
@@ -96,14 +102,16 @@ def block(optimisation: Optimisation) -> Block | None:
     choices, most = optimisation.choices, MOST_ROWS["report"]
     if choices is None:
         return None
+    named = len(_value_heads(choices))
     rows: list[list[Cell]] = [
-        [*map(soft, values), objective, share, soft(status)]
-        for *values, objective, share, status in _rows(optimisation, choices, most)
+        [*map(soft, row[:named]), *row[named:-1], soft(row[-1])]
+        for row in _rows(optimisation, choices, most)
     ]
     label = text.metric(optimisation.objective_metric).label
     columns = [
         *(column(head, "left", mono=True) for head in _value_heads(choices)),
-        column(label, "right", strong=True),
+        column(label, "right", strong=not sized(choices)),
+        *([column("with sizes", "right", strong=True)] if sized(choices) else []),
         column("cost", "right"),
         column("what became of it", "left", 2.0),
     ]
@@ -122,6 +130,7 @@ def terminal(
     columns = [
         *(Column(head, flexible=True) for head in _value_heads(choices)),
         Column(optimisation.objective_metric, "right"),
+        *([Column("with sizes", "right")] if sized(choices) else []),
         Column("cost", "right"),
         Column("what became of it", flexible=True, least=30),
     ]

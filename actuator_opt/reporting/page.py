@@ -18,6 +18,7 @@ from . import (
     stiffness_page,
     tables,
     text,
+    trust,
     wall,
     whole_plies,
 )
@@ -160,7 +161,7 @@ def page(
         blocks.append(tables.masses(evaluation))
     blocks += stiffness_page.blocks(evaluation) + dynamics_page.blocks(evaluation)
     if optimisation is not None:
-        blocks += prices.blocks(optimisation)
+        blocks += trust.blocks(optimisation) + prices.blocks(optimisation)
     if optimisation is not None and optimisation.variables:
         blocks.append(tables.masses(evaluation))
     blocks += seal_sheet.sheets(seals) + wall.blocks(evaluation)
@@ -195,6 +196,4 @@ def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> list[
     if evaluation.design.notes:
         lines = [line for line in evaluation.design.notes.splitlines() if line.strip()]
         blocks.append(notes("Notes of the author", lines))
-    if optimisation is not None:
-        blocks.append(notes("How the optimum was found", optimum.convergence(optimisation)))
     return blocks

@@ -1,4 +1,4 @@
-"""The table of a rounding: from the continuous optimum to whole plies, and what that costs."""
+"""The table of a rounding: from the continuous optimum to whole plies or standard sizes."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ def block(optimisation: Optimisation) -> Block | None:
     rounding = optimisation.rounding
     if rounding is None:
         return None
+    counted = any(row.plies is not None for row in rounding.variables)
     rows: list[list[Cell]] = []
     for row in rounding.variables:
         quantity = text.input_quantity(row.quantity)
@@ -28,18 +29,18 @@ def block(optimisation: Optimisation) -> Block | None:
                 text.number(quantity.to_display(row.value)),
                 DASH if still else text.number(change, 3, signed=True),
                 text.unit_text(quantity.unit),
-                "" if row.plies is None else str(row.plies),
-                "rounded" if row.discrete else "optimised again",
+                *(["" if row.plies is None else str(row.plies)] if counted else []),
+                (row.sizes or "rounded") if row.discrete else "optimised again",
             ]
         )
     columns = [
         column("variable", "left", 1.3, mono=True),
         column("continuous", "right"),
-        column("whole plies", "right", strong=True),
+        column(rounding.name, "right", strong=True),
         column("change", "right"),
         column("unit"),
-        column("plies", "right"),
-        column("", "left"),
+        *([column("plies", "right")] if counted else []),
+        column("sizes", "left"),
     ]
     note = " ".join(notes(optimisation))
     return table(_title(optimisation, rounding), columns, rows, note=note)
@@ -62,11 +63,12 @@ def terminal(
 
 def _title(optimisation: Optimisation, rounding: Rounding) -> str:
     objective = text.metric(optimisation.objective_metric)
+    name = rounding.name.capitalize()
     if rounding.objective_after is None:
-        return "Whole plies: no design found"
+        return f"{name}: no design found"
     before = text.value_text(objective, rounding.objective_before, 5)
     after = text.value_text(objective, rounding.objective_after, 5)
-    return f"Whole plies: {objective.label} {before} → {after}, {_cost(objective, rounding)}"
+    return f"{name}: {objective.label} {before} → {after}, {_cost(objective, rounding)}"
 
 
 def _cost(objective: Quantity, rounding: Rounding) -> str:

@@ -32,6 +32,8 @@ def optimise(
     max_seconds: float | None = None,
     whole_plies: bool = False,
     keep_interrupted: bool = False,
+    standard_sizes: bool = False,
+    certify: bool = False,
 ) -> Optimisation:
     """The best design; parameters as `optimise.run.optimise`."""
     from ..optimisation.run import optimise as run
@@ -51,6 +53,8 @@ def optimise(
             prices=prices,
             max_seconds=max_seconds,
             whole_plies=whole_plies,
+            standard_sizes=standard_sizes,
+            certify=certify,
             keep_interrupted=keep_interrupted,
         )
 

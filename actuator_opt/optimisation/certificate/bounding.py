@@ -169,7 +169,9 @@ class Bounding:
         if count < MOST * self.moving:
             return
         status = self.solver.getBasis().row_status
-        idle = [r for r in range(first, len(status)) if status[r] == highspy.HighsBasisStatus.kBasic]
+        idle = [
+            r for r in range(first, len(status)) if status[r] == highspy.HighsBasisStatus.kBasic
+        ]
         if not idle:
             return
         self.solver.deleteRows(len(idle), np.array(idle, dtype=np.int32))
@@ -251,7 +253,10 @@ class Bounding:
         lines.low[:count] = np.where(over & (mixed.convex <= 0), level + below - off, -np.inf)
         lines.high[:count] = np.where(over & (mixed.convex >= 0), level + above + off, np.inf)
         ratios = layout.ratios(box)
-        least, most = slice(count, count + len(ratios[0])), slice(count + len(ratios[0]), self.moving)
+        least, most = (
+            slice(count, count + len(ratios[0])),
+            slice(count + len(ratios[0]), self.moving),
+        )
         lines.coefficient[least], lines.low[least] = -ratios[0], 0.0
         lines.coefficient[most], lines.high[most] = -ratios[1], 0.0
         count = self.moving

@@ -24,6 +24,7 @@ ROOM = 1e-9
 CROSSED = 1e-8
 """By how much the ends of a range must cross for nothing to be left."""
 
+
 def _lone(form: Form) -> int:
     """The atom that a form is by itself; -1 of others."""
     lone = form.constant == 0 and len(form.powers) == 1 and form.powers[0][1] == 1.0

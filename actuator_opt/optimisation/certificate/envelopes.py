@@ -11,8 +11,7 @@ import numpy as np
 from ...design.model import Design
 from ...evaluation import Subject, beam, plies
 from ...evaluation.allow import Stock
-from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind
-from ...evaluation.barrel import load_path
+from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind, load_path
 from ...evaluation.barrel.load_path import LoadPath
 from ...evaluation.geometry import Geometry
 from ...evaluation.kernel import Implicit, Pass
@@ -63,9 +62,7 @@ class Envelopes:
 
     def _unknown(self, name: str, exact: Callable[[Pass], Array]) -> Symbol:
         """An unknown of this load case."""
-        return self.problem.unknown(
-            f"{name}_{self.case}", lambda done: self._number(exact(done))
-        )
+        return self.problem.unknown(f"{name}_{self.case}", lambda done: self._number(exact(done)))
 
     def _mode(self) -> TrialMode | None:
         """The shape in which the evaluated design buckles between its pins."""
@@ -85,9 +82,7 @@ class Envelopes:
     def column(mode: TrialMode | None) -> Callable[..., Array]:
         """Critical load from above: bent in one shape, sheared as easily as the stiffer segment."""
 
-        def critical(
-            design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]
-        ) -> Array:
+        def critical(design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]) -> Array:
             if mode is None:
                 return beam.critical_load(design, wall, rod, lengths)
             load = trial_mode_load(
@@ -102,9 +97,7 @@ class Envelopes:
 
         return critical
 
-    def laminate(
-        self, v: Values, design: Design, stock: Stock, g: Geometry, state: State
-    ) -> Wall:
+    def laminate(self, v: Values, design: Design, stock: Stock, g: Geometry, state: State) -> Wall:
         """A laminated wall: growth and axial stiffness unknown between their bounds.
 
         It does not stretch under axial force (stiffer than it is); its strength is left out.

@@ -229,7 +229,7 @@ def _difference(node: Symbol) -> Bounds:
 
 
 def _root_of(value: Any) -> Symbol | None:
-    """x of x * x."""
+    """X of x * x."""
     if isinstance(value, Symbol) and value.op == "mul" and value.args[0] is value.args[1]:
         root: Symbol = value.args[0]
         return root

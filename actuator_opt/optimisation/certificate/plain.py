@@ -28,9 +28,7 @@ class _Plain:
         self.known: dict[Powers, int] = {}
         self.tops: dict[int, float] = {}
         self.tables = {
-            curve.out.powers[0][0]: curve
-            for curve in found.curves
-            if isinstance(curve.kind, Table)
+            curve.out.powers[0][0]: curve for curve in found.curves if isinstance(curve.kind, Table)
         }
 
     def width(self, form: Form) -> float:

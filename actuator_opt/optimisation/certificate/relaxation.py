@@ -17,7 +17,6 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from ...symbolic import Symbol
-from ..problem import Vector
 from .intervals import branch, extreme
 from .lone import CAUTION, SAMPLES, Leads, function
 from .shapes import FAR, Kind, Mixed, Table
@@ -28,6 +27,7 @@ WIDEST = 20.0
 
 LARGEST = 8
 """Most terms of a sum that is kept expanded, so that its terms may cancel."""
+
 
 class Curve(NamedTuple):
     """out = function(argument), both affine in the atoms' logarithms."""
@@ -105,9 +105,7 @@ class Relaxation:
             return Form(_log_of_sum(first.constant, second.constant), first.powers)
         key = (first, second) if first <= second else (second, first)
         if key not in self.sums:
-            self.sums[key] = self.atom(
-                low, high, lambda y: _log_of_sum(first.at(y), second.at(y))
-            )
+            self.sums[key] = self.atom(low, high, lambda y: _log_of_sum(first.at(y), second.at(y)))
             self.split(self.sums[key], *key)
         return self.sums[key]
 
@@ -349,7 +347,7 @@ class Builder:
     def _difference(
         self, plus: Sequence[Form], minus: Sequence[Form], low: float, high: float
     ) -> Form:
-        """plus - minus > 0."""
+        """Plus - minus > 0."""
         whole = self.found.total(plus, 0.0, math.inf)
         rest = self.found.total(minus, 0.0, math.inf)
 
@@ -397,7 +395,7 @@ class Builder:
     def _logarithm(
         self, graph: object, argument: Any, low: float, high: float
     ) -> tuple[float, Form]:
-        """ln x > 0 is affine in the atoms; its own logarithm is a curve of it."""
+        """Ln x > 0 is affine in the atoms; its own logarithm is a curve of it."""
         parts = self.expanded(argument)
         if parts is not None:  # a ratio as 1.2 + t/r is above one whatever t and r
             plus, minus = parts.sides()

@@ -1,0 +1,311 @@
+"""The sizes a variable may take: its own list, a step, a series of a standard, whole plies.
+
+Some sizes hang on another variable: the rod of a catalogue cylinder on its bore, the squeeze of a
+standard gland on its ring, an odd number of plies on their angle, the hole of a rod made of tube on
+its outside. `groups` puts such variables together, as rows of the values that go together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from typing import Any
+
+from .. import suggest
+from ..quantities import Quantity
+from .kinds import ValueFault, example, read_quantity, what
+from .paths import resolve
+from .size_series import SERIES, Series
+from .structure import Loc, child, child_at, number_of, value_at
+from .view import Fault, View
+
+MOST_SIZES = 1000
+"""Largest number of sizes of a variable, and of rows of those that go together."""
+
+ROOM = 1e-9
+"""Relative distance beyond a bound that counts as on it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Variables by PATH, how each gets its sizes, and the rows of values (SI) that go together."""
+
+    paths: tuple[str, ...]
+    labels: tuple[str, ...]
+    rows: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Rule:
+    """How one variable gets its sizes: those of a value of `parent`, where it has one."""
+
+    path: str
+    label: str
+    each: str
+    values: Callable[[float | None], Sequence[float]]
+    parent: str | None = None
+    series: str = ""
+
+
+def read(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator[Fault]:
+    """Turn `sizes` and `step` of a variable into SI, in place; the faults of what they say."""
+    if "sizes" in bounds and "step" in bounds:
+        yield Fault((*loc, "step"), "sizes and step of one variable", "keep one", at_key=True)
+    if bounds.get("step") is not None:
+        yield from _read_step(loc, bounds, quantity)
+    sizes = bounds.get("sizes")
+    if sizes is None:
+        return
+    here, good = (*loc, "sizes"), f"[{example(quantity)}]"
+    if isinstance(sizes, str):
+        if sizes not in SERIES:
+            suited = [name for name, one in SERIES.items() if one.paths.fullmatch(str(loc[-1]))]
+            message = f'"{suggest.shown(sizes)}" is no series of sizes'
+            remedy = suggest.remedy(sizes, suited)
+            yield Fault(
+                here, message, f"{remedy}, or list them: {good}" if remedy else f"write {good}"
+            )
+        elif SERIES[sizes].paths.fullmatch(str(loc[-1])) is None:
+            series = SERIES[sizes]
+            yield Fault(here, f"{sizes} has no sizes of {loc[-1]}", f"it is for {series.suits}")
+    elif not isinstance(sizes, list):
+        yield Fault(here, f"need sizes, not {what(sizes)}", f"write {good}, or a series")
+    elif not sizes:
+        yield Fault(here, "the list is empty", f"write e.g. {good}, or remove the line")
+    elif len(sizes) > MOST_SIZES:
+        yield Fault(here, f"{len(sizes)} sizes are too many", f"keep at most {MOST_SIZES}")
+    else:
+        yield from _read_list(here, sizes, bounds, quantity)
+
+
+def _read_step(loc: Loc, bounds: dict[str, Any], quantity: Quantity) -> Iterator[Fault]:
+    lower, upper = bounds.get("lower"), bounds.get("upper")
+    here = (*loc, "step")
+    try:
+        step = bounds["step"] = read_quantity(bounds["step"], _difference(quantity))
+    except ValueFault as fault:
+        yield Fault(here, fault.message, fault.remedy)
+        return
+    if not isinstance(lower, float) or not isinstance(upper, float) or lower >= upper:
+        return
+    if step == 0.0 or (upper - lower) / step > MOST_SIZES:
+        message = f"{quantity.text(step)}: more than {MOST_SIZES} sizes between the bounds"
+        least = quantity.text((upper - lower) / MOST_SIZES)
+        yield Fault(here, message, f"write at least {least}, or leave the variable free")
+
+
+def _difference(quantity: Quantity) -> Quantity:
+    """A quantity as that of a step of it: from nothing to its whole range."""
+    if quantity.dimension == "temperature":
+        raise ValueFault("a temperature takes no step", "list its sizes")
+    return replace(quantity, lower=0.0)
+
+
+def _read_list(
+    loc: Loc, sizes: list[Any], bounds: dict[str, Any], quantity: Quantity
+) -> Iterator[Fault]:
+    known: list[tuple[int, float]] = []
+    lower, upper = bounds.get("lower"), bounds.get("upper")
+    for index, raw in enumerate(sizes):
+        if raw is None:
+            continue  # a fault already
+        try:
+            value = sizes[index] = read_quantity(raw, quantity)
+        except ValueFault as fault:
+            yield Fault((*loc, index), fault.message, fault.remedy)
+            continue
+        near = ROOM * abs(value)
+        twin = next((i for i, other in known if abs(other - value) <= near), None)
+        if twin is not None:
+            message = f"{suggest.shown(raw)}: the same as value {twin + 1} of the list"
+            yield Fault((*loc, index), message, "keep one of them")
+        known.append((index, value))
+        if not isinstance(lower, float) or not isinstance(upper, float) or lower > upper:
+            continue
+        if not lower - near <= value <= upper + near:
+            said = f"{quantity.text(lower)} to {quantity.text(upper)}"
+            message = f"{quantity.text(value)}: outside the bounds {said}"
+            yield Fault((*loc, index), message, "remove it, or widen the bounds")
+
+
+def groups(
+    tree: Any, *, plies: bool = False, standard: bool = False
+) -> tuple[tuple[Group, ...], tuple[Fault, ...]]:
+    """The variables that only take some sizes, those that hang together in one group.
+
+    Parameters
+    ----------
+    tree : a design, or the tree of one in SI
+    plies : whether layers that state their ply thickness, and angles where some are allowed,
+        are asked to be whole
+    standard : whether these and all else with a standard is asked to have its size
+
+    Returns
+    -------
+    the groups, and the faults of variables that no size fits
+    """
+    view = View(tree)
+    rules = {path: rule for path in _paths(tree) if (rule := _rule(view, path, plies, standard))}
+    found, faults = [], []
+    for members in _families(rules):
+        try:
+            found.append(_group(view, members))
+        except _NoSize as none:
+            faults.append(none.fault(tree))
+    return tuple(found), tuple(faults)
+
+
+class _NoSize(Exception):
+    """A variable that no size fits."""
+
+    def __init__(self, path: str, message: str, remedy: str) -> None:
+        super().__init__(message)
+        self.path, self.message, self.remedy = path, message, remedy
+
+    def fault(self, tree: Any) -> Fault:
+        """At what asks for the sizes, else at the variable."""
+        block: Loc = ("variables", self.path)
+        for key in ("sizes", "step"):
+            if child_at(tree, (*block, key)) is not None:
+                return Fault((*block, key), self.message, self.remedy)
+        return Fault(block, self.message, self.remedy, at_key=True)
+
+
+def _paths(tree: Any) -> list[str]:
+    """The variables that are numbers between good bounds."""
+    block = child(tree, "variables")
+    good = []
+    for path in block if isinstance(block, dict) else ():
+        lower, upper = (child_at(tree, ("variables", path, key)) for key in ("lower", "upper"))
+        if not isinstance(lower, float) or not isinstance(upper, float) or lower > upper:
+            continue
+        try:
+            target = resolve(path, tree)
+        except ValueFault:
+            continue
+        if target.quantity is not None:
+            good.append(path)
+    return good
+
+
+def _rule(view: View, path: str, plies: bool, standard: bool) -> _Rule | None:
+    """How a variable gets its sizes: as the file says, else as is asked; None where it is free."""
+    sizes, step = (child_at(view.tree, ("variables", path, key)) for key in ("sizes", "step"))
+    lower, upper = _bounds(view, path)
+    if isinstance(step, float):
+        if (upper - lower) > step * MOST_SIZES:
+            return None  # a fault already
+        quantity = resolve(path, view.tree).quantity
+        assert quantity is not None
+        return _Rule(path, f"steps of {quantity.text(step)}", f"multiple of {quantity.text(step)}",
+                     lambda _: _multiples(step, (lower, upper)))  # fmt: skip
+    if isinstance(sizes, (list, tuple)):
+        values = sorted(value for value in sizes if isinstance(value, float))
+        if not values or len(values) < len(sizes):
+            return None  # a fault already
+        return _Rule(path, "own list", "size of the list", lambda _: values)
+    if isinstance(sizes, str):
+        series = SERIES.get(sizes)
+        return _of(series, view, path) if series and series.paths.fullmatch(path) else None
+    for series in SERIES.values():
+        wanted = (standard and series.asked != "file") or (plies and series.asked == "plies")
+        if wanted and series.paths.fullmatch(path) and series.fault(view, path) is None:
+            return _of(series, view, path)
+    return None
+
+
+def _of(series: Series, view: View, path: str) -> _Rule:
+    bounds, parent = _bounds(view, path), series.parent(path)
+    return _Rule(
+        path,
+        series.label,
+        series.each(view, path),
+        lambda value: series.values(view, path, value, bounds),
+        parent,
+        series.name,
+    )
+
+
+def _bounds(view: View, path: str) -> tuple[float, float]:
+    lower, upper = (child_at(view.tree, ("variables", path, key)) for key in ("lower", "upper"))
+    return float(lower), float(upper)
+
+
+def _multiples(step: float, bounds: tuple[float, float]) -> list[float]:
+    """Multiples of a step from one below the bounds to one above, in decimals."""
+    first, last = (int(bound // step) for bound in bounds)
+    return [float(count * Decimal(repr(step))) for count in range(first - 1, last + 3)]
+
+
+def _families(rules: dict[str, _Rule]) -> Iterator[list[_Rule]]:
+    """The rules that hang together, parents first, in the order of the variables."""
+    left = dict(rules)
+
+    def below(path: str) -> Iterator[_Rule]:
+        if path in left:
+            yield left.pop(path)
+            for other in list(left):
+                if other in left and left[other].parent == path:
+                    yield from below(other)
+
+    for path, rule in rules.items():
+        top = rule
+        while top.parent in rules:
+            top = rules[top.parent]
+        if path in left:
+            yield list(below(top.path))
+
+
+def _group(view: View, members: Sequence[_Rule]) -> Group:
+    """Every row of values that go together; raises `_NoSize`."""
+    rows: list[tuple[float, ...]] = [()]
+    column = {rule.path: index for index, rule in enumerate(members)}
+    for rule in members:
+        lower, upper = _bounds(view, rule.path)
+        if rule.series and (fault := SERIES[rule.series].fault(view, rule.path)):
+            raise _NoSize(rule.path, *fault)
+        fixed = _fixed(view, rule, column)
+        wider, seen = [], set()
+        for row in rows:
+            parent = row[column[rule.parent]] if rule.parent in column else fixed
+            for value in rule.values(parent):
+                seen.add(value)
+                if lower - ROOM * abs(lower) <= value <= upper + ROOM * abs(upper):
+                    wider.append((*row, min(max(value, lower), upper)))
+        if not wider:
+            raise _none_fits(view, rule, sorted(seen))
+        if len(rows) > 1 and len(wider) > MOST_SIZES:
+            message = f"{len(wider)} sizes go together with those of {rule.parent}: too many"
+            raise _NoSize(rule.path, message, f"narrow the bounds, for at most {MOST_SIZES}")
+        rows = wider
+    paths, labels = tuple(rule.path for rule in members), tuple(rule.label for rule in members)
+    return Group(paths, labels, tuple(sorted(set(rows))))
+
+
+def _fixed(view: View, rule: _Rule, column: dict[str, int]) -> float | None:
+    """The value of a parent that no variable moves; None where there is none, or it is free."""
+    if rule.parent is None or rule.parent in column:
+        return None
+    if child_at(view.tree, ("variables", rule.parent)) is None:
+        return number_of(value_at(view.tree, resolve(rule.parent, view.tree).loc))
+    if SERIES[rule.series].needs_parent:
+        raise _NoSize(
+            rule.path,
+            f"its sizes hang on {rule.parent}, which moves freely",
+            f"give {rule.parent} sizes too, or fix it",
+        )
+    return None
+
+
+def _none_fits(view: View, rule: _Rule, values: Sequence[float]) -> _NoSize:
+    """No size between the bounds: says the nearest ones."""
+    quantity = resolve(rule.path, view.tree).quantity
+    assert quantity is not None
+    lower, upper = _bounds(view, rule.path)
+    near = [value for value in values if value < lower][-1:]
+    near += [value for value in values if value > upper][:1]
+    text = " or ".join(quantity.text(value) for value in near if value > 0)
+    message = f"no {rule.each} lies between {quantity.text(lower)} and {quantity.text(upper)}"
+    remedy = f"widen the bounds to hold {text}" if text else "widen the bounds"
+    return _NoSize(rule.path, message, f"{remedy}, or ask for other sizes")

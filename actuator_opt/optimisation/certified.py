@@ -1,0 +1,87 @@
+"""The certificate of an optimum in words and numbers: the proven bound, what the starts say."""
+
+from __future__ import annotations
+
+import math
+
+from ..progress import tell
+from .actuator import ActuatorProblem
+from .outcome import Solution
+from .result import Certificate
+
+CHANCE = 0.95
+"""Probability at which the evidence of the starts is stated."""
+
+SAME = 1e-3
+"""Relative difference of objectives up to which two starts found one optimum."""
+
+
+def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
+    """Prove how far a design that meets its requirements is from the best possible.
+
+    Parameters
+    ----------
+    actuator : the problem
+    solution : its best design
+    """
+    evidence = _evidence(solution)
+    reason = _unsuited(actuator, solution)
+    if reason:
+        return Certificate(f"nothing is proven: {reason}", evidence)
+    from .certificate.certify import certify  # with its solver, only where asked for
+    from .certificate.relaxation import Unknown
+
+    quantity = actuator.subject.quantities[actuator.goal.single or ""]
+    best = solution.objective
+
+    def told(value: float) -> None:
+        tell("proving how good that is", math.exp(value) / best)
+
+    try:
+        relaxed, found = certify(actuator, solution.x, best, report=told)
+    except Unknown as error:
+        return Certificate(f"nothing is proven: {error}", evidence)
+    bound = min(math.exp(found.bound), best)
+    gap = max(1 - bound / best, 0.0)
+    words = (
+        f"no design that meets the covered limits has less than {quantity.text(bound, 5)} "
+        f"({quantity.label}): the design found is within {_percent(gap)} of the best possible"
+    )
+    covers = tuple(dict.fromkeys(claim.limit.name for claim in relaxed.covered))
+    dropped = {name: why for name, why in relaxed.dropped.items() if name not in covers}
+    return Certificate(words, evidence, bound, gap, covers, dropped, found.boxes)
+
+
+def _percent(share: float) -> str:
+    """A gap as people read it, never smaller than it is."""
+    percent = 100 * share
+    if percent < 0.01:
+        return "0.01 %"
+    digits = 2 if percent < 1 else 1
+    return f"{math.ceil(percent * 10**digits) / 10**digits:.{digits}f} %"
+
+
+def _unsuited(actuator: ActuatorProblem, solution: Solution) -> str:
+    """Why there is no bound for an objective."""
+    if actuator.goal.single is None:
+        return "a weighted sum of metrics has no bound yet; minimise one metric"
+    if actuator.goal.sign < 0:
+        return "a metric that is maximised has no bound yet; minimise one"
+    if not solution.objective > 0:
+        return "the objective is not above zero"
+    return ""
+
+
+def _evidence(solution: Solution) -> str:
+    """What the starts say of a better optimum elsewhere."""
+    count = len(solution.starts)
+    if count == 0:
+        return ""
+    best = solution.objective
+    same = sum(abs(start.objective - best) <= SAME * abs(best) for start in solution.starts)
+    missed = 1 - (1 - CHANCE) ** (1 / count)
+    return (
+        f"{same} of {count} starts led to this optimum, none to a better one; a better one that "
+        f"more than {100 * missed:.0f} % of all starts lead to would have shown with "
+        f"{100 * CHANCE:.0f} % probability (evidence, no proof)"
+    )

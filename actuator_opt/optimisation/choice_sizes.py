@@ -1,0 +1,105 @@
+"""The best combination of the choices where variables keep to listed sizes.
+
+The combinations are searched best first, each from its continuous optimum, which bounds what its
+sizes can come to: those whose bound is no better than the best design of listed sizes so far are
+left. The bounds are local optima, and mostly of a quick look: the best found, no proof.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from ..errors import InputError
+from .branch_and_bound import Found, Memory, at, search
+from .choices import Search, Settings, many_starts
+from .quick_look import Look
+from .rounding import RUNNERS_UP, Sizes, Wanted, sizes_of
+
+
+@dataclass(frozen=True)
+class Sized:
+    """A combination with its sizes and what the search of them came to."""
+
+    look: Look
+    sizes: Sizes
+    found: Found
+    memory: Memory
+
+
+def best_of_sizes(choices: Search, wanted: Wanted, settings: Settings) -> Sized | None:
+    """The combination with the best design of listed sizes, solved from many starts.
+
+    Where none has any, that with the best continuous optimum; None where no variable has sizes.
+
+    Raises
+    ------
+    InputError
+        the sizes that are asked fit no combination
+    """
+    searched = list(_searched(choices, wanted, settings))
+    better = [sized for sized in searched if sized.found.objective is not None]
+    winner = next(iter([*reversed(better), *searched]), None)
+    if winner is None:
+        return None
+    if better:
+        _runners_up(winner, searched)
+    if winner.look.solution is None:
+        many_starts(winner.look, settings)
+    return winner
+
+
+def _searched(choices: Search, wanted: Wanted, settings: Settings) -> Iterator[Sized]:
+    """Every combination that is worth it, searched for something better than those before."""
+    error: InputError | None = None
+    memories: dict[object, Memory] = {}
+    mendable = choices.mendable()
+    best, count = (math.inf, math.inf), 0
+    for look in choices.ranked():
+        if not look.feasible or look.actuator is None or look.x is None:
+            continue
+        checks = len(look.checks & mendable)
+        late = settings.until is not None and time.perf_counter() > settings.until
+        if (count and late) or (checks, look.objective) >= best:
+            break
+        try:
+            sizes = sizes_of(look.actuator.subject.design, wanted)
+        except InputError as fault:
+            error, look.sizing = error or fault, "no size fits"
+            continue
+        if sizes is None:
+            continue
+        key = tuple((one.index, one.rows.tobytes()) for one in sizes.listed)
+        memory = memories.setdefault(key, Memory())
+        found = search(
+            look.actuator.problem,
+            sizes.listed,
+            look.x,
+            until=settings.until,
+            below=best[1],
+            memory=memory,
+        )
+        look.rounded, count = found.objective, count + 1
+        if found.objective is not None:
+            look.sizing, best = "found", (checks, found.objective)
+        else:
+            look.sizing = "none" if best[1] == math.inf else "none better"
+        yield Sized(look, sizes, found, memory)
+    if not count and error is not None:
+        raise error
+
+
+def _runners_up(winner: Sized, searched: Sequence[Sized]) -> None:
+    """What the sizes of the best cost in the combinations that come next."""
+    assert winner.found.assignment is not None
+    others = [sized for sized in searched if sized.look.sizing == "none better"]
+    for sized in others[:RUNNERS_UP]:
+        look = sized.look
+        if sized.memory is not winner.memory or look.actuator is None or look.x is None:
+            continue
+        problem, listed = look.actuator.problem, sized.sizes.listed
+        objective = at(problem, listed, winner.found.assignment, look.x, sized.memory)
+        if objective is not None:
+            look.rounded, look.sizing = objective, "sizes of the best"
