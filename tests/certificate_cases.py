@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from actuator_opt.design import read_design
-from actuator_opt.evaluation import compute, prepare
+from actuator_opt.evaluation import prepare
 from actuator_opt.optimisation.actuator import ActuatorProblem, build
 from actuator_opt.optimisation.certificate.box import Box, Layout
 from actuator_opt.optimisation.certificate.certify import Relaxed, relax
-from actuator_opt.optimisation.certificate.trace import Traced, trace
+from actuator_opt.optimisation.certificate.trace import trace
 from actuator_opt.optimisation.problem import Problem, Values
 from actuator_opt.optimisation.solver import solve
 
@@ -29,23 +29,13 @@ class Case:
     actuator: ActuatorProblem
     x: np.ndarray
     objective: float
-    traced: Traced
     relaxed: Relaxed
     layout: Layout
     root: Box
 
     def atoms(self, x) -> np.ndarray:
         """Every atom of the relaxation at a design."""
-        paths = self.actuator.paths
-        point = {path: np.array([value]) for path, value in zip(paths, x, strict=True)}
-        there = compute(self.actuator.subject, self.actuator.subject.values(point))
-        known = {f"x{k}": float(value) for k, value in enumerate(x)}
-        known |= {name: exact(there) for name, (_, exact) in self.traced.unknowns.items()}
-        own = {form.powers[0][0]: name for name, form in self.relaxed.variables.items()}
-        found: list[float] = []
-        for i, maker in enumerate(self.relaxed.relaxation.makers):
-            found.append(np.log(known[own[i]]) if i in own else maker(found))
-        return np.array(found)
+        return self.relaxed.atoms(self.actuator, x)
 
     def designs(self, count: int, seed: int) -> np.ndarray:
         """Designs (count, variables) that meet every limit: random walks from the inside."""
@@ -83,8 +73,7 @@ def case(name: str, *changes: tuple[str, str]) -> Case:
     design = read_design(DESIGNS / f"{name}.yaml", overrides=changes).design
     actuator = build(prepare(design))
     best = solve(actuator.problem, samples=2048)
-    traced = trace(actuator, best.x)
-    relaxed = relax(traced, HEAVIER * best.objective)
+    relaxed = relax(trace(actuator, best.x), HEAVIER * best.objective)
     layout = Layout(relaxed.relaxation)
     root = Box.whole(layout).tightened(layout)
-    return Case(actuator, best.x, best.objective, traced, relaxed, layout, root)
+    return Case(actuator, best.x, best.objective, relaxed, layout, root)

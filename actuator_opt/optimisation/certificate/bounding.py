@@ -107,9 +107,10 @@ class Bounding:
         high[len(new) :] = np.inf
         return matrix, level, high
 
-    def _solver(self) -> highspy.Highs:
+    def _solver(self) -> Any:
         """The programme without bounds and chords, which follow the box."""
-        solver, m = highspy.Highs(), self.matrix
+        solver: Any = highspy.Highs()  # type: ignore[no-untyped-call]
+        m = self.matrix
         for name, value in _OPTIONS.items():
             solver.setOptionValue(name, value)
         none, index = np.empty(0), np.empty(0, dtype=np.int32)
@@ -267,7 +268,8 @@ class Bounding:
         self.solver.changeRowsBounds(count, index, lines.low[:count], lines.high[:count])
 
     def _argument(self, x: Vector) -> Vector:
-        return self.layout.factor * x[self.ratio] + self.layout.constant
+        found: Vector = self.layout.factor * x[self.ratio] + self.layout.constant
+        return found
 
     def _missed(self, x: Vector) -> Vector:
         """By how much every curve is missed, positive on the side of its tangents."""
@@ -353,7 +355,7 @@ class _Lines(NamedTuple):
         return _Lines(*(np.concatenate(pair) for pair in zip(self, more, strict=True)))
 
 
-def _add(solver: highspy.Highs, lines: _Lines) -> None:
+def _add(solver: Any, lines: _Lines) -> None:
     count = len(lines.low)
     indices = np.stack([lines.ratio, lines.out], axis=1).ravel().astype(np.int32)
     data = np.stack([lines.coefficient, np.ones(count)], axis=1).ravel()

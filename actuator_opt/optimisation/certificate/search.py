@@ -149,7 +149,8 @@ class Search:
     def _gains(self, bound: Bound) -> Vector:
         """What a split of every direction may gain."""
         gains = bound.excess * (bound.price + FLOOR)
-        return np.bincount(self.layout.direction, gains, self.layout.directions)
+        found = np.bincount(self.layout.direction, gains, self.layout.directions)
+        return found.astype(float)
 
     def _choice(self, box: Box, bound: Bound) -> tuple[int, float] | None:
         """Direction and place of the split that can gain most; None where nothing is loose."""
