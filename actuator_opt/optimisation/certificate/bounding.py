@@ -15,7 +15,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from ..problem import Vector
-from .box import FAR, Box, Layout
+from .box import ROOM, Box, Layout
+from .shapes import FAR
 from .signomial import Form
 
 WIDEST = 40.0
@@ -33,6 +34,9 @@ ENOUGH = 2e-5
 MISSED = 1e-4
 """Distance from a curve at which a tangent is added."""
 
+PROVEN = 1e-6
+"""Least value of a ray that proves that nothing is left: above rounding."""
+
 MOST = 4
 """Lines per curve beyond which those that do not touch are forgotten."""
 
@@ -47,6 +51,8 @@ class Bound(NamedTuple):
     """By how much every curve is missed on the side of its chord."""
     price: Vector
     """Multiplier of every chord."""
+    slopes: Vector
+    """Of every column: what the value gains at least as the column leaves its better end."""
 
 
 class Bounding:
@@ -101,9 +107,10 @@ class Bounding:
         high[len(new) :] = np.inf
         return matrix, level, high
 
-    def _solver(self) -> highspy.Highs:
+    def _solver(self) -> Any:
         """The programme without bounds and chords, which follow the box."""
-        solver, m = highspy.Highs(), self.matrix
+        solver: Any = highspy.Highs()  # type: ignore[no-untyped-call]
+        m = self.matrix
         for name, value in _OPTIONS.items():
             solver.setOptionValue(name, value)
         none, index = np.empty(0), np.empty(0, dtype=np.int32)
@@ -120,7 +127,7 @@ class Bounding:
         found = self._least(self.cost, lower, upper, rounds=ROUNDS)
         if found is None:
             return None
-        value, x, dual = found
+        value, slopes, x, dual = found
         first = len(self.low)
         return Bound(
             value + self.constant,
@@ -128,6 +135,26 @@ class Bounding:
             x[self.ways],
             np.maximum(-self._missed(x), 0.0),
             np.abs(dual[first : first + self.layout.curves]),
+            slopes,
+        )
+
+    def trimmed(self, box: Box, bound: Bound, best: float) -> Box:
+        """The part of a box where its bound lets a design be as good as the best known one.
+
+        A range whose multiplier is d is no longer than what is left to the best over d.
+        """
+        lower, upper = self._ends(box)
+        left = max(best - bound.value, 0.0) + ROOM
+        with np.errstate(divide="ignore"):
+            most = lower + left / np.maximum(bound.slopes, 0.0)
+            least = upper + left / np.minimum(bound.slopes, -0.0)
+        lower, upper = np.maximum(lower, least - ROOM), np.minimum(upper, most + ROOM)
+        atoms = slice(0, self.layout.atoms)
+        return Box(
+            np.maximum(box.lower, lower[atoms]),
+            np.minimum(box.upper, upper[atoms]),
+            np.maximum(box.low, lower[self.ways]),
+            np.minimum(box.high, upper[self.ways]),
         )
 
     def enter(self, box: Box) -> tuple[Vector, Vector]:
@@ -167,14 +194,14 @@ class Bounding:
 
     def _least(
         self, cost: Vector, lower: Vector, upper: Vector, *, rounds: int
-    ) -> tuple[float, Vector, Vector] | None:
-        """Least of a linear function: the value that is proven, the point, the multipliers."""
+    ) -> tuple[float, Vector, Vector, Vector] | None:
+        """Least of a linear function: the value that is proven, its slopes, point, multipliers."""
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsCost(self.columns, index, cost)
         last = -np.inf
         for _ in range(rounds):
             self.solver.run()
-            if self.solver.getModelStatus() == highspy.HighsModelStatus.kInfeasible:
+            if self._empty(lower, upper):
                 return None
             solution = self.solver.getSolution()
             x, dual = np.array(solution.col_value), np.array(solution.row_dual)
@@ -182,10 +209,18 @@ class Bounding:
             if rounds == 1 or value - last < ENOUGH or not self._tangents(x):
                 break
             last = value
-        return self._safe(cost, dual, lower, upper), x, dual
+        return *self._safe(cost, dual, lower, upper), x, dual
 
-    def _columns(self, box: Box) -> tuple[Vector, Vector]:
-        """Put the ranges of a box."""
+    def _empty(self, lower: Vector, upper: Vector) -> bool:
+        """Whether multipliers prove that no point meets all lines."""
+        if self.solver.getModelStatus() != highspy.HighsModelStatus.kInfeasible:
+            return False
+        _, known, ray = self.solver.getDualRay()
+        none = np.zeros(self.columns)
+        return known and self._safe(none, np.array(ray), lower, upper)[0] > PROVEN
+
+    def _ends(self, box: Box) -> tuple[Vector, Vector]:
+        """Ranges of the columns in a box."""
         low, high, _, _ = self.layout.reach(box.lower, box.upper)
         lower, upper = np.full((2, self.columns), np.nan)
         lower[: len(box.lower)], upper[: len(box.upper)] = box.lower, box.upper
@@ -193,6 +228,11 @@ class Bounding:
         lows, highs = np.concatenate([low[outs], box.low]), np.concatenate([high[outs], box.high])
         np.fmax.at(lower, self.column, lows)
         np.fmin.at(upper, self.column, highs)
+        return lower, upper
+
+    def _columns(self, box: Box) -> tuple[Vector, Vector]:
+        """Put the ranges of a box."""
+        lower, upper = self._ends(box)
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsBounds(self.columns, index, lower, upper)
         return lower, upper
@@ -228,7 +268,8 @@ class Bounding:
         self.solver.changeRowsBounds(count, index, lines.low[:count], lines.high[:count])
 
     def _argument(self, x: Vector) -> Vector:
-        return self.layout.factor * x[self.ratio] + self.layout.constant
+        found: Vector = self.layout.factor * x[self.ratio] + self.layout.constant
+        return found
 
     def _missed(self, x: Vector) -> Vector:
         """By how much every curve is missed, positive on the side of its tangents."""
@@ -270,8 +311,10 @@ class Bounding:
             np.where(convex, np.inf, level),
         )
 
-    def _safe(self, cost: Vector, dual: Vector, lower: Vector, upper: Vector) -> float:
-        """Least value that the multipliers prove: what rows and bounds contribute."""
+    def _safe(
+        self, cost: Vector, dual: Vector, lower: Vector, upper: Vector
+    ) -> tuple[float, Vector]:
+        """Least value that the multipliers prove, by rows and bounds, and its slopes."""
         count, lines = len(self.low), self.lines
         dual = dual[: count + len(lines.low)]
         low, high = (
@@ -286,7 +329,7 @@ class Bounding:
         rest = cost - self.matrix.T @ dual[:count]
         np.add.at(rest, lines.ratio[some], -own * lines.coefficient[some])
         np.add.at(rest, lines.out[some], -own)
-        return float(dual @ ends + np.minimum(rest * lower, rest * upper).sum())
+        return float(dual @ ends + np.minimum(rest * lower, rest * upper).sum()), rest
 
 
 _OPTIONS = {
@@ -312,7 +355,7 @@ class _Lines(NamedTuple):
         return _Lines(*(np.concatenate(pair) for pair in zip(self, more, strict=True)))
 
 
-def _add(solver: highspy.Highs, lines: _Lines) -> None:
+def _add(solver: Any, lines: _Lines) -> None:
     count = len(lines.low)
     indices = np.stack([lines.ratio, lines.out], axis=1).ravel().astype(np.int32)
     data = np.stack([lines.coefficient, np.ones(count)], axis=1).ravel()

@@ -107,8 +107,8 @@ class Layout:
         ends = self.power * lower[self.atom], self.power * upper[self.atom]
         least, most = np.minimum(*ends), np.maximum(*ends)
         count = len(self.levels)
-        low = self.levels + np.bincount(self.form, least, count)
-        high = self.levels + np.bincount(self.form, most, count)
+        low: Vector = self.levels + np.bincount(self.form, least, count)
+        high: Vector = self.levels + np.bincount(self.form, most, count)
         return low, high, least, most
 
 

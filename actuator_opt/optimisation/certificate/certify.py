@@ -10,18 +10,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...evaluation.kernel import Pass, compute
 from ...symbolic.order import needed
 from ..actuator import ActuatorProblem
 from ..problem import Vector
 from .bounding import Bounding
-from .box import Box, Layout
-from .intervals import narrow, tighten
+from .box import Box, Gone, Layout
+from .builder import Builder
+from .intervals import Empty, narrow, tighten
 from .lone import ranges
 from .plain import straighten
-from .relaxation import Builder, Relaxation, Unknown
-from .search import Found, search
+from .relaxation import Relaxation, Unknown
+from .search import Found, Search
 from .signomial import Form
-from .trace import Claim, Traced, trace
+from .trace import Claim, Traced, trace, variable
 
 SECONDS = 3.0
 """Time for the search."""
@@ -39,10 +41,31 @@ class Relaxed:
     variables: dict[str, Form]
     covered: tuple[Claim, ...]
     dropped: dict[str, str]
+    unknowns: dict[str, Callable[[Pass], float]]
+    """What the further unknowns are in an evaluated design, by name."""
+
+    def atoms(self, actuator: ActuatorProblem, x: Vector) -> Vector:
+        """Every atom at a design."""
+        point = {path: np.array([value]) for path, value in zip(actuator.paths, x, strict=True)}
+        with np.errstate(all="ignore"):
+            there = compute(actuator.subject, actuator.subject.values(point))
+        known = {variable(k): float(value) for k, value in enumerate(x)}
+        known |= {name: exact(there) for name, exact in self.unknowns.items()}
+        own = {form.powers[0][0]: name for name, form in self.variables.items()}
+        found: list[float] = []
+        for i, maker in enumerate(self.relaxation.makers):
+            found.append(math.log(known[own[i]]) if i in own else maker(found))
+        return np.array(found)
 
 
-def relax(traced: Traced, best: float, near=None) -> Relaxed:
-    """The relaxation of all designs that meet the limits and are no worse than `best`."""
+def relax(traced: Traced, best: float) -> Relaxed:
+    """The relaxation of all designs that meet the limits and are no worse than `best`.
+
+    Raises
+    ------
+    Empty, Gone
+        there is none
+    """
     for claim in traced.claims:
         narrow(claim.value, _ends(claim))
     for objective in traced.objectives:
@@ -56,8 +79,6 @@ def relax(traced: Traced, best: float, near=None) -> Relaxed:
     builder = Builder()
     covered, dropped = [], dict(traced.dropped)
     for claim in traced.claims:
-        if near is not None and claim.limit.name not in near:
-            continue
         least, most = _ends(claim)
         try:
             if math.isfinite(least):
@@ -75,7 +96,8 @@ def relax(traced: Traced, best: float, near=None) -> Relaxed:
     box = Box.whole(Layout(builder.found)).tightened(Layout(builder.found))
     builder.found.lower, builder.found.upper = box.lower.tolist(), box.upper.tolist()
     straighten(builder.found)
-    return Relaxed(builder.found, objective, builder.variables, tuple(covered), dropped)
+    exact = {name: one for name, (_, one) in traced.unknowns.items()}
+    return Relaxed(builder.found, objective, builder.variables, tuple(covered), dropped, exact)
 
 
 def _ends(claim: Claim) -> tuple[float, float]:
@@ -91,13 +113,40 @@ def certify(
     objective: float,
     *,
     seconds: float = SECONDS,
+    most: float = math.inf,
     report: Callable[[float], None] | None = None,
 ) -> tuple[Relaxed, Found]:
-    """Lower bound on the objective of every design that meets the limits."""
+    """Lower bound on the objective of every design that meets the limits.
+
+    Parameters
+    ----------
+    actuator : the problem
+    x, objective : the best known design
+    seconds, most : time and boxes to spend
+    report : called with the logarithm of every better bound
+
+    Raises
+    ------
+    Unknown
+        the design misses a limit, or a model that all stands on has no relaxation
+    """
     began = time.perf_counter()
-    relaxed = relax(trace(actuator, x), objective)
+    try:
+        relaxed = relax(trace(actuator, x), objective)
+    except (Empty, Gone):
+        raise Unknown("the design found misses a limit") from None
     layout = Layout(relaxed.relaxation)
+    if not _meets(layout, relaxed.atoms(actuator, x)):
+        raise Unknown("the design found misses a limit")
     bounding = Bounding(layout, relaxed.objective)
-    return relaxed, search(
-        layout, bounding, float(np.log(objective)), until=began + seconds, report=report
-    )
+    search = Search(layout, bounding, math.log(objective), until=began + seconds, most=most)
+    return relaxed, search.run(report)
+
+
+def _meets(layout: Layout, y: Vector) -> bool:
+    """Whether a design meets ranges and rows of its relaxation."""
+    box = Box.whole(layout)
+    _, high, _, _ = layout.reach(y, y)
+    rows = layout.parts[2]
+    inside = (box.lower - MET <= y) & (y <= box.upper + MET)
+    return bool(inside.all() and (high[rows] >= -2 * MET).all())

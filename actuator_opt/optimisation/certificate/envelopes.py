@@ -25,9 +25,13 @@ from ...models.solid_ply import solid_rotated
 from ...models.trial_mode import TrialMode, buckled_mode, trial_mode_load
 from ...numeric import Array, maximum
 from ...symbolic import Symbol
+from .relaxation import Unknown
 
 LEAST_DECAY = 1e-3
 """Least decay of the displacement through a layer, so that no power is zero."""
+
+CONTRACTION = 0.2
+"""Contraction of a wall over its axial strain in the bound on its stiffness; any number holds."""
 
 
 class Problem(Protocol):
@@ -69,14 +73,19 @@ class Envelopes:
         if self.subject.design.cylinder.mount != "cap_clevis":
             return None
         lengths = beam.lengths(self.there.geometry, self.there.state)
-        segments = {
-            "bending_stiffness_1": self._number(self.there.wall.bending_stiffness),
-            "length_1": self._number(lengths[0]),
-            "bending_stiffness_2": self._number(self.there.rod.bending_stiffness),
-            "length_2": self._number(lengths[1]),
-        }
-        load = float(stepped.stepped_column_load(**segments))
-        return buckled_mode(critical_load=load, **segments)
+        load = stepped.stepped_column_load(
+            bending_stiffness_1=self._number(self.there.wall.bending_stiffness),
+            length_1=self._number(lengths[0]),
+            bending_stiffness_2=self._number(self.there.rod.bending_stiffness),
+            length_2=self._number(lengths[1]),
+        )
+        return buckled_mode(
+            critical_load=float(load),
+            bending_stiffness_1=self._number(self.there.wall.bending_stiffness),
+            length_1=self._number(lengths[0]),
+            bending_stiffness_2=self._number(self.there.rod.bending_stiffness),
+            length_2=self._number(lengths[1]),
+        )
 
     @staticmethod
     def column(mode: TrialMode | None) -> Callable[..., Array]:
@@ -101,38 +110,25 @@ class Envelopes:
         """A laminated wall: growth and axial stiffness unknown between their bounds.
 
         It does not stretch under axial force (stiffer than it is); its strength is left out.
+
+        Raises
+        ------
+        Unknown
+            the wall has single plies, or is a membrane
         """
+        if kind(design, stock.materials) != "layered":
+            raise Unknown("a wall as a membrane has no envelope")
         layers = plies.layers(v, stock, design.barrel.layup, "barrel.layup", (), [])
+        if not all(layer.balanced for layer in layers):
+            raise Unknown("a wall of single plies, which twists, has no envelope")
         walls = [solid_rotated(stiffness=layer.solid, angle=layer.angle) for layer in layers]
         thicknesses = [layer.thickness for layer in layers]
-        growth = self.problem.unknown(
-            "growth", lambda done: self._number(done.wall.swelling.growth)
-        )
-        least = tube_bounds.least_growth(
-            hoop=[one[3] for one in walls],
-            cross=[one[4] for one in walls],
-            radial=[one[5] for one in walls],
-            decays=self.decays,
-            thicknesses=thicknesses,
-            inner_radius=g.inner_radius,
-        )
-        stiffness = self.problem.unknown(
-            "axial_stiffness", lambda done: self._number(1 / done.wall.swelling.stretch)
-        )
-        low, high = tube_bounds.axial_stiffness_bounds(
-            free=[rod_models.free_modulus(wall=one) for one in walls],
-            held=[_held(one, 0.2) for one in walls],
-            thicknesses=thicknesses,
-            inner_radius=g.inner_radius,
-        )
+        growth, stiffness = self._elastic(walls, thicknesses, g.inner_radius)
         supply = self._unknown("grown", lambda done: done.wall.growth)
         own = supply
         if not np.array_equal(np.ravel(state.driven_pressure), np.ravel(v["supply.pressure"])):
             own = self._unknown("grown_own", lambda done: done.wall.case_growth)
         self.problem.facts += [
-            (growth, least),
-            (stiffness, low),
-            (high, stiffness),
             (supply, v["supply.pressure"] * growth),
             (own, state.driven_pressure * growth),
         ]
@@ -153,6 +149,33 @@ class Envelopes:
             why_no_mismatch="the relaxation leaves it out",
             missing=["the relaxation leaves it out"],
         )
+
+    def _elastic(
+        self, walls: Sequence[Sequence[Array]], thicknesses: Sequence[Array], radius: Array
+    ) -> tuple[Symbol, Symbol]:
+        """Growth per pressure and axial stiffness of a laminated wall."""
+        growth = self.problem.unknown(
+            "growth", lambda done: self._number(done.wall.swelling.growth)
+        )
+        least = tube_bounds.least_growth(
+            hoop=[one[3] for one in walls],
+            cross=[one[4] for one in walls],
+            radial=[one[5] for one in walls],
+            decays=self.decays,
+            thicknesses=thicknesses,
+            inner_radius=radius,
+        )
+        stiffness = self.problem.unknown(
+            "axial_stiffness", lambda done: self._number(1 / done.wall.swelling.stretch)
+        )
+        low, high = tube_bounds.axial_stiffness_bounds(
+            free=[rod_models.free_modulus(wall=one) for one in walls],
+            held=[_held(one, CONTRACTION) for one in walls],
+            thicknesses=thicknesses,
+            inner_radius=radius,
+        )
+        self.problem.facts += [(growth, least), (stiffness, low), (high, stiffness)]
+        return growth, stiffness
 
     def _path(
         self,

@@ -7,10 +7,12 @@ import itertools
 import math
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..problem import Vector
 from .bounding import Bound, Bounding
 from .box import ROOM, Box, Gone, Layout
 
@@ -26,7 +28,6 @@ MIDDLE = 0.2
 WORTH = 1e-9
 """Least excess times price that a split can gain."""
 
-
 FLOOR = 0.01
 """Least price of a curve in the choice of a direction: several loose ones in a row have none."""
 
@@ -35,6 +36,9 @@ SQUEEZES = 8
 
 WAYS = 16
 """Directions cut in a round."""
+
+GAIN = 0.1
+"""Share of their ranges that a round must cut for another one to be worth it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,115 +50,114 @@ class Found:
     closed: bool
 
 
-def search(
-    layout: Layout,
-    bounding: Bounding,
-    best: float,
-    *,
-    until: float,
-    report: Callable[[float], None] | None = None,
-) -> Found:
-    """Lower bound by splitting the worst box where its relaxation is loosest.
+class Search:
+    """A search by splitting the box of least bound where its relaxation is loosest.
 
     Parameters
     ----------
     layout, bounding : the relaxation
     best : logarithm of the objective of the best known design
     until : time of `time.perf_counter` to stop at
-    report : called with every better bound
+    most : boxes to solve at most
     """
-    order = itertools.count()
-    heap: list[tuple[float, int, Box, Bound]] = []
-    solved = 0
-    least = math.inf
-    goal = best + math.log1p(-CLOSE)
 
-    def add(box: Box, parent: float) -> None:
-        nonlocal solved, least
-        box = squeezed(layout, bounding, box, until, rounds=ROUNDS2, ways=WAYS2)
-        if box is None:
-            return
-        bound = bounding.solve(box)
-        solved += 1
+    def __init__(
+        self,
+        layout: Layout,
+        bounding: Bounding,
+        best: float,
+        *,
+        until: float = math.inf,
+        most: float = math.inf,
+    ) -> None:
+        self.layout, self.bounding, self.best = layout, bounding, best
+        self.until, self.most = until, most
+        self.goal = best + math.log1p(-CLOSE)
+        self.least, self.boxes = math.inf, 0
+        """Least bound of the boxes that are done with; boxes solved."""
+        self._order = itertools.count()
+        self._open: list[tuple[float, int, Box, Bound]] = []
+
+    def run(self, report: Callable[[float], None] | None = None) -> Found:
+        """The bound that holds when time or boxes are used up, or the gap is closed.
+
+        Parameters
+        ----------
+        report : called with every better bound
+        """
+        with suppress(Gone):
+            self._add(self._squeezed(Box.whole(self.layout)), -math.inf)
+        while self._open:
+            if report is not None:
+                report(min(self._open[0][0], self.least))
+            if self.boxes >= self.most or time.perf_counter() > self.until:
+                break
+            value, _, box, bound = heapq.heappop(self._open)
+            choice = self._choice(box, bound)
+            if choice is None:
+                self.least = min(self.least, value)
+                break
+            for part in box.split(*choice):
+                with suppress(Gone):
+                    self._add(part.tightened(self.layout), value)
+        bottom = min(self.least, self._open[0][0] if self._open else math.inf, self.goal)
+        return Found(bottom + math.log1p(-GUARD), self.boxes, bottom >= self.goal)
+
+    def _add(self, box: Box, parent: float) -> None:
+        """Keep a box that may hold a better design."""
+        bound = self.bounding.solve(box)
+        self.boxes += 1
         if bound is None:
             return
         value = max(bound.value, parent)
-        if value >= goal:
-            least = min(least, value)
+        if value >= self.goal:
+            self.least = min(self.least, value)
             return
-        heapq.heappush(heap, (value, next(order), box, bound))
+        trimmed = self.bounding.trimmed(box, bound, self.best)
+        heapq.heappush(self._open, (value, next(self._order), trimmed, bound))
 
-    whole = squeezed(layout, bounding, Box.whole(layout), until)
-    if whole is None:
-        return Found(goal, 1, True)
-    add(whole, -math.inf)
-    while heap:
-        if report is not None:
-            report(min(heap[0][0], least))
-        if time.perf_counter() > until:
-            break
-        value, _, box, bound = heapq.heappop(heap)
-        choice = _choice(layout, box, bound)
-        if choice is None:
-            least = min(least, value)
-            break
-        for part in box.split(*choice):
-            add(part, value)
-    bottom = min(least, heap[0][0] if heap else math.inf, best)
-    return Found(bottom + math.log1p(-GUARD), solved, bottom >= goal)
+    def _squeezed(self, box: Box) -> Box:
+        """The first box cut to where designs no worse than the best known one can be.
 
+        Bounds by optimisation of the directions in which the relaxation is loosest, over and over.
 
-ROUNDS2, WAYS2 = 1, 2
-
-
-def squeezed(
-    layout: Layout,
-    bounding: Bounding,
-    box: Box,
-    until: float,
-    *,
-    rounds: int = SQUEEZES,
-    ways: int = WAYS,
-) -> Box | None:
-    """A box cut to where designs no worse than the best known one can be; None of none.
-
-    Bound by optimisation of the directions in which the relaxation is loosest, over and over.
-    """
-    try:
-        box = box.tightened(layout)
-        if rounds == SQUEEZES:
-            bounding.lay(box)
-        for _ in range(rounds):
-            bound = bounding.solve(box)
+        Raises
+        ------
+        Gone
+            nothing is left
+        """
+        box = box.tightened(self.layout)
+        self.bounding.lay(box)
+        for _ in range(SQUEEZES):
+            bound = self.bounding.solve(box)
             if bound is None:
-                return None
-            gain = np.bincount(
-                layout.direction, bound.excess * (bound.price + FLOOR), layout.directions
-            )
-            some = np.argsort(-gain, kind="stable")[:ways]
+                raise Gone
+            some = np.argsort(-self._gains(bound), kind="stable")[:WAYS]
             size = float((box.high - box.low)[some].sum())
-            for number in some:
-                if time.perf_counter() > until:
+            for number in map(int, some):
+                if time.perf_counter() > self.until:
                     return box
-                reach = bounding.extent(int(number), bounding.enter(box))
+                reach = self.bounding.extent(number, self.bounding.enter(box))
                 if reach is None:
-                    return None
-                box = box.cut(int(number), low=reach[0] - ROOM, high=reach[1] + ROOM)
-                box = box.tightened(layout)
-            if float((box.high - box.low)[some].sum()) > 0.9 * size:
+                    raise Gone
+                box = box.cut(number, low=reach[0] - ROOM, high=reach[1] + ROOM)
+                box = box.tightened(self.layout)
+            if float((box.high - box.low)[some].sum()) > (1 - GAIN) * size:
                 break
-    except Gone:
-        return None
-    return box
+        return box
 
+    def _gains(self, bound: Bound) -> Vector:
+        """What a split of every direction may gain."""
+        gains = bound.excess * (bound.price + FLOOR)
+        found = np.bincount(self.layout.direction, gains, self.layout.directions)
+        return found.astype(float)
 
-def _choice(layout: Layout, box: Box, bound: Bound) -> tuple[int, float] | None:
-    """Direction and place of the split that can gain most; None where nothing is loose."""
-    gain = np.bincount(layout.direction, bound.excess * (bound.price + FLOOR), layout.directions)
-    number = int(np.argmax(gain))
-    if gain[number] <= WORTH:
-        return None
-    low, high = box.low[number], box.high[number]
-    at = bound.directions[number]
-    room = MIDDLE * (high - low)
-    return number, float(np.clip(at, low + room, high - room))
+    def _choice(self, box: Box, bound: Bound) -> tuple[int, float] | None:
+        """Direction and place of the split that can gain most; None where nothing is loose."""
+        gains = self._gains(bound)
+        number = int(np.argmax(gains))
+        if gains[number] <= WORTH:
+            return None
+        low, high = box.low[number], box.high[number]
+        room = MIDDLE * (high - low)
+        return number, float(np.clip(bound.directions[number], low + room, high - room))

@@ -59,6 +59,11 @@ class Traced:
         return self.unknowns[name][0]
 
 
+def variable(number: int) -> str:
+    """Name of a variable of the design in expressions."""
+    return f"x{number}"
+
+
 def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
     """Objective and limits of an actuator as expressions.
 
@@ -72,7 +77,7 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
     found = Traced(
         graph,
         {
-            path: graph.variable(f"x{k}", (float(low), float(high)))
+            path: graph.variable(variable(k), (float(low), float(high)))
             for k, (path, low, high) in enumerate(
                 zip(actuator.paths, problem.lower, problem.upper, strict=True)
             )

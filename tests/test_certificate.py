@@ -1,0 +1,130 @@
+"""The certificate is valid: no design that meets the limits is cut off, or below the bound."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from certificate_cases import HEAVIER, case
+
+from actuator_opt.optimisation.certificate.bounding import Bounding
+from actuator_opt.optimisation.certificate.box import Box, Layout
+from actuator_opt.optimisation.certificate.certify import certify
+from actuator_opt.optimisation.certificate.search import Search
+
+CASES = {
+    "steel": ("steel_baseline",),
+    "steel, light piston": ("steel_baseline", ("piston.material", "al_7075_t6")),
+    "knee": ("knee",),
+    "aerospace": ("aerospace",),
+}
+ROUNDING = 1e-9
+"""Relative rounding of traced values."""
+
+
+@pytest.fixture(params=CASES, scope="module")
+def some(request):
+    """A case with designs that meet every limit."""
+    found = case(*CASES[request.param])
+    return found, found.designs(25, 1)
+
+
+def columns(bounding: Bounding, layout: Layout, y):
+    """Every column of the linear programme at given atoms."""
+    forms = layout.levels + np.bincount(layout.form, layout.power * y[layout.atom])
+    found = np.zeros(bounding.columns)
+    found[bounding.column] = forms[: len(bounding.column)]
+    found[: len(y)] = y
+    return found
+
+
+def around(layout: Layout, root: Box, ways, rng) -> Box:
+    """A part of the root box that holds a design, by random splits."""
+    box = root
+    for _ in range(rng.integers(0, 25)):
+        number = int(rng.integers(layout.directions))
+        at = rng.uniform(box.low[number], box.high[number])
+        parts = box.split(number, at)
+        box = parts[0 if ways[number] <= at else 1].tightened(layout)
+    return box
+
+
+def test_designs_meet_the_relaxation(some):
+    """Designs that meet every limit lie in the root box and meet every row, curve and link."""
+    found, designs = some
+    relaxation, mixed = found.relaxed.relaxation, found.layout.mixed
+    for x in designs:
+        y = found.atoms(x)
+        assert (found.root.lower - ROUNDING <= y).all()
+        assert (y <= found.root.upper + ROUNDING).all()
+        assert all(row.low.at(y) <= row.high.at(y) + ROUNDING for row in relaxation.rows)
+        argument = np.array([curve.argument.at(y) for curve in relaxation.curves])
+        out = np.array([curve.out.at(y) for curve in relaxation.curves])
+        assert (np.abs(mixed.value(argument) - out) <= mixed.room + ROUNDING).all()
+        least, most = found.layout.ratios(found.root)
+        for k, link in enumerate(found.layout.links):
+            assert least[k] - ROUNDING <= y[link.out] / y[link.base] <= most[k] + ROUNDING
+
+
+def test_parts_keep_their_designs_above_their_bound(some):
+    """A part of the space keeps its designs: ranges, chords and tangents hold, bounds are below."""
+    found, designs = some
+    rng, layout = np.random.default_rng(2), found.layout
+    bounding = Bounding(layout, found.relaxed.objective)
+    bounding.lay(found.root)
+    for x in designs:
+        y = found.atoms(x)
+        point = columns(bounding, layout, y)
+        box = around(layout, found.root, point[bounding.ways], rng)
+        bound = bounding.solve(box)
+        lower, upper = bounding.enter(box)
+        assert (lower - ROUNDING <= point).all()
+        assert (point <= upper + ROUNDING).all()
+        lines = bounding.lines
+        values = point[lines.out] + lines.coefficient * point[lines.ratio]
+        assert (lines.low - ROUNDING <= values).all()
+        assert (values <= lines.high + ROUNDING).all()
+        objective = found.relaxed.objective.at(y)
+        assert bound.value <= objective + ROUNDING
+        kept = bounding.trimmed(box, bound, objective)
+        assert (kept.lower - ROUNDING <= y).all()
+        assert (y <= kept.upper + ROUNDING).all()
+
+
+def test_objective_of_the_relaxation_is_that_of_the_design(some):
+    """The relaxation's objective at a design is the evaluated one, to what samples leave."""
+    found, designs = some
+    masses = found.actuator.problem.rows(designs.T)[0]
+    there = [math.exp(found.relaxed.objective.at(found.atoms(x))) for x in designs]
+    assert there == pytest.approx(masses, rel=1e-7)
+
+
+def test_no_design_lies_below_the_bound(some):
+    """The bound of a short search is no more than any design's objective, and only rises."""
+    found, designs = some
+    bounding = Bounding(found.layout, found.relaxed.objective)
+    heard: list[float] = []
+    best = math.log(HEAVIER * found.objective)
+    bound = Search(found.layout, bounding, best, most=5).run(heard.append).bound
+    masses = found.actuator.problem.rows(designs.T)[0]
+    assert math.exp(bound) <= masses.min()
+    assert heard == sorted(heard)
+
+
+@pytest.mark.parametrize(("name", "gap"), [("steel", 0.01), ("knee", 0.6)])
+def test_bound_and_gap(name, gap):
+    """The bound is below the optimum, and within 1 % of it on a metal design, after 30 boxes."""
+    found = case(*CASES[name])
+    relaxed, bound = certify(found.actuator, found.x, found.objective, seconds=math.inf, most=30)
+    assert (1 - gap) * found.objective <= math.exp(bound.bound) <= found.objective
+    told = {claim.limit.name for claim in relaxed.covered} | set(relaxed.dropped)
+    assert told
+
+
+def test_nothing_is_left_below_what_is_proven():
+    """A box without a design no worse than a tenth of the best is empty, or bound above it."""
+    found = case("steel_baseline")
+    bounding = Bounding(found.layout, found.relaxed.objective)
+    bound = Search(found.layout, bounding, math.log(0.1 * found.objective), most=3).run()
+    assert bound.closed
