@@ -78,7 +78,10 @@ def _evidence(solution: Solution) -> str:
     if count == 0:
         return ""
     best = solution.objective
-    same = sum(abs(start.objective - best) <= SAME * abs(best) for start in solution.starts)
+    same = sum(
+        start.feasible and abs(start.objective - best) <= SAME * abs(best)
+        for start in solution.starts
+    )
     missed = 1 - (1 - CHANCE) ** (1 / count)
     return (
         f"{same} of {count} starts led to this optimum, none to a better one; a better one that "

@@ -69,9 +69,11 @@ def convergence(optimisation: Optimisation) -> list[str]:
         count = len(optimisation.starts)
         lines.append(f"None of {count} starts led to a design that meets every requirement.")
     elif optimisation.starts:
-        best = min(optimisation.starts, key=lambda v: abs(v - optimisation.objective_value))
-        same = sum(abs(v - best) <= 1e-3 * abs(best) for v in optimisation.starts)
-        found = ", ".join(text.value_text(objective, v) for v in optimisation.starts[:8])
+        best = optimisation.objective_value
+        same = sum(v is not None and abs(v - best) <= 1e-3 * abs(best) for v in optimisation.starts)
+        found = ", ".join(
+            "none" if v is None else text.value_text(objective, v) for v in optimisation.starts[:8]
+        )
         more = ", …" if len(optimisation.starts) > 8 else ""
         lines.append(
             f"{same} of {len(optimisation.starts)} starts reached the same optimum within 0.1 %:"

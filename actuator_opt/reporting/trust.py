@@ -77,7 +77,8 @@ def _marks(optimisation: Optimisation) -> list[tuple[float, str]]:
             if one.feasible and one.objective is not None:
                 found.append((one.objective, "other choices"))
     known = [best]
-    for value in sorted(optimisation.starts, key=lambda one: abs(one - best)):
+    reached = (value for value in optimisation.starts if value is not None)
+    for value in sorted(reached, key=lambda one: abs(one - best)):
         if all(abs(value - other) > NEAR * abs(other) for other in known):
             known.append(value)
     found += [(value, "other local optimum") for value in known[1:3]]
@@ -155,12 +156,14 @@ def _course_block(optimisation: Optimisation) -> list[Block]:
     ys = [y for value in values for y in (value, value)]
     for line in axes.clipped(xs, ys):
         ink.line(*line, pen=0.35, stroke=BLUE)
-    ends = [_above(value, best) for value in optimisation.starts]
+    ends = [(k, one) for k, one in enumerate(optimisation.starts, start=1) if one is not None]
     if ends:
-        span = (0.5, len(ends) + 0.5)
-        axes = _decades(ink, (122.0, 8.0, 54.0, 32.0), span, ends, "where each start led", "start")
-        for number, value in enumerate(ends, start=1):
-            ink.circle(axes.x(number), axes.y(value), 0.9, fill=BLUE)
+        span = (0.5, len(optimisation.starts) + 0.5)
+        heights = [_above(one, best) for _, one in ends]
+        box = (122.0, 8.0, 54.0, 32.0)
+        axes = _decades(ink, box, span, heights, "where each start led", "start")
+        for (number, _), height in zip(ends, heights, strict=True):
+            ink.circle(axes.x(number), axes.y(height), 0.9, fill=BLUE)
     note = (
         "Designs that meet every limit, over the evaluations of all starts; none: below 0.0001 %."
     )
