@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from actuator_opt.models.trial_mode import TrialMode
+
 COLUMN = {
     "critical_load": 1.3e5, "bending_stiffness_1": 5000.0, "length_1": 0.2,
     "shear_stiffness_1": 4e6, "bending_stiffness_2": 1200.0, "length_2": 0.18,
@@ -15,7 +17,23 @@ FLEXURE = {
     "span": 0.3, "second_moment": 7e-9, "shear_compliance": 5e-6, "local_compliance": 4e-7,
 }  # fmt: skip
 
+BENT = {
+    "bending_stiffness_1": 5000.0, "length_1": 0.2, "bending_stiffness_2": 1200.0,
+    "length_2": 0.18,
+}  # fmt: skip
+
 SAMPLES: dict = {
+    "rod.free_modulus": {"wall": PLY},
+    "trial_mode.buckled_mode": {"critical_load": 1.3e5, **BENT},
+    "trial_mode.trial_mode_load": {"mode": TrialMode(0.5, 0.6, 1.2, 1.1), **BENT},
+    "tube_bounds.least_growth": {
+        "hoop": [9e10, 2e11], "cross": [4e10, 5e9], "radial": [9e10, 1.2e10],
+        "decays": [0.4, -0.7], "thicknesses": [1e-3, 2e-3], "inner_radius": 16e-3,
+    },
+    "tube_bounds.axial_stiffness_bounds": {
+        "free": [7e10, 1e10], "held": [7.2e10, 1.5e10], "thicknesses": [1e-3, 2e-3],
+        "inner_radius": 16e-3,
+    },
     "stepped.mode_shear_stiffness": [
         {**COLUMN, "ends": ends}
         for ends in (

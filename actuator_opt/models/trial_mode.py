@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from ..numeric import Array, namespace, sqrt
 
 
-class TrialMode(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class TrialMode:
     """A bent shape between two pins, 1 where the segments meet, each over its own length.
 
     Integrals over 0 to 1 of the square of the deflection of both segments, and of the square of

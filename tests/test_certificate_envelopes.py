@@ -1,0 +1,114 @@
+"""Envelopes of models without a closed form: never less able than the exact model."""
+
+from __future__ import annotations
+
+from math import pi
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from samples_tube import PLY
+
+from actuator_opt.models import rod
+from actuator_opt.models.layered_tube import TubeLayer, layered_tube, tube_state
+from actuator_opt.models.solid_ply import solid_rotated, solid_stiffness
+from actuator_opt.models.stepped import stepped_column_load
+from actuator_opt.models.trial_mode import buckled_mode, trial_mode_load
+from actuator_opt.models.tube_bounds import axial_stiffness_bounds, least_growth
+
+RADIUS = 16e-3
+ROUNDING = 1e-9
+CARBON = solid_stiffness(**PLY)
+METAL = solid_stiffness(
+    youngs_modulus_1=70e9, youngs_modulus_2=70e9, youngs_modulus_3=70e9, poissons_ratio_12=0.33,
+    poissons_ratio_13=0.33, poissons_ratio_23=0.33, shear_modulus_12=70e9 / 2.66,
+)  # fmt: skip
+LAYER = st.tuples(
+    st.sampled_from([CARBON, METAL]),
+    st.floats(0.0, pi / 2),
+    st.floats(0.1e-3, 5e-3),
+    st.floats(-4, 4).filter(lambda b: abs(b) > 1e-3),
+)
+COLUMN = st.tuples(*[st.floats(1e2, 1e5)] * 2, *[st.floats(0.05, 1.0)] * 2)
+
+
+def segments(bending_1, bending_2, length_1, length_2):
+    """A stepped column between two pins."""
+    return {
+        "bending_stiffness_1": bending_1,
+        "length_1": length_1,
+        "bending_stiffness_2": bending_2,
+        "length_2": length_2,
+    }
+
+
+@given(st.lists(LAYER, min_size=1, max_size=4), st.floats(0.0, 0.5))
+def test_tube_bounds_hold(layers, contraction):
+    """No lay-up grows less or is stiffer than its bounds, whatever the trial displacement."""
+    stiffness, angles, thicknesses, decays = zip(*layers, strict=True)
+    walls = [
+        solid_rotated(stiffness=one, angle=angle)
+        for one, angle in zip(stiffness, angles, strict=True)
+    ]
+    tube = layered_tube(
+        layers=[
+            TubeLayer(stiffness=one, angle=angle, thickness=thickness)
+            for one, angle, thickness in zip(stiffness, angles, thicknesses, strict=True)
+        ],
+        inner_radius=RADIUS,
+    )
+    growth = float(tube_state(tube=tube, inner_pressure=1.0).bore_displacement)
+    axial = 1 / float(tube_state(tube=tube, axial_force=1.0).axial_strain)
+    least = least_growth(
+        hoop=[wall[3] for wall in walls],
+        cross=[wall[4] for wall in walls],
+        radial=[wall[5] for wall in walls],
+        decays=decays,
+        thicknesses=thicknesses,
+        inner_radius=RADIUS,
+    )
+    held = [
+        w[0] - 2 * contraction * (w[1] + w[2]) + contraction**2 * (w[3] + 2 * w[4] + w[5])
+        for w in walls
+    ]
+    low, high = axial_stiffness_bounds(
+        free=[rod.free_modulus(wall=wall) for wall in walls],
+        held=held,
+        thicknesses=thicknesses,
+        inner_radius=RADIUS,
+    )
+    assert least <= growth * (1 + ROUNDING)
+    assert low * (1 - ROUNDING) <= axial <= high * (1 + ROUNDING)
+
+
+def test_growth_is_exact_for_the_true_displacement():
+    """A thick metal tube held axially in plane strain moves as a/r + b r: one power is close."""
+    thin = 1e-6
+    wall = solid_rotated(stiffness=METAL, angle=0.0)
+    least = least_growth(
+        hoop=[wall[3]], cross=[wall[4]], radial=[wall[5]], decays=[wall[4] / wall[5]],
+        thicknesses=[thin], inner_radius=RADIUS,
+    )  # fmt: skip
+    plane_strain = 70e9 / (1 - 0.33**2)
+    assert least == pytest.approx(RADIUS**2 / (plane_strain * thin), rel=1e-3)
+
+
+@given(COLUMN, COLUMN)
+def test_a_trial_mode_never_buckles_earlier(real, other):
+    """The buckled shape of another column gives a load no less than the critical one."""
+    shape = segments(*other)
+    mode = buckled_mode(critical_load=stepped_column_load(**shape), **shape)
+    trial, exact = (
+        trial_mode_load(mode=mode, **segments(*real)),
+        stepped_column_load(**segments(*real)),
+    )
+    assert trial >= exact * (1 - 1e-7)
+
+
+@given(COLUMN)
+def test_a_column_buckles_in_its_own_mode(real):
+    """The shape in which a column buckles gives its critical load itself."""
+    column = segments(*real)
+    load = stepped_column_load(**column)
+    own = trial_mode_load(mode=buckled_mode(critical_load=load, **column), **column)
+    assert own == pytest.approx(load, rel=1e-6)
