@@ -51,10 +51,11 @@ def _of_function(op: str, args: tuple[Any, ...]) -> Bounds:
     if op in _RISING:
         domain, function = _RISING[op]
         low, high = bounds_of(args[0])
-        return _at(function, max(low, domain)), _at(function, max(high, domain))
+        low, high = _wider(_at(function, max(low, domain)), _at(function, max(high, domain)))
+        return max(low, _at(function, domain)), min(high, _at(function, math.inf))
     if op == "pow" and bounds_of(args[0])[0] >= 0:
         low, high = (_at(lambda x: x ** args[1], end) for end in bounds_of(args[0]))
-        return (low, high) if args[1] > 0 else (high, low)
+        return _wider(low, high) if args[1] > 0 else _wider(high, low)
     if op in ("sin", "cos"):
         return _of_wave(op, *bounds_of(args[0]))
     return ANY
@@ -81,17 +82,30 @@ def _at(function: Callable[[float], float], value: float) -> float:
         return math.inf if function(1.0) == 1.0 else -math.inf
 
 
+def _wider(low: float, high: float) -> Bounds:
+    """Bounds with room for the rounding of functions, which differs from library to library."""
+    return low - ROUNDING * abs(low), high + ROUNDING * abs(high)
+
+
+ROUNDING = 1e-14
+"""Relative room for what a function rounds."""
+
+
 def _of_wave(op: str, low: float, high: float) -> Bounds:
     """Bounds of a sine or cosine over an interval."""
     if not high - low < 2 * math.pi:
         return -1.0, 1.0
-    shift = 0.0 if op == "cos" else 0.5 * math.pi
-    low, high = low - shift, high - shift
-    ends = (math.cos(low), math.cos(high))
-    crests = math.floor(high / (2 * math.pi)) - math.ceil(low / (2 * math.pi)) >= 0
-    half = math.pi
-    hollows = math.floor((high - half) / (2 * half)) - math.ceil((low - half) / (2 * half)) >= 0
-    return (-1.0 if hollows else min(ends)), (1.0 if crests else max(ends))
+    wave, crest = (math.cos, 0.0) if op == "cos" else (math.sin, 0.5 * math.pi)
+    ends = (wave(low), wave(high))
+    room = ROUNDING * (1 + max(abs(low), abs(high)))
+
+    def passes(place: float) -> bool:
+        """Whether a place lies in the interval, a whole number of turns away."""
+        turn = 2 * math.pi
+        return math.ceil((low - place) / turn - room) <= math.floor((high - place) / turn + room)
+
+    least = -1.0 if passes(crest + math.pi) else max(min(ends) - room, -1.0)
+    return least, 1.0 if passes(crest) else min(max(ends) + room, 1.0)
 
 
 def _product(a: float, b: float) -> float:
