@@ -1,4 +1,4 @@
-"""Critical load of a stepped column from above, by a shape that need not be the one it buckles in."""
+"""Critical load of a stepped column from above, by a shape that need not be its own."""
 
 from __future__ import annotations
 

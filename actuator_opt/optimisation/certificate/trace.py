@@ -98,6 +98,9 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
             done = statics(one, values, out, envelopes.implicit())
         found.facts += [(part, 0.0) for part in done.mass_parts.values()]
         found.facts += _along_the_stroke(done, out, positions)
+        if envelopes.bearable is not None:
+            proof = values["supply.proof_ratio"] * values["supply.pressure"]
+            out.put("proof_factor", {"balance of the wall": envelopes.bearable / proof})
         _collect(actuator, found, list(limits), out, values, first=i == 0)
     return found
 
