@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from cli_runner import BENCH, KNEE, bench, evaluated, refused, run
 
@@ -290,3 +292,16 @@ def test_the_knee_end_to_end(tmp_path):
     for word in ("requirements met", "at lower bound", "KKT residual", "%/%"):
         assert word in result.out
     assert run("evaluate", file, "-q").code == 0
+
+
+def test_a_certificate_is_proven_and_repeats():
+    """The steel knee is within 1 % of the best possible; the same input gives the same proof."""
+    steel = Path(__file__).parents[1] / "designs" / "steel_baseline.yaml"
+    first, again = (run("optimise", steel, "--certify", "--json").json for _ in range(2))
+    found, value = first["certificate"], first["objective"]["value"]
+    assert found == again["certificate"]
+    assert 0 < found["gap"] < 0.01
+    assert found["lower_bound"] == pytest.approx(value * (1 - found["gap"]))
+    assert {"stiffness_min", "friction_running", "buckling_factor"} <= set(found["covers"])
+    assert set(found["dropped"]).isdisjoint(found["covers"])
+    assert found["boxes"] > 0

@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from actuator_opt.optimisation.listed import Listed
 from cli_runner import bench, run
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -20,6 +19,7 @@ from actuator_opt.design.model import Ply
 from actuator_opt.errors import InputError
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.branch_and_bound import search
+from actuator_opt.optimisation.listed import Listed
 from actuator_opt.optimisation.problem import Problem, Values
 from actuator_opt.optimisation.rounding import Wanted, misfits, plies, rounded, sizes_of
 from actuator_opt.optimisation.solver import solve

@@ -8,6 +8,9 @@ from enum import Enum
 from .kkt import Kkt
 from .problem import Problem, Vector
 
+MET = 1e-6
+"""Worst violation that counts as met (contract)."""
+
 
 class Outcome(Enum):
     """How a run ended: status word, sentence, remedy."""
@@ -119,6 +122,11 @@ class StartRecord:
     algorithm: str
     evaluations: int
 
+    @property
+    def feasible(self) -> bool:
+        """Whether it led to a point that meets every limit."""
+        return self.violation <= MET
+
 
 @dataclass(frozen=True)
 class Solution:
@@ -169,7 +177,7 @@ class Solution:
     @property
     def feasible(self) -> bool:
         """Whether every margin is at least -1e-6 and every equality within 1e-6."""
-        return self.violation <= 1e-6
+        return self.violation <= MET
 
     @property
     def interrupted(self) -> bool:

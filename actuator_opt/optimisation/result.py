@@ -278,10 +278,10 @@ class Optimisation:
     infeasibility: Infeasibility | None
     evaluations: int
     samples: int
-    starts: tuple[float, ...]
-    """Objective of the local optimum reached from each start."""
+    starts: tuple[float | None, ...]
+    """Objective that each start led to; None where that design misses a limit."""
     trace: tuple[tuple[int, float, float], ...]
-    """(evaluation, objective, worst margin) of each improvement."""
+    """(evaluation, objective, worst violation) of each improvement."""
     algorithm: str
     warnings: tuple[str, ...]
     seed: int

@@ -155,7 +155,10 @@ def _result(
         infeasibility=after.why,
         evaluations=solution.evaluations,
         samples=solution.samples,
-        starts=tuple(actuator.goal.shown(record.objective) for record in solution.starts),
+        starts=tuple(
+            actuator.goal.shown(record.objective) if record.feasible else None
+            for record in solution.starts
+        ),
         trace=solution.trace,
         algorithm=solution.algorithm,
         warnings=(

@@ -69,9 +69,11 @@ def convergence(optimisation: Optimisation) -> list[str]:
         count = len(optimisation.starts)
         lines.append(f"None of {count} starts led to a design that meets every requirement.")
     elif optimisation.starts:
-        best = min(optimisation.starts, key=lambda v: abs(v - optimisation.objective_value))
-        same = sum(abs(v - best) <= 1e-3 * abs(best) for v in optimisation.starts)
-        found = ", ".join(text.value_text(objective, v) for v in optimisation.starts[:8])
+        best = optimisation.objective_value
+        same = sum(v is not None and abs(v - best) <= 1e-3 * abs(best) for v in optimisation.starts)
+        found = ", ".join(
+            "none" if v is None else text.value_text(objective, v) for v in optimisation.starts[:8]
+        )
         more = ", …" if len(optimisation.starts) > 8 else ""
         lines.append(
             f"{same} of {len(optimisation.starts)} starts reached the same optimum within 0.1 %:"
@@ -83,10 +85,15 @@ def convergence(optimisation: Optimisation) -> list[str]:
             steps[k] for k in sorted({0, len(steps) // 3, 2 * len(steps) // 3, -1 % len(steps)})
         ]
         path = " → ".join(
-            f"{text.value_text(objective, value)} ({text.margin_text(worst)} at {count})"
-            for count, value, worst in picked
+            f"{text.value_text(objective, value)} ({_missed(violation)} at {count})"
+            for count, value, violation in picked
         )
-        lines.append(f"Improvements (worst margin at evaluation): {path}.")
+        lines.append(f"Improvements (limits at evaluation): {path}.")
     if optimisation.kkt is not None and optimisation.kkt.active:
         lines.append(f"Active at the optimum: {', '.join(optimisation.kkt.active)}.")
     return lines
+
+
+def _missed(violation: float) -> str:
+    """How far a design misses its limits, in words."""
+    return "all met" if violation <= 1e-6 else f"missed by {text.number(100 * violation, 2)} %"

@@ -338,7 +338,7 @@ def optimisation_text(
         notes(optimisation, **style),
         choices_table.terminal(optimisation, **style),
         whole_plies.terminal(optimisation, **style),
-        "\n".join(console.wrap(line) for line in trust.proof(optimisation)),
+        "\n".join(console.wrap(line) for line in trust.proof(optimisation, brief=True)),
         "\n".join(console.wrap(s, "dim") for s in optimum.convergence(optimisation)),
     ]
     return "\n\n".join(part for part in parts if part) + "\n"

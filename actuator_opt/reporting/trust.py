@@ -17,6 +17,9 @@ from .optimum import convergence, sentence
 LEAST = 1e-4
 """Per cent above the optimum that count as none."""
 
+MET = 1e-6
+"""Worst violation of a design that counts as meeting its limits."""
+
 NEAR = 1e-3
 """Relative difference of objectives up to which two starts found one optimum."""
 
@@ -38,24 +41,20 @@ def lines(optimisation: Optimisation) -> list[str]:
     return [*proof(optimisation), *convergence(optimisation)]
 
 
-def proof(optimisation: Optimisation) -> list[str]:
-    """What the certificate says; without one, how to get it."""
+def proof(optimisation: Optimisation, *, brief: bool = False) -> list[str]:
+    """What the certificate says; without one, how to get it. `brief` leaves the covered limits."""
     certificate = optimisation.certificate
     if certificate is None:
         if optimisation.infeasibility is not None or not optimisation.variables:
             return []
-        return [
-            "No bound was asked for: `optimise --certify` proves how far this is from the best."
-        ]
+        return ["Not proven: optimise --certify tells how far this is from the best possible."]
     said = [sentence(certificate.sentence)]
-    if certificate.covers:
+    if certificate.covers and not brief:
         said.append(f"The proof covers: {', '.join(certificate.covers)}.")
     if certificate.dropped:
-        parts = [f"{name} ({why})" for name, why in certificate.dropped.items()]
-        said.append(
-            "It does without the following, which can only make the best possible worse than the"
-            f" bound: {'; '.join(parts)}."
-        )
+        shown = [name if brief else f"{name} ({why})" for name, why in certificate.dropped.items()]
+        covered = f"It covers {len(certificate.covers)} limits and does" if brief else "It does"
+        said.append(f"{covered} without these, which can only lower the bound: {'; '.join(shown)}.")
     if certificate.evidence:
         said.append(sentence(certificate.evidence))
     return said
@@ -78,7 +77,8 @@ def _marks(optimisation: Optimisation) -> list[tuple[float, str]]:
             if one.feasible and one.objective is not None:
                 found.append((one.objective, "other choices"))
     known = [best]
-    for value in sorted(optimisation.starts, key=lambda one: abs(one - best)):
+    reached = (value for value in optimisation.starts if value is not None)
+    for value in sorted(reached, key=lambda one: abs(one - best)):
         if all(abs(value - other) > NEAR * abs(other) for other in known):
             known.append(value)
     found += [(value, "other local optimum") for value in known[1:3]]
@@ -89,39 +89,39 @@ def _marks(optimisation: Optimisation) -> list[tuple[float, str]]:
 
 
 def _scale_block(optimisation: Optimisation) -> list[Block]:
-    """What is proven, the optimum and what comes near, on one scale."""
-    certificate, best = optimisation.certificate, optimisation.objective_value
-    bound = None if certificate is None else certificate.lower_bound
-    marks = _marks(optimisation)
-    if bound is None and not marks:
+    """What is proven, the optimum and what comes near, with a title."""
+    bound = _bound(optimisation)
+    if bound is None and not _marks(optimisation):
         return []
-    quantity = _quantity(optimisation)
-    unit = text.unit_text(quantity.unit)
-    values = [quantity.to_display(one) for one, _ in marks]
-    middle = quantity.to_display(best)
-    ends = [middle, *values] + ([] if bound is None else [quantity.to_display(bound)])
-    low, high = min(ends), max(ends)
-    room = 0.04 * ((high - low) or abs(middle) or 1.0)
-    names = [
-        (middle, "optimum found", True),
-        *zip(values, [w for _, w in marks], [False] * 9, strict=False),
-    ]
+    note = "Left of the bound no design meets the covered limits; right of it a better one may."
+    title = "Proven, found, and what comes near"
+    return [figure(title, scale(optimisation), "" if bound is None else note)]
+
+
+def _bound(optimisation: Optimisation) -> float | None:
+    certificate = optimisation.certificate
+    return None if certificate is None else certificate.lower_bound
+
+
+def scale(optimisation: Optimisation) -> Ink:
+    """What is proven, the optimum and what comes near, on one scale."""
+    quantity, bound = _quantity(optimisation), _bound(optimisation)
+    names = [(quantity.to_display(optimisation.objective_value), "optimum found", True)]
+    names += [(quantity.to_display(value), words, False) for value, words in _marks(optimisation)]
+    if bound is not None:
+        names.append((quantity.to_display(bound), "proven bound", False))
+    low, high = min(name[0] for name in names), max(name[0] for name in names)
+    room = 0.04 * ((high - low) or abs(high) or 1.0)
     ink = Ink(WIDTH, 34.0)
     axes = Axes(ink, (4.0, 14.0, WIDTH - 8.0, 8.0), (low - room, high + room), (0.0, 1.0))
     places = [(value, text.trimmed(value)) for value in ticks(*axes.x_range, 8)]
-    label = quantity.label + (f", {unit}" if unit else "")
-    axes.frame_at("", label, places, [], upright=True)
+    unit = text.unit_text(quantity.unit)
+    axes.frame_at("", quantity.label + (f", {unit}" if unit else ""), places, [], upright=True)
     if bound is not None:
-        edge = quantity.to_display(bound)
-        ink.box(axes.left, axes.top, axes.x(edge) - axes.left, axes.height, fill=PALE, pen=0.1)
-        words = "proven: no design here"
-        if axes.x(edge) - axes.left > text_width(words, 6.5) + 2.0:
-            ink.text(axes.x(edge) - 1.0, axes.top + 4.0, words, anchor="right", color=GREY)
-        ink.line((axes.x(edge), axes.top), (axes.x(edge), axes.top + axes.height), pen=0.4)
-        names.append((edge, "proven bound", False))
+        edge = axes.x(quantity.to_display(bound))
+        ink.box(axes.left, axes.top, edge - axes.left, axes.height, fill=PALE, pen=0.1)
     _labelled(ink, axes, sorted(names))
-    note = "Left of the bound no design meets the covered limits; right of it a better one may."
-    return [figure("Proven, found, and what comes near", ink, note if bound is not None else "")]
+    return ink
 
 
 def _labelled(ink: Ink, axes: Axes, names: Sequence[tuple[float, str, bool]]) -> None:
@@ -143,8 +143,8 @@ def _labelled(ink: Ink, axes: Axes, names: Sequence[tuple[float, str, bool]]) ->
 def _course_block(optimisation: Optimisation) -> list[Block]:
     """How far above the optimum the best design was over the evaluations, and where starts led."""
     best = optimisation.objective_value
-    steps = [step for step in optimisation.trace if step[0] > 0]
-    if len(steps) < 3 or not best:
+    steps = [step for step in optimisation.trace if step[0] > 0 and step[2] <= MET]
+    if len(steps) < 2 or not best:
         return []
     counts = [float(count) for count, _, _ in steps]
     last = max(float(optimisation.evaluations), counts[-1])
@@ -156,13 +156,17 @@ def _course_block(optimisation: Optimisation) -> list[Block]:
     ys = [y for value in values for y in (value, value)]
     for line in axes.clipped(xs, ys):
         ink.line(*line, pen=0.35, stroke=BLUE)
-    ends = [_above(value, best) for value in optimisation.starts]
+    ends = [(k, one) for k, one in enumerate(optimisation.starts, start=1) if one is not None]
     if ends:
-        span = (0.5, len(ends) + 0.5)
-        axes = _decades(ink, (122.0, 8.0, 54.0, 32.0), span, ends, "where each start led", "start")
-        for number, value in enumerate(ends, start=1):
-            ink.circle(axes.x(number), axes.y(value), 0.9, fill=BLUE)
-    note = "The search counts the evaluations of all starts; below 0.0001 % is the same optimum."
+        span = (0.5, len(optimisation.starts) + 0.5)
+        heights = [_above(one, best) for _, one in ends]
+        box = (122.0, 8.0, 54.0, 32.0)
+        axes = _decades(ink, box, span, heights, "where each start led", "start")
+        for (number, _), height in zip(ends, heights, strict=True):
+            ink.circle(axes.x(number), axes.y(height), 0.9, fill=BLUE)
+    note = (
+        "Designs that meet every limit, over the evaluations of all starts; none: below 0.0001 %."
+    )
     return [figure("How the search went", ink, note)]
 
 
