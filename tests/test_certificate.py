@@ -117,14 +117,15 @@ def test_no_design_lies_below_the_bound(some):
     assert heard == sorted(heard)
 
 
-@pytest.mark.parametrize(("name", "gap"), [("steel", 0.01), ("knee", 0.6)])
+@pytest.mark.parametrize(("name", "gap"), [("steel", 0.01), ("knee", 0.45)])
 def test_bound_and_gap(name, gap):
-    """The bound is below the optimum, and within 1 % of it on a metal design, after 30 boxes."""
+    """The bound is below the optimum, closest on metal; every limit is covered or dropped."""
     found = case(*CASES[name])
     relaxed, bound = certify(found.actuator, found.x, found.objective, seconds=math.inf, most=30)
     assert (1 - gap) * found.objective <= math.exp(bound.bound) <= found.objective
-    told = {claim.limit.name for claim in relaxed.covered} | set(relaxed.dropped)
-    assert told
+    told = [claim.limit.name for claim in relaxed.covered] + list(relaxed.dropped)
+    for row in found.actuator.rows:
+        assert any(one.startswith(row.limit_of.name) for one in told), row.label
 
 
 def test_nothing_is_left_below_what_is_proven():

@@ -156,7 +156,9 @@ def _collect(
             if isinstance(value, Symbol):
                 where = ", ".join(x for x in (case, place) if x)
                 found.claims.append(Claim(limit, f"{limit.name} ({where})", value, bound))
-        if not rows and first:
+            else:
+                found.dropped.setdefault(limit.name, "no variable changes it where it is traced")
+        if not rows and (first or limit.case is not None):
             found.dropped[limit.name] = "its model is no closed expression"
 
 
