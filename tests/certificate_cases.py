@@ -40,10 +40,10 @@ class Case:
     def designs(self, count: int, seed: int) -> np.ndarray:
         """Designs (count, variables) that meet every limit: random walks from the inside."""
         rng, problem = np.random.default_rng(seed), self.actuator.problem
-        starts = [self.x] + [_inside(problem, room, self.x) for room in (0.001, 0.005, 0.05)]
-        walkers = np.repeat(np.stack(starts, axis=1), 100, axis=1)
+        starts = [self.x] + [_inside(problem, room, self.x) for room in (0.001, 0.02)]
+        walkers = np.repeat(np.stack(starts, axis=1), 60, axis=1)
         found: list[np.ndarray] = []
-        for _ in range(60):
+        for _ in range(30):
             size = 10 ** rng.uniform(-4, -0.7, walkers.shape[1])
             some = rng.random(walkers.shape) < rng.uniform(0.1, 1, walkers.shape[1])
             steps = np.exp(size * some * rng.standard_normal(walkers.shape))
@@ -72,7 +72,7 @@ def case(name: str, *changes: tuple[str, str]) -> Case:
     """A design of the repository, with changes of its entries."""
     design = read_design(DESIGNS / f"{name}.yaml", overrides=changes).design
     actuator = build(prepare(design))
-    best = solve(actuator.problem, samples=2048)
+    best = solve(actuator.problem, samples=512, starts=3)
     relaxed = relax(trace(actuator, best.x), HEAVIER * best.objective)
     layout = Layout(relaxed.relaxation)
     root = Box.whole(layout).tightened(layout)

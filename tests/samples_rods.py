@@ -30,6 +30,13 @@ SAMPLES: dict = {
         "hoop": [9e10, 2e11], "cross": [4e10, 5e9], "radial": [9e10, 1.2e10],
         "decays": [0.4, -0.7], "thicknesses": [1e-3, 2e-3], "inner_radius": 16e-3,
     },
+    "tube_bounds.ply_hoop_strength": {
+        "tension_1": 1.9e9, "tension_2": 5.5e7, "shear_12": 8.5e7, "angle": 0.9,
+    },
+    "tube_bounds.greatest_pressure": {
+        "yields": [2.4e8, None], "hoops": [None, 1.9e9], "thicknesses": [6e-4, 1.2e-3],
+        "inner_radius": 16e-3,
+    },
     "tube_bounds.axial_stiffness_bounds": {
         "free": [7e10, 1e10], "held": [7.2e10, 1.5e10], "thicknesses": [1e-3, 2e-3],
         "inner_radius": 16e-3,

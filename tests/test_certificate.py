@@ -14,9 +14,14 @@ from actuator_opt.optimisation.certificate.certify import certify
 from actuator_opt.optimisation.certificate.search import Search
 
 CASES = {
-    "steel": ("steel_baseline",),
-    "steel, light piston": ("steel_baseline", ("piston.material", "al_7075_t6")),
+    "steel": ("steel_baseline", ("piston.material", "al_7075_t6")),
     "knee": ("knee",),
+    "knee sized by strength": (
+        "knee",
+        ("requirements.proof_factor.min", "2"),
+        ("requirements.seal_gap.max", "60e-6"),
+        ("requirements.stiffness_min.min", "4e6"),
+    ),
     "aerospace": ("aerospace",),
 }
 ROUNDING = 1e-9
@@ -27,7 +32,7 @@ ROUNDING = 1e-9
 def some(request):
     """A case with designs that meet every limit."""
     found = case(*CASES[request.param])
-    return found, found.designs(25, 1)
+    return found, found.designs(15, 1)
 
 
 def columns(bounding: Bounding, layout: Layout, y):
@@ -42,7 +47,7 @@ def columns(bounding: Bounding, layout: Layout, y):
 def around(layout: Layout, root: Box, ways, rng) -> Box:
     """A part of the root box that holds a design, by random splits."""
     box = root
-    for _ in range(rng.integers(0, 25)):
+    for _ in range(rng.integers(0, 12)):
         number = int(rng.integers(layout.directions))
         at = rng.uniform(box.low[number], box.high[number])
         parts = box.split(number, at)
@@ -112,19 +117,20 @@ def test_no_design_lies_below_the_bound(some):
     assert heard == sorted(heard)
 
 
-@pytest.mark.parametrize(("name", "gap"), [("steel", 0.01), ("knee", 0.6)])
+@pytest.mark.parametrize(("name", "gap"), [("steel", 0.01), ("knee", 0.45)])
 def test_bound_and_gap(name, gap):
-    """The bound is below the optimum, and within 1 % of it on a metal design, after 30 boxes."""
+    """The bound is below the optimum, closest on metal; every limit is covered or dropped."""
     found = case(*CASES[name])
     relaxed, bound = certify(found.actuator, found.x, found.objective, seconds=math.inf, most=30)
     assert (1 - gap) * found.objective <= math.exp(bound.bound) <= found.objective
-    told = {claim.limit.name for claim in relaxed.covered} | set(relaxed.dropped)
-    assert told
+    told = [claim.limit.name for claim in relaxed.covered] + list(relaxed.dropped)
+    for row in found.actuator.rows:
+        assert any(one.startswith(row.limit_of.name) for one in told), row.label
 
 
 def test_nothing_is_left_below_what_is_proven():
     """A box without a design no worse than a tenth of the best is empty, or bound above it."""
-    found = case("steel_baseline")
+    found = case(*CASES["steel"])
     bounding = Bounding(found.layout, found.relaxed.objective)
     bound = Search(found.layout, bounding, math.log(0.1 * found.objective), most=3).run()
     assert bound.closed

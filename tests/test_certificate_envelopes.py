@@ -4,17 +4,30 @@ from __future__ import annotations
 
 from math import pi
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from samples_tube import PLY
 
 from actuator_opt.models import rod
-from actuator_opt.models.layered_tube import TubeLayer, layered_tube, tube_state
+from actuator_opt.models.layered_tube import (
+    TubeLayer,
+    layered_tube,
+    ply_stresses_at_faces,
+    tube_state,
+)
 from actuator_opt.models.solid_ply import solid_rotated, solid_stiffness
 from actuator_opt.models.stepped import stepped_column_load
+from actuator_opt.models.strength_modes import PlyStrength, max_stress_modes
 from actuator_opt.models.trial_mode import buckled_mode, trial_mode_load
-from actuator_opt.models.tube_bounds import axial_stiffness_bounds, least_growth
+from actuator_opt.models.tube_bounds import (
+    axial_stiffness_bounds,
+    greatest_pressure,
+    least_growth,
+    ply_hoop_strength,
+)
+from actuator_opt.models.yielding import yield_utilisation
 
 RADIUS = 16e-3
 ROUNDING = 1e-9
@@ -91,6 +104,70 @@ def test_growth_is_exact_for_the_true_displacement():
     )  # fmt: skip
     plane_strain = 70e9 / (1 - 0.33**2)
     assert least == pytest.approx(RADIUS**2 / (plane_strain * thin), rel=1e-3)
+
+
+STRENGTH = PlyStrength(1900e6, 1300e6, 55e6, 190e6, 85e6)
+YIELD = 240e6
+WARM = {"expansion_1": 1e-6, "expansion_2": 28e-6, "expansion_3": 28e-6}
+WARM_METAL = dict.fromkeys(WARM, 23e-6)
+WALL = st.lists(
+    st.tuples(st.booleans(), st.floats(0.0, pi / 2), st.floats(0.2e-3, 4e-3)),
+    min_size=1,
+    max_size=4,
+)
+
+
+@given(WALL, st.floats(0.0, 1.0), st.floats(-120.0, 0.0))
+def test_no_wall_bears_more_before_its_first_damage(layers, capped, change):
+    """The first ply failure or yield of any lay-up, cured or not, is below the balance's."""
+    tube = layered_tube(
+        layers=[
+            TubeLayer(stiffness=METAL, thickness=t, **WARM_METAL)
+            if metal
+            else TubeLayer(stiffness=CARBON, angle=angle, thickness=t, **WARM)
+            for metal, angle, t in layers
+        ],
+        inner_radius=RADIUS,
+    )
+    force = capped * pi * RADIUS**2
+    load = ply_stresses_at_faces(
+        tube=tube, state=tube_state(tube=tube, inner_pressure=1.0, axial_force=force)
+    )
+    held = ply_stresses_at_faces(tube=tube, state=tube_state(tube=tube, temperature_change=change))
+    used = []
+    for k, (metal, _, _) in enumerate(layers):
+        own, cured = (tuple(part[:, k] for part in whole) for whole in (load, held))
+        if metal:
+            used.append(yield_utilisation(stress=own, yield_strength=YIELD, residual=cured))
+        else:
+            used += max_stress_modes(stress=own, strength=STRENGTH, residual=cured).values()
+    first = 1 / max(float(np.max(one)) for one in used)
+    most = greatest_pressure(
+        yields=[YIELD if metal else None for metal, _, _ in layers],
+        hoops=[
+            None
+            if metal
+            else ply_hoop_strength(
+                tension_1=STRENGTH.tension_1,
+                tension_2=STRENGTH.tension_2,
+                shear_12=STRENGTH.shear_12,
+                angle=angle,
+            )
+            for metal, angle, _ in layers
+        ],
+        thicknesses=[t for _, _, t in layers],
+        inner_radius=RADIUS,
+    )
+    assert first <= most * (1 + ROUNDING)
+
+
+def test_a_thin_liner_and_a_thin_hoop_ply_bear_their_strengths():
+    """Barlow: thin layers bear strength times thickness over radius, the liner at 2/sqrt(3)."""
+    thin = 1e-6
+    most = greatest_pressure(
+        yields=[YIELD, None], hoops=[None, 1900e6], thicknesses=[thin, thin], inner_radius=RADIUS
+    )
+    assert most == pytest.approx((2 / 3**0.5 * YIELD + 1900e6) * thin / RADIUS, rel=1e-3)
 
 
 @given(COLUMN, COLUMN)

@@ -1,4 +1,4 @@
-"""What no layered tube of given layers can beat: least bore growth, axial stiffness between two.
+"""What no layered tube of given layers can beat: bore growth, axial stiffness, pressure.
 
 Energy bounds: any displacement that fits together stores at least the energy of the true one, any
 stress in balance the complementary energy [Gurtin1972]. They are sums over the layers, so that
@@ -8,8 +8,9 @@ they hold for every thickness and radius at once.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import sqrt
 
-from ..numeric import Array
+from ..numeric import Array, namespace
 from .rod import section_area
 
 
@@ -110,3 +111,94 @@ def axial_stiffness_bounds(
         area = section_area(outer_diameter=face, inner_diameter=bore)
         low, high, bore = low + least * area, high + most * area, face
     return low, high
+
+
+def ply_hoop_strength(
+    *, tension_1: Array, tension_2: Array, shear_12: Array, angle: Array
+) -> Array:
+    """Largest hoop stress of a ply that keeps the maximum-stress criterion.
+
+    S = (X_t + Y_t)/2 - (X_t - Y_t)/2 cos 2a + S_12 sin 2a.
+
+    Parameters
+    ----------
+    tension_1, tension_2, shear_12 : strengths X_t, Y_t, S_12 [Pa]
+    angle : a, winding angle from the tube axis, 0 to pi/2 [rad]
+
+    Returns
+    -------
+    stress [Pa]
+
+    Notes
+    -----
+    Valid: any ply whose failure is stress against strength, direction by direction.
+
+    References
+    ----------
+    [derived] hoop stress from ply stresses, each at its strength
+
+    Examples
+    --------
+    >>> s = ply_hoop_strength(tension_1=1900e6, tension_2=55e6, shear_12=85e6,
+    ...                       angle=1.5707963)
+    >>> print(f"{s / 1e6:.0f} MPa")
+    1900 MPa
+    """
+    xp = namespace(angle)
+    mean, half = (tension_1 + tension_2) / 2, (tension_1 - tension_2) / 2
+    return mean - half * xp.cos(2 * angle) + shear_12 * xp.sin(2 * angle)
+
+
+def greatest_pressure(
+    *,
+    yields: Sequence[Array | None],
+    hoops: Sequence[Array | None],
+    thicknesses: Sequence[Array],
+    inner_radius: Array,
+) -> Array:
+    """Pressure that no layered tube bears before its first damage, from above.
+
+    From the outer face inwards: a ply adds S_k t_k/r_(k-1) to p_k r_k/r_(k-1), a metal layer
+    (2/sqrt(3)) sigma_y ln(r_k/r_(k-1)) to p_k; p_n = 0.
+
+    Parameters
+    ----------
+    yields : sigma_y of each metal layer from the bore outwards, None of a ply [Pa]
+    hoops : S_k of each ply, None of a metal layer [Pa]
+    thicknesses : of each layer [m]
+    inner_radius : r_i [m]
+
+    Returns
+    -------
+    pressure [Pa]
+
+    Notes
+    -----
+    Valid: C_tt >= C_rr; axial strain and warmth alone stress no ply beyond S_k around the hoop.
+
+    Balance of each layer: d(r sigma_r)/dr = sigma_t in a ply, whose mean is no more than at its
+    faces; d sigma_r/dr = (sigma_t - sigma_r)/r in a metal, by von Mises.
+
+    References
+    ----------
+    [derived] equilibrium of each layer in turn
+
+    Examples
+    --------
+    >>> p = greatest_pressure(yields=[240e6, None], hoops=[None, 1900e6],
+    ...                       thicknesses=[0.6e-3, 1.2e-3], inner_radius=16e-3)
+    >>> print(f"{p / 1e5:.0f} bar")
+    1476 bar
+    """
+    radii = [inner_radius]
+    for thickness in thicknesses:
+        radii.append(radii[-1] + thickness)
+    pressure: Array = 0.0
+    layers = list(zip(yields, hoops, thicknesses, radii[:-1], radii[1:], strict=True))
+    for strength, hoop, thickness, inside, outside in reversed(layers):
+        ratio = thickness / inside
+        if strength is not None:
+            pressure = pressure + 2 / sqrt(3) * strength * namespace(ratio).log1p(ratio)
+        else:
+            pressure = pressure * (outside / inside) + hoop * ratio
+    return pressure

@@ -22,8 +22,8 @@ from .signomial import Form
 WIDEST = 40.0
 """Widest range of an argument that gets a chord; beyond it the chord says nothing."""
 
-ROUNDS = 12
-"""Most rounds of tangents in one box."""
+ROUNDS = 3
+"""Most rounds of tangents in one box; the next boxes begin with them."""
 
 FIRST = (0.0,)
 """Places of the first tangents, over half of a range."""
@@ -31,8 +31,11 @@ FIRST = (0.0,)
 ENOUGH = 2e-5
 """Gain of the bound by a round of tangents below which there is no other."""
 
-MISSED = 1e-4
-"""Distance from a curve at which a tangent is added."""
+MISSED = (1e-5, 1e-3)
+"""Least and largest distance from a curve at which a tangent is added."""
+
+FINE = 0.01
+"""That distance over the gap that is left."""
 
 PROVEN = 1e-6
 """Least value of a ray that proves that nothing is left: above rounding."""
@@ -89,6 +92,11 @@ class Bounding:
             none + np.inf,
         )
         self.solver = self._solver()
+        self.missed = MISSED[1]
+
+    def refine(self, gap: float) -> None:
+        """Add tangents as close as a gap of the objective's logarithm needs."""
+        self.missed = float(np.clip(FINE * gap, *MISSED))
 
     def _definitions(self) -> tuple[Any, Vector, Vector]:
         """Outs and directions by their atoms; rows at least zero."""
@@ -291,7 +299,7 @@ class Bounding:
 
     def _tangents(self, x: Vector) -> bool:
         """Add tangents where the point lies on their side of a curve; whether there are any."""
-        some = np.flatnonzero(self._missed(x) > MISSED)
+        some = np.flatnonzero(self._missed(x) > self.missed)
         if len(some):
             self._append(self._touching(self._argument(x), some))
         return len(some) > 0
@@ -336,6 +344,7 @@ _OPTIONS = {
     "output_flag": False,
     "presolve": "off",
     "simplex_strategy": 0,
+    "simplex_dual_edge_weight_strategy": 1,  # Devex: weights cost nothing after a change of rows
     "primal_feasibility_tolerance": 1e-7,
     "dual_feasibility_tolerance": 1e-9,
     "threads": 1,

@@ -54,7 +54,7 @@ class Relaxed:
         own = {form.powers[0][0]: name for name, form in self.variables.items()}
         found: list[float] = []
         for i, maker in enumerate(self.relaxation.makers):
-            found.append(math.log(known[own[i]]) if i in own else maker(found))
+            found.append(_log(known[own[i]]) if i in own else maker(found))
         return np.array(found)
 
 
@@ -150,3 +150,8 @@ def _meets(layout: Layout, y: Vector) -> bool:
     rows = layout.parts[2]
     inside = (box.lower - MET <= y) & (y <= box.upper + MET)
     return bool(inside.all() and (high[rows] >= -2 * MET).all())
+
+
+def _log(value: float) -> float:
+    """Logarithm; of what is not above zero, that of zero."""
+    return math.log(value) if value > 0 else -math.inf

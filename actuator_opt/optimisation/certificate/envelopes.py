@@ -25,6 +25,7 @@ from ...models.solid_ply import solid_rotated
 from ...models.trial_mode import TrialMode, buckled_mode, trial_mode_load
 from ...numeric import Array, maximum
 from ...symbolic import Symbol
+from ...symbolic.bounds import bounds_of
 from .relaxation import Unknown
 
 LEAST_DECAY = 1e-3
@@ -51,6 +52,8 @@ class Envelopes:
     ) -> None:
         self.problem, self.subject, self.there = problem, subject, there
         self.decays, self.case = decays, case
+        self.bearable: Array | None = None
+        """Pressure that no laminated wall bears before its first damage; None where unknown."""
 
     def implicit(self) -> Implicit:
         """The models to evaluate with."""
@@ -109,7 +112,8 @@ class Envelopes:
     def laminate(self, v: Values, design: Design, stock: Stock, g: Geometry, state: State) -> Wall:
         """A laminated wall: growth and axial stiffness unknown between their bounds.
 
-        It does not stretch under axial force (stiffer than it is); its strength is left out.
+        It does not stretch under axial force (stiffer than it is); of its strength stands only
+        `bearable`.
 
         Raises
         ------
@@ -123,6 +127,7 @@ class Envelopes:
             raise Unknown("a wall of single plies, which twists, has no envelope")
         walls = [solid_rotated(stiffness=layer.solid, angle=layer.angle) for layer in layers]
         thicknesses = [layer.thickness for layer in layers]
+        self.bearable = _bearable(v, design, stock, g)
         growth, stiffness = self._elastic(walls, thicknesses, g.inner_radius)
         supply = self._unknown("grown", lambda done: done.wall.growth)
         own = supply
@@ -226,3 +231,50 @@ def _held(wall: Sequence[Array], contraction: float) -> Array:
     """Axial modulus of a layer that contracts by a given share of its strain."""
     zz, zt, zr, tt, tr, rr = wall[:6]
     return zz - 2 * contraction * (zt + zr) + contraction**2 * (tt + 2 * tr + rr)
+
+
+def _bearable(v: Values, design: Design, stock: Stock, g: Geometry) -> Array | None:
+    """Pressure that no laminated wall bears before its first damage.
+
+    None where it is not proven: another criterion, autofrettage, strengths not stated, or a ply
+    stiffer through the wall than around it.
+    """
+    if design.barrel.criterion != "max_stress" or design.barrel.autofrettage_pressure is not None:
+        return None
+    states, missing = plies.climates(v, design), list[str]()
+    layers = plies.layers(v, stock, design.barrel.layup, "barrel.layup", states, missing)
+    if missing or not all(_wraps(layer) for layer in layers):
+        return None
+    return tube_bounds.greatest_pressure(
+        yields=[_largest(layer.yields) if layer.yields else None for layer in layers],
+        hoops=[_hoop(layer) if layer.strengths else None for layer in layers],
+        thicknesses=[layer.thickness for layer in layers],
+        inner_radius=g.inner_radius,
+    )
+
+
+def _hoop(layer: plies.Layer) -> Array:
+    """Largest hoop stress of a ply in its best climate."""
+    strengths = layer.strengths
+    return tube_bounds.ply_hoop_strength(
+        tension_1=_largest([one.tension_1 for one in strengths]),
+        tension_2=_largest([one.tension_2 for one in strengths]),
+        shear_12=_largest([one.shear_12 for one in strengths]),
+        angle=layer.angle,
+    )
+
+
+def _largest(values: Sequence[Array]) -> float:
+    """The largest of some numbers."""
+    return max(float(np.max(value)) for value in values)
+
+
+def _wraps(layer: plies.Layer) -> bool:
+    """Whether a layer is as stiff around the tube as through its wall, at any angle."""
+    if layer.isotropic:
+        return True
+    low, high = bounds_of(layer.angle)
+    c11, c12, _, c22, _, c33, c66 = (float(np.max(part)) for part in layer.solid)
+    room = 1 + 1e-9
+    stiff = c33 <= c22 * room and c22 <= c11 * room and c22 <= (c12 + 2 * c66) * room
+    return stiff and low >= 0 and high <= (math.pi / 2) * room

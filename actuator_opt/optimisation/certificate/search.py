@@ -28,10 +28,13 @@ MIDDLE = 0.2
 WORTH = 1e-9
 """Least excess times price that a split can gain."""
 
-FLOOR = 0.01
+FAR_OFF = 0.2
+"""Excess beyond which a curve is no more worth a split: its first one gains most of it."""
+
+FLOOR = 0.003
 """Least price of a curve in the choice of a direction: several loose ones in a row have none."""
 
-SQUEEZES = 8
+SQUEEZES = 2
 """Most rounds of cutting the first box."""
 
 WAYS = 16
@@ -93,6 +96,7 @@ class Search:
             if self.boxes >= self.most or time.perf_counter() > self.until:
                 break
             value, _, box, bound = heapq.heappop(self._open)
+            self.bounding.refine(self.best - value)
             choice = self._choice(box, bound)
             if choice is None:
                 self.least = min(self.least, value)
@@ -148,7 +152,7 @@ class Search:
 
     def _gains(self, bound: Bound) -> Vector:
         """What a split of every direction may gain."""
-        gains = bound.excess * (bound.price + FLOOR)
+        gains = np.minimum(bound.excess, FAR_OFF) * (bound.price + FLOOR)
         found = np.bincount(self.layout.direction, gains, self.layout.directions)
         return found.astype(float)
 

@@ -98,6 +98,9 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
             done = statics(one, values, out, envelopes.implicit())
         found.facts += [(part, 0.0) for part in done.mass_parts.values()]
         found.facts += _along_the_stroke(done, out, positions)
+        if envelopes.bearable is not None:
+            proof = values["supply.proof_ratio"] * values["supply.pressure"]
+            out.put("proof_factor", {"balance of the wall": envelopes.bearable / proof})
         _collect(actuator, found, list(limits), out, values, first=i == 0)
     return found
 
@@ -153,7 +156,9 @@ def _collect(
             if isinstance(value, Symbol):
                 where = ", ".join(x for x in (case, place) if x)
                 found.claims.append(Claim(limit, f"{limit.name} ({where})", value, bound))
-        if not rows and first:
+            else:
+                found.dropped.setdefault(limit.name, "no variable changes it where it is traced")
+        if not rows and (first or limit.case is not None):
             found.dropped[limit.name] = "its model is no closed expression"
 
 
