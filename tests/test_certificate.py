@@ -18,7 +18,7 @@ CASES = {
     "knee": ("knee",),
     "knee sized by strength": (
         "knee",
-        ("requirements.proof_factor.min", "2"),
+        ("requirements.proof_factor.min", "2.6"),
         ("requirements.seal_gap.max", "60e-6"),
         ("requirements.stiffness_min.min", "4e6"),
     ),
