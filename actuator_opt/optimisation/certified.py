@@ -12,9 +12,6 @@ from .result import Certificate
 CHANCE = 0.95
 """Probability at which the evidence of the starts is stated."""
 
-BOXES = 40
-"""Parts of the design space looked at, about 3 s; a time limit would not give the same bytes."""
-
 SAME = 1e-3
 """Relative difference of objectives up to which two starts found one optimum."""
 
@@ -41,9 +38,7 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
         tell("proving how good that is", math.exp(value) / best)
 
     try:
-        relaxed, found = certify(
-            actuator, solution.x, best, seconds=math.inf, most=BOXES, report=told
-        )
+        relaxed, found = certify(actuator, solution.x, best, seconds=math.inf, report=told)
     except Unknown as error:
         return Certificate(f"nothing is proven: {error}", evidence)
     bound = min(math.exp(found.bound), best)

@@ -254,14 +254,20 @@ def _bearable(v: Values, design: Design, stock: Stock, g: Geometry) -> Array | N
 
 
 def _hoop(layer: plies.Layer) -> Array:
-    """Largest hoop stress of a ply in its best climate."""
+    """Largest hoop stress of a ply in its best climate, and no less than along its fibres.
+
+    What axial strain and warmth alone stress a ply around the hoop stays far below that, as the
+    balance of the wall asks (`tube_bounds.greatest_pressure`).
+    """
     strengths = layer.strengths
-    return tube_bounds.ply_hoop_strength(
-        tension_1=_largest([one.tension_1 for one in strengths]),
+    along = _largest([one.tension_1 for one in strengths])
+    around = tube_bounds.ply_hoop_strength(
+        tension_1=along,
         tension_2=_largest([one.tension_2 for one in strengths]),
         shear_12=_largest([one.shear_12 for one in strengths]),
         angle=layer.angle,
     )
+    return maximum(around, along)
 
 
 def _largest(values: Sequence[Array]) -> float:
