@@ -50,9 +50,8 @@ def proof(optimisation: Optimisation, *, brief: bool = False) -> list[str]:
         return ["Not proven: optimise --certify tells how far this is from the best possible."]
     said = [sentence(certificate.sentence)]
     if certificate.covers and not brief:
-        said.append(
-            f"The proof covers, by the models or by what none of them can beat: {', '.join(certificate.covers)}."
-        )
+        names = ", ".join(certificate.covers)
+        said.append(f"The proof covers, by the models or by what none of them can beat: {names}.")
     if certificate.dropped:
         shown = [name if brief else f"{name} ({why})" for name, why in certificate.dropped.items()]
         covered = f"It covers {len(certificate.covers)} limits and does" if brief else "It does"
