@@ -1,15 +1,19 @@
 """How good is this: words of the certificate, its scale, the course of the search."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 import report_fixture as fixture
-from cli_runner import BENCH, run
+from cli_runner import BENCH, KNEE, run
 from hypothesis import given
 from hypothesis import strategies as st
 from report_fixture import overlaps
 
+from actuator_opt.design import read_design
 from actuator_opt.optimisation import certified
+from actuator_opt.optimisation.certificate.envelopes import refuse
+from actuator_opt.optimisation.certificate.relaxation import Unknown
 from actuator_opt.optimisation.result import Certificate
 from actuator_opt.reporting import trust
 
@@ -81,3 +85,41 @@ def test_an_objective_without_a_bound_says_so(setting, reason):
     assert found["gap"] is None
     assert reason in found["sentence"]
     assert "evidence, no proof" in found["evidence"]
+
+
+@pytest.mark.parametrize(
+    ("block", "said"),
+    [
+        ({"layup": True}, "a rod of layers"),
+        ({"linkage": True}, "a linkage"),
+        ({"film": True}, "a seal on its oil film"),
+        ({}, ""),
+    ],
+)
+def test_a_model_without_an_envelope_is_named(block, said):
+    """What has no envelope is refused in words before anything is traced."""
+    design = read_design(KNEE).design
+    if "layup" in block:
+        rod = design.rod.model_copy(update={"layup": design.barrel.layup})
+        design = design.model_copy(update={"rod": rod})
+    if "linkage" in block:
+        design = design.model_copy(update={"linkage": object()})
+    if "film" in block:
+        piston = design.seals.piston.model_copy(update={"friction": "film"})
+        seals = design.seals.model_copy(update={"piston": piston})
+        design = design.model_copy(update={"seals": seals})
+    if not said:
+        refuse(design)
+        return
+    with pytest.raises(Unknown, match=said):
+        refuse(design)
+
+
+def test_an_objective_of_several_load_cases_is_bounded():
+    """The friction of the worse case, minimised: its bound is close, and not above the optimum."""
+    steel = Path(__file__).parents[1] / "designs" / "steel_baseline.yaml"
+    done = run("optimise", steel, "--set", "objective.minimise=friction_running", "--certify",
+               "--json").json  # fmt: skip
+    found = done["certificate"]
+    assert found["lower_bound"] <= done["objective"]["value"]
+    assert found["gap"] < 0.01

@@ -43,9 +43,11 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
         return Certificate(f"nothing is proven: {error}", evidence)
     bound = min(math.exp(found.bound), best)
     gap = max(1 - bound / best, 0.0)
+    chosen = " with these choices" if actuator.subject.design.choices else ""
     words = (
-        f"no design that meets the covered limits has less than {quantity.text(bound, 5)} "
-        f"({quantity.label}): the design found is within {_percent(gap)} of the best possible"
+        f"no design within its bounds{chosen} that meets the covered limits has less than "
+        f"{quantity.text(bound, 5)} ({quantity.label}): the design found is within "
+        f"{_percent(gap)} of the best possible"
     )
     covers = tuple(dict.fromkeys(claim.limit.name for claim in relaxed.covered))
     dropped = {name: why for name, why in relaxed.dropped.items() if name not in covers}

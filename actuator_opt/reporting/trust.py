@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
+from ..optimisation.outcome import MET
 from ..optimisation.result import Optimisation
 from ..quantities import Quantity
 from . import text
@@ -16,9 +17,6 @@ from .optimum import convergence, sentence
 
 LEAST = 1e-4
 """Per cent above the optimum that count as none."""
-
-MET = 1e-6
-"""Worst violation of a design that counts as meeting its limits."""
 
 NEAR = 1e-3
 """Relative difference of objectives up to which two starts found one optimum."""

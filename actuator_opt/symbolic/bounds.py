@@ -51,13 +51,13 @@ def _of_function(op: str, args: tuple[Any, ...]) -> Bounds:
     if op in _RISING:
         domain, function = _RISING[op]
         low, high = bounds_of(args[0])
-        low, high = _at(function, max(low, domain)), _at(function, max(high, domain))
+        low, high = at_end(function, max(low, domain)), at_end(function, max(high, domain))
         if op == "sqrt":  # the one that rounds alike everywhere
             return low, high
         low, high = _wider(low, high)
-        return max(low, _at(function, domain)), min(high, _at(function, math.inf))
+        return max(low, at_end(function, domain)), min(high, at_end(function, math.inf))
     if op == "pow" and bounds_of(args[0])[0] >= 0:
-        low, high = (_at(lambda x: x ** args[1], end) for end in bounds_of(args[0]))
+        low, high = (at_end(lambda x: x ** args[1], end) for end in bounds_of(args[0]))
         return _wider(low, high) if args[1] > 0 else _wider(high, low)
     if op in ("sin", "cos"):
         return _of_wave(op, *bounds_of(args[0]))
@@ -75,14 +75,17 @@ _RISING: Final[dict[str, tuple[float, Callable[[float], float]]]] = {
 """Rising functions, with the least argument they have."""
 
 
-def _at(function: Callable[[float], float], value: float) -> float:
-    """A function at an end of its range; without an end where it has none."""
+def at_end(function: Callable[[float], float], value: float) -> float:
+    """A function at an end of its range: without an end where it has none there.
+
+    A logarithm falls without end towards the edge of its domain, a negative power rises.
+    """
     try:
         return function(value)
-    except OverflowError:
+    except (OverflowError, ZeroDivisionError):
         return math.inf
-    except (ValueError, ZeroDivisionError):  # a logarithm or a negative power of zero
-        return math.inf if function(1.0) == 1.0 else -math.inf
+    except ValueError:
+        return -math.inf
 
 
 def _wider(low: float, high: float) -> Bounds:

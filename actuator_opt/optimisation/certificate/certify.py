@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ...evaluation.kernel import Pass, compute
+from ...symbolic.bounds import bounds_of
 from ...symbolic.order import needed
 from ..actuator import ActuatorProblem
+from ..outcome import MET
 from ..problem import Vector
 from .bounding import Bounding
 from .box import Box, Gone, Layout
@@ -20,7 +23,7 @@ from .builder import Builder
 from .intervals import Empty, narrow, tighten
 from .lone import ranges
 from .plain import straighten
-from .relaxation import Relaxation, Unknown
+from .relaxation import Relaxation, Row, Unknown
 from .search import Found, Search
 from .signomial import Form
 from .trace import Claim, Traced, trace, variable
@@ -30,9 +33,6 @@ BOXES = 80
 
 SECONDS = 30.0
 """Time for the search on a machine that is far slower than most."""
-
-MET = 1e-6
-"""Relative room of a limit that still counts as met (contract)."""
 
 
 @dataclass(frozen=True)
@@ -95,12 +95,23 @@ def relax(traced: Traced, best: float) -> Relaxed:
     for more, less in traced.facts:
         with suppress(Unknown):
             builder.at_least(more, less)
-    (objective,) = (builder.form(one)[1] for one in set(traced.objectives))
+    objective = _largest(builder, traced.objectives)
     box = Box.whole(Layout(builder.found)).tightened(Layout(builder.found))
     builder.found.lower, builder.found.upper = box.lower.tolist(), box.upper.tolist()
     straighten(builder.found)
     exact = {name: one for name, (_, one) in traced.unknowns.items()}
     return Relaxed(builder.found, objective, builder.variables, tuple(covered), dropped, exact)
+
+
+def _largest(builder: Builder, values: Sequence[Any]) -> Form:
+    """Logarithm of the largest of some values, which every one of them bounds from below."""
+    forms = list(dict.fromkeys(builder.form(value)[1] for value in values))
+    if len(forms) == 1:
+        return forms[0]
+    low, high = (max(ends) for ends in zip(*map(bounds_of, values), strict=True))
+    found = builder.found.atom(low, high, lambda y: max(form.at(y) for form in forms))
+    builder.found.rows += [Row(form, found) for form in forms]
+    return found
 
 
 def _ends(claim: Claim) -> tuple[float, float]:

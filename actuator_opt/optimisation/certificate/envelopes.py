@@ -1,4 +1,4 @@
-"""Envelopes of the models that are no closed expression: never less able than the exact model."""
+"""Envelopes of models that are no closed expression: unknowns that exact values always meet."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Envelopes:
         rows = np.atleast_2d(np.asarray(value, dtype=float))
         return float(rows[min(self.case, len(rows) - 1), 0])
 
-    def _unknown(self, name: str, exact: Callable[[Pass], Array]) -> Symbol:
+    def unknown(self, name: str, exact: Callable[[Pass], Array]) -> Symbol:
         """An unknown of this load case."""
         return self.problem.unknown(f"{name}_{self.case}", lambda done: self._number(exact(done)))
 
@@ -90,9 +90,8 @@ class Envelopes:
             length_2=self._number(lengths[1]),
         )
 
-    @staticmethod
-    def column(mode: TrialMode | None) -> Callable[..., Array]:
-        """Critical load from above: bent in one shape, sheared as easily as the stiffer segment."""
+    def column(self, mode: TrialMode | None) -> Callable[..., Array]:
+        """Critical load, unknown below that of one shape sheared as the stiffer segment is."""
 
         def critical(design: Design, wall: Wall, rod: Rod, lengths: tuple[Array, Array]) -> Array:
             if mode is None:
@@ -105,7 +104,10 @@ class Envelopes:
                 length_2=lengths[1],
             )
             stiffer = maximum(wall.shear_stiffness, rod.shear_stiffness)
-            return column.engesser_load(critical_load=load, shear_stiffness=stiffer)
+            found = self.unknown("critical_load", lambda done: done.beam.critical)
+            most = column.engesser_load(critical_load=load, shear_stiffness=stiffer)
+            self.problem.facts.append((most, found))
+            return found
 
         return critical
 
@@ -129,10 +131,10 @@ class Envelopes:
         thicknesses = [layer.thickness for layer in layers]
         self.bearable = _bearable(v, design, stock, g)
         growth, stiffness = self._elastic(walls, thicknesses, g.inner_radius)
-        supply = self._unknown("grown", lambda done: done.wall.growth)
+        supply = self.unknown("grown", lambda done: done.wall.growth)
         own = supply
         if not np.array_equal(np.ravel(state.driven_pressure), np.ravel(v["supply.pressure"])):
-            own = self._unknown("grown_own", lambda done: done.wall.case_growth)
+            own = self.unknown("grown_own", lambda done: done.wall.case_growth)
         self.problem.facts += [
             (supply, v["supply.pressure"] * growth),
             (own, state.driven_pressure * growth),
@@ -204,6 +206,24 @@ class Envelopes:
         largest = supply * (load_path.largest_area(design, g) - share) + preload
         rods = load_path.TieRods(preload, largest, preload / (proof * share))
         return load_path.LoadPath({name: share}, 0.0, 0.0, rods)
+
+
+def refuse(design: Design) -> None:
+    """Refuse what has no envelope yet.
+
+    Raises
+    ------
+    Unknown
+        with what it is
+    """
+    elements = [*design.seals.piston.elements().values(), *design.seals.rod.elements().values()]
+    for there, what in (
+        (bool(design.rod.layup), "a rod of layers"),
+        (design.linkage is not None, "a linkage"),
+        (any(one.friction == "film" for one in elements), "a seal on its oil film"),
+    ):
+        if there:
+            raise Unknown(f"{what} has no envelope yet")
 
 
 def layered(subject: Subject) -> bool:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ...symbolic import Symbol
-from ...symbolic.bounds import Bounds, bounds, bounds_of
+from ...symbolic.bounds import Bounds, at_end, bounds, bounds_of
 from .signomial import Form, Signomial
 
 ROUNDS = 30
@@ -286,25 +286,16 @@ def _power(node: Symbol) -> bool:
     low, high = (max(end, 0.0) for end in node.bounds)
     if exponent < 0:
         low, high = high, low
-    ends = [_guarded(lambda x: x ** (1 / exponent), end) for end in (low, high)]
+    ends = [at_end(lambda x: x ** (1 / exponent), end) for end in (low, high)]
     return narrow(base, (ends[0], ends[1]))
 
 
 def _inverse(function: Callable[[float], float]) -> Callable[[Symbol], bool]:
     def rule(node: Symbol) -> bool:
-        low, high = (_guarded(function, end) for end in node.bounds)
+        low, high = (at_end(function, end) for end in node.bounds)
         return narrow(node.args[0], (low, high))
 
     return rule
-
-
-def _guarded(function: Callable[[float], float], value: float) -> float:
-    try:
-        return function(value)
-    except OverflowError:
-        return math.inf
-    except (ValueError, ZeroDivisionError):
-        return math.inf if value > 1 or function(1.0) == 1.0 else -math.inf
 
 
 def _neg(node: Symbol) -> bool:

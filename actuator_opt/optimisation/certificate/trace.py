@@ -1,7 +1,8 @@
 """The problem as expressions of its variables, from the same models that evaluate a design.
 
-One load case is traced at a time. What is no closed expression has an envelope here: every design
-that meets the exact limit meets the one traced. What cannot be traced is dropped, by name.
+One load case is traced at a time. What is no closed expression is an unknown here, with an envelope
+that holds for its exact value, so that limits either way stay true. What cannot be traced is
+dropped, by name.
 """
 
 from __future__ import annotations
@@ -20,7 +21,12 @@ from ...evaluation.values import Values
 from ...symbolic import Graph, Symbol
 from ..actuator import ActuatorProblem
 from ..problem import Vector
-from .envelopes import Envelopes, decays
+from .envelopes import Envelopes, decays, refuse
+from .relaxation import Unknown
+
+
+SOFTER = 1e-5
+"""Relative room of the stiffness: its position in closed form is the softest to some 1e-7."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +77,14 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
     ----------
     actuator : the problem
     x : a design, at which envelopes are tight
+
+    Raises
+    ------
+    Unknown
+        a model that all stands on cannot be traced
     """
     subject, problem = actuator.subject, actuator.problem
+    refuse(subject.design)
     graph = Graph()
     found = Traced(
         graph,
@@ -94,21 +106,31 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
         values = Values(subject.numbers, one.cases, found.variables)
         envelopes = Envelopes(found, subject, there, falls, i)
         out = Computed()
-        with np.errstate(all="ignore"):
-            done = statics(one, values, out, envelopes.implicit())
+        try:
+            with np.errstate(all="ignore"):
+                done = statics(one, values, out, envelopes.implicit())
+        except (TypeError, AttributeError):  # what symbols say to operations they do not know
+            raise Unknown("one of its models is no expression of the variables") from None
         found.facts += [(part, 0.0) for part in done.mass_parts.values()]
-        found.facts += _along_the_stroke(done, out, positions)
+        found.facts += _along_the_stroke(envelopes, done, out, positions)
         if envelopes.bearable is not None:
             proof = values["supply.proof_ratio"] * values["supply.pressure"]
-            out.put("proof_factor", {"balance of the wall": envelopes.bearable / proof})
+            least = found.unknown("proof_factor", _least_proof)
+            found.facts.append((envelopes.bearable / proof, least))
+            out.put("proof_factor", least)
         _collect(actuator, found, list(limits), out, values, first=i == 0)
     return found
 
 
+def _least_proof(done: Pass) -> float:
+    """The least proof factor of all places."""
+    return min(float(np.min(value)) for value in done.computed.metrics["proof_factor"].values())
+
+
 def _along_the_stroke(
-    done: Statics, out: Computed, positions: tuple[float, ...]
+    envelopes: Envelopes, done: Statics, out: Computed, positions: tuple[float, ...]
 ) -> Iterator[tuple[Any, Any]]:
-    """Stiffness at some positions: the least of all is no larger.
+    """Stiffness is no more than at some positions.
 
     Facts: walls only add to the compliance of the oil, a matrix of the two chambers, so that its
     determinant and diagonal are no less than those of the oil.
@@ -117,16 +139,16 @@ def _along_the_stroke(
     if springs.topology != "per_chamber" or springs.seals is not None:
         return
     series = springs.series_compliance()
-    places = {}
+    least = envelopes.unknown("stiffness", lambda one: one.computed.metrics["stiffness_min"][""])
     for share in positions:
         x = share * stroke
-        places[f"at {100 * share:.3g} % of the stroke"] = 1 / (1 / springs.hydraulic(x) + series)
+        yield (1 + SOFTER) / (1 / springs.hydraulic(x) + series), least
         a, b, ab = springs.total().at(x, stroke)
         oil_a, oil_b, _ = springs.total(springs.oil).at(x, stroke)
         yield a, oil_a
         yield b, oil_b
         yield a * b - ab * ab, oil_a * oil_b
-    out.put("stiffness_min", places)
+    out.put("stiffness_min", least)
     out.put("stiffness_rod", springs.chain["rod"])
 
 
