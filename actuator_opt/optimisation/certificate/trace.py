@@ -24,7 +24,6 @@ from ..problem import Vector
 from .envelopes import Envelopes, decays, refuse
 from .relaxation import Unknown
 
-
 SOFTER = 1e-5
 """Relative room of the stiffness: its position in closed form is the softest to some 1e-7."""
 
