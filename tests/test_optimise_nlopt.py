@@ -150,6 +150,26 @@ def test_best_feasible_iterate_is_kept():
         assert found.point.objective <= start.objective
 
 
+@pytest.mark.parametrize("fault", [KeyboardInterrupt, SystemExit, StopIteration, OSError])
+@pytest.mark.parametrize("place", ["model", "slopes", "callback"])
+def test_nothing_that_is_raised_is_lost_in_nlopt(fault, place, monkeypatch):
+    """Whatever a model raises, and Ctrl-C wherever it lands, comes out as it was raised."""
+    evaluator = Evaluator(easy())
+    start = evaluator.point(np.array([1.0, 0.5]))
+
+    def raising(*_):
+        raise fault
+
+    owner, name = {
+        "model": (evaluator, "point"),
+        "slopes": (evaluator, "jacobian"),
+        "callback": (nlopt_wrapper._Guard, "objective"),
+    }[place]
+    monkeypatch.setattr(owner, name, raising)
+    with pytest.raises(fault):
+        nlopt_wrapper.run(evaluator, start, "LD_SLSQP")
+
+
 def impossible_from(product):
     """Minimise a + b with a b >= product: feasible, and the first steps overshoot."""
 

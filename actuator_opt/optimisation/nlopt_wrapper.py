@@ -9,7 +9,8 @@ iterate is kept, and whoever calls judges the point itself.
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -249,19 +250,17 @@ class _Guard:
         """Return the point, or None where the run must stop."""
         if self.error is not None:
             return None
-        try:
-            point = self.point(np.array(u, dtype=float))
-        except BaseException as error:  # re-raised after NLopt has returned
-            self._stop(error)
-            return None
-        self.last = point
-        if point.valid:
-            self.worst = max(self.worst, abs(point.objective) / self.scale)
-            best = self.best
-            if point.violation <= FEASIBLE and (best is None or point.objective < best.objective):
-                self.best = point
-            self._look_around(point)
-        return point
+        with self._held():
+            self.last = point = self.point(np.array(u, dtype=float))
+            if point.valid:
+                self.worst = max(self.worst, abs(point.objective) / self.scale)
+                if point.violation <= FEASIBLE and (
+                    self.best is None or point.objective < self.best.objective
+                ):
+                    self.best = point
+                self._look_around(point)
+            return point
+        return None
 
     def _look_around(self, point: Point) -> None:
         """Stop near a known optimum: going on would only reach it once more."""
@@ -272,11 +271,16 @@ class _Guard:
             near = abs(point.objective - known.objective) <= share * abs(known.objective)
             if near and np.abs(point.z - known.z).max(initial=0.0) <= reach:
                 self.arrived = index
-                self._stop(_Arrived())
+                raise _Arrived
 
-    def _stop(self, error: BaseException) -> None:
-        self.error = error
-        self.handle.force_stop()
+    @contextmanager
+    def _held(self) -> Iterator[None]:
+        """Hold back what a model raises, and Ctrl-C, until `run` raises it after NLopt's return."""
+        try:
+            yield
+        except BaseException as error:  # all: NLopt makes a SystemError of whatever passes it
+            self.error = error
+            self.handle.force_stop()
 
     def objective(self, u: Vector, slope: Vector) -> float:
         point = self._visit(u)
@@ -285,10 +289,8 @@ class _Guard:
         if point is None or not point.valid:
             return 10.0 * self.worst
         if slope.size:
-            try:
+            with self._held():
                 slope[:] = self._slopes(point)[0] / self.scale
-            except BaseException as error:  # re-raised after NLopt has returned
-                self._stop(error)
         return point.objective / self.scale
 
     def _rows(self, result: Vector, u: Vector, slopes: Vector, rows: slice, fault: float) -> None:
@@ -300,10 +302,8 @@ class _Guard:
             return
         result[:] = -point.rows[rows]
         if slopes.size:
-            try:
+            with self._held():
                 slopes[:] = -self._slopes(point)[rows]
-            except BaseException as error:  # re-raised after NLopt has returned
-                self._stop(error)
 
     def inequalities(self, result: Vector, u: Vector, slopes: Vector) -> None:
         self._rows(result, u, slopes, slice(1, 1 + self.evaluator.constraint_count), 1.0)
@@ -363,8 +363,9 @@ def run(
     nlopt.srand(seed + 1)
     try:
         found = handle.optimize(guard.from_point(start))
-    except (RuntimeError, ValueError, SystemError, MemoryError):  # NLopt's own complaints
+    except (RuntimeError, ValueError, SystemError, MemoryError) as error:  # NLopt's complaints
         found = None
+        guard.error = guard.error or error.__cause__  # Ctrl-C where no guard held it back
     code = int(handle.last_optimize_result())
     if guard.error is not None and not isinstance(guard.error, (LimitReached, _Arrived)):
         raise guard.error
