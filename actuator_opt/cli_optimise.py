@@ -25,14 +25,18 @@ from .options import (
     Set,
     StandardSizes,
     Starts,
+    VerifyDynamics,
     WholePlies,
     Write,
 )
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from .optimisation.result import Optimisation
     from .reporting import ExtraTable
     from .simulation.verification import Verification
+    from .verbs import Actuator, Trial
 
 
 def optimise(
@@ -43,14 +47,7 @@ def optimise(
     whole_plies: WholePlies = False,
     standard_sizes: StandardSizes = False,
     certify: Certify = False,
-    verify: Annotated[
-        str | None,
-        typer.Option(
-            "--verify-dynamics",
-            metavar="SCENARIO",
-            help="Simulate the best design in this scenario: does each dynamic requirement hold?",
-        ),
-    ] = None,
+    verify: VerifyDynamics = None,
     write: Write = None,
     out: Out = REPORTS,
     report: Annotated[
@@ -68,9 +65,7 @@ def optimise(
     reporting = report or not as_json
     check_targets(out if reporting else None, date, write)
     actuator = read_actuator(design, sets, plugin)
-    trial = None if verify is None else verbs.read_scenario(verify)
-    if trial is not None:
-        verbs.fitting(trial, actuator)
+    trial = _scenario(verify, actuator)
     with streams.watching():
         result = verbs.optimise(
             actuator,
@@ -83,40 +78,81 @@ def optimise(
             certify=certify,
         )
     outcome = _outcome(result)
-    good = outcome == ExitCode.MET or result.status == "interrupted"
-    if outcome == ExitCode.INTERRUPTED:
-        trial, reporting = None, False
-    if write is not None and good:
-        verbs.save(result.best, write, source=actuator.source)
-    with streams.watching():
-        timed = None if trial is None else verbs.verify_dynamics(trial, result.best)
+    stopped = outcome == ExitCode.INTERRUPTED
+    saved, unsaved = _saved(result, outcome, write, actuator)
+    timed = None if trial is None or stopped else _timed(trial, result)
     tables = _dynamics_tables(timed)
-    files = write_report(result, actuator, out, date, tables) if reporting else []
+    files = write_report(result, actuator, out, date, tables) if reporting and not stopped else []
     if as_json:
-        more: dict[str, Any] = {} if timed is None else {"dynamics_verified": timed.to_dict()}
-        streams.out_json(result.to_dict() | more | ({"files": files} if files else {}))
+        streams.out_json(_as_json(result, timed, files))
     elif not quiet:
-        from .optimisation.rounding import unrounded
-        from .reporting.terminal import optimisation_text
-
-        streams.out(optimisation_text(result, **streams.style()), end="")
-        if timed is not None:
-            from .reporting.verification_text import verification_text
-
-            streams.out("\n" + verification_text(timed, **streams.style()), end="")
-        if remark := unrounded(result):
-            streams.err(remark)
-        say_files(([{"path": write}] if write is not None and good else []) + files)
-    if write is not None and not good:
-        why = (result.rounding or result).sentence
-        streams.err(f"{write}: not written, there is no design to save: {why}")
+        _tell(result, timed)
+        say_files(saved + files)
+    if unsaved:
+        streams.err(unsaved)
     if outcome == ExitCode.MET and timed is not None and not timed.met:
         outcome = ExitCode.MISSED
     sys.exit(outcome)  # an Exit with the status of an interrupt would be told as one
 
 
+def _scenario(file: str | None, actuator: Actuator) -> Trial | None:
+    """The scenario to verify the best design in, which must be one for it."""
+    from . import verbs
+
+    if file is None:
+        return None
+    trial = verbs.read_scenario(file)
+    verbs.fitting(trial, actuator)
+    return trial
+
+
+def _saved(
+    result: Optimisation, outcome: ExitCode, write: Path | None, actuator: Actuator
+) -> tuple[list[dict[str, Any]], str]:
+    """Save the best design where one is asked for: its file, or why there is none to save."""
+    from . import verbs
+
+    if write is None:
+        return [], ""
+    if outcome == ExitCode.MET or result.status == "interrupted":
+        verbs.save(result.best, write, source=actuator.source)
+        return [{"path": write}], ""
+    why = (result.rounding or result).sentence
+    return [], f"{write}: not written, there is no design to save: {why}"
+
+
+def _timed(trial: Trial, result: Optimisation) -> Verification:
+    """What the time domain says of the best design in its scenario."""
+    from . import verbs
+
+    with streams.watching():
+        return verbs.verify_dynamics(trial, result.best)
+
+
+def _as_json(
+    result: Optimisation, timed: Verification | None, files: list[dict[str, Any]]
+) -> dict[str, Any]:
+    """The object of the contract, what the time domain says and the files of the report."""
+    more: dict[str, Any] = {} if timed is None else {"dynamics_verified": timed.to_dict()}
+    return result.to_dict() | more | ({"files": files} if files else {})
+
+
+def _tell(result: Optimisation, timed: Verification | None) -> None:
+    """Print the tables, and a remark where plies are not whole yet."""
+    from .optimisation.rounding import unrounded
+    from .reporting.terminal import optimisation_text
+
+    streams.out(optimisation_text(result, **streams.style()), end="")
+    if timed is not None:
+        from .reporting.verification_text import verification_text
+
+        streams.out("\n" + verification_text(timed, **streams.style()), end="")
+    if remark := unrounded(result):
+        streams.err(remark)
+
+
 def _dynamics_tables(timed: Verification | None) -> list[ExtraTable]:
-    """What the time domain says of the best design, for its report."""
+    """The same as tables for its report."""
     if timed is None:
         return []
     from .reporting.verification_rows import verification_rows

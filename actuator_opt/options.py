@@ -75,5 +75,13 @@ Certify = Annotated[
         "--certify", help="Prove how far the best design is from the best possible (seconds)."
     ),
 ]
+VerifyDynamics = Annotated[
+    str | None,
+    typer.Option(
+        "--verify-dynamics",
+        metavar="SCENARIO",
+        help="Simulate the best design in this scenario: does each dynamic requirement hold?",
+    ),
+]
 Report = Annotated[bool, typer.Option("--report", help="Write the report (PDF and PNG) too.")]
 REPORTS = Path("reports")
