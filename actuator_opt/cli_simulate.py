@@ -81,11 +81,11 @@ def simulate(
     from . import verbs
 
     check_targets(out if report else None, date, csv)
-    if csv is not None:
-        require_apart(csv, scenario, *([measured] if measured else []))
     for name, given in (("--fit", fit), ("--column", columns)):
         if given and measured is None:
             raise UsageError(Diagnostic(f"{name}: only with --measured", "name the record"))
+    if csv is not None:
+        require_apart(csv, scenario, *([measured] if measured else []))
     trial = verbs.read_scenario(scenario, set=assignments(sets))
     if csv is not None:
         require_apart(csv, *map(str, trial.files))
@@ -101,27 +101,35 @@ def simulate(
             )  # fmt: skip
             found = overlay.simulation
         ranked = verbs.servo_sensitivities(trial) if sensitivity else None
-    data = found.to_dict() | ({} if overlay is None else {"measured": overlay.to_dict()})
-    if ranked is not None:
-        data["sensitivities"] = ranked.to_dict()
-    files: list[dict[str, Any]] = []
-    if csv is not None:
-        files.append(verbs.write_signals(found, csv).to_dict())
+    files = [] if csv is None else [verbs.write_signals(found, csv)]
     if report:
-        pages = verbs.write_simulation(
+        files += verbs.write_simulation(
             found, trial, measured=overlay, sensitivities=ranked,
             folder=out, command=command_line(), date=date,
         )  # fmt: skip
-        files += [page.to_dict() for page in pages]
-    if files:
-        data["files"] = files
+    written = [file.to_dict() for file in files]
     if as_json:
-        streams.out_json(data)
+        streams.out_json(_as_json(found, overlay, ranked, written))
     elif not quiet:
         _say(found, overlay, ranked)
-        say_files(files)
+        say_files(written)
     if not found.met:
         raise typer.Exit(ExitCode.MISSED)
+
+
+def _as_json(
+    found: Simulation,
+    overlay: Compared | None,
+    ranked: Sensitivities | None,
+    files: list[dict[str, Any]],
+) -> dict[str, Any]:
+    """Signals and figures, what a record says of them, and the files written."""
+    more = {
+        "measured": None if overlay is None else overlay.to_dict(),
+        "sensitivities": None if ranked is None else ranked.to_dict(),
+        "files": files or None,
+    }
+    return found.to_dict() | {name: one for name, one in more.items() if one is not None}
 
 
 def _say(found: Simulation, overlay: Compared | None, ranked: Sensitivities | None) -> None:

@@ -104,10 +104,17 @@ def compute_flow(
         out.put("port_velocity", lines.port_velocity(flow=flow["a"], port_diameter=port))
     else:
         out.skip("port_velocity", "no port stated: add cylinder.port_diameter")
-    if not design.lines:
+    if design.lines:
+        _compute_lines(v, design, state, flow, out)
+    else:
         for name in LINE_METRICS:
             out.skip(name, "no lines stated: add lines")
-        return
+
+
+def _compute_lines(
+    v: Values, design: Design, state: State, flow: dict[str, Array], out: Computed
+) -> None:
+    """Velocity, pressure drop, hammer and resonance of the lines, by the flow of their chamber."""
     velocity, drop, hammer = {}, {}, {}
     lengths: dict[str, Array] = {}
     times: dict[str, Array] = {}  # a wave's way through the lines of a chamber

@@ -17,6 +17,7 @@ from ..models import (
     seals,
     step_seal,
 )
+from .film_tables import Table
 from .gland_check import extrusion_end
 from .kernel import Pass, Subject
 from .provenance import describe
@@ -43,60 +44,70 @@ _MODELS: dict[str, Callable[..., object]] = {
 
 def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
     """(metric, text) of everything doubtful about the seals."""
-    liquid = subject.design.fluid.material
-    supply = float(v["supply.pressure"])
     for ring in done.rings:
-        compound = ring.element.compound
-        if ring.element.type in ("o_ring", "step_ring") and not ring.element.contact:
-            yield from _law(ring)
-        if ring.element.contact:
-            yield (
-                "friction_running",
-                f"{ring.label}: stated contact profiles are taken as they are, whatever the bore's "
-                "growth leaves of the squeeze",
-            )
-        if compatible(subject.materials[liquid], subject.materials[compound]) is False:
-            yield "", f"{ring.label}: {compound} does not withstand {liquid}"
-        if np.any(np.real(ring["squeeze_left"]) <= 0):
-            yield (
-                "friction_running",
-                f"{ring.label}: the bore's growth takes the whole squeeze, there is no contact",
-            )
-        elif not np.all(np.real(touch(ring).excess) > 0):
-            yield (
-                "friction_running",
-                f"{ring.label}: the sealed pressure would open the contact; its load is too small",
-            )
-        yield from _limits(subject, done, ring, supply)
-    leaking = done.computed.metrics.get("rod_leakage")
-    back = subject.films.items()
-    at_rest = [
-        t for (place, _, _), t in back if place == "rod" and not t.row.outward and t.flow > 0
-    ]
-    if leaking is not None and at_rest:
+        yield from _contact(subject, ring)
+        yield from _limits(subject, done, ring, float(v["supply.pressure"]))
+    if "rod_leakage" in done.computed.metrics:
+        yield from _leak_at_rest(subject)
+    for (place, case, stroke), table in subject.films.items():
+        yield from _film(f"film of the {place} seals ({v.cases[case]}, {stroke})", table)
+
+
+def _contact(subject: Subject, ring: Ring) -> Iterable[tuple[str, str]]:
+    """Laws out of their range, a compound the fluid attacks, a contact that is lost."""
+    liquid, compound = subject.design.fluid.material, ring.element.compound
+    if ring.element.type in ("o_ring", "step_ring") and not ring.element.contact:
+        yield from _law(ring)
+    if ring.element.contact:
+        yield (
+            "friction_running",
+            f"{ring.label}: stated contact profiles are taken as they are, whatever the bore's "
+            "growth leaves of the squeeze",
+        )
+    if compatible(subject.materials[liquid], subject.materials[compound]) is False:
+        yield "", f"{ring.label}: {compound} does not withstand {liquid}"
+    if np.any(np.real(ring["squeeze_left"]) <= 0):
+        yield (
+            "friction_running",
+            f"{ring.label}: the bore's growth takes the whole squeeze, there is no contact",
+        )
+    elif not np.all(np.real(touch(ring).excess) > 0):
+        yield (
+            "friction_running",
+            f"{ring.label}: the sealed pressure would open the contact; its load is too small",
+        )
+
+
+def _leak_at_rest(subject: Subject) -> Iterable[tuple[str, str]]:
+    """An averaged film of a rod seal that passes oil on the stroke in."""
+    if any(
+        place == "rod" and not table.row.outward and table.flow > 0
+        for (place, _, _), table in subject.films.items()
+    ):
         yield (
             "rod_leakage",
             "film of the rod seals leaks on the stroke in too: an averaged film passes oil at any "
             "gap, at rest as well, where a real elastomer seal holds; rod_leakage is told too high",
         )
-    for (place, case, stroke), table in subject.films.items():
-        name = f"film of the {place} seals ({v.cases[case]}, {stroke})"
-        for what, metric in _SURROGATES.items():
-            if table.errors[what] > FILM_ERROR:
-                yield (
-                    metric,
-                    f"{name}: the surrogate's {what} is up to {100 * table.errors[what]:.1f} % off "
-                    "the solved films within the bounds",
-                )
-        inputs = table.row.inputs()
-        if not table.surrogate.covers(inputs):
-            yield "friction_running", f"{name}: the design lies beyond the surrogate's box"
-        if table.surrogate.failed:
-            count = len(table.surrogate.failed)
+
+
+def _film(name: str, table: Table) -> Iterable[tuple[str, str]]:
+    """A surrogate that is not exact enough, used beyond its box, or has points without solution."""
+    for what, metric in _SURROGATES.items():
+        if table.errors[what] > FILM_ERROR:
             yield (
-                "friction_running",
-                f"{name}: {count} of its points have no solution ({table.surrogate.failed[0]})",
+                metric,
+                f"{name}: the surrogate's {what} is up to {100 * table.errors[what]:.1f} % off "
+                "the solved films within the bounds",
             )
+    if not table.surrogate.covers(table.row.inputs()):
+        yield "friction_running", f"{name}: the design lies beyond the surrogate's box"
+    if table.surrogate.failed:
+        count = len(table.surrogate.failed)
+        yield (
+            "friction_running",
+            f"{name}: {count} of its points have no solution ({table.surrogate.failed[0]})",
+        )
 
 
 def _law(ring: Ring) -> Iterable[tuple[str, str]]:

@@ -132,7 +132,7 @@ class Identification:
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI; what has no value is null with its reason beside it."""
         series = self.series()
-        found: dict[str, Any] = {
+        return {
             "record": self.record.name,
             "design": self.bench.design.name,
             "version": VERSION,
@@ -144,9 +144,9 @@ class Identification:
                 "pressure_loss": self.mean.value / self.area,
                 "pressure_loss_max": self.largest / self.area,
             },
-            "mu": None,
-            "stribeck": None,
-            "lugre": None,
+            **_coefficient(self.coefficient),
+            **_model("stribeck", self.stribeck),
+            **_model("lugre", self.lugre),
             "damping": [_point(one) for one in self.points],
             "stiffness": _range(series["stiffness"]),
             "growth_at_seal": _range(series["growth"]),
@@ -168,26 +168,34 @@ class Identification:
             "channels": {name: one._asdict() for name, one in self.motion.quality.items()},
             "notes": list(self.notes),
         }
-        if isinstance(self.coefficient, str):
-            found["mu_why"] = self.coefficient
-        else:
-            found["mu"] = {
-                "value": self.coefficient.value,
-                "lower": self.coefficient.lower,
-                "upper": self.coefficient.upper,
-                "contact_pressure": self.coefficient.contact_pressure,
-                "contact_force": self.coefficient.contact_force,
-                "contact_law": self.coefficient.law,
-                "windows": self.coefficient.windows,
-            }
-        for name, model in (("stribeck", self.stribeck), ("lugre", self.lugre)):
-            if isinstance(model, str):
-                found[f"{name}_why"] = model
-            else:
-                found[name] = {key: x.to_dict() for key, x in model.parameters.items()}
-                found[f"{name}_held"] = dict(model.held)
-                found[f"{name}_doubts"] = list(model.doubts)
-        return found
+
+
+def _coefficient(found: Coefficient | str) -> dict[str, Any]:
+    """The coefficient of friction; null and why, where there is none."""
+    if isinstance(found, str):
+        return {"mu": None, "mu_why": found}
+    return {
+        "mu": {
+            "value": found.value,
+            "lower": found.lower,
+            "upper": found.upper,
+            "contact_pressure": found.contact_pressure,
+            "contact_force": found.contact_force,
+            "contact_law": found.law,
+            "windows": found.windows,
+        }
+    }
+
+
+def _model(name: str, found: StribeckFit | LuGreFit | str) -> dict[str, Any]:
+    """The parameters of a friction model; null and why, where there is none."""
+    if isinstance(found, str):
+        return {name: None, f"{name}_why": found}
+    return {
+        name: {key: one.to_dict() for key, one in found.parameters.items()},
+        f"{name}_held": dict(found.held),
+        f"{name}_doubts": list(found.doubts),
+    }
 
 
 def _point(one: Point) -> dict[str, Any]:
