@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -192,7 +193,7 @@ def sensitivity(
         result = verbs.optimise(actuator, seed=seed)
     files = write_report(result, actuator, out, date) if report else []
     if as_json:
-        data = result.to_dict()
+        data = replace(result, rounding=None).to_dict()  # prices are of the continuous optimum
         keys = ["name", "version", "status", "outcome", "objective", "sensitivities"]
         keys += ["what_buys_most", "kkt", "infeasibility"]
         kept = {key: data[key] for key in keys if key in data}

@@ -13,6 +13,18 @@ from . import units
 INFINITY = float("inf")
 
 
+def short(value: float, digits: int = 4, *, full: bool = False) -> str:
+    """A number of so many digits; with `full` their zeros too.
+
+    >>> short(20000.0), short(7.9, 3), short(7.9, 3, full=True)
+    ('20000', '7.9', '7.90')
+    """
+    text = f"{value:{'#' if full else ''}.{digits}g}".removesuffix(".")
+    if "e" in text and 1 <= abs(float(text)) < 1e7:  # 20000, not 2e+04
+        return f"{float(text):.0f}"
+    return text
+
+
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """A named physical quantity; limits in SI, `lower` and `upper` included."""
@@ -36,10 +48,7 @@ class Quantity:
 
     def text(self, value: float, digits: int = 4) -> str:
         """SI value as text with its display unit, ``"25 mm"``."""
-        short = f"{self.to_display(value):.{digits}g}"
-        if "e" in short and 1 <= abs(float(short)) < 1e7:  # 20000, not 2e+04
-            short = f"{float(short):.0f}"
-        return f"{short} {self.unit}".rstrip()
+        return f"{short(self.to_display(value), digits)} {self.unit}".rstrip()
 
     def range_text(self) -> str:
         """The valid range as text with units, ``"0.5 mm to 2000 mm"``."""
@@ -376,3 +385,8 @@ RESULTS = _table("""
  dynamic_phase        | phi    | angle       | deg    | -180 | 180 | phase by which the force leads
 """)
 """What a simulation tells; a scenario's requirements name them."""
+
+
+def of_metric(name: str) -> Quantity:
+    """The declared quantity of a metric; an undeclared one (a user's own) is a plain ratio."""
+    return METRICS.get(name) or Quantity(name, "", "ratio", "", name.replace("_", " "))

@@ -161,6 +161,8 @@ def test_what_buys_the_most():
         "Of the design's fixed numbers, 10 % less supply.pressure (189 bar) saves 7.90 g (3.8 %).",
         "No design was found with friction_running at 283.5 N.",
     ]
+    told_in_json = fixture.build_optimisation().to_dict()["what_buys_most"]["sentence"]
+    assert text.pretty(told_in_json) == " ".join(lines)
 
 
 def test_tornado_names_lost_ends_and_nothing_overlaps():

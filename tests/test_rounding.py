@@ -23,6 +23,9 @@ from actuator_opt.optimisation.listed import Listed
 from actuator_opt.optimisation.problem import Problem, Values
 from actuator_opt.optimisation.rounding import Wanted, misfits, plies, rounded, sizes_of
 from actuator_opt.optimisation.solver import solve
+from actuator_opt.reporting import text
+from actuator_opt.reporting.page import page
+from actuator_opt.reporting.prices import quality
 
 PLIES = Wanted(whole_plies=True)
 HOOP = "      angle: 88 deg\n      thickness: 1.2 mm\n"
@@ -384,17 +387,28 @@ def asked(text, *words, code=0):
 
 
 def test_json_and_saved_design(tmp_path):
-    """The object has the rounding and its evaluation; the file saved is the rounded design."""
+    """The object is that of the rounded design, which is the file saved, and has both of them."""
     file = tmp_path / "whole.yaml"
     data = asked(two_layers(), "--write", file).json
     rounding = data["rounding"]
     assert rounding["met"] is True
-    assert rounding["objective"]["continuous"] == data["objective"]["value"]
+    assert rounding["objective"]["rounded"] == data["objective"]["value"]
     assert rounding["objective"]["rounded"] == rounding["evaluation"]["metrics"]["mass"]["value"]
+    before = rounding["continuous_evaluation"]["metrics"]["mass"]["value"]
+    assert rounding["objective"]["continuous"] == before
+    assert data["shown"]["design"] == "rounded"
+    assert data["shown"]["sizes"] == "whole plies"
+    assert "the design of whole plies" in data["shown"]["sentence"]
     assert rounding["cost"] >= 0
     assert all(row["met"] for row in rounding["evaluation"]["requirements"])
     saved = run("evaluate", file, "--json").json
     assert saved["metrics"]["mass"]["value"] == rounding["objective"]["rounded"]
+    assert {key: data[key] for key in ("spec_hash", "metrics", "requirements", "checks")} == {
+        key: saved[key] for key in ("spec_hash", "metrics", "requirements", "checks")
+    }
+    for path, row in data["variables"].items():
+        assert row["value"] == rounding["variables"][path]["value"]
+        assert row["lower"] <= row["value"] <= row["upper"]
     counts = rounding["plies"]
     for i in (1, 2):
         thickness = rounding["variables"][f"barrel.layup[{i}].thickness"]
@@ -466,9 +480,59 @@ def test_plies_too_coarse_for_the_requirements(tmp_path):
     assert rounding["remedy"]
     assert not file.exists()
     assert f"not written, there is no design to save: {rounding['outcome']}" in result.err
+    assert data["shown"]["design"] == "continuous"
+    assert rounding["outcome"] in data["shown"]["sentence"]
     shown = run("optimise", "-", "--whole-plies", "--out", tmp_path, stdin=text.encode())
     assert shown.code == 1
     assert "Whole plies: no design found" in shown.out
+    head = " ".join(shown.out.split("stiffness_barrel")[0].split())
+    assert "no design of whole plies" in head
+    assert "Shown is the continuous optimum, not a design to build" in head
+    assert "requirements met " not in head.split(";")[0].replace("continuous: ", "")
+
+
+def test_page_one_is_the_design_that_is_built(simple):
+    """Badge, tiles, drawing, tables and hash are of the rounded design; the sheet says so."""
+    assert simple.best_objective > simple.objective_value
+    data = page(simple, source_text="", source_name="x.yaml", command="", date=None)
+    made = page(
+        ao.evaluate(simple.best), source_text="", source_name="x.yaml", command="", date=None
+    )
+    for part in ("section", "hash"):
+        assert data[part] == made[part]
+    tables = {block.get("title"): block for block in data["blocks"]}
+    alone = {block.get("title"): block for block in made["blocks"]}
+    for title in ("Requirements", "Check list", "Mass"):
+        assert tables[title]["rows"] == alone[title]["rows"], title
+    heads = [one["head"] for one in tables["Design variables"]["columns"]]
+    place = heads.index("whole\nplies")
+    for row, variable in zip(
+        tables["Design variables"]["rows"], simple.rounding.variables, strict=True
+    ):
+        quantity = text.input_quantity(variable.quantity)
+        assert row[place] == text.number(quantity.to_display(variable.value))
+    mass = data["tiles"][0]
+    assert mass["value"] == text.number(1e3 * simple.rounding.objective_after)
+    assert mass["note"].startswith(f"continuous {text.number(1e3 * simple.objective_value)} g, +")
+    assert data["verdict"]["lines"][0].startswith("whole plies: ")
+    said = "".join(data["sentence"])
+    assert "design of whole plies" in said.replace("\u200b", "")
+    assert "the one to build" in said
+    assert "before rounding" in quality(simple)
+
+
+def test_prices_keep_to_the_continuous_optimum():
+    """`sensitivity --json` is of the continuous optimum: its rows and objective fit together."""
+    text = two_layers((FREE_HOOP, FREE_HOOP + "    sizes: whole_plies\n"))
+    found = run("sensitivity", "-", "--json", stdin=text.encode()).json
+    whole = asked(text).json
+    assert found["objective"]["value"] == pytest.approx(
+        whole["rounding"]["objective"]["continuous"], rel=1e-6
+    )
+    assert found["objective"]["value"] < whole["objective"]["value"]
+    most = found["what_buys_most"]
+    best = most["requirement"]["gain"], most["sentence"]
+    assert f"saves {1e3 * best[0]:#.3g} g" in best[1]
 
 
 def test_a_search_without_time_says_so():

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
-from math import isfinite
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal, TypeAlias
 
 from ..design import choice_list
 from ..design.model import Design
 from ..evaluation.result import Evaluation
-from ..quantities import INPUTS
+from ..quantities import INPUTS, of_metric
 from ..tables import aligned
+from . import price_words, result_json
 from .sensitivity import Offers, Sensitivity, offers
 
 
@@ -26,6 +26,13 @@ class VariableResult:
     lower: float
     upper: float
     at_bound: str | None
+
+    def moved(self, value: float) -> VariableResult:
+        """The same dimension at another value."""
+        room = 1e-6 * max(abs(self.lower), abs(self.upper), self.upper - self.lower)
+        bounds = {"lower": value - self.lower, "upper": self.upper - value}
+        near = next((name for name, distance in bounds.items() if distance <= room), None)
+        return replace(self, value=value, at_bound=near)
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,10 +301,49 @@ class Optimisation:
     """Every combination of the design's choices, where it has some."""
 
     @property
+    def made(self) -> Rounding | None:
+        """The design of listed sizes, where there is one: it is what is written and shown."""
+        return None if self.rounding is None or self.rounding.design is None else self.rounding
+
+    @property
     def best(self) -> Design:
         """The design to build: that of listed sizes, where there is one."""
-        rounded = None if self.rounding is None else self.rounding.design
-        return rounded or self.design
+        return self.design if self.made is None or self.made.design is None else self.made.design
+
+    @property
+    def best_evaluation(self) -> Evaluation:
+        """The evaluation of the design to build."""
+        found = None if self.made is None else self.made.evaluation
+        return self.evaluation if found is None else found
+
+    @property
+    def best_objective(self) -> float:
+        """The objective of the design to build (SI)."""
+        found = None if self.made is None else self.made.objective_after
+        return self.objective_value if found is None else found
+
+    @property
+    def best_variables(self) -> tuple[VariableResult, ...]:
+        """The free dimensions of the design to build."""
+        known = {} if self.made is None else {row.path: row.value for row in self.made.variables}
+        return tuple(v.moved(known[v.path]) if v.path in known else v for v in self.variables)
+
+    @property
+    def shown(self) -> str:
+        """Which design stands in tables, drawing and JSON, where sizes are asked for; else ""."""
+        if self.rounding is None:
+            return ""
+        quantity, name = of_metric(self.objective_metric), self.rounding.name
+        before, after = (quantity.text(x) for x in (self.objective_value, self.best_objective))
+        if self.made is None:
+            return (
+                f"shown is the continuous optimum, not a design to build: {self.rounding.sentence}"
+            )
+        to_build = "the one to build" if self.rounding.met else "which misses a requirement"
+        return (
+            f"shown is the design of {name} ({quantity.label} {after}), {to_build}; the continuous "
+            f"optimum has {before}, and prices are those of it"
+        )
 
     @property
     def offers(self) -> Offers:
@@ -305,15 +351,26 @@ class Optimisation:
         maximised = self.design.objective.maximise is not None
         return offers(self.sensitivities, self.objective_value, maximised=maximised)
 
+    @property
+    def buys_most(self) -> tuple[str, ...]:
+        """The same in sentences; none without prices."""
+        if not self.sensitivities:
+            return ()
+        maximised = self.design.objective.maximise is not None
+        quantity = of_metric(self.objective_metric)
+        return price_words.buys_most(
+            self.offers, quantity, self.objective_value, maximised=maximised
+        )
+
     def __str__(self) -> str:
         """Outcome, variables and the evaluation of the best design as tables."""
         rows = [["variable", "value", "lower", "upper", ""]]
-        for v in self.variables:
+        for v in self.best_variables:
             quantity = INPUTS[v.quantity]
             numbers = [quantity.text(x, 6) for x in (v.value, v.lower, v.upper)]
             rows.append([v.path, *numbers, f"at {v.at_bound} bound" if v.at_bound else ""])
-        table = aligned(rows, right=(1, 2, 3))
-        parts = [self.sentence, "", table, "", str(self.evaluation)]
+        said = [part for part in (self.sentence, self.shown) if part]
+        parts = [*said, "", aligned(rows, right=(1, 2, 3)), "", str(self.best_evaluation)]
         return "\n".join(parts if self.rounding is None else [*parts, "", str(self.rounding)])
 
     def columns(self) -> dict[str, list[Any]]:
@@ -338,36 +395,4 @@ class Optimisation:
 
     def to_dict(self) -> dict[str, Any]:
         """The `optimise --json` object (SI): the evaluation's keys and the optimiser's."""
-        return (
-            self.evaluation.to_dict()
-            | {
-                "status": self.status,
-                "outcome": self.sentence,
-                "remedy": self.remedy,
-                "warnings": [*self.evaluation.warnings, *self.warnings],
-                "objective": {
-                    "metric": self.objective_metric,
-                    "value": self.objective_value if isfinite(self.objective_value) else None,
-                },
-                "variables": {
-                    v.path: {
-                        "value": v.value,
-                        "lower": v.lower,
-                        "upper": v.upper,
-                        "at_bound": v.at_bound,
-                    }
-                    for v in self.variables
-                },
-                "kkt": None if self.kkt is None else asdict(self.kkt),
-                "sensitivities": [row.to_dict(self.objective_value) for row in self.sensitivities],
-                "what_buys_most": self.offers.to_dict(),
-                "certificate": None if self.certificate is None else self.certificate.to_dict(),
-                "rounding": None if self.rounding is None else self.rounding.to_dict(),
-                "choices": None if self.choices is None else self.choices.to_dict(),
-                "evaluations": self.evaluations,
-                "algorithm": self.algorithm,
-                "seed": self.seed,
-                "seconds": self.seconds,
-            }
-            | ({} if self.infeasibility is None else {"infeasibility": asdict(self.infeasibility)})
-        )
+        return result_json.of_optimisation(self)

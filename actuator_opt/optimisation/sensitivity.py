@@ -152,7 +152,7 @@ class Offers:
         return tuple(one for one in both if one is not None)
 
     def to_dict(self) -> dict[str, Any]:
-        """The "what_buys_most" of `optimise --json` (SI), without its sentence."""
+        """The "what_buys_most" of `optimise --json` (SI); its sentence is the optimisation's."""
         kinds = ("requirement", "parameter", "material")
         found = {name: getattr(self, name) for name in kinds}
         return {name: None if one is None else one.to_dict() for name, one in found.items()} | {

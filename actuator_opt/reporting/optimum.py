@@ -8,9 +8,9 @@ from .blocks import Block, Cell, clean, column, soft, table
 
 
 def variables(optimisation: Optimisation) -> Block:
-    """Bounds, start and optimum of every free dimension."""
+    """Bounds, start and best value of every free dimension."""
     rows: list[list[Cell]] = []
-    for row in optimisation.variables:
+    for row in optimisation.best_variables:
         quantity = text.input_quantity(row.quantity)
         lower, upper, value = (quantity.to_display(v) for v in (row.lower, row.upper, row.value))
         start = None if row.start is None else quantity.to_display(row.start)
@@ -34,15 +34,22 @@ def variables(optimisation: Optimisation) -> Block:
         column("dimension", "left", 1.1),
         column("lower", "right"),
         column("start", "right"),
-        column("optimum", "right", strong=True),
+        column(heading(optimisation).replace(" ", "\n"), "right", strong=True),
         column("upper", "right"),
         column("unit"),
         column("between bounds", "left", "26mm"),
         column(""),
     ]
-    held = [row.path for row in optimisation.variables if row.at_bound]
+    held = [row.path for row in optimisation.best_variables if row.at_bound]
     note = f"{len(held)} of {len(rows)} variables are at a bound." if held else ""
     return table("Design variables", columns, rows, note=note)
+
+
+def heading(optimisation: Optimisation) -> str:
+    """What the values shown are: the optimum, or the sizes asked for."""
+    if optimisation.rounding is None:
+        return "optimum"
+    return "continuous" if optimisation.made is None else optimisation.made.name
 
 
 def sentence(words: str) -> str:

@@ -53,10 +53,22 @@ _SHORT = {
 
 
 def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisation | None]:
-    """The evaluation to show and, if there is one, the optimisation it came from."""
+    """The evaluation to show and, if there is one, the optimisation it came from.
+
+    Of an optimisation with sizes that is the design of these sizes: it is the one to build.
+    """
     if isinstance(subject, Optimisation):
-        return subject.evaluation, subject
+        return subject.best_evaluation, subject
     return subject, None
+
+
+def sentences(optimisation: Optimisation) -> list[str]:
+    """Which design is shown where sizes are asked for, what came out, what to do about it."""
+    said, rounding = [optimisation.shown], optimisation.rounding
+    if rounding is None or rounding.design is not None:
+        said.append(optimisation.sentence)
+    said.append(optimisation.remedy or ("" if rounding is None else rounding.remedy))
+    return [text.pretty(optimum.sentence(part)) for part in said if part]
 
 
 def warnings(subject: Evaluation | Optimisation) -> list[str]:
@@ -71,10 +83,15 @@ def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
     missed = sum(not row.met for row in evaluation.requirements)
     total = len(evaluation.requirements)
     failed = sum(check.status == "missed" for check in evaluation.checks)
+    rounding = None if optimisation is None else optimisation.rounding
+    none_made = rounding.name if rounding is not None and rounding.design is None else ""
+    of = "continuous: " if none_made else f"{rounding.name}: " if rounding else ""
     if optimisation is not None and optimisation.infeasibility is not None:
         state, words = "infeasible", "INFEASIBLE"
     elif optimisation is not None and optimisation.status == "undefined":
         state, words = "missed", "NO USABLE ANSWER"
+    elif none_made:
+        state, words = "missed", f"NO DESIGN OF {none_made.upper()}"
     elif missed:
         state, words = "missed", "REQUIREMENTS MISSED"
     elif failed:
@@ -89,7 +106,7 @@ def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
         "state": state,
         "text": words,
         "lines": [
-            f"{total - missed} of {total} requirements met",
+            f"{of}{total - missed} of {total} requirements met",
             f"checks: {counts['met']} met · {counts['missed']} missed"
             f" · {counts['not_checked']} not checked",
         ],
@@ -107,10 +124,10 @@ def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
         metric, quantity = evaluation.metrics[name], text.metric(name)
         row = next((r for r in evaluation.requirements if r.metric == name), None)
         state, note = "none", "" if metric.case is None else f"case {metric.case}"
-        start = None if optimisation is None else optimisation.start.metrics.get(name)
-        if name in first and start is not None and start.value and metric.value is not None:
-            change = text.number(100 * (metric.value / start.value - 1), 3, signed=True)
-            note = f"start {text.value_text(quantity, start.value)}, {change} %"
+        before = _before(optimisation, name)
+        if name in first and before is not None and metric.value is not None:
+            change = text.number(100 * (metric.value / before[1] - 1), 3, signed=True)
+            note = f"{before[0]} {text.value_text(quantity, before[1])}, {change} %"
         elif row is not None:
             state = "met" if row.met else "missed"
             limit = text.limit_text(quantity, row.sense, row.limit)
@@ -130,6 +147,16 @@ def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
             }
         )
     return tiles
+
+
+def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float] | None:
+    """What to compare a figure with: the continuous optimum before rounding, else the start."""
+    if optimisation is None:
+        return None
+    words = "start" if optimisation.made is None else "continuous"
+    origin = optimisation.start if optimisation.made is None else optimisation.evaluation
+    found = origin.metrics.get(name)
+    return None if found is None or not found.value else (words, found.value)
 
 
 def page(
@@ -170,13 +197,12 @@ def page(
     for given in extra_tables:
         blocks += [tables.extra(given)] + ([given.drawing] if given.drawing is not None else [])
     blocks.append(listing(f"Input: {source_name}", source_text))
-    sentence = "" if optimisation is None else optimisation.sentence
-    remedy = "" if optimisation is None else optimisation.remedy
+    said = [] if optimisation is None else sentences(optimisation)
     origin = Origin(source_text, source_name, command, evaluation.spec_hash, date)
     return origin.heading(name=evaluation.name, kind=kind) | {
         "version": clean(evaluation.version),
         "verdict": verdict(subject),
-        "sentence": soft(" ".join(optimum.sentence(part) for part in (sentence, remedy) if part)),
+        "sentence": soft(" ".join(said)),
         "tiles": key_figures(subject),
         "section": drawing.ink.data(),
         "scale": drawing.scale,

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from ..evaluation.result import Requirement
+from ..optimisation.price_words import PER_CENT, display_of
 from ..optimisation.result import Optimisation
-from ..optimisation.sensitivity import CHANGE, STRAIGHT, Offer, Sensitivity
+from ..optimisation.sensitivity import STRAIGHT, Sensitivity
 from ..quantities import Quantity
 from . import text, tornado
 from .blocks import Block, Cell, column, notes, soft, table
 from .console import Column, Console
 from .text import DASH
-from .words import display_of, short_name
 
 MOVING = 3
 """Most dimensions named per row of the table of movements."""
@@ -20,8 +20,6 @@ MOST_MOVES = 8
 
 LEAST_MOVE = 1e-4
 """Relative movement per +1 % below which a dimension stands still."""
-
-PER_CENT = round(100 * CHANGE)
 
 
 def blocks(optimisation: Optimisation) -> list[Block]:
@@ -182,6 +180,9 @@ def quality(optimisation: Optimisation) -> str:
             else f"{kinks} prices differ upwards and downwards"
         )
         parts.append(f"A degenerate vertex, more rows than dimensions they hold: {sides}.")
+    if (made := optimisation.made) is not None:
+        value = text.value_text(text.metric(optimisation.objective_metric), made.objective_before)
+        parts.append(f"Prices are those of the continuous optimum ({value}), before rounding.")
     parts.append(
         "Prices are per unit shown in the limit column; rows are ranked by what ±"
         f"{PER_CENT} % changes when solved; {DASH} under solved: no feasible design found."
@@ -196,56 +197,7 @@ def quality(optimisation: Optimisation) -> str:
 
 def buys_most(optimisation: Optimisation) -> list[str]:
     """What would buy the most of the objective, and which requirements cannot be tightened."""
-    if not optimisation.sensitivities:
-        return []
-    found, parts = optimisation.offers, []
-    if (best := found.requirement) is not None:
-        name, value = short_name(best.row), _value(best)
-        gain = _gain(optimisation, best)
-        parts.append(
-            f"Giving up {PER_CENT} % of {name} (to {value}) {gain}, the most of any requirement."
-        )
-    else:
-        parts.append(f"Giving up {PER_CENT} % of any one requirement buys nothing.")
-    for best, group in (
-        (found.parameter, "Of the design's fixed numbers"),
-        (found.material, "Of the materials"),
-    ):
-        if best is not None:
-            more = "more" if best.change > 0 else "less"
-            parts.append(
-                f"{group}, {PER_CENT} % {more} {short_name(best.row)} ({_value(best)})"
-                f" {_gain(optimisation, best)}."
-            )
-    if found.no_design:
-        lost = ", ".join(
-            f"{short_name(row)} at {_at(row, row.limit * (1 + sign * CHANGE))}"
-            for row, sign in found.no_design
-        )
-        parts.append(f"No design was found with {lost}.")
-    return parts
-
-
-def _at(row: Sensitivity, value: float) -> str:
-    return text.with_unit(text.trimmed(display_of(row, value)), text.unit_text(row.unit))
-
-
-def _value(offer: Offer) -> str:
-    return _at(offer.row, offer.value)
-
-
-def _gain(optimisation: Optimisation, offer: Offer) -> str:
-    """What an offer buys: "saves 19.7 g (7.5 %)"."""
-    objective = text.metric(optimisation.objective_metric)
-    per_display = objective.to_display(1.0) - objective.to_display(0.0)
-    unit = text.unit_text(objective.unit)
-    amount = text.with_unit(text.number(offer.gain * per_display, 3), unit)
-    if optimisation.objective_value:
-        share = text.number(100 * offer.gain / abs(optimisation.objective_value), 2)
-        amount += f" ({share} %)"
-    if optimisation.design.objective.maximise is not None:
-        return f"adds {amount}"
-    return f"saves {amount}"
+    return [text.pretty(line) for line in optimisation.buys_most]
 
 
 def moves(optimisation: Optimisation) -> Block | None:

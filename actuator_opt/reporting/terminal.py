@@ -76,8 +76,7 @@ def verdict(
     if missed:
         lines.append(console.wrap("missed: " + ", ".join(missed), "red"))
     if optimisation is not None:
-        said = (optimisation.sentence, optimisation.remedy)
-        lines += [console.wrap(optimum.sentence(part)) for part in said if part]
+        lines += [console.wrap(part) for part in page.sentences(optimisation)]
     return "\n".join(lines)
 
 
@@ -219,20 +218,20 @@ def checks_table(
 def variables_table(
     optimisation: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
 ) -> str:
-    """Free dimensions: bounds, start, optimum, and where between its bounds each one is."""
+    """Free dimensions: bounds, start, best value, and where between its bounds each one is."""
     console = Console(colour, unicode, width)
     columns = [
         Column("variable", flexible=True),
         Column("lower", "right"),
         Column("start", "right", drop=2),
-        Column("optimum", "right"),
+        Column(optimum.heading(optimisation), "right"),
         Column("upper", "right"),
         Column("unit"),
         Column("", drop=1),
         Column(""),
     ]
     rows, styles = [], []
-    for row in optimisation.variables:
+    for row in optimisation.best_variables:
         quantity = text.input_quantity(row.quantity)
         rows.append(
             [
@@ -331,10 +330,10 @@ def optimisation_text(
     parts: Sequence[str] = [
         verdict(optimisation, **style),
         infeasibility_card.terminal(optimisation, **style),
-        requirements_table(optimisation.evaluation, **style),
+        requirements_table(optimisation.best_evaluation, **style),
         variables_table(optimisation, **style) if optimisation.variables else "",
         prices.terminal(optimisation, **style),
-        checks_table(optimisation.evaluation, **style),
+        checks_table(optimisation.best_evaluation, **style),
         notes(optimisation, **style),
         choices_table.terminal(optimisation, **style),
         whole_plies.terminal(optimisation, **style),

@@ -157,8 +157,7 @@ def with_unit(text: str, unit: str) -> str:
 
 def metric(name: str) -> Quantity:
     """The declared quantity of a metric; an undeclared one (a user's own) is a plain ratio."""
-    known = quantities.METRICS.get(name)
-    return known or Quantity(name, "", "ratio", "", name.replace("_", " "))
+    return quantities.of_metric(name)
 
 
 def input_quantity(name: str) -> Quantity:

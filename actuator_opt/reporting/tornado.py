@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from ..optimisation.price_words import PER_CENT, display_of, short_name
 from ..optimisation.result import Optimisation
-from ..optimisation.sensitivity import CHANGE, Sensitivity
+from ..optimisation.sensitivity import Sensitivity
 from . import text
 from .blocks import Block, figure
 from .figures import Axes, fitted, ticks
 from .ink import BLACK, BLUE, GREY, RED, Ink
-from .words import display_of, short_name
 
 MOST = 16
 """Most rows drawn, the largest first."""
@@ -52,8 +52,7 @@ def block(optimisation: Optimisation) -> Block | None:
         "Bars are solved again, each an optimum of its own; strokes are what the price predicts."
         f" Ranked by the larger bar.{rest}"
     )
-    percent = round(100 * CHANGE)
-    return figure(f"What ±{percent} % of each changes", tornado(optimisation), note)
+    return figure(f"What ±{PER_CENT} % of each changes", tornado(optimisation), note)
 
 
 def tornado(optimisation: Optimisation, *, width: float = 180.0) -> Ink:
@@ -99,18 +98,17 @@ def _frame(solved: list[float], predicted: list[float]) -> tuple[float, float]:
 
 def _heads(ink: Ink, axes: Axes, width: float) -> None:
     """The key of the bars above the names, the heads of the columns of figures."""
-    percent = round(100 * CHANGE)
     y = axes.top - 6.5
     for x, fill, words in (
-        (0.0, BLUE, f"+{percent} %"),
-        (17.0, LIGHT, f"{text.MINUS}{percent} %"),
+        (0.0, BLUE, f"+{PER_CENT} %"),
+        (17.0, LIGHT, f"{text.MINUS}{PER_CENT} %"),
     ):
         ink.box(x, y - 0.9, 4.0, 1.8, fill=fill, pen=0.1)
         ink.text(x + 5.2, y, words)
     ink.line((35.0, y - 1.2), (35.0, y + 1.2), pen=0.3, stroke=RED)
     ink.text(36.2, y, "predicted")
     for place, sign in ((width - FIGURES / 2 - 1.0, "+"), (width, text.MINUS)):
-        ink.text(place, axes.top - 2.4, f"{sign}{percent} %", anchor="right", color=GREY)
+        ink.text(place, axes.top - 2.4, f"{sign}{PER_CENT} %", anchor="right", color=GREY)
 
 
 def _row(

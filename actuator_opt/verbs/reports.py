@@ -61,8 +61,9 @@ def report(
     from ..reporting.published import published_tables
 
     source = None if actuator is None else actuator.source
-    text = source.text if source is not None else to_yaml(subject.design)
-    name = file_name(subject.design, source)
+    design = subject.design if isinstance(subject, Evaluation) else subject.best
+    text = source.text if source is not None else to_yaml(design)
+    name = file_name(design, source)
     return write_report(
         subject,
         folder=Path(folder),
@@ -72,7 +73,7 @@ def report(
         command=command,
         date=date or date_from_environment(),
         extra_tables=[*published_tables(subject), *extra_tables],
-        seals=_seal_studies(prepare(subject.design)),
+        seals=_seal_studies(prepare(design)),
     )
 
 
