@@ -334,7 +334,7 @@ class Optimisation:
         if self.rounding is None:
             return ""
         quantity, name = of_metric(self.objective_metric), self.rounding.name
-        before, after = (quantity.text(x) for x in (self.objective_value, self.best_objective))
+        before, after = (quantity.text(x, 5) for x in (self.objective_value, self.best_objective))
         if self.made is None:
             return (
                 f"shown is the continuous optimum, not a design to build: {self.rounding.sentence}"

@@ -126,7 +126,7 @@ def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
         state, note = "none", "" if metric.case is None else f"case {metric.case}"
         before = _before(optimisation, name)
         if name in first and before is not None and metric.value is not None:
-            change = text.number(100 * (metric.value / before[1] - 1), 3, signed=True)
+            change = text.number(100 * (metric.value / before[1] - 1), before[2], signed=True)
             note = f"{before[0]} {text.value_text(quantity, before[1])}, {change} %"
         elif row is not None:
             state = "met" if row.met else "missed"
@@ -149,14 +149,15 @@ def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
     return tiles
 
 
-def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float] | None:
-    """What to compare a figure with: the continuous optimum before rounding, else the start."""
+def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float, int] | None:
+    """What a figure is compared with, and digits: the optimum before rounding, else the start."""
     if optimisation is None:
         return None
-    words = "start" if optimisation.made is None else "continuous"
-    origin = optimisation.start if optimisation.made is None else optimisation.evaluation
+    words, origin, digits = "start", optimisation.start, 3
+    if optimisation.made is not None:
+        words, origin, digits = "continuous", optimisation.evaluation, 2
     found = origin.metrics.get(name)
-    return None if found is None or not found.value else (words, found.value)
+    return None if found is None or not found.value else (words, found.value, digits)
 
 
 def page(
