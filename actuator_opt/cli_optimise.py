@@ -118,7 +118,8 @@ def _saved(
     if outcome == ExitCode.MET or result.status == "interrupted":
         verbs.save(result.best, write, source=actuator.source)
         return [{"path": write}], ""
-    why = (result.rounding or result).sentence
+    told = result.rounding or result
+    why = "; ".join(part for part in (told.sentence, told.remedy) if part)
     return [], f"{write}: not written, there is no design to save: {why}"
 
 

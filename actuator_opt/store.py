@@ -85,10 +85,12 @@ def require_writable(path: Path) -> None:
 
     Raises
     ------
-    InputError : a folder stands there, its own folder is missing, or permission is
+    InputError : a folder stands there, its own folder is missing, or permission is; or it is "-"
     """
     folder = path.parent
-    if path.is_dir():
+    if str(path) == "-":
+        reason = "is standard output, which carries the results"
+    elif path.is_dir():
         reason = "is a folder"
     elif path.exists() and not path.is_file():
         reason = "is no regular file"

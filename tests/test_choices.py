@@ -225,6 +225,22 @@ def test_without_variables_every_combination_is_evaluated():
     assert result.evaluation.metrics["mass"].value == result.choices.combinations[0].objective
 
 
+def test_all_combinations_evaluated_are_a_proof():
+    """--certify where nothing else may move: the bound is the least mass of all that meet all."""
+    text = listed(SEALS | {"caps.thickness": "[6 mm, 8 mm, 10 mm]"}, FIXED)
+    result = ao.optimise(ao.read(text), certify=True)
+    met = [one.objective for one in result.choices.combinations if one.feasible]
+    proven = result.certificate
+    assert proven.lower_bound == min(met)
+    assert proven.gap == pytest.approx(1 - min(met) / result.objective_value, abs=1e-15)
+    assert "all 12 combinations were evaluated" in proven.sentence
+    stiff = ao.optimise(
+        ao.read(text.replace("minimise: mass", "maximise: stiffness_min")), certify=True
+    )
+    assert (stiff.certificate.lower_bound, stiff.certificate.gap) == (None, None)
+    assert "evaluated" in stiff.certificate.sentence
+
+
 def test_a_maximised_metric_ranks_the_other_way_round():
     """With `maximise` the largest value wins, and the cost of the others is still positive."""
     text = listed({"caps.thickness": "[6 mm, 8 mm, 10 mm]"}, FIXED)

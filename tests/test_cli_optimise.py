@@ -128,6 +128,22 @@ def test_objectives_that_cannot_be(objective, path):
     assert fault["remedy"]
 
 
+def test_a_weight_that_weighs_nothing_is_told():
+    """A metric of a weighted objective that no variable enters is named; with none, refused."""
+    data = optimised(bench(("minimise: mass", "minimise:\n    mass: 1\n    oil_viscosity: 1")))
+    assert "objective: no variable affects oil_viscosity" in data["warnings"]
+    nothing = "minimise:\n    oil_viscosity: 1\n    piston_speed: 1"
+    (fault,) = refused(bench(("minimise: mass", nothing)), command="optimise")
+    assert "no variable affects oil_viscosity and piston_speed" in fault["message"]
+
+
+def test_a_design_is_not_saved_to_standard_output():
+    """It carries the results: "-" is refused before the work, and no file of that name is left."""
+    (fault,) = refused(BENCH, "--write", "-", command="optimise")
+    assert "standard output" in fault["message"]
+    assert not Path("-").exists()
+
+
 def test_no_variables():
     """Nothing may move: said, with what to add."""
     text = BENCH[: BENCH.index("variables:")] + BENCH[BENCH.index("requirements:") :]
@@ -162,6 +178,7 @@ def test_infeasible(infeasible):
     assert {name["path"] for name in data["files"]} == {str(path) for path in folder.iterdir()}
     assert not (folder / "best.yaml").exists()
     assert f"{folder / 'best.yaml'}: not written" in result.err
+    assert data["remedy"] in result.err
 
 
 def test_the_relaxed_requirement_is_feasible(infeasible):

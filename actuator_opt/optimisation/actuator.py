@@ -246,20 +246,31 @@ def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
     return holder[0]
 
 
+def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:
+    """Metrics of the objective that no variable enters, however little it would move them."""
+    start = actuator.problem.start
+    assert start is not None
+    moved = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
+    subject, goal = actuator.subject, actuator.goal
+    found = compute(subject, subject.values(moved)).computed
+    values = {
+        name: governing(found, name, subject.cases, largest=goal.sign > 0) for name in goal.weights
+    }
+    return tuple(
+        name for name, value in values.items() if np.size(value) == 1 and np.isfinite(value).all()
+    )
+
+
 def require_movable_objective(actuator: ActuatorProblem) -> None:
-    """Some variable must enter the objective, however little it moves it.
+    """Some variable must enter the objective.
 
     Raises
     ------
     InputError
         none does
     """
-    start = actuator.problem.start
-    assert start is not None
-    moved = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
-    subject, goal = actuator.subject, actuator.goal
-    value = goal.value(compute(subject, subject.values(moved)).computed, subject.cases)
-    if np.size(value) == 1 and np.isfinite(value).all():
+    goal = actuator.goal
+    if len(idle_metrics(actuator)) == len(goal.weights):
         raise InputError(
             Diagnostic(
                 f"no variable affects {' and '.join(goal.weights)}: nothing to search for",

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from ..progress import tell
-from .actuator import ActuatorProblem
+from .actuator import ActuatorProblem, Goal
 from .outcome import Solution
-from .result import Certificate
+from .result import Certificate, Optimisation
 
 CHANCE = 0.95
 """Probability at which the evidence of the starts is stated."""
@@ -52,6 +52,25 @@ def certified(actuator: ActuatorProblem, solution: Solution) -> Certificate:
     covers = tuple(dict.fromkeys(claim.limit.name for claim in relaxed.covered))
     dropped = {name: why for name, why in relaxed.dropped.items() if name not in covers}
     return Certificate(words, evidence, bound, gap, covers, dropped, found.boxes)
+
+
+def enumerated(found: Optimisation, goal: Goal) -> Certificate | None:
+    """What trying all combinations of the choices proves, where nothing else may move."""
+    choices = found.choices
+    if choices is None or not found.evaluation.met:
+        return None
+    if choices.count("not tried"):
+        return Certificate("nothing is proven: not every combination was evaluated", "")
+    words = f"all {len(choices.combinations)} combinations were evaluated: "
+    wish, value = goal.sign, found.objective_value
+    met = [one.objective for one in choices.combinations if one.feasible and one.objective]
+    best = min((wish * one for one in met), default=wish * value)
+    words += "none that meets every requirement is better"
+    if best < wish * value:  # a check that some combination meets counts before the objective
+        words += ", but for such as miss more of the check list"
+    if goal.single is None or wish < 0 or not value > 0:
+        return Certificate(words, "")
+    return Certificate(words, "", best, 1 - best / value)
 
 
 def _percent(share: float) -> str:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from ..design import quantity_of
 from ..evaluation import Subject, evaluate
-from .actuator import ActuatorProblem, Fault, build, require_movable_objective
-from .certified import certified
+from .actuator import ActuatorProblem, Fault, build, idle_metrics, require_movable_objective
+from .certified import certified, enumerated
 from .choice_record import record
 from .choice_sizes import Sized, best_of_sizes
 from .choices import MOST_SOLVED, Search, Settings, search
@@ -77,7 +77,8 @@ def optimise(
         choices = record(found, subject.design)
         best = found.ranked()[0] if sized is None else sized.look
         if best.actuator is None or best.solution is None:
-            return _enumerated(subject, found, choices, seed, began)
+            only = _enumerated(subject, found, choices, seed, began)
+            return replace(only, certificate=enumerated(only, found.goal)) if certify else only
         actuator, solution = best.actuator, best.solution
     else:
         actuator = build(subject, fault)
@@ -164,6 +165,7 @@ def _result(
         warnings=(
             *solution.warnings,
             *(f"variable without effect: {name}" for name in solution.without_effect),
+            *_idle(actuator),
             *actuator.refusals.warnings(),
         ),
         seed=seed,
@@ -172,6 +174,13 @@ def _result(
         rounding=after.rounding,
         choices=choices,
     )
+
+
+def _idle(actuator: ActuatorProblem) -> tuple[str, ...]:
+    """Weights of the objective that weigh nothing."""
+    if actuator.goal.single is not None:
+        return ()
+    return tuple(f"objective: no variable affects {name}" for name in idle_metrics(actuator))
 
 
 def _enumerated(
