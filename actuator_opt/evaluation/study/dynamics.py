@@ -148,10 +148,8 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
         stiffness=motion.springs.stiffness(position), mass=motion.mass
     )
     there = np.array([[weakest]])
-    here = motion.model(there)
-    whole = of_case(motion.mode(here, there).damping_ratio, index)
-    sliding = replace(motion, damping=0.0 * motion.damping)
-    ends = of_case(sliding.mode(sliding.model(there), there).damping_ratio, index)
+    whole = _damping_ratio(motion, there, index)
+    ends = _damping_ratio(replace(motion, damping=0.0 * motion.damping), there, index)
     design = subject.design
     shaken = _worst(done, "dynamic_stiffness", design)
     asked = index if shaken is None else shaken[0]
@@ -161,12 +159,7 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
         "rod end": stroke,
     }
     models = {name: motion.model(np.array([[[x]]])) for name, x in places.items()}
-    rows: dict[tuple[int, str], tuple[str, ...]] = {}
-    for metric in ("gain_margin", "phase_margin", "bandwidth"):
-        row = _worst(done, metric, design)
-        if row is not None:
-            rows[row] = (*rows.get(row, ()), metric)
-    loops = [_Loop.of(done, *row, governs=metrics) for row, metrics in rows.items()]
+    loops = _loops(done, design)
     polynomials = [(p, asked) for m in models.values() for p in (m.characteristic, m.mobile)]
     polynomials += [(p, one.index) for one in loops for p in one.polynomials()]
     frequencies = _frequencies(polynomials)
@@ -181,7 +174,7 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
         damping_ratio=_row(along.damping_ratio, index, position),
         friction_share=whole - ends,
         conductance_share=ends,
-        poles=_poles(here, index),
+        poles=_poles(motion.model(there), index),
         frequencies=frequencies,
         response_case=v.cases[asked],
         responses=tuple(
@@ -193,6 +186,21 @@ def study(subject: Subject, v: Values, done: Pass, case: str | None) -> Dynamics
         position_loop=told[0] if told else None,
         other_loops=tuple(told[1:]),
     )
+
+
+def _damping_ratio(motion: Motion, there: Array, index: int) -> float:
+    """Damping ratio of one case at a position."""
+    return of_case(motion.mode(motion.model(there), there).damping_ratio, index)
+
+
+def _loops(done: Pass, design: Design) -> list[_Loop]:
+    """Every loop that governs a margin or the bandwidth, with what it governs."""
+    rows: dict[tuple[int, str], tuple[str, ...]] = {}
+    for metric in ("gain_margin", "phase_margin", "bandwidth"):
+        row = _worst(done, metric, design)
+        if row is not None:
+            rows[row] = (*rows.get(row, ()), metric)
+    return [_Loop.of(done, *row, governs=metrics) for row, metrics in rows.items()]
 
 
 def _shaken(design: Design, done: Pass) -> tuple[ShakenCase, ...]:
