@@ -239,7 +239,7 @@ def test_the_best_feasible_point_of_the_sweep_is_kept():
     assert found.outcome is Outcome.LIMIT
 
 
-@pytest.mark.parametrize("after", [1, 40])
+@pytest.mark.parametrize("after", [1, 15])
 @pytest.mark.parametrize("algorithm", ["auto", "LN_COBYLA"])
 def test_an_interrupt_keeps_the_best_point(after, algorithm):
     """Where asked for, Ctrl-C ends the search like a limit: outcome named, best point kept."""

@@ -20,6 +20,7 @@ from .evaluator import Evaluator, LimitReached, Point
 from .outcome import LocalOptimum, Outcome, Solution
 from .problem import Problem, Vector
 from .sampling import Sweep, distinct, sweep
+from .side_by_side import foresee
 
 LAGRANGIAN_EVALUATIONS = 1000
 """Most of one run of the augmented Lagrangian: the shipped designs take 300 to 850."""
@@ -105,6 +106,7 @@ def _default_path(search: Descents, points: list[Point]) -> None:
     missed limit is missed least, the others look for a feasible point first.
     """
     failed = []
+    foresee(search.evaluator, points, seed=search.seed, most=LOCAL_EVALUATIONS)
     for number, point in enumerate(points):
         tell("searching for a design", number / len(points))
         if search.least and not search.feasible:
@@ -207,6 +209,8 @@ def _best_seen(search: Descents, swept: Sweep) -> Found:
     evaluator = search.evaluator
     space, start = evaluator.space, evaluator.problem.start
     rest = (space.lower + space.upper) / 2 if start is None else space.to_z(start)
+    if search.interrupted or evaluator.exhausted:
+        evaluator.enter_foreseen()
     seen = [evaluator.point(z) for z in (*swept.z[:, :1].T.copy(), rest)]
     if evaluator.best is not None:
         seen.insert(0, evaluator.best)
