@@ -121,9 +121,9 @@ def square_of_magnitude(polynomial: Polynomial) -> Polynomial:
 def roots(polynomial: Polynomial) -> np.ndarray:
     """All roots, (..., degree) complex: eigenvalues of the scaled companion matrix.
 
-    Real parts of the coefficients count. Columns that repeat along the last axis (the copies of
-    one design under a complex step) are solved once. A leading coefficient of zero in an array
-    leaves a root at minus infinity; coefficients that are not finite make every root NaN.
+    Real parts of the coefficients count. Columns like the one before along the last axis (the
+    copies of a design under a complex step) are solved once. A leading coefficient of zero in an
+    array leaves a root at minus infinity; coefficients that are not finite make every root NaN.
     """
     if len(polynomial) < 2:
         shape = np.shape(real(polynomial[0])) if polynomial else ()
@@ -131,11 +131,13 @@ def roots(polynomial: Polynomial) -> np.ndarray:
     rows = np.broadcast_arrays(*[np.asarray(real(c), dtype=float) for c in polynomial])
     coefficients = np.stack(rows, axis=-1)
     shape = coefficients.shape[:-1]
-    alike = len(shape) > 0 and shape[-1] > 1
-    if alike and bool(np.all(coefficients == coefficients[..., :1, :])):
-        found = _companion_roots(coefficients[..., :1, :])
-        return np.broadcast_to(found, (*shape, found.shape[-1]))
-    return _companion_roots(coefficients)
+    if not shape or shape[-1] < 2:
+        return _companion_roots(coefficients)
+    other = coefficients[..., 1:, :] != coefficients[..., :-1, :]
+    new = np.concatenate([[True], other.any(axis=(*range(len(shape) - 1), -1))])
+    if new.all():
+        return _companion_roots(coefficients)
+    return _companion_roots(coefficients[..., new, :])[..., np.cumsum(new) - 1, :]
 
 
 def _companion_roots(coefficients: np.ndarray) -> np.ndarray:

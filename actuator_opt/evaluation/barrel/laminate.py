@@ -19,6 +19,7 @@ from ...models.strength_modes import Stress, load_multiplier
 from ...numeric import Array, maximum, real, where
 from .. import plies
 from ..allow import Stock
+from ..distinct import distinct
 from ..geometry import Geometry
 from ..plies import Climate, Layer
 from ..state import State
@@ -275,26 +276,23 @@ def _ladder(
     if not all(layer.balanced for layer in layers):
         wall.missing.append("burst of a wall with single plies is not modelled: wind pairs")
         return
-    axial = np.stack(list(path.per_pressure.values()))[None]
-    stack = [layer.as_wall() for layer in layers]
+    given = {
+        "layers": [layer.as_wall() for layer in layers],
+        "axial_force_per_pressure": np.stack(list(path.per_pressure.values()))[None],
+    }
     if exact:
         change = np.stack([np.atleast_1d(state.change) for state in states])[:, None]
-        ladder = tube_burst.burst_of_tube(
-            layers=stack,
-            inner_radius=g.inner_radius,
-            axial_force_per_pressure=axial,
-            temperature_change=change if np.any(real(change)) else 0.0,
-            held_force=path.held,
-        )
+        given["inner_radius"] = g.inner_radius
+        given["temperature_change"] = change if np.any(real(change)) else 0.0
+        given["held_force"] = path.held
     else:
-        ladder = ply_discount.burst_by_ply_discount(
-            layers=stack,
-            radius=(g.inner_radius + g.outer_radius) / 2,
-            axial_force_per_pressure=axial,
-        )
+        given["radius"] = (g.inner_radius + g.outer_radius) / 2
+    some, every = distinct(given)
+    model = tube_burst.burst_of_tube if exact else ply_discount.burst_by_ply_discount
+    ladder = model(**some)
     paths = tuple(path.per_pressure)
-    for place, pressure in _rows(states, paths, ladder.burst_pressure):
+    for place, pressure in _rows(states, paths, every(ladder.burst_pressure)):
         wall.burst_pressure[place] = pressure
     if any(layer.isotropic for layer in layers):
-        for place, pressure in _rows(states, paths, ladder.first_ply_pressure):
+        for place, pressure in _rows(states, paths, every(ladder.first_ply_pressure)):
             wall.first_ply_pressure[f"first ply with the liner yielding, {place}"] = pressure

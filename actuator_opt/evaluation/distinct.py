@@ -1,0 +1,72 @@
+"""The designs of a batch that differ for one model, which then is evaluated once for each.
+
+A gradient takes a copy of the design for every variable, and most variables are none of a wall's:
+to it, their copies are one design. A costly model is given the distinct ones only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields, is_dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..numeric import Array
+
+FEW = 32
+"""Designs up to which a model costs about the same for all as for some."""
+
+
+def distinct(given: Mapping[str, Any]) -> tuple[dict[str, Any], Callable[[Array], Array]]:
+    """Arguments of a model with only the designs that differ in them, and the way back to all.
+
+    Designs are the last axis of every array, which is 1 where they share a value.
+
+    Parameters
+    ----------
+    given : arguments: arrays, numbers, words, and lists and data classes of them
+    """
+    arrays = list(_arrays(tuple(given.values())))
+    count = max((array.shape[-1] for array in arrays), default=1)
+    rows = [array.reshape(-1, count) for array in arrays if array.shape[-1] == count]
+    if count <= FEW or any(array.dtype.hasobject for array in rows):
+        return dict(given), lambda result: result
+    designs = np.ascontiguousarray(np.concatenate(rows).T)
+    known: dict[bytes, int] = {}
+    back = np.array([known.setdefault(one.tobytes(), len(known)) for one in designs])
+    if len(known) == count:
+        return dict(given), lambda result: result
+    first = np.unique(back, return_index=True)[1]
+
+    def some(array: Array) -> Array:
+        return array[..., first] if array.shape[-1] == count else array
+
+    def every(result: Array) -> Array:
+        return result if np.shape(result)[-1] == 1 else result[..., back]
+
+    return {name: _changed(value, some) for name, value in given.items()}, every
+
+
+def _arrays(value: Any) -> Iterator[Array]:
+    """Every array in a value."""
+    if isinstance(value, np.ndarray) and value.ndim:
+        yield value
+    elif isinstance(value, (list, tuple)):
+        for part in value:
+            yield from _arrays(part)
+    elif is_dataclass(value):
+        for part in fields(value):
+            yield from _arrays(getattr(value, part.name))
+
+
+def _changed(value: Any, change: Callable[[Array], Array]) -> Any:
+    """A value with every array in it changed."""
+    if isinstance(value, np.ndarray) and value.ndim:
+        return change(value)
+    if isinstance(value, (list, tuple)):
+        return type(value)(_changed(part, change) for part in value)
+    if is_dataclass(value) and not isinstance(value, type):
+        own = {part.name: _changed(getattr(value, part.name), change) for part in fields(value)}
+        return replace(value, **own)
+    return value
