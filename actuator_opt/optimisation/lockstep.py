@@ -1,9 +1,8 @@
 """Re-solve many slightly changed problems at once: one model evaluation serves all of them.
 
-Each problem takes the quadratic steps of `newton` with the Hessian of the unchanged optimum,
-which converges linearly and fast for small changes. Those it does not serve descend from a feasible
-point within a trusted radius, with a Hessian that learns on the way; what is left is for the search
-of `resolving.resolved`.
+Each problem takes full quadratic steps with the Hessian of the unchanged optimum, which learns on
+the way. Those it does not serve descend from a feasible point within a trusted radius; what is left
+is for the search of `resolving.resolved`.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from .evaluator import Evaluator, Point
 from .problem import ParametricProblem, Vector
 
 ITERATIONS = 10
-"""Most full steps with the shared Hessian; 10 % changes mostly take three to five."""
+"""Most full steps; 10 % changes mostly take three to five."""
 
 LONGEST = 60
 """Most evaluations of a descent within a trusted radius."""
@@ -81,9 +80,13 @@ def resolve_together(
     hessian = newton.convex_hessian(evaluator, state)
     space = evaluator.space
     z = np.clip(starts, space.lower[:, None], space.upper[:, None])
-    last = np.full(count, np.inf)
+    last, least = np.full(count, np.inf), np.full(count, np.inf)
+    size = evaluator.constraint_count
+    descents = [
+        _Descent(hessian, state.scale, size, 1.0, radius=newton.RADIUS) for _ in range(count)
+    ]
     alive = list(range(count))
-    for _ in range(ITERATIONS):
+    for iteration in range(ITERATIONS):
         if not alive:
             break
         points = _points(parametric, evaluator, z[:, alive], parameters[:, alive])
@@ -94,15 +97,16 @@ def resolve_together(
             if last[k] <= SETTLED and _optimal(evaluator, trial):
                 found[k] = trial
                 continue
-            step, _ = newton.quadratic_step(
-                evaluator, trial, state.scale, hessian, state.equality_multipliers
-            )
-            longest = float(np.abs(step).max(initial=0.0))
-            if not np.isfinite(longest) or longest > 4 * max(last[k], 1e-3):
+            if iteration > PATIENCE and trial.violation > max(0.98 * least[k], MET):
                 continue
-            last[k] = longest
-            share = min(1.0, newton.RADIUS / max(longest, 1e-300))
-            z[:, k] = np.clip(z[:, k] + share * step, space.lower, space.upper)
+            if iteration % PATIENCE == 0:
+                least[k] = trial.violation
+            way = descents[k]
+            way.go_on(evaluator, trial)
+            if not np.isfinite(way.length) or way.length > 4 * max(last[k], 1e-3):
+                continue
+            last[k] = way.length
+            z[:, k] = np.clip(z[:, k] + way.step, space.lower, space.upper)
             going.append(k)
         alive = going
     rows = standing(parametric, [point], parameters)[:, 0]
