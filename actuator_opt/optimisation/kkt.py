@@ -84,11 +84,12 @@ class Kkt:
         return self.rank == self.count
 
 
-def nnls(matrix: Vector, vector: Vector) -> Vector:
+def nnls(matrix: Vector, vector: Vector, guess: Vector | None = None) -> Vector:
     """Non-negative least squares: min |matrix @ result - vector|, result >= 0.
 
     First all columns unconstrained (enough at a regular optimum), else the active-set method of
-    Lawson and Hanson, which ends on independent columns.
+    Lawson and Hanson, which ends on independent columns. `guess` is positive where the result of a
+    problem much like it was: it begins on these columns.
     """
     size = np.sqrt((matrix**2).sum(axis=0))
     used = np.flatnonzero(size > 1e-14 * size.max(initial=0.0))
@@ -101,14 +102,14 @@ def nnls(matrix: Vector, vector: Vector) -> Vector:
         if rank == len(used) and (guess >= 0).all():
             result[used] = guess / size[used]
             return result
-    result[used] = _lawson_hanson(scaled, vector) / size[used]
+    first = np.zeros(len(used), dtype=bool) if guess is None else guess[used] > 0
+    result[used] = _lawson_hanson(scaled, vector, first) / size[used]
     return result
 
 
-def _lawson_hanson(matrix: Vector, vector: Vector) -> Vector:
+def _lawson_hanson(matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_]) -> Vector:
     count = matrix.shape[1]
-    result = np.zeros(count)
-    passive = np.zeros(count, dtype=bool)
+    result, passive = _begun(matrix, vector, passive)
     refused = np.zeros(count, dtype=bool)
     tolerance = 1e-13 * (1e-300 + float(np.linalg.norm(vector)))
     for _ in range(5 * count):
@@ -136,6 +137,21 @@ def _lawson_hanson(matrix: Vector, vector: Vector) -> Vector:
         result = trial
         refused[:] = False
     return result
+
+
+def _begun(
+    matrix: Vector, vector: Vector, passive: npt.NDArray[np.bool_]
+) -> tuple[Vector, npt.NDArray[np.bool_]]:
+    """A first result, with the columns out of some on which it is positive; none where none are."""
+    nothing = np.zeros(matrix.shape[1])
+    while passive.any():
+        trial, rank = _restricted(matrix, vector, passive)
+        if rank < passive.sum():
+            break
+        if trial[passive].min() > 0:
+            return trial, passive
+        passive = passive & (trial > 0)
+    return nothing, nothing > 0
 
 
 def _restricted(

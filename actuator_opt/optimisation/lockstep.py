@@ -137,6 +137,7 @@ class _Descent:
     point: Point | None = None
     step: Vector = field(default_factory=lambda: np.zeros(0))
     radius: float = RADIUS
+    prices: Vector | None = None
     multipliers: Vector = field(default_factory=lambda: np.zeros(0))
     past: list[tuple[float, float]] = field(default_factory=list)
 
@@ -177,13 +178,14 @@ class _Descent:
         down = np.minimum(self.point.z - space.lower, self.radius)
         up = np.minimum(space.upper - self.point.z, self.radius)
         constraints = slice(1, 1 + self.rows)
-        self.step, prices = newton.quadratic_programme(
+        self.step, self.prices = newton.quadratic_programme(
             self.hessian,
             jacobian[0] / self.scale,
             np.concatenate([jacobian[constraints], unit, -unit]),
             np.concatenate([self.point.rows[constraints], down, up]),
+            self.prices,
         )
-        self.multipliers = prices[: self.rows]
+        self.multipliers = self.prices[: self.rows]
         self.price = max(self.price, _price(self.multipliers))
         self.step = self.step * min(1.0, self.radius / max(self.length, 1e-300))
 
