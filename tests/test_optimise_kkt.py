@@ -146,3 +146,21 @@ def test_rows_beyond_tolerance_are_not_active():
 
     evaluator = Evaluator(Problem(("a",), [0.1], [10], evaluate, ("near", "far")))
     assert kkt.check(evaluator, evaluator.point(np.zeros(1))).active == ("near",)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_what_is_known_of_a_result_does_not_change_it(seed):
+    """Least squares of a random matrix, from nothing, from the result and from columns at random.
+
+    With fewer columns than rows too, where a first try is made without bounds.
+    """
+    rng = np.random.default_rng(seed)
+    rows, columns = (8, 40) if seed % 2 else (12, 9)
+    matrix, vector = rng.standard_normal((rows, columns)), rng.standard_normal(rows)
+    alone = kkt.nnls(matrix, vector)
+    for known in (alone, rng.standard_normal(columns), np.ones(columns)):
+        np.testing.assert_allclose(kkt.nnls(matrix, vector, known), alone, rtol=1e-9, atol=1e-12)
+    pull = matrix.T @ (vector - matrix @ alone)
+    assert (alone >= 0).all()
+    assert pull.max() <= 1e-9
+    assert abs(pull[alone > 0]).max(initial=0.0) <= 1e-9

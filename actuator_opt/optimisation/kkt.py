@@ -84,12 +84,12 @@ class Kkt:
         return self.rank == self.count
 
 
-def nnls(matrix: Vector, vector: Vector, guess: Vector | None = None) -> Vector:
+def nnls(matrix: Vector, vector: Vector, known: Vector | None = None) -> Vector:
     """Non-negative least squares: min |matrix @ result - vector|, result >= 0.
 
     First all columns unconstrained (enough at a regular optimum), else the active-set method of
-    Lawson and Hanson, which ends on independent columns. `guess` is positive where the result of a
-    problem much like it was: it begins on these columns.
+    Lawson and Hanson, which ends on independent columns. `known` is the result of a problem
+    much like it: it begins on the columns where that is positive.
     """
     size = np.sqrt((matrix**2).sum(axis=0))
     used = np.flatnonzero(size > 1e-14 * size.max(initial=0.0))
@@ -102,7 +102,7 @@ def nnls(matrix: Vector, vector: Vector, guess: Vector | None = None) -> Vector:
         if rank == len(used) and (guess >= 0).all():
             result[used] = guess / size[used]
             return result
-    first = np.zeros(len(used), dtype=bool) if guess is None else guess[used] > 0
+    first = np.zeros(len(used), dtype=bool) if known is None else known[used] > 0
     result[used] = _lawson_hanson(scaled, vector, first) / size[used]
     return result
 

@@ -191,11 +191,11 @@ def convex_hessian(evaluator: Evaluator, state: State) -> Vector:
 
 
 def quadratic_programme(
-    hessian: Vector, slope: Vector, rows: Vector, margins: Vector, guess: Vector | None = None
+    hessian: Vector, slope: Vector, rows: Vector, margins: Vector, known: Vector | None = None
 ) -> tuple[Vector, Vector]:
     """Minimise d'Hd/2 + slope'd subject to margins + rows d >= 0, with multipliers (a,) >= 0.
 
-    Inconsistent rows (no d meets them all) give the step of least violation instead. `guess` are
+    Inconsistent rows (no d meets them all) give the step of least violation instead. `known` are
     multipliers of a programme much like it, which only save work.
     """
     factor = np.linalg.cholesky(hessian)
@@ -211,7 +211,7 @@ def quadratic_programme(
     unit = np.zeros(len(slope) + 1)
     unit[-1] = 1.0
     stacked = np.concatenate([turned.T, needed[None, :]])
-    weights = kkt.nnls(stacked, unit, None if guess is None else guess[useful])
+    weights = kkt.nnls(stacked, unit, None if known is None else known[useful])
     residual = stacked @ weights - unit
     if -residual[-1] <= 1e-12:  # the rows contradict each other
         missed = -margins
