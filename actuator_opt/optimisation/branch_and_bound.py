@@ -47,6 +47,8 @@ class Found:
     complete : whether the search ended by itself, not at a limit
     nearest, missed : where nothing feasible was found: the assignment that misses least of those
         looked at closely, and the point where it does
+    ends : where every box ended, its optimum or the point that misses least, with what it was
+        evaluated by; empty where a box has neither
     """
 
     x: Vector | None
@@ -57,6 +59,7 @@ class Found:
     complete: bool
     nearest: Assignment | None = None
     missed: Point | None = None
+    ends: tuple[tuple[Evaluator, Point], ...] = ()
 
 
 def search(
@@ -155,6 +158,7 @@ class _Run:
     tried: dict[Assignment, float] = field(default_factory=dict)
     points: dict[Assignment, Vector] = field(default_factory=dict)
     near: dict[Assignment, Vector] = field(default_factory=dict)
+    ends: list[tuple[Evaluator, Point | None]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.index = np.concatenate([one.index for one in self.listed]).astype(np.intp)
@@ -297,10 +301,15 @@ class _Run:
     def found(self, *, complete: bool) -> Found:
         """What the search comes to."""
         best = self.confirmed()
-        if best is None:
-            nearest, missed = (None, None) if self.below < np.inf else self.nearest()
-            return Found(None, None, None, self.tried, self.solves, complete, nearest, missed)
-        return Found(self.points[best], self.tried[best], best, self.tried, self.solves, complete)
+        x, objective, nearest, missed = None, None, None, None
+        if best is not None:
+            x, objective = self.points[best], self.tried[best]
+        elif not self.below < np.inf:
+            nearest, missed = self.nearest()
+        ends = tuple((evaluator, end) for evaluator, end in self.ends if end is not None)
+        ends = ends if len(ends) == len(self.ends) else ()
+        tried, solves = self.tried, self.solves
+        return Found(x, objective, best, tried, solves, complete, nearest, missed, ends)
 
     def nearest(self) -> tuple[Assignment, Point] | tuple[None, None]:
         """The assignment that misses least of the first ones, and the point where it does."""
@@ -350,6 +359,10 @@ class _Run:
             tasks.append(nearby.Task(evaluator, x, curvature, finish, hopeless, above))
         self.solves += len(tasks)
         ends = nearby.resolve(tasks)
+        self.ends += [
+            (task.evaluator, end.optimum or end.missed)
+            for task, end in zip(tasks, ends, strict=True)
+        ]
         for (box, _, _), task, end in zip(bounds, tasks, ends, strict=True):
             self.memory.note(box, task.evaluator, end)
         return [end.optimum for end in ends]

@@ -17,6 +17,10 @@ from .branch_and_bound import Found, Memory, at, search
 from .choices import Search, Settings, many_starts
 from .quick_look import Look
 from .rounding import RUNNERS_UP, Sizes, Wanted, sizes_of
+from .twins import Evidence
+
+_NOTHING_BETTER = Found(None, None, None, {}, 0, complete=True)
+"""Of a combination whose sizes come to what those of another one came to."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,7 @@ def _searched(choices: Search, wanted: Wanted, settings: Settings) -> Iterator[S
     """Every combination that is worth it, searched for something better than those before."""
     error: InputError | None = None
     memories: dict[object, Memory] = {}
+    alike: dict[object, list[Evidence]] = {}
     mendable = choices.mendable()
     best, count = (math.inf, math.inf), 0
     for look in choices.ranked():
@@ -73,14 +78,16 @@ def _searched(choices: Search, wanted: Wanted, settings: Settings) -> Iterator[S
             continue
         key = tuple((one.index, one.rows.tobytes()) for one in sizes.listed)
         memory = memories.setdefault(key, Memory())
+        problem = look.actuator.problem
+        if any(one.holds_for(problem, look.objective) for one in alike.get(key, ())):
+            look.sizing = "none" if best[1] == math.inf else "none better"
+            yield Sized(look, sizes, _NOTHING_BETTER, memory)
+            continue
         found = search(
-            look.actuator.problem,
-            sizes.listed,
-            look.x,
-            until=settings.until,
-            below=best[1],
-            memory=memory,
+            problem, sizes.listed, look.x, until=settings.until, below=best[1], memory=memory
         )
+        if found.complete:
+            alike.setdefault(key, []).append(Evidence(problem, look.objective, found.ends))
         look.rounded, count = found.objective, count + 1
         if found.objective is not None:
             look.sizing, best = "found", (checks, found.objective)
