@@ -10,8 +10,11 @@ import report_fixture as fixture
 from cli_runner import BENCH
 from report_fixture import overlaps
 
+import actuator_opt as ao
 from actuator_opt import verbs
+from actuator_opt.optimisation import actuator as actuator_module
 from actuator_opt.optimisation.actuator import build
+from actuator_opt.optimisation.price_table import sensitivities
 from actuator_opt.optimisation.prices import prices
 from actuator_opt.optimisation.problem import ParametricProblem, Problem, Values
 from actuator_opt.optimisation.sensitivity import ranked
@@ -188,3 +191,20 @@ def test_margin_of_a_limit_of_zero_is_a_length_not_a_share():
     quantity = text.metric("bore_growth")
     assert text.margin_of(quantity, 0.0, -3e-3) == "−3000 µm"
     assert text.margin_of(quantity, 1e-3, -3e-3, met=False) == "−0.3 %"
+
+
+def test_a_price_table_takes_few_calls_of_the_model(monkeypatch):
+    """Ends are re-solved together: 44 of the steel knee take fewer calls than there are of them."""
+    actuator = build(ao.read(DESIGNS / "steel_baseline.yaml").subject())
+    solution = solve(actuator.problem, samples=2048)
+    calls = []
+    compute = actuator_module.compute
+
+    def counted(*given):
+        calls.append(1)
+        return compute(*given)
+
+    monkeypatch.setattr(actuator_module, "compute", counted)
+    rows = sensitivities(actuator, solution)
+    assert 2 * len(rows) == 44
+    assert len(calls) < 44

@@ -139,6 +139,8 @@ class _Descent:
     radius: float = RADIUS
     prices: Vector | None = None
     multipliers: Vector = field(default_factory=lambda: np.zeros(0))
+    corrected: bool = False
+    """Whether the step tried is one corrected for the constraints' curvature."""
     past: list[tuple[float, float]] = field(default_factory=list)
 
     @property
@@ -167,8 +169,12 @@ class _Descent:
         self.past.append(self._measures(trial))
         self.choose(evaluator)
 
-    def choose(self, evaluator: Evaluator) -> None:
-        """Choose the step from the accepted point, within the radius."""
+    def choose(self, evaluator: Evaluator, trial: Point | None = None) -> None:
+        """Choose the step from the accepted point, within the radius.
+
+        With a trial that curved constraints spoilt, their curvature on the way to it is taken off
+        [NocedalWright2006] section 18.3.
+        """
         assert self.point is not None
         space, jacobian, unit = (
             evaluator.space,
@@ -178,11 +184,14 @@ class _Descent:
         down = np.minimum(self.point.z - space.lower, self.radius)
         up = np.minimum(space.upper - self.point.z, self.radius)
         constraints = slice(1, 1 + self.rows)
+        margins, self.corrected = self.point.rows[constraints], trial is not None
+        if trial is not None:
+            margins = trial.rows[constraints] - jacobian[constraints] @ self.step
         self.step, self.prices = newton.quadratic_programme(
             self.hessian,
             jacobian[0] / self.scale,
             np.concatenate([jacobian[constraints], unit, -unit]),
-            np.concatenate([self.point.rows[constraints], down, up]),
+            np.concatenate([margins, down, up]),
             self.prices,
         )
         self.multipliers = self.prices[: self.rows]
@@ -249,6 +258,8 @@ def descend_together(
                 one.go_on(evaluator, trial)
             elif one.point is None or one.length <= LEAST_RADIUS:
                 continue
+            elif trial.valid and not one.corrected:
+                one.choose(evaluator, trial)
             else:
                 one.radius = one.length / 2
                 one.choose(evaluator)
