@@ -118,6 +118,8 @@ def together(values: Sequence[Array], axis: int = 0) -> Array:
     xp = namespace(*values)
     if len({value.shape for value in values}) > 1:
         values = xp.broadcast_arrays(*values)
+    if xp is np and axis == 0:  # the same as stack, in a third of the time for a few designs
+        return np.array(values)
     return xp.stack(values, axis=axis)
 
 

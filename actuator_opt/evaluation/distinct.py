@@ -21,16 +21,25 @@ FEW = 32
 def distinct(given: Mapping[str, Any]) -> tuple[dict[str, Any], Callable[[Array], Array]]:
     """Arguments of a model with only the designs that differ in them, and the way back to all.
 
-    Designs are the last axis of every array, which is 1 where they share a value.
+    Designs are the last axis of every array, which is 1 where they share a value; how many there
+    are is seen from the arguments that are arrays themselves.
 
     Parameters
     ----------
     given : arguments: arrays, numbers, words, and lists and data classes of them
     """
-    arrays = list(_arrays(tuple(given.values())))
-    count = max((array.shape[-1] for array in arrays), default=1)
+    count = max((np.shape(value)[-1:] for value in given.values() if _is_array(value)), default=())
+    if count <= (FEW,):
+        return dict(given), lambda result: result
+    return _distinct(given, *count)
+
+
+def _distinct(
+    given: Mapping[str, Any], count: int
+) -> tuple[dict[str, Any], Callable[[Array], Array]]:
+    arrays = _arrays(tuple(given.values()))
     rows = [array.reshape(-1, count) for array in arrays if array.shape[-1] == count]
-    if count <= FEW or any(array.dtype.hasobject for array in rows):
+    if any(array.dtype.hasobject for array in rows):
         return dict(given), lambda result: result
     designs = np.ascontiguousarray(np.concatenate(rows).T)
     known: dict[bytes, int] = {}
@@ -48,9 +57,13 @@ def distinct(given: Mapping[str, Any]) -> tuple[dict[str, Any], Callable[[Array]
     return {name: _changed(value, some) for name, value in given.items()}, every
 
 
+def _is_array(value: Any) -> bool:
+    return isinstance(value, np.ndarray) and value.ndim > 0
+
+
 def _arrays(value: Any) -> Iterator[Array]:
     """Every array in a value."""
-    if isinstance(value, np.ndarray) and value.ndim:
+    if _is_array(value):
         yield value
     elif isinstance(value, (list, tuple)):
         for part in value:
@@ -62,7 +75,7 @@ def _arrays(value: Any) -> Iterator[Array]:
 
 def _changed(value: Any, change: Callable[[Array], Array]) -> Any:
     """A value with every array in it changed."""
-    if isinstance(value, np.ndarray) and value.ndim:
+    if _is_array(value):
         return change(value)
     if isinstance(value, (list, tuple)):
         return type(value)(_changed(part, change) for part in value)

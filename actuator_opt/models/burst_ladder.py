@@ -17,7 +17,7 @@ from functools import reduce
 from math import inf
 from typing import Any, Protocol
 
-from ..numeric import Array, absolute, maximum, real, where
+from ..numeric import Array, absolute, maximum, real, together, where
 from .strength_modes import PlyStrength, Stress, load_multiplier
 from .yielding import yield_utilisation
 
@@ -190,7 +190,7 @@ def stacked_rows(xp: Any, columns: Sequence[Sequence[Array]], dims: int) -> Arra
     if isinstance(zero, float):
         return xp.reshape(xp.asarray(rows), (len(rows), len(columns), *ones))
     zero = xp.reshape(zero, (1,) * (dims - zero.ndim) + zero.shape)
-    return xp.stack([xp.stack([value + zero for value in row]) for row in rows])
+    return together([together([value + zero for value in row]) for row in rows])
 
 
 def _above(value: Array) -> Array:

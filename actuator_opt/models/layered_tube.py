@@ -117,7 +117,7 @@ def closed(
     states = xp.sum(xp.stack(rows, axis=2) * weights[:, None, ...], axis=1)
     first = together([amounts[0], 0 * amounts[0] - inner_pressure])
     inner = xp.concat([first[:, None, ...], states[:, :-1, ...]], axis=1)
-    faces = xp.stack([inner, states])
+    faces = together([inner, states])
     twist = amounts[2] if outputs == 4 else 0.0
     return Faces(faces[:, 0, ...], faces[:, 1, ...], amounts[1], twist)
 

@@ -79,7 +79,7 @@ def _recovery(xp: Any, tube: LayeredTube) -> Array:
         )
     rows.append((slip, 0 * slip, -slip))
     by_input = [[row[k] for row in rows] for k in range(3)]
-    return xp.stack([together(row) for row in by_input])
+    return together([together(row) for row in by_input])
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,13 +135,13 @@ class _Tube:
             xp, transfer, self.inner, self.outer, tuple(tube[k, ...] for k in range(3))
         )
         none = 0 * self.axial
-        loads = xp.stack([none + 1, none])
+        loads = together([none + 1, none])
         both = self._stress(
             xp,
             transfer[:, :, :, None, ...],
             recovery[:, :, :, None, ...],
             loads,
-            xp.stack([none + self.axial, none if self.clamp is None else none + self.clamp]),
+            together([none + self.axial, none if self.clamp is None else none + self.clamp]),
             xp.stack([0 * driven, driven], axis=2),
             xp.stack([0 * ply, ply], axis=2),
         )
@@ -193,7 +193,7 @@ class _Tube:
         """Deviatoric stresses z, t, r at zero strain of every layer, from the bore."""
         xp = namespace(stress)
         mean = (stress[:, 0, ...] + stress[:, 1, ...]) / 2
-        normal = xp.stack([mean[0, ...], mean[1, ...], mean[3, ...]])
+        normal = together([mean[0, ...], mean[1, ...], mean[3, ...]])
         own = where(yielded, (normal - xp.sum(normal, axis=0) / 3) * self.kept, 0.0)
         placed = [0 * own[:, 0, ...]] * len(self.order)
         for i in range(self.metals):
