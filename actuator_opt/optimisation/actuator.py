@@ -167,13 +167,14 @@ def _margins(wanted: tuple[Row, ...], computed: Computed, numbers: Numbers, coun
         return np.empty((0, count))
     complex_ = any(np.iscomplexobj(value) for value in numbers.varied.values())
     value = np.empty((len(wanted), count), dtype=complex if complex_ else float)
-    bound = np.empty_like(value)
+    bounds = [row.limit_of.value(numbers) for row in wanted]
+    width = max(getattr(bound, "size", 1) for bound in bounds)
+    bound = np.empty((len(wanted), width), dtype=value.dtype)
     for i, row in enumerate(wanted):
         array = computed.metrics[row.limit_of.metric][row.place]
         if row.case_index is not None:
             array = array[row.case_index]
-        value[i] = array
-        bound[i] = row.limit_of.value(numbers)
+        value[i], bound[i] = array, bounds[i]
     value = where(real(value) == np.inf, UNLIMITED, value)
     sign = np.array([[1.0 if row.limit_of.sense == "min" else -1.0] for row in wanted])
     return _bounded(sign * margin(value, bound, "min"))
