@@ -86,7 +86,9 @@ def search(
     """
     remembered = memory is not None and memory.curvature is not None
     run = _Run(problem, listed, x, most, until, below, memory or Memory())
-    if not remembered:
+    if remembered:
+        run.look_ahead()
+    else:
         run.neighbours()
     whole = tuple(tuple(range(len(one.rows))) for one in listed)
     first = (run.start.objective, run.x) if remembered else run.relaxed([whole], run.x)[0]
@@ -124,6 +126,8 @@ class Memory:
     curvatures: dict[Box, nearby.Curvature | None] = field(default_factory=dict)
     missed: dict[Box, Vector] = field(default_factory=dict)
     """The least violated points of boxes without a feasible one."""
+    visited: tuple[Box, ...] = ()
+    """The boxes whose continuous optimum the last search wanted."""
 
     def near(self, box: Box) -> tuple[Vector, nearby.Curvature | None] | None:
         """The optimum in a box of another problem, and its curvature."""
@@ -159,6 +163,8 @@ class _Run:
     points: dict[Assignment, Vector] = field(default_factory=dict)
     near: dict[Assignment, Vector] = field(default_factory=dict)
     ends: list[tuple[Evaluator, Point | None]] = field(default_factory=list)
+    visited: list[Box] = field(default_factory=list)
+    ahead: dict[Box, tuple[nearby.Task, nearby.Nearest]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.index = np.concatenate([one.index for one in self.listed]).astype(np.intp)
@@ -251,16 +257,26 @@ class _Run:
                 return best
             self.assigned(best, self.near.get(best, self.x))
 
+    def look_ahead(self) -> None:
+        """Re-optimise the boxes of the last search at once: most of them are wanted again."""
+        tasks = [
+            self._task(box, *self._bounds(box), self.x, nearby.ROUGH) for box in self.memory.visited
+        ]
+        ends = nearby.resolve(tasks)
+        self.ahead = dict(zip(self.memory.visited, zip(tasks, ends, strict=True), strict=True))
+
     def relaxed(self, boxes: Sequence[Box], near: Vector) -> list[tuple[float, Vector] | None]:
         """Objective and point of the continuous optimum in boxes; None where it is infeasible."""
-        bounds = []
-        for box in boxes:
-            left = [one.rows[list(rows)] for one, rows in zip(self.listed, box, strict=True)]
-            lower = np.concatenate([rows.min(axis=0) for rows in left])
-            upper = np.concatenate([rows.max(axis=0) for rows in left])
-            bounds.append((box, lower, upper))
+        self.visited += boxes
+        bounds = [(box, *self._bounds(box)) for box in boxes]
         found = self._descended(bounds, near, nearby.ROUGH)
         return [None if point is None else (point.objective, point.x) for point in found]
+
+    def _bounds(self, box: Box) -> tuple[Vector, Vector]:
+        """Bounds of the listed variables in a box."""
+        left = [one.rows[list(rows)] for one, rows in zip(self.listed, box, strict=True)]
+        lower = np.concatenate([rows.min(axis=0) for rows in left])
+        return lower, np.concatenate([rows.max(axis=0) for rows in left])
 
     def parts(self, box: Box, x: Vector, objective: float) -> list[Box]:
         """What is left to search of a box, given its continuous optimum."""
@@ -300,6 +316,7 @@ class _Run:
 
     def found(self, *, complete: bool) -> Found:
         """What the search comes to."""
+        self.memory.visited = tuple(self.visited)
         best = self.confirmed()
         x, objective, nearest, missed = None, None, None, None
         if best is not None:
@@ -344,25 +361,35 @@ class _Run:
         evaluator = self._within(lower, upper)
         return evaluator.point(evaluator.space.to_z(evaluator.problem.inside(near))), evaluator
 
+    def _task(
+        self, box: Box, lower: Vector, upper: Vector, near: Vector, finish: nearby.Finish
+    ) -> nearby.Task:
+        """A box to re-optimise, near a point or where a like problem ended."""
+        known = self.memory.near(box)
+        hopeless = known is None and box in self.memory.missed
+        x, curvature = known or (self.memory.missed.get(box, near), self.memory.curvature)
+        evaluator = self._within(lower, upper)
+        above = self.best if finish is nearby.ROUGH else np.inf
+        x = evaluator.problem.inside(x)
+        return nearby.Task(evaluator, x, curvature, finish, hopeless, above)
+
     def _descended(
         self, bounds: Sequence[tuple[Box, Vector, Vector]], near: Vector, finish: nearby.Finish
     ) -> list[Point | None]:
         """The optimum in boxes, near a point or where a like problem ended; None without."""
-        above = self.best if finish is nearby.ROUGH else np.inf
-        tasks = []
-        for box, lower, upper in bounds:
-            known = self.memory.near(box)
-            hopeless = known is None and box in self.memory.missed
-            x, curvature = known or (self.memory.missed.get(box, near), self.memory.curvature)
-            evaluator = self._within(lower, upper)
-            x = evaluator.problem.inside(x)
-            tasks.append(nearby.Task(evaluator, x, curvature, finish, hopeless, above))
-        self.solves += len(tasks)
-        ends = nearby.resolve(tasks)
-        self.ends += [
-            (task.evaluator, end.optimum or end.missed)
-            for task, end in zip(tasks, ends, strict=True)
-        ]
-        for (box, _, _), task, end in zip(bounds, tasks, ends, strict=True):
+        known = self.ahead if finish is nearby.ROUGH else {}
+        tasks = {
+            box: self._task(box, lower, upper, near, finish)
+            for box, lower, upper in bounds
+            if box not in known
+        }
+        ends = nearby.resolve(list(tasks.values()))
+        done = known | dict(zip(tasks, zip(tasks.values(), ends, strict=True), strict=True))
+        self.solves += len(bounds)
+        found = []
+        for box, _, _ in bounds:
+            task, end = done[box]
             self.memory.note(box, task.evaluator, end)
-        return [end.optimum for end in ends]
+            self.ends.append((task.evaluator, end.optimum or end.missed))
+            found.append(end.optimum)
+        return found
