@@ -390,9 +390,10 @@ SAMPLES = {
             ("fixed", "free"), ("guided", "fixed"), ("pinned", "guided"),
         )
     ],
-    "retention.bond_peak_ratio": {**BOND, **WALLS},
-    "retention.bond_shear_peak": {"force": 1e4, "diameter": 30e-3, **BOND, **WALLS},
-    "retention.bond_edge_shear": {
+    "lap_joint.bond_peak_ratio": {**BOND, **WALLS},
+    "lap_joint.least_bond_peak_ratio": {**BOND, "membrane_stiffness": 50e6},
+    "lap_joint.bond_shear_peak": {"force": 1e4, "diameter": 30e-3, **BOND, **WALLS},
+    "lap_joint.bond_edge_shear": {
         "force": 1e4, "diameter": 30e-3, **BOND, "membrane_stiffness_loaded": 100e6,
         "membrane_stiffness_free": 50e6,
     },

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from actuator_opt.models.trial_mode import TrialMode
+from actuator_opt.models.trial_motion import TrialMotion
 
 COLUMN = {
     "critical_load": 1.3e5, "bending_stiffness_1": 5000.0, "length_1": 0.2,
@@ -21,6 +22,10 @@ BENT = {
     "bending_stiffness_1": 5000.0, "length_1": 0.2, "bending_stiffness_2": 1200.0,
     "length_2": 0.18,
 }  # fmt: skip
+CHAMBERS = {
+    "area_a": 4e-4, "area_b": 3e-4, "oil_a": 2e-14, "oil_b": 1.5e-14, "wall_a": 2e-15,
+    "wall_b": 1.5e-15, "stretch": 5e-16,
+}  # fmt: skip
 
 SAMPLES: dict = {
     "rod.free_modulus": {"wall": PLY},
@@ -28,7 +33,7 @@ SAMPLES: dict = {
     "trial_mode.trial_mode_load": {"mode": TrialMode(0.5, 0.6, 1.2, 1.1), **BENT},
     "tube_bounds.least_growth": {
         "hoop": [9e10, 2e11], "cross": [4e10, 5e9], "radial": [9e10, 1.2e10],
-        "decays": [0.4, -0.7], "thicknesses": [1e-3, 2e-3], "inner_radius": 16e-3,
+        "decays": [[0.4], [0.9, -0.7]], "thicknesses": [1e-3, 2e-3], "inner_radius": 16e-3,
     },
     "tube_bounds.ply_hoop_strength": {
         "tension_1": 1.9e9, "tension_2": 5.5e7, "shear_12": 8.5e7, "angle": 0.9,
@@ -37,10 +42,16 @@ SAMPLES: dict = {
         "yields": [2.4e8, None], "hoops": [None, 1.9e9], "thicknesses": [6e-4, 1.2e-3],
         "inner_radius": 16e-3,
     },
-    "tube_bounds.axial_stiffness_bounds": {
-        "free": [7e10, 1e10], "held": [7.2e10, 1.5e10], "thicknesses": [1e-3, 2e-3],
-        "inner_radius": 16e-3,
+    "tube_bounds.axial_stiffness": {
+        "moduli": [7e10, 1e10], "thicknesses": [1e-3, 2e-3], "inner_radius": 16e-3,
     },
+    "trial_motion.least_energy_motion": [
+        {**CHAMBERS, "pulling": chamber} for chamber in ("a", "b")
+    ],
+    "trial_motion.trial_motion_stiffness": [
+        {"motion": TrialMotion(0.1, 0.03), **CHAMBERS, "pulling": chamber} for chamber in ("a", "b")
+    ],
+    "mass.layer_area": {"inner_radius": 16e-3, "thickness": 2e-3},
     "stepped.mode_shear_stiffness": [
         {**COLUMN, "ends": ends}
         for ends in (
@@ -72,7 +83,7 @@ SAMPLES: dict = {
         "strength_force": 68e3, "force_per_moment": 500.0, "critical_load": 30e3,
         "bending_moment": 12.0, "offset": 5e-4, "shape": 0.27,
     },
-    "retention.bond_thermal_shear": {
+    "lap_joint.bond_thermal_shear": {
         "strain_difference": -2e-3, "length": 20e-3, "shear_modulus": 1e9,
         "bond_thickness": 0.2e-3, "membrane_stiffness_1": 1e8, "membrane_stiffness_2": 5e7,
     },

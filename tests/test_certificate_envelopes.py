@@ -19,10 +19,16 @@ from actuator_opt.models.layered_tube import (
 )
 from actuator_opt.models.solid_ply import solid_rotated, solid_stiffness
 from actuator_opt.models.stepped import stepped_column_load
+from actuator_opt.models.stiffness import hydraulic_stiffness
 from actuator_opt.models.strength_modes import PlyStrength, max_stress_modes
 from actuator_opt.models.trial_mode import buckled_mode, trial_mode_load
+from actuator_opt.models.trial_motion import (
+    TrialMotion,
+    least_energy_motion,
+    trial_motion_stiffness,
+)
 from actuator_opt.models.tube_bounds import (
-    axial_stiffness_bounds,
+    axial_stiffness,
     greatest_pressure,
     least_growth,
     ply_hoop_strength,
@@ -40,8 +46,9 @@ LAYER = st.tuples(
     st.sampled_from([CARBON, METAL]),
     st.floats(0.0, pi / 2),
     st.floats(0.1e-3, 5e-3),
-    st.floats(-4, 4).filter(lambda b: abs(b) > 1e-3),
+    st.lists(st.floats(-4, 4).filter(lambda b: abs(b) > 1e-3), min_size=1, max_size=3),
 )
+LOADS = ({"inner_pressure": 1.0}, {"axial_force": 1.0})
 COLUMN = st.tuples(*[st.floats(1e2, 1e5)] * 2, *[st.floats(0.05, 1.0)] * 2)
 
 
@@ -70,28 +77,32 @@ def test_tube_bounds_hold(layers, contraction):
         ],
         inner_radius=RADIUS,
     )
-    growth = float(tube_state(tube=tube, inner_pressure=1.0).bore_displacement)
-    axial = 1 / float(tube_state(tube=tube, axial_force=1.0).axial_strain)
+    pressed, pulled = (tube_state(tube=tube, **load) for load in LOADS)
+    growth, stretch = float(pressed.bore_displacement), float(pulled.axial_strain)
+    free_of_strain = -float(pressed.axial_strain) / stretch
+    held_growth = growth + float(pulled.bore_displacement) * free_of_strain
+    # a pressure that keeps the bore where it is under axial force
+    back = -float(pulled.bore_displacement) / growth
+    held_stretch = stretch + float(pressed.axial_strain) * back
+    size = {"thicknesses": thicknesses, "inner_radius": RADIUS}
     least = least_growth(
         hoop=[wall[3] for wall in walls],
         cross=[wall[4] for wall in walls],
         radial=[wall[5] for wall in walls],
         decays=decays,
-        thicknesses=thicknesses,
-        inner_radius=RADIUS,
+        **size,
     )
-    held = [
+    alike = [
         w[0] - 2 * contraction * (w[1] + w[2]) + contraction**2 * (w[3] + 2 * w[4] + w[5])
         for w in walls
     ]
-    low, high = axial_stiffness_bounds(
-        free=[rod.free_modulus(wall=wall) for wall in walls],
-        held=held,
-        thicknesses=thicknesses,
-        inner_radius=RADIUS,
-    )
-    assert least <= growth * (1 + ROUNDING)
-    assert low * (1 - ROUNDING) <= axial <= high * (1 + ROUNDING)
+    low = axial_stiffness(moduli=[rod.free_modulus(wall=wall) for wall in walls], **size)
+    high = axial_stiffness(moduli=alike, **size)
+    rigid = axial_stiffness(moduli=[wall[0] for wall in walls], **size)
+    assert least <= held_growth * (1 + ROUNDING)
+    assert held_growth <= growth * (1 + ROUNDING)
+    assert low * (1 - ROUNDING) <= 1 / stretch <= high * (1 + ROUNDING)
+    assert 1 / held_stretch <= rigid * (1 + ROUNDING)
 
 
 def test_growth_is_exact_for_the_true_displacement():
@@ -99,7 +110,7 @@ def test_growth_is_exact_for_the_true_displacement():
     thin = 1e-6
     wall = solid_rotated(stiffness=METAL, angle=0.0)
     least = least_growth(
-        hoop=[wall[3]], cross=[wall[4]], radial=[wall[5]], decays=[wall[4] / wall[5]],
+        hoop=[wall[3]], cross=[wall[4]], radial=[wall[5]], decays=[[wall[4] / wall[5]]],
         thicknesses=[thin], inner_radius=RADIUS,
     )  # fmt: skip
     plane_strain = 70e9 / (1 - 0.33**2)
@@ -189,3 +200,49 @@ def test_a_column_buckles_in_its_own_mode(real):
     load = stepped_column_load(**column)
     own = trial_mode_load(mode=buckled_mode(critical_load=load, **column), **column)
     assert own == pytest.approx(load, rel=1e-6)
+
+
+PART = st.floats(0.01, 1.0)
+
+
+@given(
+    st.tuples(*[PART] * 5), st.floats(-0.95, 0.95), st.tuples(*[st.floats(0.0, 0.5)] * 2),
+    st.booleans(),
+)  # fmt: skip
+def test_a_trial_motion_is_never_softer(sizes, coupling, other, at_cap):
+    """Two chambers in a wall whose growth and stretch go together, against the exact balance."""
+    oil_a, oil_b, growth, stretch, extra = sizes
+    cross = coupling * (growth * stretch) ** 0.5  # of a positive definite wall
+    area_a, area_b, x, y = 1.0, 0.7, 0.6, 0.4
+    length = x + y + extra
+    # the wall's energy: p_A over x, p_B over the rest, the pull of one chamber over all of it
+    pull = area_b if at_cap else area_a
+    wetted = y + extra if at_cap else x
+    own = stretch * pull**2 * length + 2 * cross * pull * wetted
+    a = oil_a + growth * x + (0.0 if at_cap else own)
+    b = oil_b + growth * (y + extra) + (own if at_cap else 0.0)
+    ab = cross * pull * (x if at_cap else y + extra)
+    exact = hydraulic_stiffness(
+        area_a=area_a, compliance_a=a, area_b=area_b, compliance_b=b, compliance_ab=ab
+    )
+    held = growth - cross**2 / stretch
+    pulled = (stretch - cross**2 / growth) * pull**2 * length
+    parts = {
+        "area_a": area_a, "area_b": area_b, "oil_a": oil_a, "oil_b": oil_b, "wall_a": held * x,
+        "wall_b": held * (y + extra), "stretch": pulled, "pulling": "b" if at_cap else "a",
+    }  # fmt: skip
+    motions = least_energy_motion(**parts), TrialMotion(*other)
+    found = [trial_motion_stiffness(motion=motion, **parts) for motion in motions]
+    assert found[0] <= found[1] * (1 + ROUNDING)
+    assert min(found) >= exact * (1 - ROUNDING)
+
+
+def test_a_trial_motion_is_exact_of_alike_chambers():
+    """Equal areas and oil: what one wall grows by the other shrinks by, so that nothing is lost."""
+    parts = {
+        "area_a": 1.0, "area_b": 1.0, "oil_a": 1.0, "oil_b": 1.0, "wall_a": 0.1, "wall_b": 0.1,
+        "stretch": 1e-12, "pulling": "b",
+    }  # fmt: skip
+    motion = least_energy_motion(**parts)
+    exact = hydraulic_stiffness(area_a=1.0, compliance_a=1.1, area_b=1.0, compliance_b=1.1)
+    assert trial_motion_stiffness(motion=motion, **parts) == pytest.approx(exact, rel=1e-9)

@@ -80,6 +80,15 @@ def test_masses_by_hand():
     ) == pytest.approx(4 * bar)
 
 
+@given(st.floats(0.01, 0.1), st.floats(1e-4, 0.05))
+def test_a_layer_is_the_ring_between_its_faces(radius, thickness):
+    """2 mm around a radius of 10 mm: 44 pi mm2; as the difference of two circles in general."""
+    assert mass.layer_area(inner_radius=10.0, thickness=2.0) == pytest.approx(44 * math.pi)
+    ring = math.pi * ((radius + thickness) ** 2 - radius**2)
+    area = mass.layer_area(inner_radius=radius, thickness=thickness)
+    assert area == pytest.approx(ring, rel=1e-9)
+
+
 @given(st.floats(0.01, 0.1), st.floats(1e-4, 4e-3), st.floats(1e-3, 1e-2))
 def test_groove_volumes_are_rings(diameter, depth, width):
     """Outer and inner grooves equal the difference of two cylinders."""

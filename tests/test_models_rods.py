@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
-from actuator_opt.models import beam_column, retention, rod, solid_ply, stepped
+from actuator_opt.models import beam_column, lap_joint, rod, solid_ply, stepped
 
 PLY_P = {
     "youngs_modulus_1": 138e9,
@@ -319,14 +319,14 @@ def test_cooling_a_bonded_cap(force, first, second):
         (exact[0], (first, second), strains[0] - strains[1]),
         (exact[1], (second, first), strains[1] - strains[0]),
     ):
-        mechanical = retention.bond_edge_shear(
+        mechanical = lap_joint.bond_edge_shear(
             force=force,
             diameter=1 / pi,
             membrane_stiffness_loaded=loaded,
             membrane_stiffness_free=free,
             **BOND,
         )
-        thermal = retention.bond_thermal_shear(
+        thermal = lap_joint.bond_thermal_shear(
             strain_difference=difference,
             membrane_stiffness_1=loaded,
             membrane_stiffness_2=free,
@@ -351,11 +351,11 @@ def test_bonded_plug_in_a_rod_tube():
     even, odd = (far - near) / 2, (far + near) / 2
     gap = even / (k * np.tanh(half)) - odd / k * np.tanh(half)
     sides = {"membrane_stiffness_1": tube / around, "membrane_stiffness_2": 71.7e9 * diameter / 4}
-    value = retention.bond_edge_shear(
+    value = lap_joint.bond_edge_shear(
         force=10e3,
         diameter=diameter,
         membrane_stiffness_loaded=tube / around,
         membrane_stiffness_free=71.7e9 * diameter / 4,
         **BOND,
-    ) + retention.bond_thermal_shear(strain_difference=difference, **sides, **BOND)
+    ) + lap_joint.bond_thermal_shear(strain_difference=difference, **sides, **BOND)
     assert value == pytest.approx(lag / around * gap, rel=1e-9)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_bvp
 
-from actuator_opt.models import end_plate, endurance, retention
+from actuator_opt.models import end_plate, endurance, lap_joint, retention
 
 BOND = {
     "length": 20e-3,
@@ -38,7 +38,7 @@ def test_bond_peak_solves_volkersens_equation(length, first, second):
     far = slope_l / (k * tanh(w)) - b / sinh(w)
     mean = force / length
     peak = max(abs(near), abs(far)) / mean
-    value = retention.bond_peak_ratio(
+    value = lap_joint.bond_peak_ratio(
         length=length,
         shear_modulus=g,
         bond_thickness=ta,
@@ -47,6 +47,22 @@ def test_bond_peak_solves_volkersens_equation(length, first, second):
     )
     assert value == pytest.approx(peak, rel=1e-6)
     assert value >= 1
+
+
+@given(st.floats(1e6, 1e9), st.floats(1e6, 1e9), st.floats(1e-3, 80e-3))
+@settings(max_examples=60, deadline=None)
+def test_one_wall_bounds_the_peak_from_below(first, second, length):
+    """Neither wall alone promises more than the peak; equal walls promise the peak itself."""
+    size = {"length": length, "shear_modulus": 1e9, "bond_thickness": 0.2e-3}
+    pair = {"membrane_stiffness_1": first, "membrane_stiffness_2": second}
+    peak = lap_joint.bond_peak_ratio(**size, **pair)
+    for wall in (first, second):
+        assert lap_joint.least_bond_peak_ratio(**size, membrane_stiffness=wall) <= peak * (
+            1 + 1e-12
+        )
+    same = lap_joint.bond_peak_ratio(**size, membrane_stiffness_1=first, membrane_stiffness_2=first)
+    least = lap_joint.least_bond_peak_ratio(**size, membrane_stiffness=first)
+    assert least == pytest.approx(same, rel=1e-12)
 
 
 EDGE = {key: BOND[key] for key in ("length", "shear_modulus", "bond_thickness")}
@@ -59,15 +75,15 @@ def test_bond_edges_bound_the_peak(first, second, length):
     size = {**EDGE, "length": length, "force": 1e4, "diameter": 30e-3}
 
     def edge(loaded, free):
-        return retention.bond_edge_shear(
+        return lap_joint.bond_edge_shear(
             **size, membrane_stiffness_loaded=loaded, membrane_stiffness_free=free
         )
 
-    peak = retention.bond_shear_peak(
+    peak = lap_joint.bond_shear_peak(
         **size, membrane_stiffness_1=first, membrane_stiffness_2=second
     )
     assert max(edge(first, second), edge(second, first)) == pytest.approx(peak, rel=1e-12)
-    ratio = retention.bond_peak_ratio(
+    ratio = lap_joint.bond_peak_ratio(
         **{**EDGE, "length": length}, membrane_stiffness_1=first, membrane_stiffness_2=first
     )
     assert edge(first, first) == pytest.approx(ratio * 1e4 / (pi * 30e-3 * length), rel=1e-12)
@@ -84,10 +100,10 @@ def test_bond_edges_carry_the_force(first, second):
     length, g, ta = (EDGE[key] for key in ("length", "shear_modulus", "bond_thickness"))
     force, around = 1e4, pi * 30e-3
     size = {**EDGE, "force": force, "diameter": 30e-3}
-    near = retention.bond_edge_shear(
+    near = lap_joint.bond_edge_shear(
         **size, membrane_stiffness_loaded=first, membrane_stiffness_free=second
     )
-    far = retention.bond_edge_shear(
+    far = lap_joint.bond_edge_shear(
         **size, membrane_stiffness_loaded=second, membrane_stiffness_free=first
     )
     k = sqrt(g / ta * (1 / first + 1 / second))
@@ -104,14 +120,14 @@ def test_bond_length_beyond_five_brings_nothing():
     equal = {**BOND, "membrane_stiffness_2": 100e6}
     unit = 20e-3 / sqrt(1e9 / 0.2e-3 * 20e-3**2 * 2 / 100e6)
     short, long = (
-        retention.bond_shear_peak(force=1e4, diameter=30e-3, **{**equal, "length": n * unit})
+        lap_joint.bond_shear_peak(force=1e4, diameter=30e-3, **{**equal, "length": n * unit})
         for n in (5.0, 50.0)
     )
     assert short / long == pytest.approx(1 / np.tanh(2.5), rel=1e-9)
-    swapped = retention.bond_peak_ratio(
+    swapped = lap_joint.bond_peak_ratio(
         **{**BOND, "membrane_stiffness_1": 50e6, "membrane_stiffness_2": 100e6}
     )
-    assert swapped == retention.bond_peak_ratio(**BOND)
+    assert swapped == lap_joint.bond_peak_ratio(**BOND)
 
 
 @pytest.mark.parametrize(("clamped", "factor"), [(False, 1.2375), (True, 0.75)])

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import pi
 
 from ..design.model import Design
-from ..models import retention
+from ..models import lap_joint
 from ..models.rod import section_area
 from ..models.strength_modes import load_multiplier
 from ..numeric import Array, absolute, maximum
@@ -118,7 +118,7 @@ def edge_factors(stock: Stock, lap: Lap, force: Array) -> dict[str, Array]:
     tube, metal = lap.names
     factors = {}
     for edge, loaded, free in ((metal, lap.tube, lap.metal), (tube, lap.metal, lap.tube)):
-        stress = retention.bond_edge_shear(
+        stress = lap_joint.bond_edge_shear(
             force=force,
             diameter=lap.diameter,
             membrane_stiffness_loaded=loaded,
@@ -127,6 +127,11 @@ def edge_factors(stock: Stock, lap: Lap, force: Array) -> dict[str, Array]:
         )
         factors[f"bond at the {edge}'s edge"] = strength / stress
     return factors
+
+
+def least_peak_ratio(stock: Stock, lap: Lap, stiffness: Array) -> Array:
+    """Peak over mean shear from below, from the stiffness of one of the walls."""
+    return lap_joint.least_bond_peak_ratio(membrane_stiffness=stiffness, **_adhesive(stock, lap))
 
 
 def mean_factor(stock: Stock, lap: Lap, force: Array) -> Array:
@@ -154,7 +159,7 @@ def thermal(
         for word in ("cold", "hot"):
             limit = "min" if word == "cold" else "max"
             warming = v[f"environment.temperature_{limit}"] - v["environment.assembly_temperature"]
-            stress = retention.bond_thermal_shear(
+            stress = lap_joint.bond_thermal_shear(
                 strain_difference=lap.mismatch * warming,
                 membrane_stiffness_1=lap.tube,
                 membrane_stiffness_2=lap.metal,

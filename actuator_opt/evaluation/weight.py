@@ -18,14 +18,10 @@ def _barrel(v: Values, design: Design, g: Geometry) -> Array:
     total: Array = 0.0
     radius = g.inner_radius
     for ply, thickness in zip(design.barrel.layup, g.thicknesses, strict=True):
-        total = total + mass.tube_mass(
-            density=v[f"materials.{ply.material}.density"],
-            inner_diameter=2 * radius,
-            outer_diameter=2 * (radius + thickness),
-            length=g.barrel_length,
-        )
+        area = mass.layer_area(inner_radius=radius, thickness=thickness)
+        total = total + v[f"materials.{ply.material}.density"] * area
         radius = radius + thickness
-    return total
+    return total * g.barrel_length
 
 
 def _piston(v: Values, design: Design, g: Geometry) -> Array:
@@ -47,13 +43,8 @@ def _plate(density: Array, g: Geometry, hole: Array) -> Array:
     plate = mass.tube_mass(
         density=density, inner_diameter=hole, outer_diameter=2 * g.plate_radius, length=g.plate
     )
-    skirt = mass.tube_mass(
-        density=density,
-        inner_diameter=2 * g.outer_radius,
-        outer_diameter=2 * (g.outer_radius + g.skirt_wall),
-        length=g.skirt_length,
-    )
-    return plate + skirt
+    skirt = mass.layer_area(inner_radius=g.outer_radius, thickness=g.skirt_wall)
+    return plate + density * skirt * g.skirt_length
 
 
 def _gland(v: Values, design: Design, g: Geometry) -> Array:

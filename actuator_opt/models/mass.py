@@ -42,6 +42,33 @@ def tube_mass(
     return (0.25 * math.pi) * density * ring * length
 
 
+def layer_area(*, inner_radius: Array, thickness: Array) -> Array:
+    """Section of a layer around a tube, pi t (2 r + t): no difference of like numbers.
+
+    Parameters
+    ----------
+    inner_radius, thickness : of the layer [m]
+
+    Returns
+    -------
+    area [m^2]
+
+    Notes
+    -----
+    Valid: everywhere.
+
+    References
+    ----------
+    [derived] area of a ring
+
+    Examples
+    --------
+    >>> print(f"{layer_area(inner_radius=10e-3, thickness=2e-3) * 1e6:.2f} mm^2")
+    138.23 mm^2
+    """
+    return math.pi * (thickness * (2 * inner_radius + thickness))
+
+
 def disc_mass(*, density: Array, diameter: Array, thickness: Array) -> Array:
     """Mass of a solid disc (piston, cap), rho pi D^2 t/4.
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from math import sqrt
 
 from ..numeric import Array, namespace
-from .rod import section_area
+from .mass import layer_area
 
 
 def least_growth(
@@ -19,26 +19,26 @@ def least_growth(
     hoop: Sequence[Array],
     cross: Sequence[Array],
     radial: Sequence[Array],
-    decays: Sequence[float],
+    decays: Sequence[Sequence[float]],
     thicknesses: Sequence[Array],
     inner_radius: Array,
 ) -> Array:
-    """Bore growth per pressure of a layered tube without axial force, from below.
+    """Bore growth per pressure of a layered tube that is held axially, from below.
 
     u >= p r_i/sum K_k a_k (1 - x_k^(-2 b_k))/(2 b_k), K_k = C_tt - 2 b_k C_tr + b_k^2 C_rr,
-    x_k = r_k/r_(k-1), a_k = prod x_j^(-2 b_j) over the layers inside: the energy of the trial
-    displacement that falls as r^(-b_k) in each layer, with no axial strain.
+    x_k = r_k/r_(k-1), a_k = prod x_j^(-2 b_j) over all inside: the energy of the trial
+    displacement that falls as r^(-b_k), with no axial strain. Each layer is cut into equal parts.
 
     Parameters
     ----------
     hoop, cross, radial : stiffnesses C_tt, C_tr, C_rr of each layer from the bore outwards [Pa]
-    decays : b_k of each layer, not zero [-]
+    decays : b of each part of each layer, not zero [-]
     thicknesses : of each layer [m]
     inner_radius : r_i [m]
 
     Returns
     -------
-    radial growth of the bore per pressure that is no more than the true one [m/Pa]
+    radial growth of the bore per pressure that is no more than the true one, held or free [m/Pa]
 
     Notes
     -----
@@ -46,11 +46,11 @@ def least_growth(
 
     References
     ----------
-    [derived] minimum potential energy with a trial displacement of one power per layer
+    [derived] minimum potential energy with a trial displacement of one power per part
 
     Examples
     --------
-    >>> u = least_growth(hoop=[282.7e9], cross=[121.2e9], radial=[282.7e9], decays=[0.4],
+    >>> u = least_growth(hoop=[282.7e9], cross=[121.2e9], radial=[282.7e9], decays=[[0.4]],
     ...                  thicknesses=[4e-3], inner_radius=16e-3)
     >>> print(f"{u * 28e6 * 1e6:.3f} um")
     9.491 um
@@ -58,35 +58,38 @@ def least_growth(
     total: Array = 0.0
     share: Array = 1.0
     radius = inner_radius
-    for tt, tr, rr, b, thickness in zip(hoop, cross, radial, decays, thicknesses, strict=True):
-        fall = (1 + thickness / radius) ** (-2 * b)
-        stiff = tt - 2 * b * tr + b * b * rr
-        total = total + stiff * share * ((1 - fall) / (2 * b))
-        share, radius = share * fall, radius + thickness
+    for tt, tr, rr, falls, thickness in zip(hoop, cross, radial, decays, thicknesses, strict=True):
+        part = thickness / radius / len(falls)
+        own: Array = 0.0  # as a function of t/r alone, so that it is one curve of a relaxation
+        left: Array = 1.0
+        inside: Array = 1.0
+        for number, b in enumerate(falls, start=1):
+            outside = 1 + number * part
+            fall = (outside / inside) ** (-2 * b)
+            own = own + (tt - 2 * b * tr + b * b * rr) * (left * ((1 - fall) / (2 * b)))
+            left, inside = left * fall, outside
+        total = total + share * own
+        share, radius = share * left, radius + thickness
     return inner_radius / total
 
 
-def axial_stiffness_bounds(
-    *,
-    free: Sequence[Array],
-    held: Sequence[Array],
-    thicknesses: Sequence[Array],
-    inner_radius: Array,
-) -> tuple[Array, Array]:
-    """Axial stiffness EA of a layered tube from below and from above.
+def axial_stiffness(
+    *, moduli: Sequence[Array], thicknesses: Sequence[Array], inner_radius: Array
+) -> Array:
+    """Axial stiffness of layers side by side, sum q_k A_k.
 
-    sum E_k A_k <= EA <= sum q_k A_k.
+    Of a bonded tube from below with the moduli of layers free to contract, from above with those
+    of layers that all contract alike; with C_zz, from above of a tube that cannot move radially.
 
     Parameters
     ----------
-    free : modulus E_k of each layer, free to contract [Pa]
-    held : modulus q_k of each layer while all contract alike [Pa]
+    moduli : q_k of each layer from the bore outwards [Pa]
     thicknesses : of each layer [m]
     inner_radius : r_i [m]
 
     Returns
     -------
-    EA from below and from above [N]
+    EA [N]
 
     Notes
     -----
@@ -98,19 +101,16 @@ def axial_stiffness_bounds(
 
     Examples
     --------
-    >>> low, high = axial_stiffness_bounds(free=[70e9, 10e9], held=[72e9, 15e9],
-    ...                                    thicknesses=[1e-3, 1e-3], inner_radius=10e-3)
-    >>> print(f"{low / 1e6:.3f} {high / 1e6:.3f} MN")
-    5.341 5.834 MN
+    >>> k = axial_stiffness(moduli=[70e9, 10e9], thicknesses=[1e-3, 1e-3], inner_radius=10e-3)
+    >>> print(f"{k / 1e6:.3f} MN")
+    5.341 MN
     """
-    low: Array = 0.0
-    high: Array = 0.0
-    bore = 2 * inner_radius
-    for least, most, thickness in zip(free, held, thicknesses, strict=True):
-        face = bore + 2 * thickness
-        area = section_area(outer_diameter=face, inner_diameter=bore)
-        low, high, bore = low + least * area, high + most * area, face
-    return low, high
+    total: Array = 0.0
+    radius = inner_radius
+    for modulus, thickness in zip(moduli, thicknesses, strict=True):
+        total = total + modulus * layer_area(inner_radius=radius, thickness=thickness)
+        radius = radius + thickness
+    return total
 
 
 def ply_hoop_strength(

@@ -97,6 +97,16 @@ def derive(
     return _clamped(v, design, stock, g, state, swelling, worst, cases)
 
 
+def tie_rod_stiffness(v: Values, design: Design, stock: Stock, g: Geometry) -> Array:
+    """Axial stiffness of all tie rods, plate to plate."""
+    assert design.retention is not None
+    assert design.retention.material is not None
+    modulus = stock.get(design.retention.material, "youngs_modulus")
+    diameter = v["retention.thread.diameter"]
+    length = g.barrel_length + 2 * g.plate
+    return v["retention.count"] * modulus * pi * diameter * diameter / 4 / length
+
+
 def _clamped(
     v: Values,
     design: Design,
@@ -111,14 +121,9 @@ def _clamped(
 
     `worst` is the area on which pressure tears the ends apart, by the name of its load path.
     """
-    assert design.retention is not None
-    assert design.retention.material is not None
-    modulus = stock.get(design.retention.material, "youngs_modulus")
-    diameter = v["retention.thread.diameter"]
-    length = g.barrel_length + 2 * g.plate
     springs = {
         "barrel_stiffness": 1 / (swelling.stretch * g.barrel_length),
-        "tie_rod_stiffness": v["retention.count"] * modulus * pi * diameter * diameter / 4 / length,
+        "tie_rod_stiffness": tie_rod_stiffness(v, design, stock, g),
     }
     supply = v["supply.pressure"]
     proof = v["supply.proof_ratio"] * supply

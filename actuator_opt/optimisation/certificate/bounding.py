@@ -16,6 +16,8 @@ import scipy.sparse as sp
 
 from ..problem import Vector
 from .box import ROOM, Box, Layout
+from .lines import Lines, Seen
+from .products import Products
 from .shapes import FAR
 from .signomial import Form
 
@@ -40,7 +42,10 @@ FINE = 0.01
 PROVEN = 1e-6
 """Least value of a ray that proves that nothing is left: above rounding."""
 
-MOST = 4
+NEAR = 0.05
+"""Share of a range within which a point shows that an end of it cannot be cut."""
+
+MOST = 3
 """Lines per curve beyond which those that do not touch are forgotten."""
 
 
@@ -54,6 +59,8 @@ class Bound(NamedTuple):
     """By how much every curve is missed on the side of its chord."""
     price: Vector
     """Multiplier of every chord."""
+    torn: Vector
+    """By how much every product is missed, times its price."""
     slopes: Vector
     """Of every column: what the value gains at least as the column leaves its better end."""
 
@@ -79,12 +86,16 @@ class Bounding:
         for i, power in objective.powers:
             self.cost[i] = power
         self.constant = objective.constant
-        self.matrix, self.low, self.high = self._definitions()
+        matrix, low, high = self._definitions()
+        self.products = Products(layout.relaxation.products, len(low), self.columns)
+        self.matrix = sp.vstack([matrix, self.products.matrix], format="csr")
+        none = np.full(self.products.rows, np.inf)
+        self.low, self.high = np.concatenate([low, -none]), np.concatenate([high, none])
         bases = np.array([link.base for link in layout.links], dtype=np.int32)
         outs = np.array([link.out for link in layout.links], dtype=np.int32)
         self.moving = curves + 2 * len(outs)
         none = np.zeros(self.moving)
-        self.lines = _Lines(
+        self.lines = Lines(
             np.concatenate([self.ratio, bases, bases]),
             none,
             np.concatenate([self.out, outs, outs]),
@@ -126,7 +137,7 @@ class Bounding:
         solver.addCols(self.columns, self.cost, -ends, ends, 0, index, index, none)
         rows = m.indptr[:-1].astype(np.int32), m.indices.astype(np.int32), m.data
         solver.addRows(len(self.low), self.low, self.high, m.nnz, *rows)
-        _add(solver, self.lines)
+        self.lines.put(solver)
         return solver
 
     def solve(self, box: Box) -> Bound | None:
@@ -143,6 +154,7 @@ class Bounding:
             x[self.ways],
             np.maximum(-self._missed(x), 0.0),
             np.abs(dual[first : first + self.layout.curves]),
+            self.products.torn(x, dual),
             slopes,
         )
 
@@ -186,18 +198,28 @@ class Bounding:
         self.solver.deleteRows(len(idle), np.array(idle, dtype=np.int32))
         kept = np.ones(count, dtype=bool)
         kept[np.array(idle) - len(self.low)] = False
-        self.lines = _Lines(*(part[kept] for part in self.lines))
+        self.lines = Lines(*(part[kept] for part in self.lines))
 
-    def extent(self, direction: int, ends: tuple[Vector, Vector]) -> tuple[float, float] | None:
-        """Least and largest value of a direction in the box looked at; None of none."""
+    def extent(
+        self, direction: int, ends: tuple[Vector, Vector], seen: Seen
+    ) -> tuple[float, float] | None:
+        """Least and largest value of a direction in the box looked at; None of none.
+
+        An end of the range that a point seen so far comes near to is kept; points are added.
+        """
+        way = self.ways[direction]
+        reach = [float(end[way]) for end in ends]
+        near = NEAR * (reach[1] - reach[0])
         cost = np.zeros(self.columns)
-        reach = []
-        for sign in (1.0, -1.0):
-            cost[self.ways[direction]] = sign
+        for side, sign in enumerate((1.0, -1.0)):
+            if 0 <= sign * (seen.ends[side][direction] - reach[side]) <= near:
+                continue
+            cost[way] = sign
             found = self._least(cost, *ends, rounds=1)
             if found is None:
                 return None
-            reach.append(sign * found[0])
+            reach[side] = sign * found[0]
+            seen.add(found[2][self.ways])
         return reach[0], reach[1]
 
     def _least(
@@ -243,7 +265,24 @@ class Bounding:
         lower, upper = self._ends(box)
         index = np.arange(self.columns, dtype=np.int32)
         self.solver.changeColsBounds(self.columns, index, lower, upper)
+        self._planes(lower, upper)
         return lower, upper
+
+    def _planes(self, lower: Vector, upper: Vector) -> None:
+        """Put the planes of the products over the ranges of the columns."""
+        products, first = self.products, self.products.first
+        planes, low, high = products.planes(lower, upper)
+        self.matrix.data[len(self.matrix.data) - planes.size :] = planes.ravel()
+        some = slice(first, first + products.rows)
+        self.low[some], self.high[some] = low, high
+        columns, values = products.columns.tolist(), planes.tolist()
+        for row, (one, two, _), (left, right, _) in zip(
+            range(first, first + products.rows), columns, values, strict=True
+        ):
+            self.solver.changeCoeff(row, one, left)
+            self.solver.changeCoeff(row, two, right)
+        index = np.arange(first, first + products.rows, dtype=np.int32)
+        self.solver.changeRowsBounds(products.rows, index, low, high)
 
     def _chords(self, box: Box) -> None:
         """Put the chords over a box in place of those of the last one."""
@@ -293,8 +332,8 @@ class Bounding:
         for share in FIRST:
             self._append(self._touching(middle + share * reach, some))
 
-    def _append(self, more: _Lines) -> None:
-        _add(self.solver, more)
+    def _append(self, more: Lines) -> None:
+        more.put(self.solver)
         self.lines = self.lines.joined(more)
 
     def _tangents(self, x: Vector) -> bool:
@@ -304,14 +343,14 @@ class Bounding:
             self._append(self._touching(self._argument(x), some))
         return len(some) > 0
 
-    def _touching(self, t: Vector, some: Any) -> _Lines:
+    def _touching(self, t: Vector, some: Any) -> Lines:
         """Tangents of some curves at arguments of all."""
         layout = self.layout
         slope = layout.mixed.slope(t)
         mixed = layout.mixed
         level = mixed.value(t) - mixed.convex * mixed.room + slope * (layout.constant - t)
         level, convex = level[some], mixed.convex[some] > 0
-        return _Lines(
+        return Lines(
             self.ratio[some],
             (-slope * layout.factor)[some],
             self.out[some],
@@ -348,25 +387,5 @@ _OPTIONS = {
     "primal_feasibility_tolerance": 1e-7,
     "dual_feasibility_tolerance": 1e-9,
     "threads": 1,
+    "simplex_scale_strategy": 0,
 }
-
-
-class _Lines(NamedTuple):
-    """low <= out + coefficient * ratio <= high, by columns of curve and direction."""
-
-    ratio: Any
-    coefficient: Vector
-    out: Any
-    low: Vector
-    high: Vector
-
-    def joined(self, more: _Lines) -> _Lines:
-        return _Lines(*(np.concatenate(pair) for pair in zip(self, more, strict=True)))
-
-
-def _add(solver: Any, lines: _Lines) -> None:
-    count = len(lines.low)
-    indices = np.stack([lines.ratio, lines.out], axis=1).ravel().astype(np.int32)
-    data = np.stack([lines.coefficient, np.ones(count)], axis=1).ravel()
-    starts = 2 * np.arange(count, dtype=np.int32)
-    solver.addRows(count, lines.low, lines.high, 2 * count, starts, indices, data)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..problem import Vector
 from .relaxation import Relaxation
-from .shapes import FAR, Mixed, Table
+from .shapes import FAR, Mixed, Table, Tables
 from .signomial import Form, Powers
 
 ROUNDS = 20
@@ -38,7 +38,8 @@ class Gone(Exception):
 class Layout:
     """A relaxation as arrays: every distinct direction in the space of logarithms once.
 
-    A direction is a log ratio, such as log(t/r): all curves of powers of one ratio share it.
+    A direction is a log ratio, such as log(t/r): all curves of powers of one ratio share it. Its
+    largest power is 1, so that its range is no longer than those of its atoms together.
     Forms are, in order: outs of curves, directions, rows (each >= 0).
     """
 
@@ -50,12 +51,12 @@ class Layout:
         places = []
         for curve in relaxation.curves:
             powers = curve.argument.powers
-            factor = powers[0][1]
+            factor = max((p for _, p in powers), key=abs)
             key = tuple((i, round(p / factor, 12)) for i, p in powers)
             number = known.setdefault(key, len(known))
             places.append((number, factor, curve.argument.constant))
         self.links = relaxation.links
-        self.of_curve = {id(curve): k for k, curve in enumerate(relaxation.curves)}
+        self._of_curve = {id(curve): k for k, curve in enumerate(relaxation.curves)}
         self.directions = len(known)
         self.direction = np.array([place[0] for place in places], dtype=np.intp)
         self.factor = np.array([place[1] for place in places])
@@ -70,23 +71,35 @@ class Layout:
         self.atom = np.array([entry[1] for entry in entries], dtype=np.intp)
         self.power = np.array([entry[2] for entry in entries])
 
+    @cached_property
+    def factors(self) -> tuple[np.ndarray, np.ndarray]:
+        """Directions of both factors of every product."""
+        way = {
+            curve.out.powers[0][0]: int(number)
+            for curve, number in zip(self.relaxation.curves, self.direction, strict=True)
+            if curve.kind == "exp" and len(curve.out.powers) == 1
+        }
+        found = [(way[one.first], way[one.second]) for one in self.relaxation.products]
+        first, second = np.array(found, dtype=np.intp).reshape(-1, 2).T
+        return first, second
+
+    @cached_property
+    def _linked(self) -> tuple[Tables, np.ndarray, Vector]:
+        """Tables of the links, the numbers of their curves, and the ratios' levels."""
+        number = np.array([self._of_curve[id(link.curve)] for link in self.links])
+        kinds = [link.curve.kind for link in self.links]
+        tables = Tables([kind for kind in kinds if isinstance(kind, Table)])
+        return tables, number, np.array([link.level for link in self.links])
+
     def ratios(self, box: Box) -> tuple[Vector, Vector]:
         """Least and largest ratio of every link in a box."""
-        low, high = np.zeros(len(self.links)), np.zeros(len(self.links))
-        for k, link in enumerate(self.links):
-            ends = box.range(link.ratio)
-            if link.curve is not None and isinstance(link.curve.kind, Table):
-                number = self.of_curve[id(link.curve)]
-                first, last = self.arguments(box.low, box.high)
-                table, t = link.curve.kind, first[number]
-                off = table.apart(t, last[number], 1.0)
-                start = float(table.value(np.array([t]))[0]) - t
-                ends = (
-                    ends[0] + start + off[0] - table.room,
-                    ends[1] + start + off[1] + table.room,
-                )
-            low[k], high[k] = ends
-        return np.exp(low), np.exp(high)
+        if not self.links:
+            return np.empty(0), np.empty(0)
+        tables, number, constant = self._linked
+        first, last = (ends[number] for ends in self.arguments(box.low, box.high))
+        off = tables.apart(first, last, np.ones(len(number)), tables.rows)
+        start = constant + tables.value(first) - first
+        return np.exp(start + off[0] - tables.room), np.exp(start + off[1] + tables.room)
 
     @cached_property
     def parts(self) -> tuple[slice, slice, slice]:

@@ -61,10 +61,18 @@ class Builder:
 
     def _either(self, node: Symbol) -> tuple[float, Form]:
         """Sampled where that says more than its parts, else by its parts."""
-        if node.op not in _MONOMIAL:
+        if node.op not in _MONOMIAL or self._repeats(node):
             with suppress(Unknown):
                 return self._sampled(node)
         return self._made(node)
+
+    def _repeats(self, node: Symbol) -> bool:
+        """Whether both factors of a product depend on one value, other than as its powers."""
+        if node.op not in ("mul", "div"):
+            return False
+        lead, (first, second) = self._leads.of(node), node.args
+        single = first is second or _power(first, lead) or _power(second, lead)
+        return lead is not node and not single
 
     def _made(self, node: Symbol) -> tuple[float, Form]:
         op, args = node.op, node.args
@@ -326,3 +334,10 @@ class Builder:
         )
         self.found.curves.append(Curve(kind, argument, out))
         return out
+
+
+def _power(value: Any, lead: Symbol) -> bool:
+    """Whether a value is a number times a power of another."""
+    if value is lead or not isinstance(value, Symbol):
+        return True
+    return value.op in _MONOMIAL and all(_power(one, lead) for one in value.args)

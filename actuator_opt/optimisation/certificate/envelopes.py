@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
+from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
 
 from ...design.model import Design
-from ...evaluation import Subject, beam, plies
+from ...evaluation import Subject, beam, bonds, plies
 from ...evaluation.allow import Stock
 from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind, load_path
 from ...evaluation.barrel.load_path import LoadPath
 from ...evaluation.geometry import Geometry
-from ...evaluation.kernel import Implicit, Pass
+from ...evaluation.kernel import Implicit, Pass, Statics
 from ...evaluation.rods import Rod
+from ...evaluation.rows import Computed
+from ...evaluation.springs import Springs
 from ...evaluation.state import State
 from ...evaluation.values import Values
 from ...models import column, stepped, tube_bounds
@@ -23,13 +26,17 @@ from ...models import rod as rod_models
 from ...models.layered_tube import layered_tube, tube_state
 from ...models.solid_ply import solid_rotated
 from ...models.trial_mode import TrialMode, buckled_mode, trial_mode_load
+from ...models.trial_motion import Chamber, least_energy_motion, trial_motion_stiffness
 from ...numeric import Array, maximum
 from ...symbolic import Symbol
 from ...symbolic.bounds import bounds_of
 from .relaxation import Unknown
 
 LEAST_DECAY = 1e-3
-"""Least decay of the displacement through a layer, so that no power is zero."""
+"""Least decay of the displacement through a part of a layer, so that no power is zero."""
+
+PARTS = 4
+"""Parts of a layer of known stiffness in the bound on its growth; any number holds."""
 
 CONTRACTION = 0.2
 """Contraction of a wall over its axial strain in the bound on its stiffness; any number holds."""
@@ -48,7 +55,12 @@ class Envelopes:
     """Envelopes of one load case, tight at an evaluated design of one column."""
 
     def __init__(
-        self, problem: Problem, subject: Subject, there: Pass, decays: Sequence[float], case: int
+        self,
+        problem: Problem,
+        subject: Subject,
+        there: Pass,
+        decays: Sequence[Sequence[float]],
+        case: int,
     ) -> None:
         self.problem, self.subject, self.there = problem, subject, there
         self.decays, self.case = decays, case
@@ -62,14 +74,14 @@ class Envelopes:
             critical_load=self.column(self._mode()),
         )
 
-    def _number(self, value: Array) -> float:
+    def number(self, value: Array) -> float:
         """A value of an evaluated design in this load case."""
         rows = np.atleast_2d(np.asarray(value, dtype=float))
         return float(rows[min(self.case, len(rows) - 1), 0])
 
     def unknown(self, name: str, exact: Callable[[Pass], Array]) -> Symbol:
         """An unknown of this load case."""
-        return self.problem.unknown(f"{name}_{self.case}", lambda done: self._number(exact(done)))
+        return self.problem.unknown(f"{name}_{self.case}", lambda done: self.number(exact(done)))
 
     def _mode(self) -> TrialMode | None:
         """The shape in which the evaluated design buckles between its pins."""
@@ -77,17 +89,17 @@ class Envelopes:
             return None
         lengths = beam.lengths(self.there.geometry, self.there.state)
         load = stepped.stepped_column_load(
-            bending_stiffness_1=self._number(self.there.wall.bending_stiffness),
-            length_1=self._number(lengths[0]),
-            bending_stiffness_2=self._number(self.there.rod.bending_stiffness),
-            length_2=self._number(lengths[1]),
+            bending_stiffness_1=self.number(self.there.wall.bending_stiffness),
+            length_1=self.number(lengths[0]),
+            bending_stiffness_2=self.number(self.there.rod.bending_stiffness),
+            length_2=self.number(lengths[1]),
         )
         return buckled_mode(
             critical_load=float(load),
-            bending_stiffness_1=self._number(self.there.wall.bending_stiffness),
-            length_1=self._number(lengths[0]),
-            bending_stiffness_2=self._number(self.there.rod.bending_stiffness),
-            length_2=self._number(lengths[1]),
+            bending_stiffness_1=self.number(self.there.wall.bending_stiffness),
+            length_1=self.number(lengths[0]),
+            bending_stiffness_2=self.number(self.there.rod.bending_stiffness),
+            length_2=self.number(lengths[1]),
         )
 
     def column(self, mode: TrialMode | None) -> Callable[..., Array]:
@@ -114,8 +126,8 @@ class Envelopes:
     def laminate(self, v: Values, design: Design, stock: Stock, g: Geometry, state: State) -> Wall:
         """A laminated wall: growth and axial stiffness unknown between their bounds.
 
-        It does not stretch under axial force (stiffer than it is); of its strength stands only
-        `bearable`.
+        Its swelling is that of a wall that is held: growth without axial strain, stretch without
+        radial motion. Of its strength stands only `bearable`.
 
         Raises
         ------
@@ -130,7 +142,7 @@ class Envelopes:
         walls = [solid_rotated(stiffness=layer.solid, angle=layer.angle) for layer in layers]
         thicknesses = [layer.thickness for layer in layers]
         self.bearable = _bearable(v, design, stock, g)
-        growth, stiffness = self._elastic(walls, thicknesses, g.inner_radius)
+        growth, held, stiffness = self._elastic(walls, thicknesses, g.inner_radius)
         supply = self.unknown("grown", lambda done: done.wall.growth)
         own = supply
         if not np.array_equal(np.ravel(state.driven_pressure), np.ravel(v["supply.pressure"])):
@@ -142,7 +154,10 @@ class Envelopes:
         bending, shear = rod_models.layered_section(
             walls=walls, thicknesses=thicknesses, inner_diameter=2 * g.inner_radius
         )
-        rigid = Swelling(growth=growth, shortening=0.0, stretch=0.0, growth_by_force=0.0)
+        along = tube_bounds.axial_stiffness(
+            moduli=[one[0] for one in walls], thicknesses=thicknesses, inner_radius=g.inner_radius
+        )
+        rigid = Swelling(growth=held, shortening=0.0, stretch=1 / along, growth_by_force=0.0)
         return Wall(
             swelling=rigid,
             path=self._path(v, design, stock, g, state, rigid),
@@ -159,30 +174,72 @@ class Envelopes:
 
     def _elastic(
         self, walls: Sequence[Sequence[Array]], thicknesses: Sequence[Array], radius: Array
-    ) -> tuple[Symbol, Symbol]:
-        """Growth per pressure and axial stiffness of a laminated wall."""
-        growth = self.problem.unknown(
-            "growth", lambda done: self._number(done.wall.swelling.growth)
+    ) -> tuple[Symbol, Symbol, Symbol]:
+        """Growth per pressure of a laminated wall, free and held axially; axial stiffness."""
+        growth = self.problem.unknown("growth", lambda done: self.number(done.wall.swelling.growth))
+        held = self.problem.unknown(
+            "held_growth", lambda done: self.number(_held_growth(done.wall.swelling))
         )
+        stiffness = self.problem.unknown(
+            "axial_stiffness", lambda done: self.number(1 / done.wall.swelling.stretch)
+        )
+        size = {"thicknesses": thicknesses, "inner_radius": radius}
         least = tube_bounds.least_growth(
             hoop=[one[3] for one in walls],
             cross=[one[4] for one in walls],
             radial=[one[5] for one in walls],
             decays=self.decays,
-            thicknesses=thicknesses,
-            inner_radius=radius,
+            **size,
         )
-        stiffness = self.problem.unknown(
-            "axial_stiffness", lambda done: self._number(1 / done.wall.swelling.stretch)
+        free = [rod_models.free_modulus(wall=one) for one in walls]
+        alike = [_contracting(one, CONTRACTION) for one in walls]
+        self.problem.facts += [
+            (held, least),
+            (growth, held),
+            (stiffness, tube_bounds.axial_stiffness(moduli=free, **size)),
+            (tube_bounds.axial_stiffness(moduli=alike, **size), stiffness),
+        ]
+        return growth, held, stiffness
+
+    def stiffness(self, springs: Springs, share: float) -> Array:
+        """Stiffness of both chambers from above at a share of the stroke."""
+        cap = self.subject.design.cylinder.mount.startswith("cap")
+        pulling: Chamber = "b" if cap else "a"
+        there = self._gives(self.there.springs, share, pulling)
+        motion = least_energy_motion(
+            **{name: self.number(value) for name, value in there.items()}, pulling=pulling
         )
-        low, high = tube_bounds.axial_stiffness_bounds(
-            free=[rod_models.free_modulus(wall=one) for one in walls],
-            held=[_held(one, CONTRACTION) for one in walls],
-            thicknesses=thicknesses,
-            inner_radius=radius,
-        )
-        self.problem.facts += [(growth, least), (stiffness, low), (high, stiffness)]
-        return growth, stiffness
+        gives = self._gives(springs, share, pulling)
+        return trial_motion_stiffness(motion=motion, **gives, pulling=pulling)
+
+    @staticmethod
+    def _gives(springs: Springs, share: float, pulling: Chamber) -> dict[str, Array]:
+        """What gives way in both chambers at a share of the stroke."""
+        g = springs.geometry
+        kept = [cause for cause in springs.chambers if cause not in ("barrel", "stretch")]
+        x = share * g.stroke
+        oil, wall = springs.total(kept).at(x, g.stroke), springs.total(["barrel"]).at(x, g.stroke)
+        pulled = springs.chambers["stretch"]
+        return {
+            "area_a": g.area_a,
+            "area_b": g.area_b,
+            "oil_a": oil.a,
+            "oil_b": oil.b,
+            "wall_a": wall.a,
+            "wall_b": wall.b,
+            "stretch": pulled.a0 if pulling == "a" else pulled.b0,
+        }
+
+    def bond(self, design: Design, done: Statics, out: Computed) -> None:
+        """The caps' bonds by one wall at a time, which says as much where both are as stiff."""
+        lap = bonds.caps(done.base.stock, design, done.base.geometry, done.base.wall)
+        if isinstance(lap, str):
+            return
+        (mean,) = out.metrics["retention_burst_factor"].values()
+        out.metrics["retention_factor"] = {
+            f"bond of the {name}": mean / bonds.least_peak_ratio(done.base.stock, lap, stiffness)
+            for name, stiffness in zip(lap.names, (lap.tube, lap.metal), strict=True)
+        }
 
     def _path(
         self,
@@ -198,14 +255,16 @@ class Envelopes:
             return load_path.derive(v, design, stock, g, state, swelling)
         name = load_path.STOP if design.cylinder.end_stop == "internal" else load_path.LARGEST
         share = self.problem.unknown(
-            "barrel_share", lambda done: self._number(done.wall.path.per_pressure[name])
+            "barrel_share", lambda done: self.number(done.wall.path.per_pressure[name])
         )
         supply = v["supply.pressure"]
         proof = v["supply.proof_ratio"] * supply
         preload = v.get("retention.preload", proof * share)
         largest = supply * (load_path.largest_area(design, g) - share) + preload
         rods = load_path.TieRods(preload, largest, preload / (proof * share))
-        return load_path.LoadPath({name: share}, 0.0, 0.0, rods)
+        barrel = 1 / (swelling.stretch * g.barrel_length)
+        whole = barrel + load_path.tie_rod_stiffness(v, design, stock, g)
+        return load_path.LoadPath({name: share}, 0.0, 0.0, rods, barrel / whole)
 
 
 def refuse(design: Design) -> None:
@@ -231,23 +290,38 @@ def layered(subject: Subject) -> bool:
     return kind(subject.design, subject.materials) in LAMINATES
 
 
-def decays(subject: Subject, v: Values, there: Pass) -> list[float]:
-    """How the displacement falls through each layer of an evaluated design under pressure."""
+def decays(subject: Subject, v: Values, there: Pass, free: Container[str]) -> list[list[float]]:
+    """How the displacement falls through the parts of each layer of an evaluated design.
+
+    A layer whose angle is one of the PATHs `free` is one part.
+    """
     if not layered(subject):
         return []
     stock = Stock(v, subject.materials, subject.factors, subject.constants)
     plain = plies.layers(v, stock, subject.design.barrel.layup, "barrel.layup", (), [])
-    tube = layered_tube(
-        layers=[layer.as_tube() for layer in plain], inner_radius=there.geometry.inner_radius
-    )
+    counts = [1 if f"barrel.layup[{k}].angle" in free else PARTS for k in range(len(plain))]
+    parts = [
+        replace(layer.as_tube(), thickness=layer.thickness / count)
+        for layer, count in zip(plain, counts, strict=True)
+        for _ in range(count)
+    ]
+    tube = layered_tube(layers=parts, inner_radius=there.geometry.inner_radius)
     state = tube_state(tube=tube, inner_pressure=1.0)
     radius = np.asarray(state.radius).reshape(2, -1)
     moved = np.asarray(state.hoop_strain).reshape(2, -1) * radius
     falls = -np.log(moved[1] / moved[0]) / np.log(radius[1] / radius[0])
-    return [float(fall) if abs(fall) > LEAST_DECAY else LEAST_DECAY for fall in falls]
+    falls = np.where(np.abs(falls) > LEAST_DECAY, falls, LEAST_DECAY)
+    ends = np.cumsum(counts)[:-1]
+    return [part.tolist() for part in np.split(falls, ends)]
 
 
-def _held(wall: Sequence[Array], contraction: float) -> Array:
+def _held_growth(swelling: Swelling) -> Array:
+    """Bore growth per pressure of a wall that is held axially."""
+    pulled = swelling.growth_by_force / swelling.stretch
+    return swelling.growth - pulled * swelling.shortening
+
+
+def _contracting(wall: Sequence[Array], contraction: float) -> Array:
     """Axial modulus of a layer that contracts by a given share of its strain."""
     zz, zt, zr, tt, tr, rr = wall[:6]
     return zz - 2 * contraction * (zt + zr) + contraction**2 * (tt + 2 * tr + rr)

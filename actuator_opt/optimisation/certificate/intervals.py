@@ -13,7 +13,7 @@ from typing import Any
 
 from ...symbolic import Symbol
 from ...symbolic.bounds import Bounds, at_end, bounds, bounds_of
-from .signomial import Form, Signomial
+from .signomial import ROUNDING, Form, Signomial
 
 ROUNDS = 30
 """Most passes over all values."""
@@ -244,12 +244,20 @@ def _backward(node: Symbol) -> bool:
 
 def _add(node: Symbol) -> bool:
     a, b = node.args
-    return narrow(a, bounds("sub", (node, b))) | narrow(b, bounds("sub", (node, a)))
+    return narrow(a, _rounded("sub", node, b)) | narrow(b, _rounded("sub", node, a))
 
 
 def _sub(node: Symbol) -> bool:
     a, b = node.args
-    return narrow(a, bounds("add", (node, b))) | narrow(b, bounds("sub", (a, node)))
+    return narrow(a, _rounded("add", node, b)) | narrow(b, _rounded("sub", a, node))
+
+
+def _rounded(op: str, first: Any, second: Any) -> Bounds:
+    """Bounds of a sum or difference, with room for the rounding of its operands."""
+    low, high = bounds(op, (first, second))
+    sizes = [abs(end) for end in (*bounds_of(first), *bounds_of(second)) if math.isfinite(end)]
+    room = ROUNDING * max(sizes, default=0.0)
+    return low - room, high + room
 
 
 def _mul(node: Symbol) -> bool:

@@ -1,7 +1,7 @@
 """Sums in plain numbers beside their logarithms: what is linear stays linear.
 
 A sum that must be large is loose in logarithms where its terms range widely, and exact in plain
-numbers. There a monomial w = c a is tied to its widest atom a by the range of c in the box
+numbers. There a monomial is tied to its widest factor and the rest by the planes of their product
 [McCormick1976]: mass and stiffness of a layer both follow its thickness.
 """
 
@@ -9,15 +9,12 @@ from __future__ import annotations
 
 import math
 
-from .relaxation import Curve, Link, Relaxation, Row
+from .relaxation import Curve, Link, Product, Relaxation, Row
 from .shapes import Table
 from .signomial import Form, Powers
 
 WIDE = 0.3
 """Least range of the ratio of a sum's parts that is stated in plain numbers too."""
-
-TIED = 0.7
-"""Largest range of a monomial without its widest atom, over that atom's, that ties them."""
 
 
 class _Plain:
@@ -59,24 +56,22 @@ class _Plain:
         return Form(0.0, ((number, math.exp(form.constant + self.tops[number] - scale)),))
 
     def _tie(self, form: Form, number: int) -> None:
-        """Tie a plain atom to that of the widest atom in it, or of what that is a function of."""
+        """Tie a plain atom to those of its factors, or of what it is a function of."""
         lone = [i for i, power in form.powers if power == 1.0]
         if not lone:
             return
         widest = max(lone, key=lambda i: self.width(Form(0.0, ((i, 1.0),))))
         base = Form(0.0, ((widest, 1.0),))
-        rest, curve = form - base, None
-        if not rest.powers:
-            curve = self.tables.get(widest)
-            if curve is None:
-                return
-            base = Form(0.0, curve.argument.powers)
-            rest = Form(curve.argument.constant)
-        if self.width(rest) > TIED * self.width(base):
-            return
-        under = self.atom(base.powers)
-        ratio = rest + Form(self.tops[under] - self.tops[number])
-        self.found.links.append(Link(number, under, ratio, curve))
+        rest = form - base
+        if rest.powers:
+            first, second = self.atom(base.powers), self.atom(rest.powers)
+            level = self.tops[first] + self.tops[second] - self.tops[number]
+            self.found.products.append(Product(number, first, second, level))
+        elif widest in self.tables:
+            curve = self.tables[widest]
+            under = self.atom(curve.argument.powers)
+            level = curve.argument.constant + self.tops[under] - self.tops[number]
+            self.found.links.append(Link(number, under, level, curve))
 
 
 def straighten(found: Relaxation) -> None:

@@ -30,15 +30,24 @@ class Curve(NamedTuple):
 
 
 class Link(NamedTuple):
-    """Two plain atoms: out/base is the exponential of a monomial's logarithm `ratio`.
+    """Two plain atoms of one argument: out = e^level f(argument), base = argument's own.
 
-    Where the ratio is a function of one argument, `table` holds its logarithm less the argument.
+    `curve` is the table of log f by the logarithm of the argument.
     """
 
     out: int
     base: int
-    ratio: Form
-    curve: Curve | None
+    level: float
+    curve: Curve
+
+
+class Product(NamedTuple):
+    """Three plain atoms: out = e^level * first * second."""
+
+    out: int
+    first: int
+    second: int
+    level: float
 
 
 Maker: TypeAlias = Callable[[Sequence[float]], float]
@@ -67,6 +76,7 @@ class Relaxation:
     splits: list[tuple[Form, Form, Form]] = field(default_factory=list)
     """Every sum: whole, and its two parts."""
     links: list[Link] = field(default_factory=list)
+    products: list[Product] = field(default_factory=list)
     sums: dict[tuple[Form, Form], Form] = field(default_factory=dict)
 
     def atom(self, low: float, high: float, maker: Maker) -> Form:
@@ -86,11 +96,15 @@ class Relaxation:
 
     def total(self, terms: Sequence[Form], low: float, high: float) -> Form:
         """Logarithm of a sum of monomials, with bounds of its value."""
-        first, *others = terms
+        common = _common(terms)
+        least, most = self.reach(common)
+        low = low * math.exp(-min(most, 700.0)) if low > 0 else low
+        high = high * math.exp(-least) if least > -700 else math.inf
+        first, *others = (term - common for term in terms)
         for i, term in enumerate(others):
             last = i == len(others) - 1
             first = self._sum(first, term, low if last else 0.0, high)
-        return first
+        return first + common
 
     def _sum(self, first: Form, second: Form, low: float, high: float) -> Form:
         if first.powers == second.powers:  # a known ratio
@@ -111,3 +125,17 @@ def log_of_sum(first: float, second: float) -> float:
     """Logarithm of the sum of two numbers given by theirs."""
     high, low = max(first, second), min(first, second)
     return high + math.log1p(math.exp(low - high))
+
+
+def _common(terms: Sequence[Form]) -> Form:
+    """The greatest monomial that divides all terms."""
+    if len(terms) < 2:
+        return Form(0.0)
+    first, *others = (dict(term.powers) for term in terms)
+    found = []
+    for i, power in first.items():
+        powers = [power, *(other.get(i, 0.0) for other in others)]
+        least = min(powers) if min(powers) > 0 else max(powers) if max(powers) < 0 else 0.0
+        if least:
+            found.append((i, least))
+    return Form(0.0, tuple(sorted(found)))

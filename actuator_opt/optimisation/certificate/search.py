@@ -6,7 +6,7 @@ import heapq
 import itertools
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -15,6 +15,7 @@ import numpy as np
 from ..problem import Vector
 from .bounding import Bound, Bounding
 from .box import ROOM, Box, Gone, Layout
+from .lines import Seen
 
 GUARD = 1e-6
 """Taken off the bound, relative: far above rounding in the traced values."""
@@ -38,7 +39,7 @@ SQUEEZES = 2
 """Most rounds of cutting the first box."""
 
 WAYS = 16
-"""Directions cut in a round."""
+"""Directions cut in a round beside the variables."""
 
 GAIN = 0.1
 """Share of their ranges that a round must cut for another one to be worth it."""
@@ -59,7 +60,8 @@ class Search:
     Parameters
     ----------
     layout, bounding : the relaxation
-    best : logarithm of the objective of the best known design
+    best : logarithm of the objective that a design must have at most
+    variables : atoms whose directions are cut in the first box in any case
     until : time of `time.perf_counter` to stop at
     most : boxes to solve at most
     """
@@ -70,6 +72,7 @@ class Search:
         bounding: Bounding,
         best: float,
         *,
+        variables: Sequence[int] = (),
         until: float = math.inf,
         most: float = math.inf,
     ) -> None:
@@ -78,6 +81,8 @@ class Search:
         self.goal = best + math.log1p(-CLOSE)
         self.least, self.boxes = math.inf, 0
         """Least bound of the boxes that are done with; boxes solved."""
+        ways = layout.plain[layout.curves :]
+        self.variables = np.flatnonzero(np.isin(ways, variables))
         self._order = itertools.count()
         self._open: list[tuple[float, int, Box, Bound]] = []
 
@@ -106,6 +111,16 @@ class Search:
                     self._add(part.tightened(self.layout), value)
         bottom = min(self.least, self._open[0][0] if self._open else math.inf, self.goal)
         return Found(bottom + math.log1p(-GUARD), self.boxes, bottom >= self.goal)
+
+    def first(self) -> float:
+        """The bound of the first box as it is; infinite where nothing is in it."""
+        try:
+            box = Box.whole(self.layout).tightened(self.layout)
+        except Gone:
+            return math.inf
+        self.bounding.lay(box)
+        bound = self.bounding.solve(box)
+        return math.inf if bound is None else bound.value
 
     def _add(self, box: Box, parent: float) -> None:
         """Keep a box that may hold a better design."""
@@ -136,12 +151,13 @@ class Search:
             bound = self.bounding.solve(box)
             if bound is None:
                 raise Gone
-            some = np.argsort(-self._gains(bound), kind="stable")[:WAYS]
-            size = float((box.high - box.low)[some].sum())
+            loose = np.argsort(-self._gains(box, bound), kind="stable")[:WAYS]
+            some = np.concatenate([loose, np.setdiff1d(self.variables, loose)])
+            size, seen = float((box.high - box.low)[some].sum()), Seen(bound.directions)
             for number in map(int, some):
                 if time.perf_counter() > self.until:
                     return box
-                reach = self.bounding.extent(number, self.bounding.enter(box))
+                reach = self.bounding.extent(number, self.bounding.enter(box), seen)
                 if reach is None:
                     raise Gone
                 box = box.cut(number, low=reach[0] - ROOM, high=reach[1] + ROOM)
@@ -150,15 +166,18 @@ class Search:
                 break
         return box
 
-    def _gains(self, bound: Bound) -> Vector:
+    def _gains(self, box: Box, bound: Bound) -> Vector:
         """What a split of every direction may gain."""
         gains = np.minimum(bound.excess, FAR_OFF) * (bound.price + FLOOR)
-        found = np.bincount(self.layout.direction, gains, self.layout.directions)
-        return found.astype(float)
+        found = np.bincount(self.layout.direction, gains, self.layout.directions).astype(float)
+        width = box.high - box.low
+        first, second = self.layout.factors
+        np.add.at(found, np.where(width[first] > width[second], first, second), bound.torn)
+        return found
 
     def _choice(self, box: Box, bound: Bound) -> tuple[int, float] | None:
         """Direction and place of the split that can gain most; None where nothing is loose."""
-        gains = self._gains(bound)
+        gains = self._gains(box, bound)
         number = int(np.argmax(gains))
         if gains[number] <= WORTH:
             return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -89,51 +89,95 @@ class Table:
         bend = caution * float(np.abs(second).max()) / step**2
         return cls(float(t[0]), step, values, bend * step * step / 8 + noise, convex, rising)
 
+
+class Tables:
+    """Several tables of as many samples at once, one argument each."""
+
+    def __init__(self, tables: Sequence[Table]) -> None:
+        self.low = np.array([one.low for one in tables])
+        self.step = np.array([one.step for one in tables])
+        self.values = np.stack([one.values for one in tables])
+        self.room = np.array([one.room for one in tables])
+        self.convex = np.array([one.convex for one in tables])
+        self.rising = np.array([one.rising for one in tables])
+        self.last = self.values.shape[1] - 1
+        self.rows = np.arange(len(tables))
+        self.turning, self.waving = (
+            np.flatnonzero(self.rising == 0),
+            np.flatnonzero(self.convex == 0),
+        )
+        self._ordered = self.values * np.where(self.rising < 0, -1.0, 1.0)[:, None]
+
     def _place(self, x: Vector) -> tuple[np.ndarray, Vector]:
-        place = (np.asarray(x) - self.low) / self.step
-        index = np.clip(place.astype(int), 0, len(self.values) - 2)
+        place = (x - self.low) / self.step
+        index = np.clip(place.astype(int), 0, self.last - 1)
         return index, np.clip(place - index, 0.0, 1.0)
 
     def value(self, x: Vector) -> Vector:
         """Between two samples on a straight line."""
         index, share = self._place(x)
-        found: Vector = self.values[index] * (1 - share) + self.values[index + 1] * share
+        first, second = self.values[self.rows, index], self.values[self.rows, index + 1]
+        found: Vector = first * (1 - share) + second * share
         return found
 
     def slope(self, x: Vector) -> Vector:
         """Of the line between two samples."""
         index, _ = self._place(x)
-        found: Vector = (self.values[index + 1] - self.values[index]) / self.step
+        rise = self.values[self.rows, index + 1] - self.values[self.rows, index]
+        found: Vector = rise / self.step
         return found
 
-    def hull(self, low: float, high: float) -> tuple[float, float]:
-        """Least and largest value over a range."""
-        ends = self.value(np.array([low, high]))
-        if not self.rising:
-            first, last = self._place(np.array([low, high]))[0]
-            ends = np.concatenate([ends, self.values[first + 1 : last + 1]])
-        return float(ends.min()) - self.room, float(ends.max()) + self.room
+    def _inside(self, low: Vector, high: Vector, some: np.ndarray) -> tuple[Vector, np.ndarray]:
+        """Samples of some tables, and whether they lie within their ranges."""
+        t = self.low[some, None] + self.step[some, None] * np.arange(self.last + 1)
+        return t, (t > low[:, None]) & (t < high[:, None])
 
-    def apart(self, low: float, high: float, slope: float) -> tuple[float, float]:
-        """Least and largest distance from a line through the value at the lower end of a range."""
-        ends = np.array([low, high])
-        first, last = self._place(ends)[0]
-        inside = np.arange(first + 1, last + 1)
-        t = np.concatenate([ends, self.low + self.step * inside])
-        off = np.concatenate([self.value(ends), self.values[inside]]) - slope * (t - low)
-        off = off - off[0]
-        return float(off.min()), float(off.max())
+    def hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
+        """Least and largest values over ranges."""
+        ends = self.value(low), self.value(high)
+        least, most = np.minimum(*ends), np.maximum(*ends)
+        some = self.turning
+        if len(some):
+            _, inside = self._inside(low[some], high[some], some)
+            values = self.values[some]
+            least[some] = np.minimum(least[some], np.where(inside, values, np.inf).min(axis=1))
+            most[some] = np.maximum(most[some], np.where(inside, values, -np.inf).max(axis=1))
+        return least - self.room, most + self.room
 
-    def within(self, low: float, high: float) -> tuple[float, float]:
-        """Least and largest argument of values in a range; all of them where it turns."""
-        last = self.low + self.step * (len(self.values) - 1)
-        if not self.rising:
-            return self.low, last
-        t = np.linspace(self.low, last, len(self.values))
-        values = self.values if self.rising > 0 else -self.values
-        ends = (low, high) if self.rising > 0 else (-high, -low)
-        least = float(np.interp(ends[0] - self.room, values, t))
-        return least, float(np.interp(ends[1] + self.room, values, t))
+    def apart(self, low: Vector, high: Vector, slope: Vector, some: Any) -> tuple[Vector, Vector]:
+        """Least and largest distance of some tables from lines through their first values."""
+        first, last = self.value(low)[some], self.value(high)[some]
+        low, high, slope = low[some], high[some], slope[some]
+        last = last - slope * (high - low) - first
+        t, inside = self._inside(low, high, some)
+        off = self.values[some] - slope[:, None] * (t - low[:, None]) - first[:, None]
+        off = np.where(inside, off, 0.0)
+        return (
+            np.minimum(np.minimum(off.min(axis=1), last), 0.0),
+            np.maximum(np.maximum(off.max(axis=1), last), 0.0),
+        )
+
+    def within(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
+        """Least and largest arguments of values in ranges; all of them where a table turns."""
+        falls = self.rising < 0
+        first = np.where(falls, -high, low) - self.room
+        second = np.where(falls, -low, high) + self.room
+        ordered = self._ordered
+        least = self._inverse(first, (ordered < first[:, None]).sum(axis=1), 0.0)
+        most = self._inverse(second, (ordered <= second[:, None]).sum(axis=1), 1.0)
+        least[self.turning] = self.low[self.turning]
+        most[self.turning] = (self.low + self.step * self.last)[self.turning]
+        return least, most
+
+    def _inverse(self, wanted: Vector, below: np.ndarray, flat: float) -> Vector:
+        """Arguments of values, from the counts of samples below; of flat parts one of the ends."""
+        ordered, rows = self._ordered, self.rows
+        index = np.clip(below - 1, 0, self.last - 1)
+        first, second = ordered[rows, index], ordered[rows, index + 1]
+        rises = second > first
+        share = np.where(rises, (wanted - first) / np.where(rises, second - first, 1.0), flat)
+        found: Vector = self.low + self.step * (index + np.clip(share, 0.0, 1.0))
+        return found
 
 
 Kind: TypeAlias = Name | Table
@@ -143,23 +187,27 @@ class Mixed:
     """Many curves of several kinds at once, one argument each."""
 
     def __init__(self, kinds: Sequence[Kind]) -> None:
-        self.tables = [(k, kind) for k, kind in enumerate(kinds) if isinstance(kind, Table)]
+        tables = [kind for kind in kinds if isinstance(kind, Table)]
+        self.tabled = np.array(
+            [k for k, kind in enumerate(kinds) if isinstance(kind, Table)], dtype=np.intp
+        )
+        self.tables = Tables(tables) if tables else None
         names = np.array([kind if isinstance(kind, str) else "" for kind in kinds], dtype=object)
         self.parts = [(shape, np.flatnonzero(names == name)) for name, shape in SHAPES.items()]
         self.convex = np.zeros(len(kinds), dtype=int)
         self.room = np.zeros(len(kinds))
         for shape, some in self.parts:
             self.convex[some] = shape.convex
-        for k, table in self.tables:
-            self.convex[k], self.room[k] = table.convex, table.room
+        if self.tables is not None:
+            self.convex[self.tabled], self.room[self.tabled] = self.tables.convex, self.tables.room
 
     def value(self, x: Vector) -> Vector:
         """The functions' values."""
         found = np.empty_like(x)
         for shape, some in self.parts:
             found[some] = shape.value(x[some])
-        for k, table in self.tables:
-            found[k] = table.value(x[k])
+        if self.tables is not None:
+            found[self.tabled] = self.tables.value(x[self.tabled])
         return found
 
     def slope(self, x: Vector) -> Vector:
@@ -167,8 +215,8 @@ class Mixed:
         found = np.empty_like(x)
         for shape, some in self.parts:
             found[some] = shape.slope(x[some])
-        for k, table in self.tables:
-            found[k] = table.slope(x[k])
+        if self.tables is not None:
+            found[self.tabled] = self.tables.slope(x[self.tabled])
         return found
 
     def hull(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
@@ -176,16 +224,20 @@ class Mixed:
         least, most = np.empty_like(low), np.empty_like(high)
         for shape, some in self.parts:
             least[some], most[some] = shape.value(low[some]), shape.value(high[some])
-        for k, table in self.tables:
-            least[k], most[k] = table.hull(low[k], high[k])
+        if self.tables is not None:
+            some = self.tabled
+            least[some], most[some] = self.tables.hull(low[some], high[some])
         return least, most
 
     def apart(self, low: Vector, high: Vector, slope: Vector) -> tuple[Vector, Vector]:
         """How far functions that bend both ways leave their secants, below and above."""
         least, most = np.zeros_like(low), np.zeros_like(low)
-        for k, table in self.tables:
-            if not table.convex:
-                least[k], most[k] = table.apart(low[k], high[k], slope[k])
+        if self.tables is not None:
+            some, own = self.tables.waving, self.tabled
+            if len(some):
+                least[own[some]], most[own[some]] = self.tables.apart(
+                    low[own], high[own], slope[own], some
+                )
         return least, most
 
     def within(self, low: Vector, high: Vector) -> tuple[Vector, Vector]:
@@ -193,6 +245,7 @@ class Mixed:
         least, most = np.empty_like(low), np.empty_like(high)
         for shape, some in self.parts:
             least[some], most[some] = shape.inverse(low[some]), shape.inverse(high[some])
-        for k, table in self.tables:
-            least[k], most[k] = table.within(low[k], high[k])
+        if self.tables is not None:
+            some = self.tabled
+            least[some], most[some] = self.tables.within(low[some], high[some])
         return least, most

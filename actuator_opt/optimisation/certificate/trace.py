@@ -21,7 +21,7 @@ from ...evaluation.values import Values
 from ...symbolic import Graph, Symbol
 from ..actuator import ActuatorProblem
 from ..problem import Vector
-from .envelopes import Envelopes, decays, refuse
+from .envelopes import Envelopes, decays, layered, refuse
 from .relaxation import Unknown
 
 SOFTER = 1e-5
@@ -96,7 +96,7 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
     )
     point = {path: np.array([value]) for path, value in zip(actuator.paths, x, strict=True)}
     there = compute(subject, subject.values(point))
-    falls = decays(subject, subject.values(point), there)
+    falls = decays(subject, subject.values(point), there, actuator.paths)
     positions = _positions(there)
     limits = dict.fromkeys(row.limit_of for row in actuator.rows)
     for i, case in enumerate(subject.design.load_cases):
@@ -112,6 +112,7 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
             raise Unknown("one of its models is no expression of the variables") from None
         found.facts += [(part, 0.0) for part in done.mass_parts.values()]
         found.facts += _along_the_stroke(envelopes, done, out, positions)
+        envelopes.bond(design, done, out)
         if envelopes.bearable is not None:
             proof = values["supply.proof_ratio"] * values["supply.pressure"]
             least = found.unknown("proof_factor", _least_proof)
@@ -141,12 +142,16 @@ def _along_the_stroke(
     least = envelopes.unknown("stiffness", lambda one: one.computed.metrics["stiffness_min"][""])
     for share in positions:
         x = share * stroke
-        yield (1 + SOFTER) / (1 / springs.hydraulic(x) + series), least
-        a, b, ab = springs.total().at(x, stroke)
-        oil_a, oil_b, _ = springs.total(springs.oil).at(x, stroke)
-        yield a, oil_a
-        yield b, oil_b
-        yield a * b - ab * ab, oil_a * oil_b
+        if layered(envelopes.subject):
+            chambers = envelopes.stiffness(springs, share)
+        else:
+            chambers = springs.hydraulic(x)
+            a, b, ab = springs.total().at(x, stroke)
+            oil_a, oil_b, _ = springs.total(springs.oil).at(x, stroke)
+            yield a, oil_a
+            yield b, oil_b
+            yield a * b - ab * ab, oil_a * oil_b
+        yield (1 + SOFTER) / (1 / chambers + series), least
     out.put("stiffness_min", least)
     out.put("stiffness_rod", springs.chain["rod"])
 

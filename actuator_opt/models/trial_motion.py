@@ -1,0 +1,138 @@
+"""Stiffness of two closed chambers in one wall from above, by a motion that need not be its own.
+
+The piston moves by 1; the wall of one chamber grows by the volume that the other's shrinks; the
+end that a chamber's pressure pulls at moves along. Energy is that of oil and wall [Gurtin1972].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from ..numeric import Array
+
+Chamber: TypeAlias = Literal["a", "b"]
+
+
+@dataclass(frozen=True, slots=True)
+class TrialMotion:
+    """Motion over that of the piston; oil is compressed by what is left.
+
+    `exchange` of volume between the walls of both chambers, over area B; `pull` of the end that
+    the pressure of one chamber pulls at.
+    """
+
+    exchange: Array
+    pull: Array
+
+
+def least_energy_motion(
+    *,
+    area_a: Array,
+    area_b: Array,
+    oil_a: Array,
+    oil_b: Array,
+    wall_a: Array,
+    wall_b: Array,
+    stretch: Array,
+    pulling: Chamber,
+) -> TrialMotion:
+    """The motion of least energy of `trial_motion_stiffness` in one actuator.
+
+    v = (A_a/(A_b c_a) + 1/c_b)/(1/c_a + 1/c_b + 1/w_a + 1/w_b), c with s of the pulling chamber.
+
+    Parameters
+    ----------
+    area_a, area_b : piston areas [m^2]
+    oil_a, oil_b : compliance of the oil and the lines of either chamber [m^3/Pa]
+    wall_a, wall_b : growth of either chamber's volume per pressure [m^3/Pa]
+    stretch : volume that the pulling chamber gains per pressure as it pulls the end away [m^3/Pa]
+    pulling : chamber whose pressure pulls at an end
+
+    Returns
+    -------
+    the motion [-]
+
+    Notes
+    -----
+    Valid: any positive compliances.
+
+    References
+    ----------
+    [derived] zero derivatives of the energy
+
+    Examples
+    --------
+    >>> m = least_energy_motion(area_a=4e-4, area_b=3e-4, oil_a=2e-14, oil_b=1.5e-14,
+    ...                         wall_a=2e-15, wall_b=1.5e-15, stretch=5e-16, pulling="b")
+    >>> print(f"{m.exchange:.4f} {m.pull:.4f}")
+    0.1024 0.0290
+    """
+    give_a = oil_a + stretch if pulling == "a" else oil_a
+    give_b = oil_b + stretch if pulling == "b" else oil_b
+    whole = 1 / give_a + 1 / give_b + 1 / wall_a + 1 / wall_b
+    exchange = (area_a / area_b / give_a + 1 / give_b) / whole
+    if pulling == "a":
+        return TrialMotion(exchange, (1 - exchange * area_b / area_a) * stretch / give_a)
+    return TrialMotion(exchange, (1 - exchange) * stretch / give_b)
+
+
+def trial_motion_stiffness(
+    *,
+    motion: TrialMotion,
+    area_a: Array,
+    area_b: Array,
+    oil_a: Array,
+    oil_b: Array,
+    wall_a: Array,
+    wall_b: Array,
+    stretch: Array,
+    pulling: Chamber,
+) -> Array:
+    """Upper bound on the stiffness of two closed chambers whose wall grows and stretches.
+
+    k <= ((1 - h_a) A_a - v A_b)^2/c_a + ((1 - h_b - v) A_b)^2/c_b + (v A_b)^2 (1/w_a + 1/w_b)
+    + (h A)^2/s, h and A of the pulling chamber, h = 0 of the other.
+
+    Parameters
+    ----------
+    motion : v and h of any motion [-]
+    area_a, area_b : piston areas [m^2]
+    oil_a, oil_b : c, compliance of the oil and the lines of either chamber [m^3/Pa]
+    wall_a, wall_b : w, growth of either chamber's volume per pressure, held axially [m^3/Pa]
+    stretch : s, volume that the pulling chamber gains per pressure as it pulls the end away, the
+        wall held radially [m^3/Pa]
+    pulling : chamber whose pressure pulls at an end
+
+    Returns
+    -------
+    stiffness that is no less than the true one [N/m]
+
+    Notes
+    -----
+    Valid: one wall over both chambers.
+
+    What one part of it grows by the other shrinks by, so that growth and axial strain of the wall
+    add no energy together.
+
+    References
+    ----------
+    [derived] minimum potential energy of oil and wall
+
+    Examples
+    --------
+    >>> m = TrialMotion(exchange=0.1024, pull=0.0290)
+    >>> k = trial_motion_stiffness(motion=m, area_a=4e-4, area_b=3e-4, oil_a=2e-14, oil_b=1.5e-14,
+    ...                            wall_a=2e-15, wall_b=1.5e-15, stretch=5e-16, pulling="b")
+    >>> print(f"{k / 1e6:.3f} N/um")
+    12.598 N/um
+    """
+    v, h = motion.exchange, motion.pull
+    rod = area_a - area_b
+    if pulling == "a":
+        volume_a, volume_b, pulled = (1 - h - v) * area_a + v * rod, (1 - v) * area_b, area_a
+    else:
+        volume_a, volume_b, pulled = (1 - v) * area_a + v * rod, (1 - h - v) * area_b, area_b
+    oil = volume_a * volume_a / oil_a + volume_b * volume_b / oil_b
+    wall = (v * area_b) ** 2 * (1 / wall_a + 1 / wall_b)
+    return oil + wall + (h * pulled) ** 2 / stretch
