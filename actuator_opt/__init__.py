@@ -5,9 +5,9 @@
 '0.6.0'
 
 The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `seal`, `identify`, `calibrate`,
-`simulate`, `report`, `save`) are the same as in the terminal; `bending` is `identify --span` there,
-`compare_measured`, `servo_sensitivities` and `verify_dynamics` are options. Heavy modules load when
-a verb needs them.
+`simulate`, `sweep`, `report`, `save`) are the same as in the terminal; `bending` is `identify
+--span` there, `compare_measured`, `servo_sensitivities` and `verify_dynamics` are options. Heavy
+modules load when a verb needs them.
 """
 
 from __future__ import annotations
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
         sensitivity,
         servo_sensitivities,
         simulate,
+        sweep,
         verify_dynamics,
         write_calibration,
         write_comparison,
@@ -88,6 +89,7 @@ _HOMES = {
     "sensitivity": "verbs",
     "servo_sensitivities": "verbs",
     "simulate": "verbs",
+    "sweep": "verbs",
     "verify_dynamics": "verbs",
     "write_calibration": "verbs",
     "write_comparison": "verbs",
@@ -131,6 +133,7 @@ __all__ = [
     "sensitivity",
     "servo_sensitivities",
     "simulate",
+    "sweep",
     "verify_dynamics",
     "write_calibration",
     "write_comparison",

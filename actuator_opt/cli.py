@@ -27,6 +27,7 @@ from .cli_shared import (
     write_report,
 )
 from .cli_simulate import simulate
+from .cli_sweep import sweep
 from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from .options import (
     REPORTS,
@@ -182,6 +183,7 @@ app.command()(seal)
 app.command()(identify)
 app.command()(calibrate)
 app.command()(simulate)
+app.command()(sweep)
 app.command()(sensitivity)
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TextIO
 
 from .errors import Diagnostic, InputError
 from .suggest import closest
@@ -141,17 +143,32 @@ def write_text(path: Path, text: str) -> Path:
 
     A link stays one: what it points at is written.
     """
+    with aside(path) as stream:
+        stream.write(text)
+    return path.resolve() if path.is_symlink() else path
+
+
+@contextlib.contextmanager
+def aside(path: Path) -> Iterator[TextIO]:
+    """A text file to write piece by piece, aside; it is in place once all is written.
+
+    Raises
+    ------
+    InputError : it cannot be written; nothing partial is left
+    """
     path = path.resolve() if path.is_symlink() else path
     if path.exists() and not path.is_file():
         message = "is a folder" if path.is_dir() else "is no regular file"
         raise InputError(Diagnostic(message, "choose another file or folder", str(path)))
-    aside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        aside.write_text(text, encoding="utf-8")
-        aside.replace(path)
-    except OSError as error:
+        with part.open("w", encoding="utf-8") as stream:
+            yield stream
+        part.replace(path)
+    except BaseException as error:
         with contextlib.suppress(OSError):
-            aside.unlink(missing_ok=True)
+            part.unlink(missing_ok=True)
+        if not isinstance(error, OSError):
+            raise
         reason = f"cannot write: {error.strerror or type(error).__name__}"
         raise InputError(Diagnostic(reason, "choose another file or folder", str(path))) from None
-    return path

@@ -28,6 +28,7 @@ from .simulations import (
     write_signals,
     write_simulation,
 )
+from .sweeping import sweep
 
 __all__ = [
     "Actuator",
@@ -52,6 +53,7 @@ __all__ = [
     "sensitivity",
     "servo_sensitivities",
     "simulate",
+    "sweep",
     "verify_dynamics",
     "with_contact",
     "write_calibration",

@@ -1,0 +1,167 @@
+"""The database of a sweep: rows of numbers by the hash of what they were computed from, in SQLite.
+
+Every chunk is one transaction, so that a process that is killed at any instant leaves whole
+chunks and nothing else. A row stands once, whoever computes it.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from .errors import Diagnostic, InputError
+from .numeric import Array
+
+FORMAT = 1
+"""Of the tables below."""
+
+BUSY = 60.0
+"""Seconds to wait for another process that writes."""
+
+_TABLES = """
+CREATE TABLE IF NOT EXISTS meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS studies (
+  id INTEGER PRIMARY KEY, hash TEXT NOT NULL UNIQUE, name TEXT NOT NULL, design TEXT NOT NULL,
+  columns TEXT NOT NULL
+);
+CREATE TABLE IF NOT EXISTS rows (
+  study INTEGER NOT NULL, key BLOB NOT NULL, numbers BLOB, failure TEXT,
+  PRIMARY KEY (study, key)
+) WITHOUT ROWID;
+"""
+
+
+class Column(NamedTuple):
+    """One number of a row: its name and its SI unit."""
+
+    name: str
+    unit: str
+
+
+class Rows(NamedTuple):
+    """Numbers (n, columns) of some keys; NaN rows and a reason where a design failed."""
+
+    numbers: Array
+    failures: dict[int, str]
+
+
+class Database:
+    """An open database, of one study: a design, what varies and the version of the models."""
+
+    def __init__(self, connection: sqlite3.Connection, study: int, width: int) -> None:
+        self.connection, self.study, self.width = connection, study, width
+
+    def known(self, keys: Sequence[bytes]) -> dict[int, tuple[bytes | None, str | None]]:
+        """Rows that stand already, by the number of their key."""
+        cursor = self.connection.execute("SELECT count(*) FROM rows WHERE study = ?", (self.study,))
+        if not cursor.fetchone()[0]:
+            return {}
+        select = "SELECT numbers, failure FROM rows WHERE study = ? AND key = ?"
+        found = {}
+        for number, key in enumerate(keys):
+            row = self.connection.execute(select, (self.study, key)).fetchone()
+            if row is not None:
+                found[number] = row
+        return found
+
+    def put(self, keys: Sequence[bytes], rows: Rows) -> None:
+        """Keep a chunk, all of it or nothing; what stands already stays."""
+        width = 8 * self.width
+        data = np.ascontiguousarray(rows.numbers, dtype="<f8").tobytes()
+        failures = rows.failures
+        records = [
+            (self.study, key, None, failures[k])
+            if k in failures
+            else (self.study, key, data[k * width : (k + 1) * width], None)
+            for k, key in enumerate(keys)
+        ]
+        with self.connection:
+            self.connection.executemany("INSERT OR IGNORE INTO rows VALUES (?, ?, ?, ?)", records)
+
+    def numbers(self, blob: bytes) -> Array:
+        """The numbers of a row."""
+        found: Array = np.frombuffer(blob, dtype="<f8")
+        return found
+
+
+@contextmanager
+def opened(
+    path: Path, *, study: str, name: str, design: str, columns: Sequence[Column], version: str
+) -> Iterator[Database]:
+    """Open or begin the database of a study.
+
+    Parameters
+    ----------
+    path : of the file; made where it is not there
+    study : hash of the design and of what varies
+    name, design : of the study, for whoever reads the file
+    columns : of its rows
+    version : of the models; another one's rows are not mixed in
+
+    Raises
+    ------
+    InputError
+        the file is no such database, of another version, or cannot be written
+    """
+    with _diagnosed(path):
+        connection = sqlite3.connect(path, timeout=BUSY)
+        try:
+            _require_ours(connection, path, version)
+            told = json.dumps([list(column) for column in columns])
+            with connection:
+                connection.execute(
+                    "INSERT OR IGNORE INTO studies (hash, name, design, columns) VALUES (?,?,?,?)",
+                    (study, name, design, told),
+                )
+            select = "SELECT id, columns FROM studies WHERE hash = ?"
+            number, kept = connection.execute(select, (study,)).fetchone()
+            if kept != told:
+                raise _refused(path, "holds other columns of this study", "name another file")
+            yield Database(connection, number, len(columns))
+        finally:
+            connection.close()
+
+
+def _require_ours(connection: sqlite3.Connection, path: Path, version: str) -> None:
+    """Make the tables of a new file; refuse what is not ours."""
+    tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
+    if tables and "meta" not in tables:
+        raise _refused(path, "is another program's database", "name another file")
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("PRAGMA synchronous = NORMAL")
+    with connection:
+        for statement in _TABLES.split(";"):
+            connection.execute(statement)
+        put = "INSERT OR IGNORE INTO meta VALUES (?, ?)"
+        connection.executemany(put, [("format", str(FORMAT)), ("version", version)])
+    meta = dict(connection.execute("SELECT key, value FROM meta"))
+    if meta["format"] != str(FORMAT):
+        raise _refused(path, f"has the format {meta['format']}, not {FORMAT}", "name another file")
+    if meta["version"] != version:
+        message = f"holds rows of the models {meta['version']}, these are {version}"
+        raise _refused(path, message, "name another file for the new rows")
+
+
+def _refused(path: Path, message: str, remedy: str) -> InputError:
+    return InputError(Diagnostic(message, remedy, str(path)))
+
+
+@contextmanager
+def _diagnosed(path: Path) -> Iterator[None]:
+    """Say in one line what SQLite or the file system refuses."""
+    try:
+        yield
+    except sqlite3.DatabaseError as error:
+        text = str(error)
+        if "not a database" in text or "malformed" in text:
+            raise _refused(path, "is no database of sweeps", "name another file") from None
+        remedy = "rows kept so far stay; make room, or name a file where you may write"
+        if "unable to open" in text:
+            remedy = "name a file in a folder that is there and where you may write"
+        raise _refused(path, f"cannot be written: {text}", remedy) from None

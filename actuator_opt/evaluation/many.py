@@ -1,0 +1,87 @@
+"""Every metric and limit of many designs at once: one governing value each, as of one design."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..numeric import Array
+from .build import SENSES, TOLERANCE
+from .kernel import Subject, compute
+from .limits import Limit, all_limits
+from .rows import Computed, by_case, rows_of
+
+
+@dataclass(frozen=True, slots=True)
+class Many:
+    """Arrays (designs,) of many designs.
+
+    `metrics` are the governing values, NaN where there is none; `margin` is the least of all
+    limits, of the check list too, and `missed` the number of its limit in `limits`.
+    """
+
+    metrics: dict[str, Array]
+    margin: Array
+    missed: Array
+    limits: tuple[Limit, ...]
+
+    @property
+    def feasible(self) -> Array:
+        """Whether requirements and checks are met, (designs,)."""
+        found: Array = self.margin >= -TOLERANCE
+        return found
+
+
+@np.errstate(all="ignore")  # what has no finite answer is NaN
+def evaluate_many(
+    subject: Subject,
+    varied: Mapping[str, Array],
+    count: int,
+    wanted: Container[str] | None = None,
+) -> Many:
+    """Metrics and limits of designs that differ in some numbers.
+
+    Parameters
+    ----------
+    subject : the design
+    varied : arrays (designs,) by PATH, SI
+    count : of designs
+    wanted : metrics asked for; default: all
+    """
+    v = subject.values(varied)
+    computed = compute(subject, v).computed
+    metrics = {
+        name: _governing(name, computed, v.cases, count)
+        for name in subject.quantities
+        if wanted is None or name in wanted
+    }
+    limits = limits_of(subject)
+    margin, missed = np.full(count, np.inf), np.zeros(count, dtype=np.int32)
+    for number, limit in enumerate(limits):
+        for row in rows_of(limit, computed, v):
+            value = np.broadcast_to(row.margin, (count,))
+            worse = ~(value >= margin)  # NaN is worst
+            margin = np.where(worse, np.where(np.isnan(value), -np.inf, value), margin)
+            missed[worse] = number
+    return Many(metrics, margin, missed, limits)
+
+
+def limits_of(subject: Subject) -> tuple[Limit, ...]:
+    """Requirements and checks that a feasible design meets."""
+    every = all_limits(subject.design, subject.plugins)
+    return tuple(limit for limit in every if limit.origin != "advice")
+
+
+def _governing(name: str, computed: Computed, cases: tuple[str, ...], count: int) -> Array:
+    """The worst of a metric over places and load cases; infinity, unlimited, is no value."""
+    pick = np.fmin if SENSES.get(name, "max") == "min" else np.fmax
+    worst, unknown = np.full(count, np.nan), np.zeros(count, dtype=bool)
+    for place, array in computed.metrics.get(name, {}).items():
+        for _, value in by_case(computed, name, array, cases, place):
+            one = np.broadcast_to(value, (count,))
+            unknown |= np.isnan(one)
+            worst = pick(worst, np.where(np.isfinite(one), one, np.nan))
+    worst[unknown] = np.nan
+    return worst

@@ -1,0 +1,90 @@
+"""What a sweep came to, in the terminal."""
+
+from __future__ import annotations
+
+from ..design.paths import quantity_of
+from ..quantities import Quantity
+from ..variants import Best, Swept
+from . import text
+from .console import Column, Console
+
+FAILURES = 3
+"""Most reasons of failed designs that are told."""
+
+
+def sweep_text(
+    swept: Swept, *, colour: bool = False, unicode: bool = True, width: int = 100
+) -> str:
+    """Counts, the best feasible designs, why designs failed."""
+    console = Console(colour, unicode, width)
+    study = swept.study
+    reused = f", {swept.reused} reused" if swept.reused else ""
+    rate = swept.computed / swept.seconds if swept.seconds > 0 else 0.0
+    lines = [
+        console.heading(f"{study.design.name}: {swept.requested} variants"),
+        f"{swept.computed} computed{reused}, {swept.failed} failed, {swept.feasible} feasible "
+        f"({swept.seconds:.1f} s, {rate:.0f}/s)",
+    ]
+    if swept.best:
+        lines += ["", *_table(console, swept)]
+    else:
+        lines += ["", console.wrap(_nothing(swept))]
+    reasons = sorted(swept.failures.items(), key=lambda one: (-one[1], one[0]))
+    for reason, times in reasons[:FAILURES]:
+        lines.append(console.wrap(f"failed: {times} times {reason}"))
+    if len(reasons) > FAILURES:
+        lines.append(f"and {len(reasons) - FAILURES} more reasons")
+    return "\n".join(lines)
+
+
+def _nothing(swept: Swept) -> str:
+    missed = sorted(swept.missed.items(), key=lambda one: (-one[1], one[0]))
+    if not missed:
+        return "None of them has a finite answer."
+    name, times = missed[0]
+    words = f"None meets every requirement and check; {name} is missed most, by {times} of them"
+    return f"{words}. Widen what varies, or see why with `optimise`."
+
+
+def _table(console: Console, swept: Swept) -> list[str]:
+    """The best designs: what varies, the objective, the least margin."""
+    study = swept.study
+    goal = list(study.goal.weights)
+    axes = [axis.path for axis in study.plan.axes]
+    told: dict[str, Quantity | None] = {
+        axis.path: None if axis.values is None else quantity_of(axis.path, study.design)
+        for axis in study.plan.axes
+    }
+    columns = [
+        Column("", "right"),
+        *(Column(_head(path, told[path]), "right", flexible=True) for path in axes),
+        *(Column(_head(name, study.quantity(name)), "right") for name in goal),
+        Column("least margin", "right"),
+    ]
+    rows = []
+    for place, best in enumerate(swept.best, start=1):
+        values = study.values(best.number)
+        rows.append(
+            [
+                str(place),
+                *(_cell(values[path], told[path]) for path in axes),
+                *(_metric(swept, best, name) for name in goal),
+                text.margin_text(best.margin),
+            ]
+        )
+    return console.table(columns, rows)
+
+
+def _head(name: str, quantity: Quantity | None) -> str:
+    return f"{name}, {quantity.unit}" if quantity is not None and quantity.unit else name
+
+
+def _cell(value: float | str, quantity: Quantity | None) -> str:
+    if quantity is None or isinstance(value, str):
+        return str(value)
+    return text.number(quantity.to_display(value))
+
+
+def _metric(swept: Swept, best: Best, name: str) -> str:
+    value = swept.metrics(best)[name]
+    return text.number(text.display(swept.study.quantity(name), value))

@@ -1,0 +1,138 @@
+"""What a sweep varies: a PATH with a range, or with a list of values or names."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import units
+from ..design import Design, with_values
+from ..design.materials import load_library
+from ..design.paths import canonical, get
+from ..errors import Diagnostic, InputError, UsageError
+from ..numeric import Array
+from ..suggest import shown
+
+_RANGE = re.compile(r"(?P<first>.+?)\.\.(?P<last>.+?)(?::(?P<count>[^:]*))?")
+FORM = 'write PATH=A..B:N or PATH=a,b,c, e.g. --vary cylinder.bore="18..40 mm:12"'
+MOST_LISTED = 10_000
+"""Most values of a list."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One PATH with its values: numbers (SI), or texts that each make another design.
+
+    A range has two `values` and `count` steps; None where the method chooses the points.
+    """
+
+    path: str
+    values: Array | None = None
+    texts: tuple[str, ...] = ()
+    range: bool = False
+    count: int | None = None
+
+    @property
+    def listed(self) -> bool:
+        """Whether it takes listed values only."""
+        return not self.range
+
+    @property
+    def size(self) -> int:
+        """Number of values of a full factorial."""
+        if self.range:
+            return self.count or 0
+        return len(self.texts) if self.values is None else len(self.values)
+
+    def numbers(self) -> Array:
+        """The values of a full factorial, of numbers."""
+        assert self.values is not None
+        if not self.range:
+            return self.values
+        return np.linspace(self.values[0], self.values[1], self.count or 2)
+
+
+def read_axis(text: str, design: Design) -> Axis:
+    """An axis as a person writes it: ``PATH=A..B:N`` or ``PATH=a,b,c``.
+
+    Numbers without a unit take that of the last one; where it has none, they are SI.
+
+    Raises
+    ------
+    UsageError
+        not of this form
+    InputError
+        no such PATH, or a value that does not fit there
+    """
+    path, sign, given = text.partition("=")
+    if not sign or not path.strip() or not given.strip():
+        raise UsageError(Diagnostic(f"--vary {shown(text)}: no values", FORM))
+    path = canonical(path.strip(), design)
+    found = _RANGE.fullmatch(given.strip())
+    if found is None:
+        parts = [part.strip() for part in given.split(",")]
+        return _listed(path, parts, design)
+    first, last, count = found["first"].strip(), found["last"].strip(), found["count"]
+    steps = _steps(text, count)
+    ends = [_number(path, end, design) for end in _with_unit([first, last])]
+    if ends[0] == ends[1]:
+        raise UsageError(Diagnostic(f"--vary {shown(text)}: both ends are equal", FORM))
+    return Axis(path, np.array(ends), range=True, count=steps)
+
+
+def _steps(text: str, count: str | None) -> int | None:
+    if count is None:
+        return None
+    if not count.strip().isdecimal() or int(count) < 2:
+        raise UsageError(
+            Diagnostic(f"--vary {shown(text)}: {shown(count) or 'nothing'} steps", "give 2 or more")
+        )
+    return int(count)
+
+
+def _with_unit(texts: list[str]) -> list[str]:
+    """Values, the bare numbers among them with the unit of the last."""
+    try:
+        unit = units.split(texts[-1])[1]
+    except units.UnitError:
+        return texts
+    return [f"{one} {unit}" if unit and _bare(one) is not None else one for one in texts]
+
+
+def _number(path: str, text: str, design: Design) -> float:
+    """One value as the design holds it; every value is checked where it will stand."""
+    value = get(_at(design, path, text), path)
+    if not isinstance(value, (int, float)) or isinstance(value, bool):
+        message = f"{path}: {shown(text)} is no number, so it has no range"
+        raise InputError(Diagnostic(message, "list its values: PATH=a,b,c"))
+    return float(value)
+
+
+def _at(design: Design, path: str, text: str) -> Design:
+    number = _bare(text)
+    value = text if number is None else number
+    return with_values(design, {path: value}, materials=load_library(), contradictions=False)
+
+
+def _bare(text: str) -> float | None:
+    """A number without a unit, which is SI."""
+    try:
+        number, unit = units.split(text)
+    except units.UnitError:
+        return None
+    return None if unit else number
+
+
+def _listed(path: str, parts: list[str], design: Design) -> Axis:
+    if not all(parts) or len(set(parts)) < len(parts):
+        what = "an empty value" if not all(parts) else "a value twice"
+        raise UsageError(Diagnostic(f"--vary {path}: {what}", FORM))
+    if len(parts) > MOST_LISTED:
+        raise UsageError(Diagnostic(f"--vary {path}: {len(parts)} values", "write a range"))
+    parts = _with_unit(parts)
+    found = [get(_at(design, path, part), path) for part in parts]
+    if all(isinstance(one, (int, float)) and not isinstance(one, bool) for one in found):
+        return Axis(path, np.array([float(one) for one in found if one is not None]), tuple(parts))
+    return Axis(path, None, tuple(parts))

@@ -1,0 +1,265 @@
+"""One chunk of a sweep: its designs evaluated, each group that differs in numbers alone at once."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..database import Column, Rows
+from ..design import Design, with_values
+from ..design.paths import quantity_of
+from ..design.writer import to_yaml
+from ..errors import InputError
+from ..evaluation import Subject, prepare
+from ..evaluation.build import spec_hash
+from ..evaluation.many import Many, evaluate_many, limits_of
+from ..evaluation.plugin import Plugin
+from ..numeric import Array
+from ..optimisation.actuator import Goal, goal_of
+from ..quantities import Quantity
+from .axes import Axis
+from .plan import Plan, Points
+
+KEPT = 64
+"""Prepared designs that a process keeps."""
+
+TRIED = (0.0, 1.0, 0.5, 0.25, 0.75)
+"""Shares of a range that are tried until two make a design."""
+
+AGREE = 1e-9
+"""Relative difference up to which a number that varies counts as the same as one that is set."""
+
+NO_ANSWER = "the models have no finite answer for these dimensions"
+MARGIN, MISSED, FEASIBLE = "least_margin", "governing_limit", "feasible"
+"""Columns beside the metrics: the least margin, the number of its limit, whether all are met."""
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Rows from point `first` on, and how many of them were computed now."""
+
+    first: int
+    rows: Rows
+    computed: int
+    objective: Array
+    feasible: Array
+
+
+@dataclass
+class Study:
+    """A design with what varies: rows of any of its points.
+
+    `apart` are numbers that a design must be made anew for: temperatures of strengths, say.
+    """
+
+    design: Design
+    plan: Plan
+    plugins: tuple[Plugin, ...] = ()
+    full: bool = True
+    """Whether every metric is asked for, or only what tells the best."""
+    goal: Goal = field(init=False)
+    apart: tuple[str, ...] = field(init=False)
+    contradicts: bool = field(init=False)
+    """Whether some value of an axis contradicts the rest of the design, as its file would say."""
+    _subjects: dict[tuple[object, ...], Subject | str] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        subject = self._made({})
+        self.goal = goal_of(subject)
+        self._quantities = dict(subject.quantities)
+        limits = limits_of(subject)
+        self.limits = tuple(limit.name for limit in limits)
+        judged = {limit.metric for limit in limits} | set(self.goal.weights) | {"mass"}
+        self.wanted = None if self.full or self.plugins else frozenset(judged)
+        self.metrics = tuple(
+            name for name in self._quantities if self.wanted is None or name in self.wanted
+        )
+        self.contradicts = False
+        self.apart = tuple(axis.path for axis in self.plan.numeric if not self._moves(axis))
+        paths = [axis.path for axis in self.plan.numeric]
+        self.order = sorted(range(len(paths)), key=paths.__getitem__)
+        """The plan's numbers by PATH, whatever the order they are given in."""
+        self.columns = (
+            *(Column(paths[k], quantity_of(paths[k], self.design).si_unit) for k in self.order),
+            *(Column(name, subject.quantities[name].si_unit) for name in self.metrics),
+            Column(MARGIN, "1"),
+            Column(MISSED, "1"),
+            Column(FEASIBLE, "1"),
+        )
+
+    def __getstate__(self) -> dict[str, object]:
+        return self.__dict__ | {"_subjects": {}}
+
+    def _made(self, values: Mapping[str, float | str]) -> Subject:
+        """The design with other values, prepared; raises `InputError`."""
+        design = with_values(self.design, dict(values)) if values else self.design
+        return prepare(design, plugins=self.plugins)
+
+    def _moves(self, axis: Axis) -> bool:
+        """Whether a number may be moved as an array: two values as if the design had them.
+
+        Temperatures may not: strengths and oils are prepared for them.
+        """
+        assert axis.values is not None
+        if quantity_of(axis.path, self.design).dimension == "temperature":
+            return False
+        texts = self.plan.texts(0)
+        low, high = axis.values[[0, -1]]
+        alone: dict[float, Many] = {}
+        for share in TRIED:
+            value = float(low + share * (high - low))
+            try:
+                alone[value] = evaluate_many(self._made({**texts, axis.path: value}), {}, 1)
+            except InputError:
+                self.contradicts = True
+            if len(alone) == 2:
+                break
+        if not alone:
+            return False
+        base = self._made({**texts, axis.path: next(iter(alone))})
+        together = evaluate_many(base, {axis.path: np.array(list(alone))}, len(alone))
+        return all(
+            np.isclose(values[k], one.metrics[name][0], rtol=AGREE, atol=0.0, equal_nan=True)
+            for name, values in together.metrics.items()
+            for k, one in enumerate(alone.values())
+        )
+
+    def chunk(self, first: int, count: int, some: Array | None = None) -> Chunk:
+        """Rows of some points in a row, or of those of them that are numbered in `some`."""
+        points = self.plan.points(first, count)
+        if some is not None:
+            points = Points(points.variant[some], points.numbers[:, some])
+        n = len(points.variant)
+        rows = np.full((n, len(self.columns)), np.nan)
+        rows[:, : len(points.numbers)] = points.numbers[self.order].T
+        failures: dict[int, str] = {}
+        for places, subject, varied in self._groups(points):
+            if isinstance(subject, str):
+                failures |= dict.fromkeys(map(int, places), subject)
+                continue
+            found = evaluate_many(subject, varied, len(places), self.wanted)
+            self._fill(rows, places, found)
+            lost = places[np.isnan(found.metrics["mass"])]
+            failures |= dict.fromkeys(map(int, lost), NO_ANSWER)
+        if self.contradicts:
+            failures |= self._contradictions(first, rows, some)
+        rows[list(failures), len(points.numbers) :] = np.nan
+        return self.judged(first, Rows(rows, failures), n)
+
+    def _contradictions(self, first: int, rows: Array, some: Array | None) -> dict[int, str]:
+        """What the design's file would refuse among the feasible rows; models look at less."""
+        found = {}
+        for k in np.flatnonzero(rows[:, -1] == 1.0):
+            number = first + int(k if some is None else some[k])
+            try:
+                with_values(self.design, dict(self.values(number)))
+            except InputError as error:
+                found[int(k)] = _first(error)
+        return found
+
+    def judged(self, first: int, rows: Rows, computed: int) -> Chunk:
+        """A chunk with the objective, to be minimised, and whether designs are feasible."""
+        place = {column.name: k for k, column in enumerate(self.columns)}
+        total = np.zeros(len(rows.numbers))
+        for name, weight in self.goal.weights.items():
+            total += weight / self.goal.scales[name] * rows.numbers[:, place[name]]
+        feasible = rows.numbers[:, place[FEASIBLE]] == 1.0
+        return Chunk(first, rows, computed, self.goal.sign * total, feasible)
+
+    def _fill(self, rows: Array, places: Array, found: Many) -> None:
+        start = len(self.plan.numeric)
+        for k, name in enumerate(self.metrics):
+            rows[places, start + k] = found.metrics[name]
+        margin = np.where(np.isfinite(found.margin), found.margin, np.nan)
+        rows[places, -3:] = np.stack([margin, found.missed, found.feasible], axis=1)
+
+    def _groups(self, points: Points) -> Iterator[tuple[Array, Subject | str, dict[str, Array]]]:
+        """Points of one prepared design, with the arrays that vary; why, where there is none."""
+        paths = [axis.path for axis in self.plan.numeric]
+        apart = [k for k, path in enumerate(paths) if path in self.apart]
+        keys = np.vstack([points.variant.astype(float), points.numbers[apart]])
+        unique, which = np.unique(keys, axis=1, return_inverse=True)
+        for number in range(unique.shape[1]):
+            places = np.flatnonzero(which.ravel() == number)
+            variant, *set_apart = unique[:, number]
+            fixed = {paths[k]: float(x) for k, x in zip(apart, set_apart, strict=True)}
+            varied = {
+                path: points.numbers[k][places]
+                for k, path in enumerate(paths)
+                if path not in self.apart
+            }
+            yield places, self._prepared(int(variant), fixed), varied
+
+    def _prepared(self, variant: int, fixed: dict[str, float]) -> Subject | str:
+        """A prepared design, or why there is none; the last few are kept."""
+        key = (variant, *fixed.values())
+        if key not in self._subjects:
+            if len(self._subjects) >= KEPT:
+                self._subjects.pop(next(iter(self._subjects)))
+            try:
+                self._subjects[key] = self._made({**self.plan.texts(variant), **fixed})
+            except InputError as error:
+                self._subjects[key] = _first(error)
+        return self._subjects[key]
+
+    def quantity(self, metric: str) -> Quantity:
+        """What a metric is."""
+        return self._quantities[metric]
+
+    @property
+    def text(self) -> str:
+        """The design as a file."""
+        return to_yaml(self.design)
+
+    def values(self, number: int) -> dict[str, float | str]:
+        """The varied values of a point, by PATH (SI)."""
+        points = self.plan.points(number, 1)
+        paths = [axis.path for axis in self.plan.numeric]
+        numbers = dict(zip(paths, map(float, points.numbers[:, 0]), strict=True))
+        found: dict[str, float | str] = {**numbers, **self.plan.texts(int(points.variant[0]))}
+        return {axis.path: found[axis.path] for axis in self.plan.axes}
+
+    @property
+    def hash(self) -> str:
+        """Hash of the design, its materials, its own metrics, the models and what varies."""
+        sources = [_source(plugin) for plugin in self.plugins]
+        paths = sorted(axis.path for axis in self.plan.axes)
+        text = json.dumps([spec_hash(self._made({})), sources, paths, self.columns])
+        return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+    def keys(self, first: int, count: int) -> list[bytes]:
+        """Hash of the values of every point of a chunk."""
+        points = self.plan.points(first, count)
+        data = np.ascontiguousarray(points.numbers[self.order].T, dtype="<f8").tobytes()
+        width = 8 * len(points.numbers)
+        heads = {
+            variant: hashlib.blake2b(
+                json.dumps(self.plan.texts(variant), sort_keys=True).encode(), digest_size=16
+            )
+            for variant in map(int, np.unique(points.variant))
+        }
+        found = []
+        for k, variant in enumerate(points.variant.tolist()):
+            digest = heads[variant].copy()
+            digest.update(data[k * width : (k + 1) * width])
+            found.append(digest.digest())
+        return found
+
+
+def _first(error: InputError) -> str:
+    """The first fault in words."""
+    fault = error.diagnostics[0]
+    return fault.message if fault.path is None else f"{fault.path}: {fault.message}"
+
+
+def _source(plugin: Plugin) -> str:
+    """The text of a user's metric, so that a changed one is another study."""
+    try:
+        return inspect.getsource(plugin.function)
+    except (OSError, TypeError):
+        return plugin.name

@@ -1,0 +1,255 @@
+"""A sweep: chunks of its points evaluated, kept, reduced, in one process or many."""
+
+from __future__ import annotations
+
+import heapq
+import os
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .. import progress
+from ..database import Database, Rows, opened
+from ..numeric import Array
+from ..version import VERSION
+from .chunk import Chunk, Study
+
+CHUNK = 4096
+"""Points of a chunk: one transaction, one message between processes."""
+
+ALONE = 4
+"""Chunks up to which other processes are not worth their start."""
+
+
+class Task(NamedTuple):
+    """Points to compute: those of a chunk, or some of them."""
+
+    first: int
+    some: Array | None = None
+
+
+@dataclass(frozen=True, order=True)
+class Best:
+    """One of the best designs: its objective (to be minimised), its point, its row."""
+
+    objective: float
+    number: int
+    row: tuple[float, ...] = field(compare=False)
+
+    @property
+    def margin(self) -> float:
+        """The least margin of all limits."""
+        return self.row[-3]
+
+
+@dataclass
+class Swept:
+    """What a sweep came to."""
+
+    study: Study
+    requested: int
+    computed: int = 0
+    reused: int = 0
+    failed: int = 0
+    feasible: int = 0
+    best: list[Best] = field(default_factory=list)
+    failures: dict[str, int] = field(default_factory=dict)
+    """How often each reason made a design fail."""
+    missed: dict[str, int] = field(default_factory=dict)
+    """How often each limit was the one missed most."""
+    seconds: float = 0.0
+
+    def variables(self, best: Best) -> dict[str, float | str]:
+        """The varied values of one of the best designs, by PATH (SI)."""
+        return self.study.values(best.number)
+
+    def metrics(self, best: Best) -> dict[str, float | None]:
+        """The metrics of one of the best designs (SI); None where there is none."""
+        values = dict(zip([c.name for c in self.study.columns], best.row, strict=True))
+        return {
+            name: None if np.isnan(values[name]) else values[name] for name in self.study.metrics
+        }
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON form (CONTRACT): counts, and the best designs in SI."""
+        return {
+            "name": self.study.design.name,
+            "version": VERSION,
+            "requested": self.requested,
+            "computed": self.computed,
+            "reused": self.reused,
+            "failed": self.failed,
+            "feasible": self.feasible,
+            "best": [
+                {"variables": self.variables(best), "metrics": self.metrics(best)}
+                for best in self.best
+            ],
+            "failures": self.failures,
+            "missed": self.missed,
+            "seconds": self.seconds,
+        }
+
+    def add(self, chunk: Chunk, keep: int) -> None:
+        """Count a chunk."""
+        self.computed += chunk.computed
+        self.reused += len(chunk.rows.numbers) - chunk.computed
+        self.failed += len(chunk.rows.failures)
+        for reason in chunk.rows.failures.values():
+            self.failures[reason] = self.failures.get(reason, 0) + 1
+        good = np.flatnonzero(chunk.feasible)
+        worst = chunk.rows.numbers[~chunk.feasible, -2]
+        for number, times in zip(
+            *np.unique(worst[np.isfinite(worst)], return_counts=True), strict=True
+        ):
+            name = self.study.limits[int(number)]
+            self.missed[name] = self.missed.get(name, 0) + int(times)
+        self.feasible += len(good)
+        if keep and len(good):
+            order = good[np.argsort(chunk.objective[good], kind="stable")[:keep]]
+            found = [
+                Best(float(chunk.objective[k]), chunk.first + int(k), tuple(chunk.rows.numbers[k]))
+                for k in order
+            ]
+            self.best = heapq.nsmallest(keep, [*self.best, *found])
+
+
+def sweep(
+    study: Study,
+    *,
+    store: Path | None = None,
+    keep: int = 10,
+    workers: int | None = None,
+    each: Callable[[Chunk], None] | None = None,
+) -> Swept:
+    """Evaluate every point of a sweep.
+
+    Parameters
+    ----------
+    study : the design and the points
+    store : database to take rows from and put them into
+    keep : best feasible designs to keep
+    workers : processes; default: one per core
+    each : called with every chunk, in order
+
+    Raises
+    ------
+    InputError
+        the database cannot be used
+    """
+    began = time.perf_counter()
+    found = Swept(study, study.plan.count)
+    starts = range(0, study.plan.count, CHUNK)
+    tasks = map(Task, starts)
+    chunks = (
+        _computed(study, tasks, len(starts), workers)
+        if store is None
+        else _stored(study, starts, workers, store)
+    )
+    for number, chunk in enumerate(chunks):
+        found.add(chunk, keep)
+        if each is not None:
+            each(chunk)
+        progress.tell("evaluating designs", (number + 1) / len(starts))
+    found.seconds = time.perf_counter() - began
+    return found
+
+
+def _computed(
+    study: Study, tasks: Iterable[Task], chunks: int, workers: int | None
+) -> Iterator[Chunk]:
+    """What tasks come to, in their order."""
+    count = min(workers or os.cpu_count() or 1, chunks)
+    if count <= 1 or (workers is None and chunks <= ALONE):
+        for task in tasks:
+            yield study.chunk(task.first, CHUNK, task.some)
+        return
+    with ProcessPoolExecutor(count, initializer=_begin, initargs=(study,)) as pool:
+        waiting: deque[Future[Chunk]] = deque()
+        for task in tasks:
+            waiting.append(pool.submit(_work, task))
+            if len(waiting) > 2 * count:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
+
+
+_STUDY: list[Study] = []
+"""What a process of the pool works on."""
+
+
+def _begin(study: Study) -> None:
+    _STUDY[:] = [study]
+
+
+def _work(task: Task) -> Chunk:
+    return _STUDY[0].chunk(task.first, CHUNK, task.some)
+
+
+def _stored(study: Study, starts: range, workers: int | None, path: Path) -> Iterator[Chunk]:
+    """Chunks of rows that the database has, and of new ones that are put into it."""
+    with opened(
+        path,
+        study=study.hash,
+        name=study.design.name,
+        design=study.text,
+        columns=study.columns,
+        version=VERSION,
+    ) as base:
+        halves: deque[_Half] = deque()
+
+        def tasks() -> Iterator[Task]:
+            for first in starts:
+                half = _half(base, study, first)
+                halves.append(half)
+                if len(half.missing):
+                    every = len(half.missing) == len(half.keys)
+                    yield Task(first, None if every else half.missing)
+
+        for fresh in _computed(study, tasks(), len(starts), workers):
+            while not len(halves[0].missing):
+                yield _whole(study, halves.popleft(), None)
+            half = halves.popleft()
+            base.put([half.keys[k] for k in half.missing], fresh.rows)
+            yield _whole(study, half, fresh)
+        for half in halves:
+            yield _whole(study, half, None)
+
+
+class _Half(NamedTuple):
+    """Rows of a chunk that stand, and the numbers of those that are missing."""
+
+    first: int
+    keys: list[bytes]
+    rows: Rows
+    missing: Array
+
+
+def _half(base: Database, study: Study, first: int) -> _Half:
+    keys = study.keys(first, CHUNK)
+    points = study.plan.points(first, CHUNK)
+    numbers = np.full((len(keys), len(study.columns)), np.nan)
+    numbers[:, : len(points.numbers)] = points.numbers[study.order].T
+    failures, known = {}, base.known(keys)
+    for k, (blob, failure) in known.items():
+        if failure is not None:
+            failures[k] = failure
+        elif blob is not None:
+            numbers[k] = base.numbers(blob)
+    missing = np.array([k for k in range(len(keys)) if k not in known], dtype=np.intp)
+    return _Half(first, keys, Rows(numbers, failures), missing)
+
+
+def _whole(study: Study, half: _Half, fresh: Chunk | None) -> Chunk:
+    """A chunk of kept and of new rows."""
+    rows = half.rows
+    if fresh is not None:
+        rows.numbers[half.missing] = fresh.rows.numbers
+        added = {int(half.missing[k]): why for k, why in fresh.rows.failures.items()}
+        rows = Rows(rows.numbers, rows.failures | added)
+    return study.judged(half.first, rows, len(half.missing))

@@ -1,0 +1,83 @@
+"""Sweep a design: many variants at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..design import Design
+from ..errors import Diagnostic, InputError, UsageError
+from .actuator import Actuator, Plugins, as_actuator, unanswered
+
+if TYPE_CHECKING:
+    from ..variants import Swept
+    from ..variants.plan import Method
+
+LARGE = 1_000_000
+"""Points from which a sweep that keeps them all must be meant."""
+
+
+def sweep(
+    design: Actuator | Design | str | Path,
+    vary: Sequence[str] | Mapping[str, str],
+    *,
+    method: Method = "grid",
+    n: int | None = None,
+    seed: int = 0,
+    store: str | Path | None = None,
+    csv: str | Path | None = None,
+    keep: int = 10,
+    reduce: bool = False,
+    workers: int | None = None,
+    yes: bool = False,
+    plugins: Plugins = (),
+) -> Swept:
+    """Evaluate many variants of a design.
+
+    Parameters
+    ----------
+    design : the design that stands where nothing varies
+    vary : ``"PATH=A..B:N"`` or ``"PATH=a,b,c"``, or these by PATH
+    method : "grid" (full factorial), "sobol" or "lhs" (Latin hypercube)
+    n : points of "sobol" and "lhs"
+    seed : of "sobol" and "lhs"
+    store : database to take rows from and put them into
+    csv : file to write every row into
+    keep : best feasible designs to return
+    reduce : whether only what tells the best is computed
+    workers : processes; default: one per core
+    yes : whether a sweep of a million points that are all kept is meant
+    plugins : the user's metrics and constraints
+
+    Raises
+    ------
+    UsageError
+        nothing to vary, a form that is not one, or a size that must be confirmed
+    InputError
+        a PATH or value that is none, or a store that cannot be used
+    """
+    from ..reporting.sweep_csv import SweepTable
+    from ..variants import plan, read_axis
+    from ..variants import sweep as run
+    from ..variants.chunk import Study
+
+    actuator = as_actuator(design, plugins)
+    faults = unanswered(actuator, actuator.subject())
+    if faults:
+        raise InputError(faults)
+    free = actuator.design.model_copy(update={"variables": {}, "choices": {}})
+    given = [f"{k}={v}" for k, v in vary.items()] if isinstance(vary, Mapping) else list(vary)
+    axes = [read_axis(text, free) for text in given]
+    chosen = plan(axes, method=method, count=n, seed=seed)
+    if chosen.count > LARGE and (store is not None or csv is not None) and not yes:
+        message = f"{chosen.count:,} points would all be kept".replace(",", " ")
+        remedy = "add --yes, or keep the best alone with --reduce best:K"
+        raise UsageError(Diagnostic(message, remedy))
+    study = Study(free, chosen, actuator.plugins, full=not reduce)
+    workers = 1 if actuator.plugins else workers
+    kept = None if store is None else Path(store)
+    if csv is None:
+        return run(study, store=kept, keep=keep, workers=workers)
+    with SweepTable(study, Path(csv)) as table:
+        return run(study, store=kept, keep=keep, workers=workers, each=table.add)

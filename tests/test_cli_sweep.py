@@ -1,0 +1,62 @@
+"""`actuator-opt sweep` in the terminal."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from cli_runner import run
+from test_sweep import KNEE, NEAR, STEEL
+
+SETS = [word for path, value in NEAR.items() for word in ("--set", f"{path}={value}")]
+BORES = ["--vary", "cylinder.bore=20.9..21.1 mm:3"]
+
+
+def test_sweep_tells_the_best(tmp_path):
+    """Counts, the best variants with units, exit 0; the CSV is in place."""
+    file = tmp_path / "rows.csv"
+    done = run("sweep", KNEE, *SETS, *BORES, "--csv", str(file))
+    assert done.code == 0, done.err
+    assert "3 variants" in done.out
+    assert "cylinder.bore, mm" in done.out
+    assert "mass, g" in done.out
+    assert file.read_text(encoding="utf-8").count("\n") == 4
+    assert f"wrote {file}" in done.err
+
+
+def test_sweep_json_is_the_contract():
+    """The keys of the contract; SI."""
+    done = run("sweep", KNEE, *SETS, *BORES, "--json")
+    told = json.loads(done.out)
+    assert {"requested", "computed", "reused", "failed", "feasible", "best", "seconds"} <= set(told)
+    assert told["best"][0]["variables"]["cylinder.bore"] == pytest.approx(0.021, abs=2e-4)
+    assert told["best"][0]["metrics"]["mass"] == pytest.approx(0.27, abs=0.02)
+
+
+def test_no_feasible_variant_is_exit_1():
+    """The limit missed most is named."""
+    done = run("sweep", STEEL, "--vary", "cylinder.bore=18..20 mm:3")
+    assert done.code == 1
+    assert "is missed most" in done.out
+
+
+@pytest.mark.parametrize(
+    ("words", "text", "code"),
+    [
+        ([], "nothing to vary", 2),
+        (["--vary", "cylinder.bore"], "no values", 2),
+        (["--vary", "cylinder.bohr=1..2:3"], "no such PATH", 3),
+        ([*BORES, "--method", "dice"], "use grid, sobol, lhs", 2),
+        ([*BORES, "--reduce", "worst:3"], "write best:K", 2),
+        ([*BORES, "--reduce", "best:3", "--csv", "x.csv"], "leave out --store and --csv", 2),
+        ([*BORES, "--workers", "0"], "give 1 or more", 2),
+        ([*BORES, "--csv", "/nowhere/x.csv"], "cannot write", 3),
+        (["--vary", "fluid.flavour=1..2:3"], "no such PATH", 3),
+    ],
+)
+def test_bad_input_is_one_line(words, text, code):
+    """Where, what, what to do; no traceback."""
+    done = run("sweep", KNEE, *words)
+    assert done.code == code, done.err
+    assert text in done.err
+    assert len(done.err.strip().splitlines()) == 1

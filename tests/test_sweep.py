@@ -1,0 +1,261 @@
+"""A sweep: every row is the evaluation of its design, the best are the best, nothing is lost."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import actuator_opt as ao
+from actuator_opt.errors import InputError, UsageError
+from actuator_opt.variants import run
+
+KNEE = "designs/knee.yaml"
+STEEL = "designs/steel_baseline.yaml"
+NEAR = {  # the optimum of the shipped knee with some room at every limit
+    "barrel.layup[0].thickness": "0.98 mm", "barrel.layup[1].thickness": "2.95 mm",
+    "barrel.layup[2].thickness": "0.92 mm", "barrel.layup[2].angle": "20 deg",
+    "rod.outer_diameter": "10.85 mm", "rod.inner_diameter": "5.3 mm", "piston.length": "10.4 mm",
+    "head.length": "6 mm", "caps.thickness": "5.6 mm", "retention.wall": "2.75 mm",
+    "retention.length": "18.6 mm", "seals.piston.squeeze": "12.45 %",
+    "seals.rod.squeeze": "12.25 %", "cylinder.bore": "21.02 mm",
+    "requirements.stiffness_min.min": "9.7 kN/mm", "requirements.friction_running.max": "296 N",
+    "requirements.seal_gap.max": "34.5 um",
+}  # fmt: skip
+WAYS = ["cylinder.bore=20.9..21.1 mm", "barrel.layup[1].thickness=2.6..3.4 mm"]
+
+
+@pytest.fixture(scope="module")
+def knee():
+    """A knee some of whose neighbours meet everything."""
+    return ao.read(KNEE, set=NEAR)
+
+
+def table(path):
+    """Rows of a CSV."""
+    with Path(path).open(encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.mark.parametrize(
+    "vary",
+    [
+        ["cylinder.bore=18..26 mm:3", "rod.material=steel_42crmo4,ti_6al4v"],
+        ["barrel.layup[2].angle=20..50 deg:2", "supply.pressure=150..220 bar:2"],
+        ["fluid.temperature=20..60 degC:2", "fluid.material=iso_vg_32,iso_vg_46"],
+        ["environment.temperature_max=60..90 degC:2", "fluid.air_content=0..2 %:2"],
+        ["load_cases[stance].force=3..6 kN:2", "requirements.stiffness_min.min=5,20 kN/mm"],
+        ["materials.steel_42crmo4.youngs_modulus=190..220 GPa:2", "seals.piston.count=1,2"],
+    ],
+)
+def test_rows_are_the_evaluations_of_their_designs(vary, tmp_path):
+    """Each variant, read and evaluated by itself, has the metrics and verdict of its row."""
+    file = tmp_path / "rows.csv"
+    swept = ao.sweep(KNEE, vary, csv=file)
+    found = table(file)
+    assert swept.requested == swept.computed == len(found)
+    for number, row in enumerate(found):
+        values = {path: str(value) for path, value in swept.study.values(number).items()}
+        alone = ao.evaluate(ao.read(KNEE, set=values))
+        for name, metric in alone.metrics.items():
+            quantity = swept.study.quantity(name)
+            head = f"{name} [{quantity.unit}]" if quantity.unit else name
+            cell = row[head]
+            assert (cell == "") == (metric.value is None), (name, values)
+            if metric.value is not None:
+                assert float(cell) == pytest.approx(quantity.to_display(metric.value), rel=1e-7)
+        met = all(one.met for one in alone.requirements)
+        missed = [check for check in alone.checks if check.status == "missed"]
+        assert (row["feasible"] == "yes") == (met and not missed), values
+
+
+def test_the_best_are_those_of_all_rows(knee, tmp_path):
+    """Of 300 variants the best feasible ones by the objective, in order, however many processes."""
+    file = tmp_path / "rows.csv"
+    swept = ao.sweep(knee, WAYS, method="sobol", n=300, seed=1, csv=file, keep=5)
+    masses = sorted(float(row["mass [g]"]) for row in table(file) if row["feasible"] == "yes")
+    assert len(masses) == swept.feasible > 5
+    best = [swept.metrics(one)["mass"] for one in swept.best]
+    assert [1000 * mass for mass in best] == pytest.approx(masses[:5], rel=1e-8)
+    again = ao.sweep(knee, WAYS, method="sobol", n=300, seed=1, keep=5, reduce=True)
+    assert [one.number for one in again.best] == [one.number for one in swept.best]
+
+
+def test_processes_do_not_change_anything(monkeypatch, tmp_path):
+    """One process and three give the same bytes."""
+    monkeypatch.setattr(run, "CHUNK", 64)
+    files = []
+    for workers in (1, 3):
+        files.append(tmp_path / f"{workers}.csv")
+        ao.sweep(STEEL, WAYS[:1], method="lhs", n=500, csv=files[-1], workers=workers)
+    assert files[0].read_bytes() == files[1].read_bytes()
+
+
+def test_variants_without_a_design_are_rows_with_a_reason(tmp_path):
+    """A rod as thick as the bore, walls of nothing: failed rows say why, the others stand."""
+    file = tmp_path / "rows.csv"
+    swept = ao.sweep(
+        KNEE, ["rod.outer_diameter=12..40 mm:5", "fluid.temperature=20,40 degC"], csv=file
+    )
+    found = table(file)
+    assert swept.failed == sum(row["failure"] != "" for row in found)
+    for row in found:
+        assert (row["mass [g]"] == "") == (row["failure"] != "")
+
+
+def test_what_a_file_would_refuse_is_not_feasible(knee, tmp_path):
+    """A thread larger than its rod passes the models, but no design file may have it."""
+    file = tmp_path / "rows.csv"
+    swept = ao.sweep(knee, ["rod.thread.diameter=8..12 mm:9"], csv=file)
+    for number, row in enumerate(table(file)):
+        values = {path: str(value) for path, value in swept.study.values(number).items()}
+        try:
+            ao.read(KNEE, set=NEAR | values)
+        except InputError:
+            assert row["failure"]
+        else:
+            assert row["feasible"] in ("yes", "no")
+
+
+def kept(path):
+    """Rows of a store by key."""
+    with sqlite3.connect(path) as connection:
+        return dict(connection.execute("SELECT hex(key) || study, numbers FROM rows"))
+
+
+def test_a_store_gives_back_what_it_holds(tmp_path):
+    """A second run computes nothing, a finer grid only what is new; both as without a store."""
+    store, first, second = (tmp_path / name for name in ("s.db", "a.csv", "b.csv"))
+    coarse = ao.sweep(STEEL, ["cylinder.bore=18..26 mm:5"], store=store, csv=first)
+    assert (coarse.computed, coarse.reused) == (5, 0)
+    again = ao.sweep(STEEL, ["cylinder.bore=18..26 mm:5"], store=store, csv=second)
+    assert (again.computed, again.reused) == (0, 5)
+    assert first.read_bytes() == second.read_bytes()
+    fine = ao.sweep(STEEL, ["cylinder.bore=18..26 mm:9"], store=store, csv=first)
+    assert (fine.computed, fine.reused) == (4, 5)
+    ao.sweep(STEEL, ["cylinder.bore=18..26 mm:9"], csv=second)
+    assert first.read_bytes() == second.read_bytes()
+    assert len(kept(store)) == 9
+
+
+def test_a_changed_design_is_another_study(tmp_path):
+    """Rows of another pressure are not reused; both studies live in one file."""
+    store = tmp_path / "s.db"
+    ao.sweep(STEEL, ["cylinder.bore=18..26 mm:5"], store=store)
+    other = ao.read(STEEL, set={"supply.pressure": "180 bar"})
+    assert ao.sweep(other, ["cylinder.bore=18..26 mm:5"], store=store).computed == 5
+    assert len(kept(store)) == 10
+
+
+SCRIPT = """
+import sys
+import actuator_opt as ao
+from actuator_opt.variants import run
+run.CHUNK = 128
+found = ao.sweep(sys.argv[1], sys.argv[3:], method="lhs", n=4000, store=sys.argv[2], workers=2)
+print(found.requested, found.computed, found.reused)
+"""
+
+
+def test_a_killed_sweep_goes_on_where_it_was(tmp_path):
+    """SIGKILL at several instants: no row lost or doubled, and the end is that of one run."""
+    store, whole = tmp_path / "s.db", tmp_path / "whole.db"
+    vary = ["cylinder.bore=18..26 mm", "rod.outer_diameter=9..13 mm"]
+    command = [sys.executable, "-c", SCRIPT, STEEL, str(store), *vary]
+    seen = 0
+    for wait in (1.2, 1.5, 1.8):
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, start_new_session=True)
+        time.sleep(wait)
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        with sqlite3.connect(store) as connection:
+            assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+            tables = connection.execute("SELECT name FROM sqlite_master").fetchall()
+            if ("rows",) in tables:
+                count = connection.execute("SELECT count(*) FROM rows").fetchone()[0]
+                assert count >= seen
+                seen = count
+    end = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert end.stdout.split() == ["4000", str(4000 - seen), str(seen)]
+    subprocess.run([*command[:4], str(whole), *vary], check=True, capture_output=True)
+    assert kept(store) == kept(whole)
+
+
+def test_a_store_that_cannot_be_used_is_said_in_one_line(tmp_path):
+    """Another program's file, another version's rows, no folder: one line, nothing changed."""
+    vary = ["cylinder.bore=18..26 mm:3"]
+    text = tmp_path / "notes.txt"
+    text.write_text("not a database, and longer than the header of one is, by some letters " * 3)
+    foreign = tmp_path / "foreign.db"
+    with sqlite3.connect(foreign) as connection:
+        connection.execute("CREATE TABLE birds (name TEXT)")
+    old = tmp_path / "old.db"
+    ao.sweep(STEEL, vary, store=old)
+    with sqlite3.connect(old) as connection:
+        connection.execute("UPDATE meta SET value = '0.1' WHERE key = 'version'")
+    for path, words in (
+        (text, "is no database of sweeps"),
+        (foreign, "another program's"),
+        (old, "holds rows of the models 0.1"),
+        (tmp_path / "no" / "where.db", "name a file in a folder that is there"),
+        (tmp_path, "cannot be written"),
+    ):
+        before = path.read_bytes() if path.is_file() else None
+        with pytest.raises(InputError, match=words) as caught:
+            ao.sweep(STEEL, vary, store=path)
+        assert len(caught.value.diagnostics) == 1
+        assert before is None or path.read_bytes() == before
+
+
+LIMITED = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))
+import actuator_opt as ao
+from actuator_opt.errors import InputError
+try:
+    ao.sweep(sys.argv[1], sys.argv[3:], method="lhs", n=9000, store=sys.argv[2], workers=1)
+except InputError as error:
+    print(error.diagnostics[0])
+"""
+
+
+def test_a_full_disk_keeps_the_rows_that_stand(tmp_path):
+    """A file that may not grow: one line, and the database is sound."""
+    store = tmp_path / "s.db"
+    vary = ["cylinder.bore=18..26 mm", "rod.outer_diameter=9..13 mm"]
+    ao.sweep(STEEL, ["cylinder.bore=18..26 mm:3"], store=store)
+    command = [sys.executable, "-c", LIMITED, STEEL, str(store), *vary]
+    end = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert "rows kept so far stay" in end.stdout
+    with sqlite3.connect(store) as connection:
+        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+        assert connection.execute("SELECT count(*) FROM rows").fetchone()[0] >= 3
+
+
+def test_a_million_rows_must_be_meant(tmp_path):
+    """A large grid that is kept states its size and asks; a reduced one does not."""
+    vary = ["cylinder.bore=18..26 mm:1200", "rod.outer_diameter=9..13 mm:1200"]
+    with pytest.raises(UsageError, match="1 440 000 points would all be kept"):
+        ao.sweep(STEEL, vary, csv=tmp_path / "rows.csv")
+    assert not list(tmp_path.iterdir())
+
+
+def test_metrics_of_the_best_are_numbers_or_none(knee):
+    """JSON has no NaN."""
+    swept = ao.sweep(knee, WAYS, method="lhs", n=40)
+    told = swept.to_dict()
+    assert told["best"]
+    for one in told["best"]:
+        for value in one["metrics"].values():
+            assert value is None or math.isfinite(value)
+    assert np.isfinite(list(told["best"][0]["variables"].values())).all()
