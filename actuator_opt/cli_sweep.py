@@ -47,6 +47,10 @@ def sweep(
     workers: Annotated[
         int | None, typer.Option("--workers", metavar="N", help="Processes; default: every core.")
     ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option("--scheduler", metavar="ADDRESS", help="Work on this Dask cluster instead."),
+    ] = None,
     yes: Annotated[
         bool, typer.Option("--yes", help="Keep more than a million points without asking.")
     ] = False,
@@ -78,6 +82,7 @@ def sweep(
             keep=keep,
             reduce=reduce is not None,
             workers=workers,
+            scheduler=scheduler,
             yes=yes,
         )
     if as_json:

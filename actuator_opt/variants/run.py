@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,6 +20,7 @@ from ..database import Database, Rows, opened
 from ..numeric import Array
 from ..version import VERSION
 from .chunk import Chunk, Study
+from .cluster import on_cluster
 
 CHUNK = 4096
 """Points of a chunk: one transaction, one message between processes."""
@@ -31,6 +33,7 @@ class Task(NamedTuple):
     """Points to compute: those of a chunk, or some of them."""
 
     first: int
+    size: int
     some: Array | None = None
 
 
@@ -125,6 +128,7 @@ def sweep(
     store: Path | None = None,
     keep: int = 10,
     workers: int | None = None,
+    scheduler: str | None = None,
     each: Callable[[Chunk], None] | None = None,
 ) -> Swept:
     """Evaluate every point of a sweep.
@@ -135,6 +139,7 @@ def sweep(
     store : database to take rows from and put them into
     keep : best feasible designs to keep
     workers : processes; default: one per core
+    scheduler : address of a Dask scheduler to work on instead
     each : called with every chunk, in order
 
     Raises
@@ -145,11 +150,11 @@ def sweep(
     began = time.perf_counter()
     found = Swept(study, study.plan.count)
     starts = range(0, study.plan.count, CHUNK)
-    tasks = map(Task, starts)
+    computed = partial(_computed, study, len(starts), workers, scheduler)
     chunks = (
-        _computed(study, tasks, len(starts), workers)
+        computed(Task(first, CHUNK) for first in starts)
         if store is None
-        else _stored(study, starts, workers, store)
+        else _stored(study, starts, computed, store)
     )
     for number, chunk in enumerate(chunks):
         found.add(chunk, keep)
@@ -161,13 +166,16 @@ def sweep(
 
 
 def _computed(
-    study: Study, tasks: Iterable[Task], chunks: int, workers: int | None
+    study: Study, chunks: int, workers: int | None, scheduler: str | None, tasks: Iterable[Task]
 ) -> Iterator[Chunk]:
     """What tasks come to, in their order."""
+    if scheduler is not None:
+        yield from on_cluster(scheduler, study, _chunk, tasks)
+        return
     count = min(workers or os.cpu_count() or 1, chunks)
     if count <= 1 or (workers is None and chunks <= ALONE):
         for task in tasks:
-            yield study.chunk(task.first, CHUNK, task.some)
+            yield _chunk(study, task)
         return
     with ProcessPoolExecutor(count, initializer=_begin, initargs=(study,)) as pool:
         waiting: deque[Future[Chunk]] = deque()
@@ -188,10 +196,19 @@ def _begin(study: Study) -> None:
 
 
 def _work(task: Task) -> Chunk:
-    return _STUDY[0].chunk(task.first, CHUNK, task.some)
+    return _chunk(_STUDY[0], task)
 
 
-def _stored(study: Study, starts: range, workers: int | None, path: Path) -> Iterator[Chunk]:
+def _chunk(study: Study, task: Task) -> Chunk:
+    return study.chunk(task.first, task.size, task.some)
+
+
+def _stored(
+    study: Study,
+    starts: range,
+    computed: Callable[[Iterable[Task]], Iterator[Chunk]],
+    path: Path,
+) -> Iterator[Chunk]:
     """Chunks of rows that the database has, and of new ones that are put into it."""
     with opened(
         path,
@@ -209,9 +226,9 @@ def _stored(study: Study, starts: range, workers: int | None, path: Path) -> Ite
                 halves.append(half)
                 if len(half.missing):
                     every = len(half.missing) == len(half.keys)
-                    yield Task(first, None if every else half.missing)
+                    yield Task(first, CHUNK, None if every else half.missing)
 
-        for fresh in _computed(study, tasks(), len(starts), workers):
+        for fresh in computed(tasks()):
             while not len(halves[0].missing):
                 yield _whole(study, halves.popleft(), None)
             half = halves.popleft()

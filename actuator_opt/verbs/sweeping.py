@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..design import Design
 from ..errors import Diagnostic, InputError, UsageError
@@ -30,6 +30,7 @@ def sweep(
     keep: int = 10,
     reduce: bool = False,
     workers: int | None = None,
+    scheduler: str | None = None,
     yes: bool = False,
     plugins: Plugins = (),
 ) -> Swept:
@@ -47,6 +48,7 @@ def sweep(
     keep : best feasible designs to return
     reduce : whether only what tells the best is computed
     workers : processes; default: one per core
+    scheduler : address of a Dask scheduler to work on instead (extra `cluster`)
     yes : whether a sweep of a million points that are all kept is meant
     plugins : the user's metrics and constraints
 
@@ -75,9 +77,16 @@ def sweep(
         remedy = "add --yes, or keep the best alone with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
     study = Study(free, chosen, actuator.plugins, full=not reduce)
-    workers = 1 if actuator.plugins else workers
-    kept = None if store is None else Path(store)
+    if actuator.plugins and scheduler is not None:
+        message = "own metrics cannot travel to other machines"
+        raise UsageError(Diagnostic(message, "leave out --scheduler or --plugin"))
+    how: dict[str, Any] = {
+        "store": None if store is None else Path(store),
+        "keep": keep,
+        "workers": 1 if actuator.plugins else workers,
+        "scheduler": scheduler,
+    }
     if csv is None:
-        return run(study, store=kept, keep=keep, workers=workers)
+        return run(study, **how)
     with SweepTable(study, Path(csv)) as table:
-        return run(study, store=kept, keep=keep, workers=workers, each=table.add)
+        return run(study, each=table.add, **how)
