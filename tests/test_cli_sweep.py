@@ -18,7 +18,7 @@ def test_sweep_tells_the_best(tmp_path):
     done = run("sweep", KNEE, *SETS, *BORES, "--csv", str(file))
     assert done.code == 0, done.err
     assert "3 variants" in done.out
-    assert "cylinder.bore, mm" in done.out
+    assert "bore, mm" in done.out
     assert "mass, g" in done.out
     assert file.read_text(encoding="utf-8").count("\n") == 4
     assert f"wrote {file}" in done.err

@@ -90,6 +90,26 @@ def test_the_best_are_those_of_all_rows(knee, tmp_path):
     assert [one.number for one in again.best] == [one.number for one in swept.best]
 
 
+@pytest.mark.parametrize("named", [False, True])
+def test_a_screen_loses_none_of_the_best(named, monkeypatch):
+    """The best of a reduced sweep are those of all rows, found in chunks with a falling limit."""
+    monkeypatch.setattr(run, "REDUCED", 256)
+    near = ao.read(KNEE, set=NEAR)
+    vary = [
+        "cylinder.bore=20.8..21.2 mm", "barrel.layup[1].thickness=2.4..3.4 mm",
+        "retention.length=18..20 mm", "rod.inner_diameter=4..6 mm",
+    ]  # fmt: skip
+    vary += ["rod.material=steel_42crmo4,ti_6al4v"] if named else []
+    how = {"method": "lhs", "n": 2000, "seed": 4, "keep": 7}
+    every, reduced = ao.sweep(near, vary, **how), ao.sweep(near, vary, reduce=True, **how)
+    assert every.feasible >= 7
+    assert reduced.computed == reduced.requested == 2000
+    assert reduced.screened > 500
+    assert [one.number for one in reduced.best] == [one.number for one in every.best]
+    for one, other in zip(reduced.best, every.best, strict=True):
+        assert one.objective == other.objective
+
+
 def test_processes_do_not_change_anything(monkeypatch, tmp_path):
     """One process and three give the same bytes."""
     monkeypatch.setattr(run, "CHUNK", 64)

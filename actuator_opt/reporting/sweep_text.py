@@ -19,6 +19,7 @@ def sweep_text(
     console = Console(colour, unicode, width)
     study = swept.study
     reused = f", {swept.reused} reused" if swept.reused else ""
+    reused += f", {swept.screened} of them screened out" if swept.screened else ""
     rate = swept.computed / swept.seconds if swept.seconds > 0 else 0.0
     lines = [
         console.heading(f"{study.design.name}: {swept.requested} variants"),
@@ -57,7 +58,7 @@ def _table(console: Console, swept: Swept) -> list[str]:
     }
     columns = [
         Column("", "right"),
-        *(Column(_head(path, told[path]), "right", flexible=True) for path in axes),
+        *(Column(_head(_short(path, axes), told[path]), "right", flexible=True) for path in axes),
         *(Column(_head(name, study.quantity(name)), "right") for name in goal),
         Column("least margin", "right"),
     ]
@@ -77,6 +78,16 @@ def _table(console: Console, swept: Swept) -> list[str]:
 
 def _head(name: str, quantity: Quantity | None) -> str:
     return f"{name}, {quantity.unit}" if quantity is not None and quantity.unit else name
+
+
+def _short(path: str, paths: list[str]) -> str:
+    """The last words of a PATH that no other of them has."""
+    parts = path.split(".")
+    for count in range(1, len(parts)):
+        tail = ".".join(parts[-count:])
+        if not any(one != path and one.endswith(f".{tail}") for one in paths):
+            return tail
+    return path
 
 
 def _cell(value: float | str, quantity: Quantity | None) -> str:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import inspect
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from ..optimisation.actuator import Goal, goal_of
 from ..quantities import Quantity
 from .axes import Axis
 from .plan import Plan, Points
+from .screen import Screen, screen
 
 KEPT = 64
 """Prepared designs that a process keeps."""
@@ -41,13 +43,22 @@ MARGIN, MISSED, FEASIBLE = "least_margin", "governing_limit", "feasible"
 
 @dataclass(frozen=True)
 class Chunk:
-    """Rows from point `first` on, and how many of them were computed now."""
+    """Rows from point `first` on, and how many of them were computed now.
+
+    A reduced chunk has rows of its points numbered `places` alone: none of the others can be among
+    the best.
+    """
 
     first: int
     rows: Rows
     computed: int
     objective: Array
     feasible: Array
+    places: Array | None = None
+
+    def number(self, row: int) -> int:
+        """Number of the point of a row."""
+        return self.first + row if self.places is None else int(self.places[row])
 
 
 @dataclass
@@ -67,6 +78,7 @@ class Study:
     contradicts: bool = field(init=False)
     """Whether some value of an axis contradicts the rest of the design, as its file would say."""
     _subjects: dict[tuple[object, ...], Subject | str] = field(default_factory=dict, repr=False)
+    _screens: dict[int, Screen | None] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         subject = self._made({})
@@ -93,7 +105,7 @@ class Study:
         )
 
     def __getstate__(self) -> dict[str, object]:
-        return self.__dict__ | {"_subjects": {}}
+        return self.__dict__ | {"_subjects": {}, "_screens": {}}
 
     def _made(self, values: Mapping[str, float | str]) -> Subject:
         """The design with other values, prepared; raises `InputError`."""
@@ -150,6 +162,36 @@ class Study:
             failures |= self._contradictions(first, rows, some)
         rows[list(failures), len(points.numbers) :] = np.nan
         return self.judged(first, Rows(rows, failures), n)
+
+    def reduced(self, first: int, count: int, limit: float) -> Chunk:
+        """Rows of the points that may be feasible and have an objective below `limit`."""
+        points = self.plan.points(first, count)
+        kept = np.ones(len(points.variant), dtype=bool)
+        for variant in np.unique(points.variant):
+            sieve = None if self.apart else self._screen(int(variant))
+            if sieve is None:
+                continue
+            own = np.flatnonzero(points.variant == variant)
+            own_kept = sieve.values(points.numbers[:, own]) < limit
+            own_kept[own_kept] = sieve.passing(points.numbers[:, own[own_kept]])
+            kept[own] = own_kept
+        some = np.flatnonzero(kept)
+        found = self.chunk(first, count, some)
+        return replace(found, computed=len(kept), places=first + some)
+
+    def _screen(self, variant: int) -> Screen | None:
+        """The screen of one combination of texts."""
+        if variant not in self._screens:
+            texts = dict(self.plan.texts(variant))
+            axes = self.plan.numeric
+            found = None
+            if axes and not self.plugins:
+                ends = np.array([[min(a.numbers()), max(a.numbers())] for a in axes])
+                with contextlib.suppress(InputError):
+                    design = with_values(self.design, texts) if texts else self.design
+                    found = screen(design, [axis.path for axis in axes], ends)
+            self._screens[variant] = found
+        return self._screens[variant]
 
     def _contradictions(self, first: int, rows: Array, some: Array | None) -> dict[int, str]:
         """What the design's file would refuse among the feasible rows; models look at less."""

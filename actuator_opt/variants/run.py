@@ -25,6 +25,9 @@ from .cluster import on_cluster
 CHUNK = 4096
 """Points of a chunk: one transaction, one message between processes."""
 
+REDUCED = 65_536
+"""Points of a chunk of which the best alone are kept."""
+
 ALONE = 4
 """Chunks up to which other processes are not worth their start."""
 
@@ -35,6 +38,8 @@ class Task(NamedTuple):
     first: int
     size: int
     some: Array | None = None
+    limit: float | None = None
+    """Objective that a design must be below, where the best alone are asked for."""
 
 
 @dataclass(frozen=True, order=True)
@@ -61,6 +66,9 @@ class Swept:
     reused: int = 0
     failed: int = 0
     feasible: int = 0
+    """Of those that were evaluated in full."""
+    screened: int = 0
+    """Variants that cannot be among the best, by closed expressions alone."""
     best: list[Best] = field(default_factory=list)
     failures: dict[str, int] = field(default_factory=dict)
     """How often each reason made a design fail."""
@@ -79,6 +87,10 @@ class Swept:
             name: None if np.isnan(values[name]) else values[name] for name in self.study.metrics
         }
 
+    def limit(self, keep: int) -> float:
+        """Objective that one more of the best must be below."""
+        return self.best[-1].objective if len(self.best) >= keep else np.inf
+
     def to_dict(self) -> dict[str, Any]:
         """The JSON form (CONTRACT): counts, and the best designs in SI."""
         return {
@@ -89,6 +101,7 @@ class Swept:
             "reused": self.reused,
             "failed": self.failed,
             "feasible": self.feasible,
+            "screened": self.screened,
             "best": [
                 {"variables": self.variables(best), "metrics": self.metrics(best)}
                 for best in self.best
@@ -101,7 +114,8 @@ class Swept:
     def add(self, chunk: Chunk, keep: int) -> None:
         """Count a chunk."""
         self.computed += chunk.computed
-        self.reused += len(chunk.rows.numbers) - chunk.computed
+        self.reused += max(len(chunk.rows.numbers) - chunk.computed, 0)
+        self.screened += 0 if chunk.places is None else chunk.computed - len(chunk.places)
         self.failed += len(chunk.rows.failures)
         for reason in chunk.rows.failures.values():
             self.failures[reason] = self.failures.get(reason, 0) + 1
@@ -116,7 +130,7 @@ class Swept:
         if keep and len(good):
             order = good[np.argsort(chunk.objective[good], kind="stable")[:keep]]
             found = [
-                Best(float(chunk.objective[k]), chunk.first + int(k), tuple(chunk.rows.numbers[k]))
+                Best(float(chunk.objective[k]), chunk.number(int(k)), tuple(chunk.rows.numbers[k]))
                 for k in order
             ]
             self.best = heapq.nsmallest(keep, [*self.best, *found])
@@ -149,13 +163,15 @@ def sweep(
     """
     began = time.perf_counter()
     found = Swept(study, study.plan.count)
-    starts = range(0, study.plan.count, CHUNK)
+    size = CHUNK if study.full else REDUCED
+    starts = range(0, study.plan.count, size)
     computed = partial(_computed, study, len(starts), workers, scheduler)
-    chunks = (
-        computed(Task(first, CHUNK) for first in starts)
-        if store is None
-        else _stored(study, starts, computed, store)
-    )
+    if not study.full:
+        chunks = computed(Task(first, size, None, found.limit(keep)) for first in starts)
+    elif store is None:
+        chunks = computed(Task(first, size) for first in starts)
+    else:
+        chunks = _stored(study, starts, computed, store)
     for number, chunk in enumerate(chunks):
         found.add(chunk, keep)
         if each is not None:
@@ -200,6 +216,8 @@ def _work(task: Task) -> Chunk:
 
 
 def _chunk(study: Study, task: Task) -> Chunk:
+    if task.limit is not None:
+        return study.reduced(task.first, task.size, task.limit)
     return study.chunk(task.first, task.size, task.some)
 
 

@@ -1,0 +1,99 @@
+"""What a variant must have to be among the best, by closed expressions: most variants end here.
+
+The models are called once with symbols; objective and limits that come out as expressions of what
+varies are compiled. What passes is evaluated in full, so that a screen changes no answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..design import Design
+from ..design.variable import Variable
+from ..errors import InputError
+from ..evaluation import prepare
+from ..evaluation.build import TOLERANCE
+from ..numeric import Array
+from ..optimisation.actuator import build
+from ..optimisation.certificate.relaxation import Unknown
+from ..optimisation.certificate.trace import Claim, trace
+from ..symbolic import Symbol, vectorised
+from ..symbolic.order import needed
+
+ROOM = 2 * TOLERANCE
+"""Margin below which a variant is out: beyond the rounding of another order of operations."""
+
+
+@dataclass(frozen=True)
+class Screen:
+    """Compiled objective and limits of variants that differ in numbers (axes, n)."""
+
+    objective: Any
+    limits: Any
+    bounds: Array
+    signs: Array
+
+    def values(self, numbers: Array) -> Array:
+        """The objective, to be minimised, (n,)."""
+        with np.errstate(all="ignore"):
+            parts = self.objective(numbers)
+        found: Array = parts[0]
+        for part in parts[1:]:
+            found = np.maximum(found, part)
+        return np.broadcast_to(np.asarray(found, dtype=float), numbers.shape[1:])
+
+    def passing(self, numbers: Array) -> Array:
+        """Whether every compiled limit is met, (n,); what has no finite value is kept."""
+        passed = np.ones(numbers.shape[1], dtype=bool)
+        if not len(self.bounds):
+            return passed
+        with np.errstate(all="ignore"):
+            for value, bound, sign in zip(
+                self.limits(numbers), self.bounds, self.signs, strict=True
+            ):
+                size = abs(bound) or 1.0
+                passed &= ~(sign * (value - bound) < -ROOM * size)
+        return passed
+
+
+def screen(design: Design, paths: Sequence[str], ends: Array) -> Screen | None:
+    """The screen of a design whose numbers at `paths` vary between `ends` (axes, 2).
+
+    None where the objective is no closed expression of them, or a number is none that may move.
+    """
+    variables = {
+        path: Variable(lower=float(low), upper=float(high), start=float((low + high) / 2))
+        for path, (low, high) in zip(paths, ends, strict=True)
+    }
+    try:
+        actuator = build(prepare(design.model_copy(update={"variables": variables})))
+        traced = trace(actuator, ends.mean(axis=1))
+    except (InputError, Unknown):
+        return None
+    own = {symbol: f"v[{k}]" for k, symbol in enumerate(traced.variables.values())}
+    objectives = list(dict.fromkeys(traced.objectives))
+    if not objectives or not all(_closed(one, own) for one in objectives):
+        return None
+    claims = [claim for claim in traced.claims if _closed(claim.value, own)]
+    values = [claim.value for claim in claims]
+    return Screen(
+        vectorised("objective", "v", {}, objectives, known=own),
+        vectorised("limits", "v", {}, values, known=own),
+        np.array([claim.bound for claim in claims]),
+        np.array([_sign(claim) for claim in claims]),
+    )
+
+
+def _sign(claim: Claim) -> float:
+    return 1.0 if claim.limit.sense == "min" else -1.0
+
+
+def _closed(value: Any, own: dict[Symbol, str]) -> bool:
+    """Whether a traced value depends on nothing but what varies."""
+    if not isinstance(value, Symbol):
+        return True
+    return all(node in own for node in needed([value]) if node.op == "variable")
