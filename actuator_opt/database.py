@@ -24,6 +24,7 @@ FORMAT = 1
 BUSY = 60.0
 """Seconds to wait for another process that writes."""
 
+_PUT = "INSERT OR IGNORE INTO rows (study, key, numbers, failure) VALUES (?, ?, ?, ?)"
 _TABLES = """
 CREATE TABLE IF NOT EXISTS meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS studies (
@@ -31,9 +32,9 @@ CREATE TABLE IF NOT EXISTS studies (
   columns TEXT NOT NULL
 );
 CREATE TABLE IF NOT EXISTS rows (
-  study INTEGER NOT NULL, key BLOB NOT NULL, numbers BLOB, failure TEXT,
-  PRIMARY KEY (study, key)
-) WITHOUT ROWID;
+  id INTEGER PRIMARY KEY, study INTEGER NOT NULL, key BLOB NOT NULL, numbers BLOB, failure TEXT,
+  UNIQUE (study, key)
+);
 """
 
 
@@ -82,7 +83,7 @@ class Database:
             for k, key in enumerate(keys)
         ]
         with self.connection:
-            self.connection.executemany("INSERT OR IGNORE INTO rows VALUES (?, ?, ?, ?)", records)
+            self.connection.executemany(_PUT, records)
 
     def numbers(self, blob: bytes) -> Array:
         """The numbers of a row."""
@@ -135,6 +136,9 @@ def _require_ours(connection: sqlite3.Connection, path: Path, version: str) -> N
         raise _refused(path, "is another program's database", "name another file")
     connection.execute("PRAGMA journal_mode = WAL")
     connection.execute("PRAGMA synchronous = NORMAL")
+    connection.execute(
+        "PRAGMA cache_size = -65536"
+    )  # KiB: the index of keys, which come in no order
     with connection:
         for statement in _TABLES.split(";"):
             connection.execute(statement)
