@@ -30,6 +30,9 @@ from .screen import Screen, screen
 KEPT = 64
 """Prepared designs that a process keeps."""
 
+AT_ONCE = 4096
+"""Most designs of one call of the models: more would take memory, not less time."""
+
 TRIED = (0.0, 1.0, 0.5, 0.25, 0.75)
 """Shares of a range that are tried until two make a design."""
 
@@ -227,15 +230,18 @@ class Study:
         keys = np.vstack([points.variant.astype(float), points.numbers[apart]])
         unique, which = np.unique(keys, axis=1, return_inverse=True)
         for number in range(unique.shape[1]):
-            places = np.flatnonzero(which.ravel() == number)
+            every = np.flatnonzero(which.ravel() == number)
             variant, *set_apart = unique[:, number]
             fixed = {paths[k]: float(x) for k, x in zip(apart, set_apart, strict=True)}
-            varied = {
-                path: points.numbers[k][places]
-                for k, path in enumerate(paths)
-                if path not in self.apart
-            }
-            yield places, self._prepared(int(variant), fixed), varied
+            subject = self._prepared(int(variant), fixed)
+            for first in range(0, len(every), AT_ONCE):
+                places = every[first : first + AT_ONCE]
+                varied = {
+                    path: points.numbers[k][places]
+                    for k, path in enumerate(paths)
+                    if path not in self.apart
+                }
+                yield places, subject, varied
 
     def _prepared(self, variant: int, fixed: dict[str, float]) -> Subject | str:
         """A prepared design, or why there is none; the last few are kept."""
