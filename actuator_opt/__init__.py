@@ -5,9 +5,9 @@
 '0.6.0'
 
 The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `seal`, `identify`, `calibrate`,
-`simulate`, `sweep`, `report`, `save`) are the same as in the terminal; `bending` is `identify
---span` there, `compare_measured`, `servo_sensitivities` and `verify_dynamics` are options. Heavy
-modules load when a verb needs them.
+`simulate`, `sweep`, `report`, `export`, `save`) are the same as in the terminal; `bending` is
+`identify --span` there, `compare_measured`, `servo_sensitivities` and `verify_dynamics` are options.
+Heavy modules load when a verb needs them.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         check,
         compare_measured,
         evaluate,
+        export,
         identify,
         optimise,
         read,
@@ -76,6 +77,7 @@ _HOMES = {
     "compare_measured": "verbs",
     "constraint": "evaluation.plugin",
     "evaluate": "verbs",
+    "export": "verbs",
     "identify": "verbs",
     "load_library": "design.materials",
     "metric": "evaluation.plugin",
@@ -120,6 +122,7 @@ __all__ = [
     "compare_measured",
     "constraint",
     "evaluate",
+    "export",
     "identify",
     "load_library",
     "metric",

@@ -15,6 +15,7 @@ import typer
 from typer.exceptions import TyperException
 
 from . import cli_materials, streams
+from .cli_export import export
 from .cli_optimise import optimise, sensitivity
 from .cli_records import calibrate, identify
 from .cli_seal import seal
@@ -185,6 +186,7 @@ app.command()(calibrate)
 app.command()(simulate)
 app.command()(sweep)
 app.command()(sensitivity)
+app.command()(export)
 
 
 @app.command()

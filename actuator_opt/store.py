@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TextIO
 
@@ -172,3 +173,37 @@ def aside(path: Path) -> Iterator[TextIO]:
             raise
         reason = f"cannot write: {error.strerror or type(error).__name__}"
         raise InputError(Diagnostic(reason, "choose another file or folder", str(path))) from None
+
+
+def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the report") -> None:
+    """Write every file of a folder aside, then rename all: whole or not at all.
+
+    Parameters
+    ----------
+    folder : where to; made if missing
+    contents : of every file, by name
+    what : the files are, in words
+
+    Raises
+    ------
+    InputError : the folder cannot be written, or a folder stands in a file's way
+    """
+    parts: list[tuple[Path, Path]] = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in contents.items():
+            path = folder / f".{name}.{os.getpid()}.part"
+            parts.append((path, folder / name))
+            path.write_bytes(content)
+        for _, target in parts:
+            if target.is_dir():
+                raise IsADirectoryError(errno.EISDIR, "a folder stands in the way", str(target))
+        for path, target in parts:
+            path.replace(target)
+    except OSError as error:
+        for path, _ in parts:
+            with contextlib.suppress(OSError):
+                path.unlink(missing_ok=True)
+        reason = f"cannot write {what}: {error.strerror or type(error).__name__}"
+        fault = Diagnostic(reason, "choose a folder with --out", file=str(folder))
+        raise InputError(fault) from None

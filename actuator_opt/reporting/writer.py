@@ -6,12 +6,9 @@ file and the command inside itself (PDF/A-3), so that a report can be run again.
 
 from __future__ import annotations
 
-import contextlib
-import errno
 import hashlib
 import importlib.util
 import json
-import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -23,6 +20,7 @@ from ..errors import Diagnostic, InputError
 from ..evaluation.result import Evaluation
 from ..evaluation.study.seal import SealStudy
 from ..optimisation.result import Optimisation
+from ..store import write_all as write_all
 from .blocks import ExtraTable, printable
 from .embed import extract
 from .origin import Origin
@@ -212,29 +210,6 @@ def _font_folders() -> list[str]:
     if found is None or found.origin is None:
         return []
     return [str(Path(found.origin).parent / "mpl-data" / "fonts" / "ttf")]
-
-
-def write_all(folder: Path, contents: Mapping[str, bytes]) -> None:
-    """Write every file aside, then rename all: whole or not at all."""
-    aside: list[tuple[Path, Path]] = []
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, content in contents.items():
-            path = folder / f".{name}.{os.getpid()}.part"
-            aside.append((path, folder / name))
-            path.write_bytes(content)
-        for _, target in aside:
-            if target.is_dir():
-                raise IsADirectoryError(errno.EISDIR, "a folder stands in the way", str(target))
-        for path, target in aside:
-            path.replace(target)
-    except OSError as error:
-        for path, _ in aside:
-            with contextlib.suppress(OSError):
-                path.unlink(missing_ok=True)
-        reason = f"cannot write the report: {error.strerror or type(error).__name__}"
-        fault = Diagnostic(reason, "choose a folder with --out", file=str(folder))
-        raise InputError(fault) from None
 
 
 def _remove_later_pages(folder: Path, stem: str, count: int) -> None:

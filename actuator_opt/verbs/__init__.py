@@ -2,6 +2,7 @@
 
 from .actuator import Actuator, read
 from .checking import check
+from .exports import export
 from .optimum import evaluate, optimise, sensitivity
 from .records import (
     Calibrated,
@@ -41,6 +42,7 @@ __all__ = [
     "compare_measured",
     "date_from_environment",
     "evaluate",
+    "export",
     "fitting",
     "identify",
     "optimise",

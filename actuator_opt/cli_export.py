@@ -1,0 +1,42 @@
+"""The command `actuator-opt export`: a design as files for other programs."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from . import streams
+from .cli_shared import check_targets, leave_by, read_actuator, say_files
+from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Seed, Set
+
+
+def export(
+    design: DesignFile,
+    formats: Annotated[
+        list[str] | None,
+        typer.Option("--format", metavar="step|dxf|xlsx", help="File to write. Repeatable."),
+    ] = None,
+    sets: Set = None,
+    out: Out = REPORTS,
+    date: Date = None,
+    seed: Seed = 0,
+    plugin: PluginFile = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a design as it stands for CAD (STEP, DXF) or as a workbook (XLSX)."""
+    from . import verbs
+    from .exporting import require_formats
+
+    asked = require_formats(formats or [])
+    check_targets(out, date)
+    actuator = read_actuator(design, sets, plugin)
+    evaluation = verbs.evaluate(actuator)
+    files = verbs.export(evaluation, formats=asked, folder=out, actuator=actuator, date=date)
+    found = [file.to_dict() for file in files]
+    if as_json:
+        streams.out_json({"files": found})
+    elif not quiet:
+        say_files(found)
+    leave_by(evaluation)

@@ -1,0 +1,5 @@
+"""Files for other programs: STEP of the turned parts, DXF of the section, XLSX of the numbers."""
+
+from .files import FORMATS, ExportFile, require_formats, write_exports
+
+__all__ = ["FORMATS", "ExportFile", "require_formats", "write_exports"]
