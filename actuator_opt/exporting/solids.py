@@ -169,19 +169,12 @@ def _fault(part: str) -> InputError:
     return InputError(Diagnostic(f"{part}: its section crosses itself or has no wall", remedy))
 
 
-def _whole(count: float) -> int:
-    if round(count) != count:
-        message = f"retention.count: {count:g} tie rods cannot be drawn"
-        raise InputError(Diagnostic(message, "make it a whole number"))
-    return round(count)
-
-
 def _tie_rods(evaluation: Evaluation, outline: Outline) -> Body:
     """Round bars evenly spread about the axis, the first in the plane of the section."""
     retention = evaluation.design.retention
     assert retention is not None
     profile = tidy(millimetres(outline.polygons[0]))
-    count = _whole(retention.count)
+    count = round(retention.count)
     first, low = profile[0]
     last, high = max(profile)
     radius, ring = (high - low) / 2, (low + high) / 2
@@ -214,7 +207,7 @@ def bodies(evaluation: Evaluation) -> list[Body]:
 
     Raises
     ------
-    InputError : a part's section crosses itself, or the tie rods are no whole number
+    InputError : a part's section crosses itself
     """
     found: list[Body] = []
     for outline in evaluation.outlines:
