@@ -196,7 +196,7 @@ def diameters_above(
             angle=90,
             text=one.text,
             dimstyle=STYLE,
-            override={"dimse1": 1, "dimse2": 1},
+            override={"dimse1": 1, "dimse2": 1, "dimtih": 1, "dimtoh": 1},
             dxfattribs={"layer": LAYER},
         )
         centre = row + 0.9 * paper.letter

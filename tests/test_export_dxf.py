@@ -1,0 +1,243 @@
+"""The DXF section: true lengths, a layer per part, nothing over anything."""
+
+from __future__ import annotations
+
+import io
+import math
+from itertools import combinations, pairwise
+
+import pytest
+from cli_runner import DESIGNS, bench, block
+from hypothesis import given
+from hypothesis import strategies as st
+from test_export_step import FITTED_ROD, SHIPPED, VARIANTS
+
+import actuator_opt as ao
+from actuator_opt.exporting.dxf import dxf, layer_name
+from actuator_opt.exporting.layout import Length, Paper, rows
+
+ezdxf = pytest.importorskip("ezdxf")
+bbox = pytest.importorskip("ezdxf.bbox")
+fonts = pytest.importorskip("ezdxf.fonts.fonts")
+
+
+def drawn(source):
+    """Evaluation and the document read back, which ezdxf finds no fault with."""
+    evaluation = ao.evaluate(source)
+    content = dxf(evaluation, program="test")
+    document = ezdxf.read(io.StringIO(content.decode("utf-8")))
+    audit = document.audit()
+    assert not audit.errors
+    assert not audit.fixes
+    return evaluation, document
+
+
+def box(entity, words=None):
+    """Left, bottom, right, top of a text on one line, by ezdxf's own fonts."""
+    if words is not None:  # MTEXT, placed by its middle
+        height, (x, y) = entity.dxf.char_height, tuple(entity.dxf.insert)[:2]
+        assert entity.dxf.attachment_point == 5
+        assert "\n" not in words
+        half = fonts.make_font("arial.ttf", height).text_width(words) / 2
+        return x - half, y - 0.6 * height, x + half, y + 0.6 * height
+    found = bbox.extents([entity], fast=False)
+    return found.extmin.x, found.extmin.y, found.extmax.x, found.extmax.y
+
+
+def meets(a, b):
+    """Whether two boxes overlap."""
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+
+
+def hits(line, area):
+    """Whether a straight line enters a box: Liang and Barsky."""
+    (x, y), (far, high) = line
+    low, up = 0.0, 1.0
+    for p, q in (
+        (x - far, x - area[0]), (far - x, area[2] - x), (y - high, y - area[1]),
+        (high - y, area[3] - y),
+    ):  # fmt: skip
+        if p == 0:
+            if q <= 0:
+                return False
+        elif p < 0:
+            low = max(low, q / p)
+        else:
+            up = min(up, q / p)
+    return low < up
+
+
+def outlined(document, layer):
+    """Corners (x, y, bulge) of the closed lines of a layer."""
+    lines = document.modelspace().query(f'LWPOLYLINE[layer=="{layer}"]')
+    return [[(x, y, bulge) for x, y, *_, bulge in one.get_points("xyseb")] for one in lines]
+
+
+def swept(lines):
+    """Volume of closed lines' upper halves about the axis, pi times the integral of y^2 dx."""
+    total = 0.0
+    for line in lines:
+        piece = 0.0
+        for (x1, y1, _), (x2, y2, _) in zip(line, line[1:] + line[:1], strict=True):
+            if y1 >= 0 and y2 >= 0:
+                piece += math.pi / 3 * (x2 - x1) * (y1 * y1 + y1 * y2 + y2 * y2)
+        total += abs(piece)
+    return total * 1e-9
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_swept_sections_weigh_what_the_mass_model_says(path):
+    """What the lines of a part's layer sweep is its mass (Pappus)."""
+    actuator = ao.read(path)
+    evaluation, document = drawn(actuator)
+    materials = actuator.subject().materials
+    found = {}
+    for one in evaluation.outlines:
+        if one.kind in ("metal", "composite", "polymer") and " " not in one.part:
+            name = f"barrel.{one.part}" if one.part[:5] == "layup" else one.part
+            mass = swept(outlined(document, name)) * materials[one.material].numbers["density"]
+            group = "barrel" if one.part[:5] == "layup" else one.part
+            found[group] = found.get(group, 0.0) + mass
+    for group, mass in found.items():
+        assert mass == pytest.approx(evaluation.mass_parts[group], rel=1e-9), group
+    assert {"barrel", "rod", "piston", "caps", "glands"} <= set(found)
+
+
+def dimensions(document):
+    """Every dimension of the model space."""
+    return document.modelspace().query("DIMENSION")
+
+
+def test_dimensions_measure_the_design():
+    """DIMLFAC 1, and the measurements are the evaluation's lengths in mm."""
+    evaluation, document = drawn(DESIGNS / "knee.yaml")
+    assert document.header["$INSUNITS"] == 4
+    lengths = {name: 1000 * value for name, value in evaluation.lengths.items()}
+    measured = sorted(one.get_measurement() for one in dimensions(document))
+    skirt = 1000 * ao.read(DESIGNS / "knee.yaml").design.retention.length
+    names = ("bore", "rod", "rod_inner", "barrel_outer_diameter", "plate_outer", "pin", "stroke",
+             "piston_length", "head_length", "barrel_length", "plate", "plate", "extension",
+             "closed_length")  # fmt: skip
+    wanted = sorted([*(lengths[name] for name in names), skirt])
+    assert measured == pytest.approx(wanted, abs=1e-6)
+    for one in dimensions(document):
+        assert one.override().get("dimlfac") == 1.0
+        shown = "".join(text.plain_text() for text in one.get_geometry_block().query("MTEXT"))
+        value = f"{one.get_measurement():.3f}".rstrip("0").rstrip(".")
+        assert value in shown.split() or f"Ø{value}" in shown or f"⌀{value}" in shown, shown
+
+
+def check_nothing_overlaps(document):
+    """Texts keep clear of each other, of lines of dimensions, and of the parts."""
+    space = document.modelspace()
+    texts, lines = [], []
+    for index, one in enumerate(dimensions(document)):
+        for part in one.get_geometry_block():
+            if part.dxftype() == "MTEXT":
+                texts.append((index, part.plain_text(), box(part, part.plain_text())))
+            elif part.dxftype() == "LINE":
+                lines.append((index, (part.dxf.start.vec2, part.dxf.end.vec2)))
+    for part in space.query('LWPOLYLINE[layer=="dimensions"]'):
+        corners = [(x, y) for x, y, *_ in part.get_points()]
+        lines += [(-1, pair) for pair in pairwise(corners)]
+    words = [(-1, one.dxf.text, box(one)) for one in space.query("TEXT")]
+    for (_, one, a), (_, other, b) in combinations([*texts, *words], 2):
+        assert not meets(a, b), (one, other)
+    for index, one, area in texts:
+        for owner, line in lines:
+            line = [tuple(point)[:2] for point in line]
+            assert owner == index or not hits(line, area), (one, line)
+    parts = bbox.extents(one for one in space.query("LWPOLYLINE") if one.dxf.layer != "dimensions")
+    for _, one, area in [*texts, *words]:
+        assert area[1] > parts.extmax.y or area[3] < parts.extmin.y, one
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_nothing_overlaps_in_shipped_designs(path):
+    """By the boxes of ezdxf's fonts."""
+    check_nothing_overlaps(drawn(path)[1])
+
+
+@pytest.mark.parametrize("name", [*VARIANTS, "layers"])
+def test_nothing_overlaps_whatever_the_design_has(name):
+    """Nor without caps, eyes, skirts, nor with rods of layers; odd lengths have long texts."""
+    changes = VARIANTS.get(name, ((block("rod"), FITTED_ROD),))
+    odd = {"cylinder.stroke": "63.217 mm", "piston.length": "14.333 mm", "head.length": "15.123 mm"}
+    design = ao.read(bench(*changes), set=odd)
+    evaluation, document = drawn(design)
+    check_nothing_overlaps(document)
+    layers = {layer.dxf.name for layer in document.layers}
+    for one in evaluation.outlines:
+        if one.kind != "oil":
+            name = f"barrel.{one.part}" if one.part[:5] == "layup" else one.part
+            assert layer_name(name) in layers
+            assert document.modelspace().query(f'HATCH[layer=="{name}"]')
+
+
+def test_eyes_are_round():
+    """Lug and hole are arcs of the pin's proportions: 3/4 pi d^2 of lug, and the neck."""
+    evaluation, document = drawn(DESIGNS / "knee.yaml")
+    d = 1000 * evaluation.lengths["pin"]
+    for layer in ("cap eye", "rod eye"):
+        lug, hole = outlined(document, layer)
+        areas = []
+        for line in (lug, hole):
+            area = 0.0
+            for (x1, y1, bulge), (x2, y2, _) in zip(line, line[1:] + line[:1], strict=True):
+                chord = math.dist((x1, y1), (x2, y2))
+                area += (x1 * y2 - x2 * y1) / 2
+                if bulge:
+                    angle = 4 * math.atan(abs(bulge))
+                    radius = chord / 2 / math.sin(angle / 2)
+                    area += math.copysign(radius**2 / 2 * (angle - math.sin(angle)), bulge)
+            areas.append(abs(area))
+        foot = math.sqrt(3) / 2 * d
+        segment = d * d / 2 * (math.pi / 3 - math.sqrt(3) / 2)  # of 60 degrees, under the neck
+        neck = d * (2 * d - foot)
+        assert areas == pytest.approx([math.pi * d * d - segment + neck, math.pi * d * d / 4])
+
+
+def test_an_odd_number_of_tie_rods_has_none_opposite():
+    """The first lies in the plane of the section; of five, none lies on its other side."""
+    for count, shapes in ((5, 1), (6, 2)):
+        source = ao.read(DESIGNS / "aerospace.yaml", set={"retention.count": count})
+        _, document = drawn(source)
+        assert len(outlined(document, "tie rods")) == shapes
+
+
+def test_a_persons_words_stay_words():
+    """Codes, letters and line breaks of a name neither break the file nor start anything."""
+    name = '"%%c 5 管 \\\\U+0041 a"'
+    _, document = drawn(ao.read(bench(("name: test bench", f"name: {name}"))))
+    texts = [one.dxf.text for one in document.modelspace().query("TEXT")]
+    assert any("管" in text and "%%" not in text for text in texts)
+
+
+def test_same_design_same_bytes():
+    """No clock and no random identifier; ezdxf's own option is as before."""
+    before = ezdxf.options.write_fixed_meta_data_for_testing
+    evaluation = ao.evaluate(bench())
+    assert dxf(evaluation, program="p") == dxf(evaluation, program="p")
+    assert ezdxf.options.write_fixed_meta_data_for_testing == before
+
+
+@given(
+    st.lists(st.tuples(st.floats(-100, 300), st.floats(0.01, 300)), min_size=1, max_size=12),
+    st.sampled_from([0.1, 0.5, 1.0, 2.0, 5.0]),
+)
+def test_any_lengths_find_their_rows(spans, scale):
+    """No text meets a text of its row, nor an extension line that passes its row."""
+    paper = Paper(scale)
+    placed = rows([Length(a, a + size, f"{size:.3f}") for a, size in spans], paper)
+    for one in placed:
+        half = paper.width(one.length.text) / 2
+        for other in placed:
+            if other is one:
+                continue
+            if other.row == one.row:
+                apart = abs(one.middle - other.middle)
+                assert apart >= half + paper.width(other.length.text) / 2
+            if other.row >= one.row:
+                for x in (other.length.start, other.length.end):
+                    own = x in (one.length.start, one.length.end)
+                    assert own or not abs(x - one.middle) < half
