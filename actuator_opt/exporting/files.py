@@ -10,7 +10,7 @@ from pathlib import Path
 from ..errors import Diagnostic, UsageError
 from ..evaluation.result import Evaluation
 from ..store import write_all
-from ..suggest import remedy
+from ..suggest import shown
 from .library import library
 
 FORMATS = ("step", "dxf", "xlsx")
@@ -43,7 +43,8 @@ def require_formats(formats: Sequence[str]) -> tuple[str, ...]:
         raise UsageError(Diagnostic("no format named", f"add --format {'|'.join(FORMATS)}"))
     for name in formats:
         if name not in FORMATS:
-            raise UsageError(Diagnostic(f'--format "{name}"', remedy(name, FORMATS)))
+            remedy = f"use {', '.join(FORMATS)}, each with a --format of its own"
+            raise UsageError(Diagnostic(f'no format "{shown(name)}"', remedy))
         if name in _NEEDS:
             library(_NEEDS[name])
     return tuple(dict.fromkeys(formats))
