@@ -25,7 +25,7 @@ def export(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Write a design as it stands for CAD (STEP, DXF) or as a workbook (XLSX)."""
+    """Write the design for CAD (STEP, DXF) or Excel (XLSX)."""
     from . import verbs
     from .exporting import require_formats
 

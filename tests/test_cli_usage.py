@@ -29,6 +29,7 @@ COMMANDS = [
     ("materials", "show"),
     ("materials", "compare"),
     ("seal",),
+    ("export",),
 ]
 VERBS = ["check", "evaluate", "optimise", "optimize", "sensitivity", "report"]
 

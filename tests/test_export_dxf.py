@@ -73,6 +73,11 @@ def outlined(document, layer):
     return [[(x, y, bulge) for x, y, *_, bulge in one.get_points("xyseb")] for one in lines]
 
 
+def layer(part):
+    """The layer of a part of the outlines."""
+    return f"barrel.{part}" if part[:5] == "layup" else {"glands": "head"}.get(part, part)
+
+
 def swept(lines):
     """Volume of closed lines' upper halves about the axis, pi times the integral of y^2 dx."""
     total = 0.0
@@ -94,8 +99,10 @@ def test_swept_sections_weigh_what_the_mass_model_says(path):
     found = {}
     for one in evaluation.outlines:
         if one.kind in ("metal", "composite", "polymer") and " " not in one.part:
-            name = f"barrel.{one.part}" if one.part[:5] == "layup" else one.part
-            mass = swept(outlined(document, name)) * materials[one.material].numbers["density"]
+            mass = (
+                swept(outlined(document, layer(one.part)))
+                * materials[one.material].numbers["density"]
+            )
             group = "barrel" if one.part[:5] == "layup" else one.part
             found[group] = found.get(group, 0.0) + mass
     for group, mass in found.items():
@@ -166,12 +173,11 @@ def test_nothing_overlaps_whatever_the_design_has(name):
     design = ao.read(bench(*changes), set=odd)
     evaluation, document = drawn(design)
     check_nothing_overlaps(document)
-    layers = {layer.dxf.name for layer in document.layers}
+    layers = {one.dxf.name for one in document.layers}
     for one in evaluation.outlines:
         if one.kind != "oil":
-            name = f"barrel.{one.part}" if one.part[:5] == "layup" else one.part
-            assert layer_name(name) in layers
-            assert document.modelspace().query(f'HATCH[layer=="{name}"]')
+            assert layer_name(layer(one.part)) in layers
+            assert document.modelspace().query(f'HATCH[layer=="{layer(one.part)}"]')
 
 
 def test_eyes_are_round():

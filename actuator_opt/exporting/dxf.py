@@ -13,7 +13,7 @@ from ..evaluation.result import Evaluation, Outline
 from . import dimensions
 from .layout import Paper
 from .library import library
-from .solids import EYES, Profile, joined, millimetres
+from .solids import EYES, Profile, joined, millimetres, title
 from .words import plain
 
 _SHEET = 270.0
@@ -130,7 +130,7 @@ def _parts(space: Any, evaluation: Evaluation, outlines: Sequence[Outline], pape
     looks = _hatches(outlines)
     layers = space.doc.layers
     for index, outline in enumerate(outlines):
-        layer = layer_name(_title(outline))
+        layer = layer_name(title(outline.part))
         if layer not in layers:
             layers.add(layer, color=_COLOURS[index % len(_COLOURS)], lineweight=35)
         lines = _cut(evaluation, outline)
@@ -141,12 +141,6 @@ def _parts(space: Any, evaluation: Evaluation, outlines: Sequence[Outline], pape
         _hatch(space, lines, look, thin, nested=outline.part in EYES)
         for line in lines:
             space.add_lwpolyline(line, format="xyb", close=True, dxfattribs={"layer": layer})
-
-
-def _title(outline: Outline) -> str:
-    """A part's name, as in the STEP file."""
-    part = outline.part
-    return f"barrel.{part}" if part.startswith("layup") else part
 
 
 def _axis(space: Any, first: float, last: float, paper: Paper) -> None:
@@ -169,7 +163,7 @@ def _words(
         f"Section, retracted. Lengths in mm, drawn 1:1; letters for print at {size}.",
         made,
         "",
-        *(f"{_title(one)}: {one.material}" for one in outlines),
+        *(f"{title(one.part)}: {one.material}" for one in outlines),
         "",
         "Not drawn, for the models have no shape of them: threads, ports, fillets, chamfers.",
         "Rings fill what they take of their grooves; their own sections are not drawn.",

@@ -23,7 +23,6 @@ _DIGITS = 9
 _NAMES = {
     "caps": ("cap, cap end", "cap, rod end"),
     "rod.fitting": ("rod.fitting, piston end", "rod.fitting, rod end"),
-    "glands": ("head",),
     "tie rods": ("tie rod",),
 }
 """What the bodies of a part are called, from the cap end on; others have the part's name."""
@@ -51,6 +50,15 @@ class Body:
     material: str
     profile: Profile
     places: tuple[tuple[float, float, float], ...]
+
+
+def title(part: str) -> str:
+    """What a part of the outlines is called in files: by its PATH where it has one.
+
+    >>> title("layup[1]"), title("glands"), title("rod.layup[0]")
+    ('barrel.layup[1]', 'head', 'rod.layup[0]')
+    """
+    return f"barrel.{part}" if part.startswith("layup") else {"glands": "head"}.get(part, part)
 
 
 def millimetres(polygon: Iterable[Point]) -> Profile:
@@ -190,7 +198,7 @@ def _tie_rods(evaluation: Evaluation, outline: Outline) -> Body:
 
 def _bodies(outline: Outline) -> Iterator[Body]:
     part = outline.part
-    own = f"barrel.{part}" if part.startswith("layup") else part
+    own = title(part)
     loops = joined(millimetres(polygon) for polygon in outline.polygons)
     names = _NAMES.get(part, (own,))
     for index, loop in enumerate(loops):
