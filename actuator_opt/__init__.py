@@ -6,8 +6,8 @@
 
 The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `seal`, `identify`, `calibrate`,
 `simulate`, `sweep`, `report`, `export`, `save`) are the same as in the terminal; `bending` is
-`identify --span` there, `compare_measured`, `servo_sensitivities` and `verify_dynamics` are options.
-Heavy modules load when a verb needs them.
+`identify --span` there, `compare_measured`, `servo_sensitivities` and `verify_dynamics` are
+options. Heavy modules load when a verb needs them.
 """
 
 from __future__ import annotations
