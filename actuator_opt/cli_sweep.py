@@ -61,7 +61,7 @@ def sweep(
     quiet: Quiet = False,
     out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
 ) -> None:
-    """Evaluate many variants of a design: dimensions, materials, pressures, limits, lay-ups."""
+    """Evaluate many variants of a design."""
     from . import verbs
 
     keep = _kept(reduce, store, csv)
