@@ -5,9 +5,9 @@
 '0.6.0'
 
 The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `seal`, `identify`, `calibrate`,
-`simulate`, `sweep`, `report`, `export`, `save`) are the same as in the terminal; `bending` is
-`identify --span` there, `compare_measured`, `servo_sensitivities` and `verify_dynamics` are
-options. Heavy modules load when a verb needs them.
+`simulate`, `sweep`, `uncertainty`, `report`, `export`, `save`) are the same as in the terminal;
+`bending` is `identify --span` there, `compare_measured`, `servo_sensitivities` and
+`verify_dynamics` are options. Heavy modules load when a verb needs them.
 """
 
 from __future__ import annotations
@@ -46,14 +46,17 @@ if TYPE_CHECKING:
         servo_sensitivities,
         simulate,
         sweep,
+        uncertainty,
         verify_dynamics,
         write_calibration,
         write_comparison,
+        write_draws,
         write_identification,
         write_seal,
         write_series,
         write_signals,
         write_simulation,
+        write_uncertainty,
     )
 
 __version__ = version.VERSION
@@ -92,14 +95,17 @@ _HOMES = {
     "servo_sensitivities": "verbs",
     "simulate": "verbs",
     "sweep": "verbs",
+    "uncertainty": "verbs",
     "verify_dynamics": "verbs",
     "write_calibration": "verbs",
     "write_comparison": "verbs",
+    "write_draws": "verbs",
     "write_identification": "verbs",
     "write_seal": "verbs",
     "write_series": "verbs",
     "write_signals": "verbs",
     "write_simulation": "verbs",
+    "write_uncertainty": "verbs",
 }
 
 __all__ = [
@@ -137,14 +143,17 @@ __all__ = [
     "servo_sensitivities",
     "simulate",
     "sweep",
+    "uncertainty",
     "verify_dynamics",
     "write_calibration",
     "write_comparison",
+    "write_draws",
     "write_identification",
     "write_seal",
     "write_series",
     "write_signals",
     "write_simulation",
+    "write_uncertainty",
 ]
 
 

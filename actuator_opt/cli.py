@@ -29,6 +29,7 @@ from .cli_shared import (
 )
 from .cli_simulate import simulate
 from .cli_sweep import sweep
+from .cli_uncertainty import uncertainty
 from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from .options import (
     REPORTS,
@@ -187,6 +188,7 @@ app.command()(simulate)
 app.command()(sweep)
 app.command()(sensitivity)
 app.command()(export)
+app.command()(uncertainty)
 
 
 @app.command()

@@ -29,6 +29,7 @@ from .options import (
     VerifyDynamics,
     WholePlies,
     Write,
+    Yield,
 )
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ def optimise(
     whole_plies: WholePlies = False,
     standard_sizes: StandardSizes = False,
     certify: Certify = False,
+    target: Yield = None,
     verify: VerifyDynamics = None,
     write: Write = None,
     out: Out = REPORTS,
@@ -77,6 +79,7 @@ def optimise(
             keep_interrupted=True,
             standard_sizes=standard_sizes,
             certify=certify,
+            yield_target=target,
         )
     outcome = _outcome(result)
     stopped = outcome == ExitCode.INTERRUPTED
@@ -170,7 +173,8 @@ def _outcome(result: Optimisation) -> ExitCode:
         return ExitCode.INTERRUPTED
     infeasible = result.status == "infeasible" or result.status.startswith("limit_inf")
     missed = not result.evaluation.met or (result.rounding is not None and not result.rounding.met)
-    return ExitCode.MISSED if infeasible or missed else ExitCode.MET
+    unlikely = result.robust is not None and not result.robust.reached
+    return ExitCode.MISSED if infeasible or missed or unlikely else ExitCode.MET
 
 
 def sensitivity(

@@ -75,6 +75,14 @@ Certify = Annotated[
         "--certify", help="Prove how far the best design is from the best possible (seconds)."
     ),
 ]
+Yield = Annotated[
+    float | None,
+    typer.Option(
+        "--yield",
+        metavar="P",
+        help="All limits hold with this probability while numbers scatter, e.g. 0.99.",
+    ),
+]
 VerifyDynamics = Annotated[
     str | None,
     typer.Option(

@@ -178,6 +178,7 @@ MATERIAL_PROPERTIES = _table("""
  volume_expansion     | alpha_V| per_temperature | 1/K | 0     | 0.005 | volumetric thermal expansion
  vapour_pressure      | p_v    | pressure    | Pa     | 0     | 1e6   | vapour pressure, absolute
  hardness             | S      | hardness    | ShoreA | 20    | 99    | Shore A hardness
+ hardness_modulus_factor | f_E | ratio       | -      | 0.1   | 10    | modulus over that by hardness
  friction_coefficient | mu     | ratio       | -      | 0.001 | 2     | dry friction coefficient on the stated counterface
  breakaway_ratio      | F_S/F_C| ratio       | -      | 1     | 5     | breakaway over running friction
  stribeck_speed       | v_s    | speed       | mm/s   | 0.01  | 500   | Stribeck speed

@@ -29,6 +29,7 @@ _TABLE_KEYS = {
     "waivers": "metrics such as seal_section, each with a reason",
     "measured": "PATHs such as seals.rod.friction_coefficient, each with lower, upper and record",
     "materials": "names of materials, each with its changed properties",
+    "uncertainty": "PATHs such as cylinder.bore, each with a distribution",
     "set": "PATHs of the design such as cylinder.bore, each with its value",
 }
 """What the keys of the tables of free names are."""

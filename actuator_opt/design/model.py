@@ -17,7 +17,7 @@ from .kinds import CaseName, Flag, Fraction, Goal, MaterialName, Of, Position, P
 from .linkage import Linkage, Load
 from .seals import Seals
 from .section import Section
-from .variable import Measured, Variable
+from .variable import Measured, Uncertain, Variable
 
 
 class FluidSection(Section):
@@ -368,6 +368,8 @@ class Design(Section):
     waivers: dict[str, Annotated[str, Text("why the check does not apply")]] = {}  # noqa: RUF012 (pydantic copies it)
     measured: dict[str, Measured] = {}  # noqa: RUF012 (pydantic copies it)
     """Bounds of values that a test record gave, by PATH."""
+    uncertainty: dict[str, Uncertain] = {}  # noqa: RUF012 (pydantic copies it)
+    """How values scatter, by PATH, beyond what libraries and practice say."""
     materials: dict[str, dict[str, float]] = {}  # noqa: RUF012 (pydantic copies it)
     """Properties (SI) that replace the library's in this design, by material name."""
     objective: Objective = Objective(minimise="mass")

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from .. import quantities, suggest
 from ..errors import Diagnostic, InputError, UsageError
 from ..quantities import Quantity
+from .distributions import NUMBERS, quantity_of_entry
 from .kinds import Fraction, ValueFault
 from .model import Design
 from .section import Section
@@ -27,6 +28,7 @@ _TOKEN = re.compile(r"\[([^\[\]]+)\]|([^.\[\]]+)")
 _ENDS = {
     "variables": ("lower", "upper", "start", "step", "sizes"),
     "measured": ("lower", "upper", "record"),
+    "uncertainty": ("distribution", *NUMBERS, "tolerance", "source"),
 }
 _LIMITS = ("min", "max")
 _TEXTS = ("waivers", "set")
@@ -169,6 +171,8 @@ def _resolve_table(head: str, rest: str, tree: Any, metrics: Mapping[str, Quanti
             raise ValueFault(f"{path}: no such PATH", f"end it with .{', .'.join(_ENDS[head])}")
         target = resolve(name, tree, metrics)
         quantity = None if last in ("record", "sizes") else target.quantity
+        if head == "uncertainty" and target.quantity is not None:
+            quantity = quantity_of_entry(last, target.quantity)
         return Target(f"{head}.{target.path}.{last}", (head, target.path, last), quantity)
     if head == "requirements":
         if last not in _LIMITS or not name:

@@ -14,6 +14,7 @@ from dataclasses import replace
 from .. import quantities
 from ..quantities import Quantity
 from . import choice_list, wishes
+from .distributions import NUMBERS, quantity_of_entry
 from .kinds import MaterialName, Of, Sizes, Text
 from .model import Design
 from .schema_values import Schema, entry_schema, quantity_schema, section_schema, text_of
@@ -21,12 +22,15 @@ from .section import Section
 from .size_series import SERIES
 from .sizes import MOST_SIZES
 from .structure import Entry, entries
+from .variable import Uncertain
 from .view import Materials
 
 _REFERENCE = str.maketrans({"/": "_per_", "^": "", "*": "_", "%": "percent"})
 _LISTED = {"barrel.layup": 6, "rod.layup": 4, "lines": 2}
 """How many entries of a list have their PATHs offered by name under `variables`."""
-_OF_TABLES = r"^(name|notes|(objective|requirements|variables|measured|materials|waivers)\..+)$"
+_OF_TABLES = (
+    r"^(name|notes|(objective|requirements|variables|measured|uncertainty|materials|waivers)\..+)$"
+)
 """PATHs that `set` takes beside those of the parts."""
 
 
@@ -51,6 +55,7 @@ def json_schema(
         "set": lambda: _set(materials, definitions),
         "variables": lambda: _variables(definitions),
         "measured": lambda: _measured(definitions),
+        "uncertainty": lambda: _uncertainty(definitions),
         "choices": _choices,
         "requirements": lambda: _requirements(metrics, definitions),
         "objective": lambda: _objective(metrics),
@@ -152,6 +157,49 @@ def _measured(definitions: Schema) -> Schema:
             }
     help = "What a test record says of values above: PATH with 95 % bounds and the record's name."
     return {"description": help} | _by_path(known)
+
+
+def _uncertainty(definitions: Schema) -> Schema:
+    known: Schema = {}
+    for path, entry in _of_parts().items():
+        if isinstance(entry.kind, Of) and entry.kind.quantity.dimension != "count":
+            known[path] = _distribution(path, entry.kind.quantity, definitions)
+    for name, quantity in quantities.MATERIAL_PROPERTIES.items():
+        known[f"materials.[*].{name}"] = _distribution(name, quantity, definitions)
+    schema = _by_path({p: s for p, s in known.items() if not p.startswith("materials.")})
+    for name in quantities.MATERIAL_PROPERTIES:
+        pattern = rf"^materials\.[^.]+\.{name}$"
+        schema["patternProperties"][pattern] = known[f"materials.[*].{name}"]
+    help = "How values scatter beyond what libraries and practice say: PATH with a distribution."
+    return {"description": help} | schema
+
+
+def _distribution(title: str, quantity: Quantity, definitions: Schema) -> Schema:
+    """One entry of `uncertainty`; those of one quantity share a definition."""
+    name = f"uncertainty_{quantity.name}"
+    if name not in definitions:
+        definitions[name] = _shared(quantity, definitions)
+    return {"title": title, "allOf": [{"$ref": f"#/definitions/{name}"}]}
+
+
+def _shared(quantity: Quantity, definitions: Schema) -> Schema:
+    """An entry of `uncertainty` for any value of a quantity."""
+    schema = section_schema(Uncertain, None)
+    for key in [name for name in schema["properties"] if name not in NUMBERS]:
+        definitions.setdefault(f"key_{key}", schema["properties"][key])
+        schema["properties"][key] = {"$ref": f"#/definitions/key_{key}"}
+    for key in NUMBERS:
+        own = quantity_of_entry(key, quantity)
+        assert own is not None
+        if key in ("deviation", "half_width"):  # alike for all quantities of a unit
+            words = key.replace("_", " ")
+            kind = f"{key}_{own.dimension}_{own.unit}".translate(_REFERENCE)
+            own = replace(own, name=kind, label=words, symbol=own.unit or "-", upper=1e20)
+        definitions.setdefault(own.name, quantity_schema(own))
+        schema["properties"][key] = {"$ref": f"#/definitions/{own.name}"}
+    schema["required"] = []
+    schema["anyOf"] = [{"required": [key]} for key in ("distribution", "tolerance")]
+    return schema
 
 
 def _set(materials: Materials | None, definitions: Schema) -> Schema:

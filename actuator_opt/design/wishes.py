@@ -12,7 +12,7 @@ from typing import Any
 
 from .. import quantities, suggest
 from ..quantities import Quantity
-from . import sizes
+from . import sizes, uncertain_faults
 from .kinds import ValueFault, example, read_quantity, what
 from .model import Design
 from .paths import Target, resolve
@@ -296,6 +296,7 @@ def recheck(
         "objective": objective(tree, metrics),
         "waivers": waivers(tree, metrics),
         "materials": materials(tree),
+        "uncertainty": uncertain_faults.faults(tree),
     }
     for name, faults in checks.items():
         if name in entries(root):

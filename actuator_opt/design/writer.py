@@ -97,7 +97,7 @@ def to_yaml(
     return "\n".join(_lines(_stated(to_tree(design), Design, design), (), writer, "")) + "\n"
 
 
-_TABLES = (("variables",), ("requirements",), ("measured",))
+_TABLES = (("variables",), ("requirements",), ("measured",), ("uncertainty",))
 """Tables of sections under free names."""
 
 
@@ -126,6 +126,9 @@ class _Leaves:
         head = loc[0]
         if head in ("variables", "measured"):
             return resolve(str(loc[1]), self.design, self.metrics).quantity
+        if head == "uncertainty":
+            path = f"uncertainty.{loc[1]}.{loc[2]}"
+            return resolve(path, self.design, self.metrics).quantity
         if head == "choices":
             return quantity_of_choice(str(loc[1]), value, self.design)
         if head == "requirements":

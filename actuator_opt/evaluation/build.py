@@ -114,8 +114,11 @@ def prepare(
 
 def spec_hash(subject: Subject) -> str:
     """Hash of everything that decides the result: design, material numbers, version."""
+    design = subject.design.model_dump(mode="json")
+    if not design["uncertainty"]:  # what is not stated leaves the hash of older designs alone
+        del design["uncertainty"]
     content = {
-        "design": subject.design.model_dump(mode="json"),
+        "design": design,
         "materials": {k: v for k, v in subject.numbers.items() if k.startswith("materials.")},
         "version": VERSION,
     }

@@ -58,6 +58,8 @@ class Subject:
     factors: Mapping[tuple[str, str, bool], float]
     """Knock-downs of every strength, by (material, property, at the coldest)."""
     plugins: tuple[Plugin, ...] = ()
+    reserves: Mapping[str, float] = field(default_factory=dict)
+    """Margins that a search keeps beyond limits, by the name of the limit."""
     lenient: bool = False
     """Whether a user's metric that raises is NaN, with the reason, and no fault: in a search."""
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)

@@ -63,8 +63,10 @@ HARDNESS_TEMPERATURE = 296.15
 
 def hardness_modulus(v: Values, compound: str, law: str) -> Array:
     """Young's modulus of a compound by its hardness, where it was measured."""
-    hardness = v[f"materials.{compound}.hardness"]
-    return elastomer.MODULUS_LAWS[law].modulus(hardness=hardness)
+    at = f"materials.{compound}."
+    modulus = elastomer.MODULUS_LAWS[law].modulus(hardness=v[f"{at}hardness"])
+    own = f"{at}hardness_modulus_factor"
+    return modulus * v[own] if own in v else modulus
 
 
 def face_modulus(v: Values, compound: str, law: str, temperature: Array) -> Array:

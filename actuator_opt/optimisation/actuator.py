@@ -146,7 +146,7 @@ class ActuatorProblem:
             self.refusals.add(done.computed, count)
         return Values(
             self.goal.value(done.computed, self.subject.cases),
-            _margins(self.rows, done.computed, numbers, count),
+            _margins(self.rows, done.computed, numbers, count, self.subject.reserves),
         )
 
 
@@ -161,8 +161,14 @@ def _bounded(margin: Array) -> Array:
     return where(large, 1.0, inside)
 
 
-def _margins(wanted: tuple[Row, ...], computed: Computed, numbers: Numbers, count: int) -> Array:
-    """Margins of the wanted rows (rows, designs), all in one go."""
+def _margins(
+    wanted: tuple[Row, ...],
+    computed: Computed,
+    numbers: Numbers,
+    count: int,
+    reserves: Mapping[str, float],
+) -> Array:
+    """Margins of the wanted rows beyond their reserves (rows, designs), all in one go."""
     if not wanted:
         return np.empty((0, count))
     complex_ = any(np.iscomplexobj(value) for value in numbers.varied.values())
@@ -177,7 +183,10 @@ def _margins(wanted: tuple[Row, ...], computed: Computed, numbers: Numbers, coun
         value[i], bound[i] = array, bounds[i]
     value = where(real(value) == np.inf, UNLIMITED, value)
     sign = np.array([[1.0 if row.limit_of.sense == "min" else -1.0] for row in wanted])
-    return _bounded(sign * margin(value, bound, "min"))
+    beyond = sign * margin(value, bound, "min")
+    if reserves:
+        beyond = beyond - np.array([[reserves.get(row.limit_of.name, 0.0)] for row in wanted])
+    return _bounded(beyond)
 
 
 @np.errstate(all="ignore")  # what has no finite answer is the solver's to judge
@@ -225,7 +234,10 @@ def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
     rows = tuple(row for row in everything if np.size(row.margin) > 1)
     fixed = tuple(row for row in everything if np.size(row.margin) == 1)
     missed = [  # a check that no variable can mend is reported, not optimised against
-        row for row in fixed if row.limit_of.origin != "check" and not float(row.margin[0]) >= -1e-6
+        row
+        for row in fixed
+        if row.limit_of.origin != "check"
+        and not float(row.margin[0]) - subject.reserves.get(row.limit_of.name, 0.0) >= -1e-6
     ]
     rows += tuple(missed)
     holder: list[ActuatorProblem] = []

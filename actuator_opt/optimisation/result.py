@@ -12,6 +12,7 @@ from ..evaluation.result import Evaluation
 from ..quantities import INPUTS, of_metric
 from ..tables import aligned
 from . import price_words, result_json
+from .robustness import Robust
 from .sensitivity import Offers, Sensitivity, offers
 
 
@@ -299,6 +300,7 @@ class Optimisation:
     """The best design of listed sizes, where they are asked for and a continuous one exists."""
     choices: Choices | None = None
     """Every combination of the design's choices, where it has some."""
+    robust: Robust | None = None
 
     @property
     def made(self) -> Rounding | None:

@@ -44,6 +44,7 @@ def of_optimisation(found: Optimisation) -> dict[str, Any]:
             "seconds": found.seconds,
         }
         | ({} if why is None else {"infeasibility": asdict(why)})
+        | ({} if found.robust is None else {"robust": found.robust.to_dict()})
     )
 
 

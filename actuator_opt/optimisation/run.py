@@ -46,6 +46,7 @@ def optimise(
     standard_sizes: bool = False,
     certify: bool = False,
     keep_interrupted: bool = False,
+    explain: bool = True,
 ) -> Optimisation:
     """The best design of a subject.
 
@@ -61,6 +62,7 @@ def optimise(
     whole_plies : whether to look for the best design of whole plies and allowed angles too
     standard_sizes : the same, with standard sizes of whatever has some
     certify : whether to prove how far the design is from the best possible
+    explain : whether to say why nothing fits, where nothing does
     keep_interrupted : whether Ctrl-C ends the work with the best design so far (without choices)
     """
     began = time.perf_counter()
@@ -99,7 +101,7 @@ def optimise(
             after.rounding, after.solution = rounded(
                 actuator, solution, *kept, until=until, seed=seed
             )
-        _follow(actuator, after, prices=prices, certify=certify)
+        _follow(actuator, after, prices=prices, certify=certify, explain=explain)
     except KeyboardInterrupt:
         if not keep_interrupted:
             raise
@@ -119,11 +121,14 @@ class _After:
     certificate: Certificate | None = None
 
 
-def _follow(actuator: ActuatorProblem, after: _After, *, prices: bool, certify: bool) -> None:
+def _follow(
+    actuator: ActuatorProblem, after: _After, *, prices: bool, certify: bool, explain: bool
+) -> None:
     """Explain, certify and price a solution."""
     if after.solution.interrupted:
         return
-    after.why, after.solution = explained(actuator, after.solution)
+    if explain:
+        after.why, after.solution = explained(actuator, after.solution)
     if certify and after.solution.feasible:
         after.certificate = certified(actuator, after.solution)
     if prices and after.solution.outcome is Outcome.OPTIMUM:

@@ -67,6 +67,8 @@ def sentences(optimisation: Optimisation) -> list[str]:
     said, rounding = [optimisation.shown], optimisation.rounding
     if rounding is None or rounding.design is not None:
         said.append(optimisation.sentence)
+    if optimisation.robust is not None:
+        said.append(optimisation.robust.sentence)
     said.append(optimisation.remedy or ("" if rounding is None else rounding.remedy))
     return [text.pretty(optimum.sentence(part)) for part in said if part]
 

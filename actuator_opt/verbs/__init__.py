@@ -30,6 +30,7 @@ from .simulations import (
     write_simulation,
 )
 from .sweeping import sweep
+from .uncertain import uncertainty, write_draws, write_uncertainty
 
 __all__ = [
     "Actuator",
@@ -56,13 +57,16 @@ __all__ = [
     "servo_sensitivities",
     "simulate",
     "sweep",
+    "uncertainty",
     "verify_dynamics",
     "with_contact",
     "write_calibration",
     "write_comparison",
+    "write_draws",
     "write_identification",
     "write_seal",
     "write_series",
     "write_signals",
     "write_simulation",
+    "write_uncertainty",
 ]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..design import Design
 from ..errors import InputError
-from ..evaluation import Evaluation
+from ..evaluation import Evaluation, Subject
 from ..evaluation import evaluate as evaluate_subject
 from .actuator import Actuator, Plugins, as_actuator, located, place, unanswered
 
@@ -34,8 +34,13 @@ def optimise(
     keep_interrupted: bool = False,
     standard_sizes: bool = False,
     certify: bool = False,
+    yield_target: float | None = None,
 ) -> Optimisation:
-    """The best design; parameters as `optimise.run.optimise`."""
+    """The best design; parameters as `optimisation.run.optimise`.
+
+    With a `yield_target` all limits hold with that probability while the design's numbers scatter
+    (`scatter.robust`); `robust` of the result says how.
+    """
     from ..optimisation.run import optimise as run
 
     actuator = as_actuator(design, plugins)
@@ -43,20 +48,29 @@ def optimise(
     faults = unanswered(actuator, subject)
     if faults:
         raise InputError(faults)
-    with located(actuator):
+
+    def search(subject: Subject, last: bool) -> Optimisation:
         return run(
             subject,
             fault=place(actuator),
             algorithm=algorithm,
             starts=starts,
             seed=seed,
-            prices=prices,
+            prices=prices and last,
             max_seconds=max_seconds,
             whole_plies=whole_plies,
             standard_sizes=standard_sizes,
-            certify=certify,
+            certify=certify and last,
+            explain=last,
             keep_interrupted=keep_interrupted,
         )
+
+    with located(actuator):
+        if yield_target is None:
+            return search(subject, True)
+        from ..scatter.robust import robust
+
+        return robust(subject, yield_target, search, seed=seed)
 
 
 def sensitivity(

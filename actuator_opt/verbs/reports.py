@@ -59,6 +59,7 @@ def report(
     from ..design.writer import to_yaml
     from ..reporting import write_report
     from ..reporting.published import published_tables
+    from ..reporting.robust_rows import robust_tables
 
     source = None if actuator is None else actuator.source
     design = subject.design if isinstance(subject, Evaluation) else subject.best
@@ -72,7 +73,7 @@ def report(
         source_name=name,
         command=command,
         date=date or date_from_environment(),
-        extra_tables=[*published_tables(subject), *extra_tables],
+        extra_tables=[*published_tables(subject), *robust_tables(subject), *extra_tables],
         seals=_seal_studies(prepare(design)),
     )
 

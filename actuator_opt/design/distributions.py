@@ -1,0 +1,122 @@
+"""Entries of ``uncertainty``: their quantities, and how far each distribution reaches.
+
+Distributions stand about the design's own value, and everything but absolute bounds moves with it,
+so that an optimiser may move it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import exp, log, log1p, sqrt
+from typing import Any
+
+from ..quantities import INPUTS, Quantity
+from .kinds import ValueFault
+from .tolerances import class_limits
+
+Stated = Mapping[str, Any]
+"""The keys of an entry, numbers in SI."""
+
+KEYS: dict[str, tuple[tuple[str, ...], ...]] = {
+    "normal": (("deviation",), ("cv",)),
+    "lognormal": (("cv",), ("factor",)),
+    "uniform": (("half_width",), ("tolerance",), ("lower", "upper")),
+    "loguniform": (("factor",), ("lower", "upper")),
+    "triangular": (("half_width",), ("tolerance",), ("lower", "upper")),
+    "fixed": ((),),
+}
+"""What each distribution takes: one of these groups of keys."""
+
+VARIATION = replace(
+    INPUTS["coefficient"], name="variation", symbol="CV", unit="%", upper=1.0,
+    label="standard deviation over mean",
+)  # fmt: skip
+FACTOR = replace(
+    INPUTS["coefficient"], name="factor", symbol="f", lower=1.0, upper=1e3, label="factor"
+)
+NUMBERS = ("lower", "upper", "deviation", "half_width", "cv", "factor")
+"""Keys whose values are numbers."""
+
+REACH = 5.0
+"""Standard deviations to which a normal or lognormal distribution is drawn: beyond lie 6e-7."""
+
+
+def quantity_of_entry(key: str, quantity: Quantity) -> Quantity | None:
+    """The quantity of a key of an entry whose PATH has this quantity; None for a text."""
+    if key in ("lower", "upper"):
+        return quantity
+    if key == "cv":
+        return VARIATION
+    if key == "factor":
+        return FACTOR
+    if key not in NUMBERS:
+        return None
+    reach = min(quantity.upper - quantity.lower, 1e20)
+    changed = replace(quantity, name=f"{quantity.name}_{key}", lower=0.0, upper=reach)
+    if quantity.dimension == "temperature":
+        changed = replace(changed, dimension="temperature_difference", unit="K")
+    return replace(changed, label=f"{key.replace('_', ' ')} of {quantity.label}")
+
+
+def limits(shape: str, entry: Stated, value: float) -> tuple[float, float]:
+    """Least and largest value (SI) that is ever drawn; raises `ValueFault` for a tolerance class.
+
+    Parameters
+    ----------
+    shape : of the distribution
+    entry : its keys, SI
+    value : of the design
+    """
+    if shape == "fixed":
+        return value, value
+    if entry.get("lower") is not None:
+        return float(entry["lower"]), float(entry["upper"])
+    if entry.get("tolerance") is not None:
+        below, above = class_limits(entry["tolerance"], value)
+        return value + below, value + above
+    if shape == "normal":
+        deviation = entry.get("deviation")
+        reach = REACH * (abs(value) * entry["cv"] if deviation is None else deviation)
+        return value - reach, value + reach
+    if shape in ("lognormal", "loguniform"):
+        widest = ratio(shape, entry)
+        return value / widest, value * widest
+    return value - float(entry["half_width"]), value + float(entry["half_width"])
+
+
+def ratio(shape: str, entry: Stated) -> float:
+    """Largest value over the design's own, of a distribution in logarithms."""
+    if shape == "loguniform":
+        return float(entry["factor"])
+    return exp(REACH * log_deviation(entry))
+
+
+def log_deviation(entry: Stated) -> float:
+    """Standard deviation of the logarithm: sqrt(ln(1 + cv^2)), or ln(factor)/1.96."""
+    cv = entry.get("cv")
+    return sqrt(log1p(cv * cv)) if cv is not None else log(entry["factor"]) / 1.959964
+
+
+def misfit(shape: str, entry: Stated, value: float, quantity: Quantity) -> tuple[str, str]:
+    """What is wrong with a distribution about a value, and the remedy; empty where nothing is."""
+    try:
+        low, high = limits(shape, entry, value)
+    except ValueFault as fault:
+        return fault.message, fault.remedy
+    text = quantity.text
+    if low > high:
+        return f"bounds reversed: upper {text(high)} is below lower {text(low)}", "swap them"
+    if entry.get("lower") is not None and not low <= value <= high:
+        return (
+            f"the design's own {text(value)} lies outside {text(low)} to {text(high)}",
+            "widen the bounds, or change the value",
+        )
+    if low <= 0 and shape in ("lognormal", "loguniform"):
+        return f"a {shape} distribution needs values above 0", "use another distribution"
+    if low < quantity.lower or high > quantity.upper:
+        return (
+            f"draws from {text(low)} to {text(high)} leave the valid range ({quantity.label})",
+            f"stay within {quantity.range_text()}: less scatter, or a lognormal distribution",
+        )
+    return "", ""

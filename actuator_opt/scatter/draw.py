@@ -1,0 +1,87 @@
+"""Distributions as quantile functions: a share of the probability in, a value out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from ..design.distributions import REACH, limits, log_deviation
+from ..optimisation.problem import Vector
+
+_TAIL = float(ndtr(-REACH))
+
+
+@dataclass(frozen=True, slots=True)
+class Distribution:
+    """A distribution of a value, SI.
+
+    Parameters
+    ----------
+    shape : normal, lognormal, uniform, loguniform, triangular or fixed
+    centre : mean of a normal, median of a lognormal, tip of a triangular one
+    low, high : least and largest value
+    deviation : standard deviation of a normal; of the logarithm, of a lognormal
+    """
+
+    shape: str
+    centre: float
+    low: float
+    high: float
+    deviation: float = 0.0
+
+    def at(self, share: Vector) -> Vector:
+        """The values below which shares of the probability lie.
+
+        Normal and lognormal distributions end at 5 standard deviations.
+
+        Examples
+        --------
+        >>> Distribution("uniform", 2.0, 1.0, 3.0).at(np.array([0.0, 0.25, 1.0])).tolist()
+        [1.0, 1.5, 3.0]
+        >>> Distribution("triangular", 1.0, 0.0, 4.0).at(np.array([0.25])).tolist()
+        [1.0]
+        """
+        if self.shape == "fixed" or self.low == self.high:
+            return np.full_like(share, self.centre)
+        return np.clip(self._at(share), self.low, self.high)
+
+    def _at(self, share: Vector) -> Vector:
+        width = self.high - self.low
+        if self.shape == "uniform":
+            return self.low + width * share
+        if self.shape == "loguniform":
+            return np.asarray(self.low * (self.high / self.low) ** share)
+        if self.shape == "triangular":
+            tip = (self.centre - self.low) / width
+            rising = np.sqrt(share * tip)
+            falling = 1 - np.sqrt((1 - share) * (1 - tip))
+            return self.low + width * np.where(share < tip, rising, falling)
+        steps = self.deviation * ndtri(_TAIL + share * (1 - 2 * _TAIL))
+        if self.shape == "lognormal":
+            return np.asarray(self.centre * np.exp(steps))
+        return np.asarray(self.centre + steps)
+
+
+def about(
+    shape: str, stated: Mapping[str, Any], value: float, within: tuple[float, float]
+) -> Distribution:
+    """The distribution that an entry states about a value of the design.
+
+    Parameters
+    ----------
+    shape, stated : as the design file has them, SI
+    value : of the design
+    within : bounds that draws never leave: what lies beyond is drawn at the bound
+    """
+    low, high = limits(shape, stated, value)
+    if shape == "normal":
+        deviation = (high - low) / (2 * REACH)
+    else:
+        deviation = log_deviation(stated) if shape == "lognormal" else 0.0
+    if shape in ("uniform", "loguniform"):
+        value = (low + high) / 2
+    return Distribution(shape, value, max(low, within[0]), min(high, within[1]), deviation)
