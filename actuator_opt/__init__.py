@@ -4,10 +4,11 @@
 >>> ao.__version__
 '0.6.0'
 
-The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `seal`, `identify`, `calibrate`,
-`simulate`, `sweep`, `uncertainty`, `report`, `export`, `save`) are the same as in the terminal;
-`bending` is `identify --span` there, `compare_measured`, `servo_sensitivities` and
-`verify_dynamics` are options. Heavy modules load when a verb needs them.
+The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `pareto`, `sweep`,
+`uncertainty`, `seal`, `identify`, `calibrate`, `simulate`, `report`, `export`, `save`) are the
+same as in the terminal; `bending` is `identify --span` there, `compare_measured`,
+`servo_sensitivities` and `verify_dynamics` are options. Heavy modules load when a verb needs
+them.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
         export,
         identify,
         optimise,
+        pareto,
         read,
         read_record,
         read_scenario,
@@ -51,6 +53,8 @@ if TYPE_CHECKING:
         write_calibration,
         write_comparison,
         write_draws,
+        write_front,
+        write_front_csv,
         write_identification,
         write_seal,
         write_series,
@@ -85,6 +89,7 @@ _HOMES = {
     "load_library": "design.materials",
     "metric": "evaluation.plugin",
     "optimise": "verbs",
+    "pareto": "verbs",
     "read": "verbs",
     "read_record": "verbs",
     "read_scenario": "verbs",
@@ -100,6 +105,8 @@ _HOMES = {
     "write_calibration": "verbs",
     "write_comparison": "verbs",
     "write_draws": "verbs",
+    "write_front": "verbs",
+    "write_front_csv": "verbs",
     "write_identification": "verbs",
     "write_seal": "verbs",
     "write_series": "verbs",
@@ -133,6 +140,7 @@ __all__ = [
     "load_library",
     "metric",
     "optimise",
+    "pareto",
     "read",
     "read_record",
     "read_scenario",
@@ -148,6 +156,8 @@ __all__ = [
     "write_calibration",
     "write_comparison",
     "write_draws",
+    "write_front",
+    "write_front_csv",
     "write_identification",
     "write_seal",
     "write_series",

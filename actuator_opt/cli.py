@@ -17,6 +17,7 @@ from typer.exceptions import TyperException
 from . import cli_materials, streams
 from .cli_export import export
 from .cli_optimise import optimise, sensitivity
+from .cli_pareto import pareto
 from .cli_records import calibrate, identify
 from .cli_seal import seal
 from .cli_shared import (
@@ -189,6 +190,7 @@ app.command()(sweep)
 app.command()(sensitivity)
 app.command()(export)
 app.command()(uncertainty)
+app.command()(pareto)
 
 
 @app.command()

@@ -30,6 +30,7 @@ COMMANDS = [
     ("materials", "compare"),
     ("seal",),
     ("export",),
+    ("pareto",),
 ]
 VERBS = ["check", "evaluate", "optimise", "optimize", "sensitivity", "report"]
 

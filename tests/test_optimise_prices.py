@@ -272,7 +272,7 @@ def test_equality_prices():
 @settings(max_examples=60, deadline=None)
 def test_a_learnt_curvature_stays_positive(steps, changes):
     """Whatever slopes are learnt, steep, flat or bent down, the next step has a unique answer."""
-    descent = lockstep._Descent(np.eye(4), 1.0, 0, 0.0)
+    descent = lockstep.Descent(np.eye(4), 1.0, 0, 0.0)
     for step, change in zip(steps, changes, strict=True):
         descent._learn(step, change)
         np.linalg.cholesky(descent.hessian)

@@ -136,12 +136,22 @@ class ActuatorProblem:
         present = np.array([self.subject.numbers[path] for path in parameters])
         return ParametricProblem(self.problem, parameters, present, evaluate)
 
-    def evaluate(self, points: Array, parameters: Mapping[str, Array] | None = None) -> Values:
-        """Objective and constraint margins of points (variables, designs)."""
+    def evaluate(
+        self,
+        points: Array,
+        parameters: Mapping[str, Array] | None = None,
+        seen: list[Computed] | None = None,
+    ) -> Values:
+        """Objective and constraint margins of points (variables, designs).
+
+        What was computed is added to `seen`.
+        """
         varied = dict(parameters or {}) | dict(zip(self.paths, points, strict=True))
         numbers = self.subject.values(varied)
         count = points.shape[1]
         done = compute(self.subject, numbers, self.wanted)
+        if seen is not None:
+            seen.append(done.computed)
         if self.refusals.names and not any(np.iscomplexobj(v) for v in varied.values()):
             self.refusals.add(done.computed, count)
         return Values(

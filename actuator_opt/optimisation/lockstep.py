@@ -72,19 +72,42 @@ def resolve_together(
     starts : coordinates to start from (nf, K)
     parameters : parameter values of each problem (q, K)
     """
-    count = starts.shape[1]
-    found: list[Point | None] = [None] * count
-    if count == 0:
-        return found
+    if starts.shape[1] == 0:
+        return []
     state = newton.state_at(evaluator, point)
-    hessian = newton.convex_hessian(evaluator, state)
-    space = evaluator.space
+    hessians = [newton.convex_hessian(evaluator, state)] * starts.shape[1]
+    found, _ = follow(parametric, evaluator, hessians, state.scale, starts, parameters)
+    rows = standing(parametric, [point], parameters)[:, 0]
+    unmoved = np.where(evaluator.violations(rows, "worst") <= FEASIBLE, rows[0], np.inf)
+    for k, one in enumerate(found):
+        if one is not None and unmoved[k] < one.objective - 1e-9 * abs(one.objective):
+            found[k] = None  # the old optimum itself is better: another valley
+    return found
+
+
+def follow(
+    parametric: ParametricProblem,
+    evaluator: Evaluator,
+    hessians: list[Vector],
+    scale: float,
+    starts: Vector,
+    parameters: Vector,
+) -> tuple[list[Point | None], list[Descent]]:
+    """Optima of many problems by full steps, each with a Hessian of its own; and the ways there.
+
+    Parameters
+    ----------
+    parametric, evaluator : the problem with its parameters
+    hessians : of the Lagrangian over `scale`, positive definite (nf, nf), one for each problem
+    scale : size of the objective's gradient
+    starts, parameters : as of `resolve_together`
+    """
+    count, space = starts.shape[1], evaluator.space
+    found: list[Point | None] = [None] * count
     z = np.clip(starts, space.lower[:, None], space.upper[:, None])
     last, least = np.full(count, np.inf), np.full(count, np.inf)
     size = evaluator.constraint_count
-    descents = [
-        _Descent(hessian, state.scale, size, 1.0, radius=newton.RADIUS) for _ in range(count)
-    ]
+    descents = [Descent(one, scale, size, 1.0, radius=newton.RADIUS) for one in hessians]
     alive = list(range(count))
     for iteration in range(ITERATIONS):
         if not alive:
@@ -109,12 +132,7 @@ def resolve_together(
             z[:, k] = np.clip(z[:, k] + way.step, space.lower, space.upper)
             going.append(k)
         alive = going
-    rows = standing(parametric, [point], parameters)[:, 0]
-    unmoved = np.where(evaluator.violations(rows, "worst") <= FEASIBLE, rows[0], np.inf)
-    for k, one in enumerate(found):
-        if one is not None and unmoved[k] < one.objective - 1e-9 * abs(one.objective):
-            found[k] = None  # the old optimum itself is better: another valley
-    return found
+    return found, descents
 
 
 LEAST_CURVATURE = 1e-10
@@ -122,7 +140,7 @@ LEAST_CURVATURE = 1e-10
 
 
 @dataclass
-class _Descent:
+class Descent:
     """One problem on its way down: the last accepted point and the step tried from it.
 
     The merit is the objective plus the violations at more than their price; a trial need only
@@ -142,6 +160,12 @@ class _Descent:
     corrected: bool = False
     """Whether the step tried is one corrected for the constraints' curvature."""
     past: list[tuple[float, float]] = field(default_factory=list)
+
+    @property
+    def known(self) -> Point:
+        """The last accepted point, which there must be."""
+        assert self.point is not None
+        return self.point
 
     @property
     def length(self) -> float:
@@ -175,16 +199,12 @@ class _Descent:
         With a trial that curved constraints spoilt, their curvature on the way to it is taken off
         [NocedalWright2006] section 18.3.
         """
-        assert self.point is not None
-        space, jacobian, unit = (
-            evaluator.space,
-            evaluator.jacobian(self.point),
-            np.eye(len(self.hessian)),
-        )
-        down = np.minimum(self.point.z - space.lower, self.radius)
-        up = np.minimum(space.upper - self.point.z, self.radius)
+        space, point, unit = evaluator.space, self.known, np.eye(len(self.hessian))
+        jacobian = evaluator.jacobian(point)
+        down = np.minimum(point.z - space.lower, self.radius)
+        up = np.minimum(space.upper - point.z, self.radius)
         constraints = slice(1, 1 + self.rows)
-        margins, self.corrected = self.point.rows[constraints], trial is not None
+        margins, self.corrected = point.rows[constraints], trial is not None
         if trial is not None:
             margins = trial.rows[constraints] - jacobian[constraints] @ self.step
         self.step, self.prices = newton.quadratic_programme(
@@ -240,7 +260,7 @@ def descend_together(
     state = newton.state_at(evaluator, point)
     hessian, rows = newton.convex_hessian(evaluator, state), evaluator.constraint_count
     price = _price(state.multipliers[: len(state.near.constraint)] / state.scale)
-    descents = [_Descent(hessian, state.scale, rows, price) for _ in range(count)]
+    descents = [Descent(hessian, state.scale, rows, price) for _ in range(count)]
     space = evaluator.space
     z = np.clip(starts, space.lower[:, None], space.upper[:, None])
     alive = list(range(count))
@@ -263,8 +283,7 @@ def descend_together(
             else:
                 one.radius = one.length / 2
                 one.choose(evaluator)
-            assert one.point is not None
-            z[:, k] = np.clip(one.point.z + one.step, space.lower, space.upper)
+            z[:, k] = np.clip(one.known.z + one.step, space.lower, space.upper)
             going.append(k)
         alive = going
     last = [one.point for one in descents]

@@ -6,7 +6,6 @@ as in colour and carry their own label.
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ from ..models.fluid import LEAST_VISCOSITY
 from . import fallback, writer
 from .console import Column, Console
 from .figures import Axes, ticks
+from .image import images
 from .ink import BLUE, GREY, PALE, RED, WHITE, Ink, spread_within, text_width
 from .text import MINUS, number, trimmed
 
@@ -346,23 +346,6 @@ def _modulus_panel(
 
 def write_figure(material: Material, folder: Path) -> list[Path]:
     """Write NAME.png and NAME.svg into a folder, whole or not at all."""
-    import matplotlib as mpl
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    ink = fluid_figure(material)
-    style: Any = {
-        "font.family": "DejaVu Sans",
-        "text.parse_math": False,
-        "text.usetex": False,
-        "svg.hashsalt": material.name,
-    }
-    contents = {}
-    with mpl.rc_context(style):
-        figure = fallback.drawn(ink)
-        FigureCanvasAgg(figure)
-        for kind, about in (("png", {"Software": None}), ("svg", {"Date": None, "Creator": None})):
-            file = io.BytesIO()
-            figure.savefig(file, format=kind, dpi=writer.PIXELS_PER_INCH, metadata=about)
-            contents[f"{material.name}.{kind}"] = file.getvalue()
+    contents = images(fluid_figure(material), material.name)
     writer.write_all(folder, contents)
     return [folder / name for name in contents]

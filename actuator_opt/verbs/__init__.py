@@ -3,6 +3,7 @@
 from .actuator import Actuator, read
 from .checking import check
 from .exports import export
+from .fronts import pareto, write_front, write_front_csv
 from .optimum import evaluate, optimise, sensitivity
 from .records import (
     Calibrated,
@@ -47,6 +48,7 @@ __all__ = [
     "fitting",
     "identify",
     "optimise",
+    "pareto",
     "read",
     "read_record",
     "read_scenario",
@@ -63,6 +65,8 @@ __all__ = [
     "write_calibration",
     "write_comparison",
     "write_draws",
+    "write_front",
+    "write_front_csv",
     "write_identification",
     "write_seal",
     "write_series",

@@ -1,0 +1,73 @@
+"""The command `pareto`: what can be had of several objectives at once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from . import streams
+from .cli_shared import check_targets, command_line, read_actuator, say_files
+from .errors import ExitCode
+from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Report, Seed, Set
+from .store import require_apart
+
+
+def pareto(
+    design: DesignFile,
+    objectives: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--objective", metavar="METRIC:min|max", help='Twice to four times, e.g. "mass:min".'
+        ),
+    ] = None,
+    n: Annotated[int, typer.Option("-n", metavar="N", help="Designs of the front.")] = 50,
+    checks: Annotated[
+        int,
+        typer.Option(
+            "--checks", min=0, max=100, metavar="N", help="Full searches for what is merely local."
+        ),
+    ] = 3,
+    csv: Annotated[
+        Path | None, typer.Option("--csv", metavar="FILE", help="Save the designs of the front.")
+    ] = None,
+    sets: Set = None,
+    plugin: PluginFile = None,
+    report: Report = False,
+    out: Out = REPORTS,
+    date: Date = None,
+    seed: Seed = 0,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Trade two to four objectives: the Pareto front and its knee."""
+    from . import verbs
+
+    check_targets(out if report else None, date, csv)
+    if csv is not None:
+        require_apart(csv, design)
+    actuator = read_actuator(design, sets, plugin)
+    with streams.watching():
+        found = verbs.pareto(actuator, objectives or [], n=n, seed=seed, checks=checks)
+    files = []
+    if csv is not None and found.points:
+        files.append(verbs.write_front_csv(found, csv).to_dict())
+    if report and found.points:
+        files += [
+            file.to_dict()
+            for file in verbs.write_front(
+                found, folder=out, actuator=actuator, command=command_line(), date=date
+            )
+        ]
+    if as_json:
+        streams.out_json(found.to_dict() | ({"files": files} if files else {}))
+    elif not quiet:
+        from .reporting.pareto_rows import front_text
+
+        streams.out(front_text(found, **streams.style()), end="")
+        say_files(files)
+    if found.status == "unsolved":
+        raise typer.Exit(ExitCode.SOLVER_FAILED)
+    if not found.points:
+        raise typer.Exit(ExitCode.MISSED)

@@ -1,0 +1,76 @@
+"""The curvature that decides the step: along the directions that the rows in force leave free.
+
+Most designs of a front are held by nearly as many limits as they have variables. What the Hessian
+does along the few free directions takes a gradient to each side of each; the rest only has to be
+convex, as the rows settle it [NocedalWright2006] section 16.2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .. import kkt
+from ..evaluator import HESSIAN_STEP, Evaluator
+from ..lockstep import Descent
+from ..problem import Vector
+
+FIRM = 1e-6
+"""Multiplier, over the largest, above which a row is in force."""
+
+LEAST = 1e-6
+"""Least curvature over the largest multiplier."""
+
+
+def hessians(evaluator: Evaluator, ways: Sequence[Descent]) -> list[Vector]:
+    """Convex Hessian of the Lagrangian where each descent stands, from one call of the model.
+
+    Parameters
+    ----------
+    evaluator : of the problems, which differ in nothing that bends
+    ways : descents with a point and its multipliers
+    """
+    free = [_free(evaluator, one) for one in ways]
+    if not any(z.shape[1] for z in free):
+        return [np.eye(evaluator.space.size) for _ in ways]
+    moves = np.concatenate([HESSIAN_STEP * z for z in free], axis=1)
+    at = np.repeat(
+        np.stack([one.known.z for one in ways], axis=1), [z.shape[1] for z in free], axis=1
+    )
+    slopes = evaluator.jacobians(np.concatenate([at + moves, at - moves], axis=1), inside=False)
+    bends = np.nan_to_num(slopes[:, : at.shape[1]] - slopes[:, at.shape[1] :]) / (2 * HESSIAN_STEP)
+    result, first = [], 0
+    for one, z in zip(ways, free, strict=True):
+        part = bends[:, first : first + z.shape[1]]
+        first += z.shape[1]
+        weights = -one.multipliers
+        along = np.tensordot(weights, part[1 : 1 + len(weights)], axes=1).T
+        along += part[0].T / one.scale
+        result.append(_convex(z, along, float(np.abs(weights).max(initial=0.0))))
+    return result
+
+
+def _free(evaluator: Evaluator, way: Descent) -> Vector:
+    """Orthonormal directions (nf, d) that leave the rows in force as they are."""
+    size, prices = evaluator.space.size, way.prices
+    unit = np.eye(size)
+    rows = np.concatenate([evaluator.jacobian(way.known)[1 : 1 + way.rows], unit, -unit])
+    assert prices is not None
+    weight = prices * np.sqrt((rows**2).sum(axis=1))
+    return kkt.null_space(rows[weight > FIRM * weight.max(initial=0.0)], size)
+
+
+def _convex(z: Vector, along: Vector, largest: float) -> Vector:
+    """A convex matrix (nf, nf) with known products (nf, d) along orthonormal directions (nf, d)."""
+    size = len(z)
+    if z.shape[1] == 0:
+        return np.eye(size)
+    values, vectors = np.linalg.eigh(z.T @ along + along.T @ z)
+    values = np.maximum(np.abs(values) / 2, LEAST * max(largest, 1e-3))
+    inner = (vectors * values) @ vectors.T
+    across = along - z @ (z.T @ along)
+    rest = np.eye(size) - z @ z.T
+    crossed = across @ np.linalg.solve(inner, across.T)
+    firm = 1.0 + float(np.linalg.norm(crossed, 2))
+    return np.asarray(z @ inner @ z.T + across @ z.T + z @ across.T + firm * rest)

@@ -1,0 +1,145 @@
+"""Several objectives over one box and one set of margins, and the single problems made of them.
+
+A point of the front solves: minimise t subject to f_i <= a_i + r_i t for every objective i, in
+normalised objectives, within the requirements [PascolettiSerafini1984]. With every r_i = 1 the
+design is the one nearest to the ideal along the line through `a` that leaves all objectives equally
+[DasDennis1998]; with some r_i = 0 those objectives are only held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...numeric import Array
+from ..descents import RESIDUAL
+from ..evaluator import Evaluator, Point
+from ..kkt import Kkt, check
+from ..problem import ParametricProblem, Problem, Values, Vector
+
+LEVEL = "level of the objectives"
+"""Name of the variable t."""
+
+LOWEST, HIGHEST = -1.0, 2.0
+"""Bounds of t: between anchors it is within -1 and 1."""
+
+UNHELD = 1e3
+"""Level of an objective that counts as not limited, in its range over the front."""
+
+
+@dataclass(frozen=True)
+class Objectives:
+    """What is wanted least of, all at once.
+
+    Parameters
+    ----------
+    names : of the objectives
+    problem : variables and constraints; its own objective is not asked for
+    evaluate : maps points (n, k) to `Values` with objectives (objectives, k), to be minimised
+    """
+
+    names: Sequence[str]
+    problem: Problem
+    evaluate: Callable[[Array], Values]
+
+    @property
+    def count(self) -> int:
+        """Number of objectives."""
+        return len(self.names)
+
+    def alone(self, index: int) -> Problem:
+        """One of the objectives by itself."""
+
+        def evaluate(points: Array) -> Values:
+            found = self.evaluate(points)
+            return replace(found, objective=self._stacked(found, points)[index])
+
+        return replace(self.problem, evaluate=evaluate)
+
+    def values(self, x: Vector) -> Vector:
+        """Objectives (objectives, k) of points (n, k)."""
+        with np.errstate(all="ignore"):
+            return np.asarray(self._stacked(self.evaluate(x), x), dtype=float)
+
+    def _stacked(self, found: Values, points: Array) -> Array:
+        parts = found.objective
+        return np.stack([np.broadcast_to(np.asarray(f), points.shape[1:]) for f in parts])
+
+    def scaled(self, ideal: Vector, width: Vector) -> ParametricProblem:
+        """Minimise t; the parameters are `a` (objectives,), then `r` (objectives,).
+
+        `ideal` and `width` (objectives,) normalise: (f - ideal)/width.
+        """
+        problem, count = self.problem, self.count
+
+        def evaluate(points: Array, parameters: Array) -> Values:
+            x, level = points[:-1], points[-1]
+            found = self.evaluate(x)
+            unit = (self._stacked(found, x) - ideal[:, None]) / width[:, None]
+            front = parameters[:count] + parameters[count:] * level - unit
+            margins = front if found.constraints is None else _joined(found.constraints, front)
+            return Values(level, margins, found.equalities)
+
+        neutral = np.concatenate([np.zeros(count), np.ones(count)])
+        start = problem.start
+        grouped = problem.groups
+        plain = replace(
+            problem,
+            names=(*problem.names, LEVEL),
+            lower=np.append(problem.lower, LOWEST),
+            upper=np.append(problem.upper, HIGHEST),
+            evaluate=lambda points: evaluate(points, neutral[:, None]),
+            constraint_names=(*problem.constraint_names, *self.names),
+            start=None if start is None else np.append(start, HIGHEST / 2),
+            relaxable=None,
+            groups=None if grouped is None else (*grouped, *range(-count, 0)),
+        )
+        names = [f"{what} {name}" for what in ("level of", "way of") for name in self.names]
+        return ParametricProblem(plain, names, neutral, evaluate)
+
+
+def _joined(constraints: Array, front: Array) -> Array:
+    constraints = np.asarray(constraints)
+    shape = (len(constraints), front.shape[1])
+    return np.concatenate([np.broadcast_to(constraints.reshape(shape[0], -1), shape), front])
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """The optimality conditions of a design of the front, as those of an optimum are checked.
+
+    Of the problems "least of one objective, the others no worse than here" a design of the front
+    solves at least one; its residual is that of the first it solves, else the least.
+    """
+
+    objectives: Objectives
+    width: Vector
+
+    def residual(self, point: Point) -> float:
+        """The residual at a point (variables and t) whose gradients are known."""
+        least = np.inf
+        for index in range(self.objectives.count):
+            least = min(least, self._one(point, index).residual)
+            if least <= RESIDUAL:
+                break
+        return float(least)
+
+    def _one(self, point: Point, index: int) -> Kkt:
+        """That of the problem with one objective least and the others held."""
+        assert point.jacobian is not None
+        count, problem = self.objectives.count, self.objectives.problem
+        inner, size = len(problem.constraint_names), len(point.z) - 1
+        front = slice(1 + inner, 1 + inner + count)
+        others = [1 + inner + i for i in range(count) if i != index]
+        slopes = point.jacobian[:, :size]
+        order = [*range(1, 1 + inner), *others, *range(front.stop, len(point.rows))]
+        rows = np.concatenate([[1.0], point.rows[order]])  # a vanishing gradient is one of 1e-3
+        rows[1 + inner : inner + count] = 0.0
+        names = [name for i, name in enumerate(self.objectives.names) if i != index]
+        held = replace(problem, constraint_names=(*problem.constraint_names, *names),
+                       relaxable=None, groups=None)  # fmt: skip
+        jacobian = np.concatenate([-slopes[front][index][None], slopes[order]])
+        at = Point(point.z[:-1], point.x[:-1], rows, point.valid, point.violation, jacobian)
+        return check(Evaluator(held), at)

@@ -1,0 +1,218 @@
+"""The Pareto front of an actuator: objectives asked for by metric, designs in its variables."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..design.model import Objective
+from ..errors import Diagnostic, InputError, UsageError
+from ..evaluation import Subject, compute, evaluate
+from ..evaluation.build import spec_hash
+from ..evaluation.rows import Computed
+from ..numeric import Array
+from ..quantities import Quantity
+from ..suggest import remedy
+from .actuator import ActuatorProblem, Fault, Goal, build, governing, idle_metrics
+from .descents import FEASIBLE
+from .front.front import Front, Settings, front
+from .front.objectives import Objectives
+from .infeasibility_card import explained
+from .outcome import Solution
+from .pareto_result import FrontPoint, Knee, ParetoFront, Wish
+from .problem import Values, Vector
+from .rounding import design_at
+
+LEAST, MOST = 3, 2000
+"""Designs of a front that can be asked for."""
+
+
+def wishes(texts: Sequence[str], known: dict[str, Quantity]) -> tuple[Wish, ...]:
+    """Objectives from ``METRIC:min`` or ``METRIC:max``.
+
+    Raises
+    ------
+    UsageError : fewer than two or more than four, an unknown metric, or one metric twice
+    """
+    found: list[Wish] = []
+    for text in texts:
+        metric, colon, sense = (part.strip() for part in text.partition(":"))
+        if not colon or sense not in ("min", "max"):
+            message = f'objective "{text}" is no METRIC:min or METRIC:max'
+            raise UsageError(Diagnostic(message, 'write e.g. "mass:min"'))
+        if metric not in known:
+            message = f'objective "{text}": there is no metric {metric}'
+            raise UsageError(Diagnostic(message, remedy(metric, known)))
+        before = next((one for one in found if one.metric == metric), None)
+        if before is not None:
+            both = before.sense != sense
+            message = f"objective {metric} is given twice" + (", min and max" if both else "")
+            raise UsageError(Diagnostic(message, "keep one of them"))
+        found.append(Wish(metric, "min" if sense == "min" else "max", known[metric]))
+    if not 2 <= len(found) <= 4:
+        message = f"a front needs two to four objectives, not {len(found)}"
+        raise UsageError(Diagnostic(message, 'give e.g. "mass:min" and "stiffness_min:max"'))
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class _Many:
+    """The actuator's problem with its objectives."""
+
+    actuator: ActuatorProblem
+    goals: tuple[Goal, ...]
+    wished: tuple[Wish, ...]
+    subject: Subject
+    """As asked about, with its own objective."""
+
+    def evaluate(self, points: Array) -> Values:
+        """Objectives, to be minimised, and margins."""
+        cases = self.actuator.subject.cases
+        done: list[Computed] = []
+        found = self.actuator.evaluate(points, seen=done)
+        return replace(found, objective=[goal.value(done[0], cases) for goal in self.goals])
+
+
+def pareto(
+    subject: Subject,
+    objectives: Sequence[str],
+    *,
+    count: int = 50,
+    seed: int = 0,
+    checks: int = 3,
+    fault: Fault | None = None,
+) -> ParetoFront:
+    """The front of a design's objectives.
+
+    Parameters
+    ----------
+    subject : the prepared design
+    objectives : two to four of ``METRIC:min`` or ``METRIC:max``
+    count : designs asked for
+    seed : of the searches; the same seed gives the same front
+    checks : full searches at places in between, for what is merely local
+    fault : places faults of variables in the file
+    """
+    began = time.perf_counter()
+    wished = wishes(objectives, dict(subject.quantities))
+    if not LEAST <= count <= MOST:
+        message = f"-n {count}: a front has {LEAST} to {MOST} designs"
+        raise UsageError(Diagnostic(message, "choose a number between them"))
+    many = _problem(subject, wished, fault)
+    names = [one.metric for one in wished]
+    found = front(
+        Objectives(names, many.actuator.problem, many.evaluate),
+        Settings(count=count, seed=seed, checks=checks),
+    )
+    if isinstance(found, Solution):
+        return _without(many, found, began)
+    return _result(many, found, seed, began)
+
+
+def _problem(subject: Subject, wished: tuple[Wish, ...], fault: Fault | None) -> _Many:
+    """The problem, each objective of which exists and moves.
+
+    Raises
+    ------
+    InputError, UsageError : one does not
+    """
+    present = compute(subject, subject.values()).computed
+    for wish in wished:
+        if not present.metrics.get(wish.metric):
+            why = present.why.get(wish.metric, "it does not apply to this design")
+            message = f"{wish.metric} cannot be an objective here: {why}"
+            raise UsageError(Diagnostic(message, "choose one that `evaluate` shows a value for"))
+    wish_all = Objective(minimise={one.metric: 1.0 for one in wished})
+    asked = replace(subject, design=subject.design.model_copy(update={"objective": wish_all}))
+    actuator = build(asked, fault)
+    still = idle_metrics(actuator)
+    if still:
+        message = f"no variable affects {' and '.join(still)}: nothing to trade"
+        remedy_ = "choose another objective, or free a dimension that it depends on"
+        raise InputError(Diagnostic(message, remedy_))
+    goals = tuple(
+        Goal({one.metric: 1.0}, {one.metric: 1.0}, 1.0 if one.sense == "min" else -1.0)
+        for one in wished
+    )
+    return _Many(actuator, goals, wished, subject)
+
+
+def _points(many: _Many, found: Front) -> tuple[FrontPoint, ...]:
+    """Variables and metrics of every design: objectives, and what requirements are about."""
+    actuator, cases = many.actuator, many.actuator.subject.cases
+    varied = dict(zip(actuator.paths, found.x, strict=True))
+    computed = compute(actuator.subject, actuator.subject.values(varied), actuator.wanted).computed
+    largest = {one.metric: one.sense == "min" for one in many.wished}
+    for row in (*actuator.rows, *actuator.fixed):
+        if row.limit_of.origin in ("requirement", "case"):
+            largest.setdefault(row.limit_of.metric, row.limit_of.sense == "max")
+    count = found.x.shape[1]
+    columns = {
+        name: np.broadcast_to(governing(computed, name, cases, largest=most), (count,))
+        for name, most in largest.items()
+    }
+    return tuple(
+        FrontPoint(
+            dict(zip(actuator.paths, found.x[:, k].tolist(), strict=True)),
+            {name: float(column[k]) for name, column in columns.items()},
+            float(found.residuals[k]),
+        )
+        for k in range(count)
+    )
+
+
+def _result(many: _Many, found: Front, seed: int, began: float) -> ParetoFront:
+    """Everything put together."""
+    knee = None if found.knee is None else Knee(*found.knee)
+    shown = 0 if knee is None else knee.index
+    design, evaluation = design_at(many.actuator, found.x[:, shown])
+    signs = np.array([goal.sign for goal in many.goals])
+    return ParetoFront(
+        subject=many.subject.design,
+        spec_hash=spec_hash(many.subject),
+        objectives=many.wished,
+        points=_points(many, found),
+        knee=knee,
+        design=design,
+        evaluation=evaluation,
+        passed=tuple(map(tuple, _passed(found.passed, signs))),
+        gaps=tuple(found.gaps.tolist()),
+        checked=found.checked,
+        improved=found.improved,
+        failed=found.failed,
+        warnings=(*found.warnings, *many.actuator.refusals.warnings(), *_held(many)),
+        seed=seed,
+        seconds=time.perf_counter() - began,
+    )
+
+
+def _passed(values: Vector, signs: Vector) -> list[list[float]]:
+    rows: list[list[float]] = (values * signs[:, None]).T.tolist()
+    return rows
+
+
+def _held(many: _Many) -> list[str]:
+    choices = many.actuator.subject.design.choices
+    return [f"choices are held as the design states them: {', '.join(choices)}"] if choices else []
+
+
+def _without(many: _Many, solution: Solution, began: float) -> ParetoFront:
+    """No front: nothing is feasible, or an end of it was not found."""
+    subject = many.subject
+    feasible = solution.violation <= FEASIBLE
+    why = None if feasible else explained(many.actuator, solution)[0]
+    return ParetoFront(
+        subject=subject.design,
+        spec_hash=spec_hash(subject),
+        objectives=many.wished,
+        points=(),
+        knee=None,
+        design=subject.design,
+        evaluation=evaluate(subject),
+        infeasibility=why,
+        unsolved=solution.outcome.sentence if feasible else "",
+        seconds=time.perf_counter() - began,
+    )

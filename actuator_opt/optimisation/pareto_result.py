@@ -1,0 +1,143 @@
+"""A Pareto front as data: its designs, the knee, how evenly they lie, how it was checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from statistics import median
+from typing import Any, Literal
+
+from ..design import Design
+from ..evaluation import Evaluation
+from ..quantities import Quantity
+from .result import Infeasibility
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """A metric that is wanted small or large."""
+
+    metric: str
+    sense: Literal["min", "max"]
+    quantity: Quantity
+
+
+@dataclass(frozen=True, slots=True)
+class FrontPoint:
+    """A design of the front (SI), with the residual of its optimality conditions."""
+
+    variables: Mapping[str, float]
+    metrics: Mapping[str, float]
+    kkt_residual: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """The design in JSON (SI)."""
+        return {
+            "variables": dict(self.variables),
+            "metrics": dict(self.metrics),
+            "kkt_residual": self.kkt_residual,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Knee:
+    """Which design lies farthest from the plane of the anchors, and how far (normalised)."""
+
+    index: int
+    depth: float
+
+
+@dataclass(frozen=True, slots=True)
+class ParetoFront:
+    """The front of a design's objectives.
+
+    Parameters
+    ----------
+    subject : the design asked about
+    spec_hash : of it
+    objectives : what is wanted
+    points : designs, the best in the first objective first
+    knee : where the front bends most towards the ideal; None where it nowhere does
+    design, evaluation : of the knee, else of the first point; as stated where there is none
+    passed : objectives of designs met on the way that others dominate
+    gaps : normalised distances between neighbours (to the nearest of three or more objectives)
+    checked, improved : full searches at places in between, and how many found something better
+    failed : places at which no design was found
+    infeasibility : why there is no front
+    unsolved : what became of the search for an end of the front, where that is no optimum
+    """
+
+    subject: Design
+    spec_hash: str
+    objectives: tuple[Wish, ...]
+    points: tuple[FrontPoint, ...]
+    knee: Knee | None
+    design: Design
+    evaluation: Evaluation
+    passed: tuple[tuple[float, ...], ...] = ()
+    gaps: tuple[float, ...] = ()
+    checked: int = 0
+    improved: int = 0
+    failed: int = 0
+    infeasibility: Infeasibility | None = None
+    unsolved: str = ""
+    warnings: tuple[str, ...] = ()
+    seed: int = 0
+    seconds: float = 0.0
+
+    @property
+    def status(self) -> str:
+        """What came out, in one word."""
+        if self.points:
+            return "front" if len(self.points) > 1 else "no conflict"
+        return "unsolved" if self.unsolved else "infeasible"
+
+    @property
+    def evenness(self) -> float | None:
+        """The largest gap over the median one; None where there are none."""
+        return max(self.gaps) / median(self.gaps) if self.gaps else None
+
+    @property
+    def sentence(self) -> str:
+        """What came out, in words."""
+        if self.unsolved:
+            return f"no front: the best of one objective alone was not found: {self.unsolved}"
+        if self.infeasibility is not None or not self.points:
+            why = "" if self.infeasibility is None else f" {self.infeasibility.sentence}"
+            return f"no front: no design meets every requirement.{why}"
+        if len(self.points) == 1:
+            return "the objectives do not conflict: one design is best in all of them"
+        told = f"{len(self.points)} designs, none dominated; "
+        told += f"{self.checked} places searched anew: {self.improved} were merely local"
+        if self.failed:
+            told += f"; no design found at {self.failed} places"
+        return told
+
+    def to_dict(self) -> dict[str, Any]:
+        """The object of `pareto --json`: the evaluation's keys are those of the knee (SI)."""
+        knee = self.knee
+        found = self.evaluation.to_dict() | {
+            "spec_hash": self.spec_hash,
+            "status": self.status,
+            "outcome": self.sentence,
+            "objectives": [{"metric": o.metric, "sense": o.sense} for o in self.objectives],
+            "points": [point.to_dict() for point in self.points],
+            "knee": None
+            if knee is None
+            else {"index": knee.index, "depth": knee.depth, **self.points[knee.index].to_dict()},
+            "dominated": [
+                dict(zip([o.metric for o in self.objectives], values, strict=True))
+                for values in self.passed
+            ],
+            "gaps": None
+            if not self.gaps
+            else {"median": median(self.gaps), "largest": max(self.gaps), "ratio": self.evenness},
+            "checked": self.checked,
+            "improved": self.improved,
+            "failed": self.failed,
+            "warnings": [*self.evaluation.warnings, *self.warnings],
+            "seed": self.seed,
+            "seconds": self.seconds,
+        }
+        more = self.infeasibility
+        return found | ({} if more is None else {"infeasibility": asdict(more)})

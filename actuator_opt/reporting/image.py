@@ -1,0 +1,32 @@
+"""A drawing as files of its own: PNG and SVG."""
+
+from __future__ import annotations
+
+import io
+from typing import Any
+
+from . import fallback
+from .ink import Ink
+from .writer import PIXELS_PER_INCH
+
+
+def images(ink: Ink, stem: str) -> dict[str, bytes]:
+    """STEM.png and STEM.svg of a drawing; the same drawing gives the same bytes."""
+    import matplotlib as mpl
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    style: Any = {
+        "font.family": "DejaVu Sans",
+        "text.parse_math": False,
+        "text.usetex": False,
+        "svg.hashsalt": stem,
+    }
+    contents = {}
+    with mpl.rc_context(style):
+        figure = fallback.drawn(ink)
+        FigureCanvasAgg(figure)
+        for kind, about in (("png", {"Software": None}), ("svg", {"Date": None, "Creator": None})):
+            file = io.BytesIO()
+            figure.savefig(file, format=kind, dpi=PIXELS_PER_INCH, metadata=about)
+            contents[f"{stem}.{kind}"] = file.getvalue()
+    return contents
