@@ -14,11 +14,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from typer.exceptions import TyperException
 
-from . import cli_materials, streams
+from . import cli_materials, cli_runs, run_store, streams
+from .cli_compare import compare
+from .cli_doctor import doctor
 from .cli_export import export
-from .cli_optimise import optimise, sensitivity
+from .cli_optimise import optimise, outcome_of, sensitivity
 from .cli_pareto import pareto
 from .cli_records import calibrate, identify
+from .cli_rerun import rerun
 from .cli_seal import seal
 from .cli_shared import (
     assignments,
@@ -59,6 +62,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
 app.add_typer(cli_materials.app, name="materials")
+app.add_typer(cli_runs.app, name="runs")
 
 
 @app.callback(invoke_without_command=True)
@@ -191,11 +195,17 @@ app.command()(sensitivity)
 app.command()(export)
 app.command()(uncertainty)
 app.command()(pareto)
+app.command()(compare)
+app.command()(rerun)
+app.command()(doctor)
 
 
 @app.command()
 def report(
-    design: DesignFile,
+    design: Annotated[
+        str,
+        typer.Argument(metavar="DESIGN", help="Design file, - for stdin, or a run (id, last)."),
+    ],
     sets: Set = None,
     out: Out = REPORTS,
     date: Date = None,
@@ -204,18 +214,24 @@ def report(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Write the report (PDF and PNG) of a design as it stands."""
+    """Write the report of a design as it is, or of a run."""
     from . import verbs
 
     check_targets(out, date)
-    actuator = read_actuator(design, sets, plugin)
-    evaluation = verbs.evaluate(actuator)
-    files = write_report(evaluation, actuator, out, date)
+    if run_store.is_name(design):
+        found = cli_runs.restored(design, sets, plugin)
+        files = [x.to_dict() for x in verbs.report_run(found, folder=out, date=date)]
+        code = outcome_of(found.optimisation)
+    else:
+        actuator = read_actuator(design, sets, plugin)
+        evaluation = verbs.evaluate(actuator)
+        files = write_report(evaluation, actuator, out, date)
+        code = ExitCode.MET if evaluation.met else ExitCode.MISSED
     if as_json:
         streams.out_json({"files": files})
     elif not quiet:
         say_files(files)
-    leave_by(evaluation)
+    sys.exit(code)  # an Exit with the status of an interrupt would be told as one
 
 
 @app.command()

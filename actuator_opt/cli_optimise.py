@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import streams
-from .cli_shared import check_targets, read_actuator, say_files, write_report
-from .errors import ExitCode
+from .cli_shared import check_targets, command_line, read_actuator, say_files, write_report
+from .errors import ActuatorError, ExitCode
 from .options import (
     REPORTS,
     Algorithm,
@@ -18,6 +18,7 @@ from .options import (
     Date,
     DesignFile,
     Json,
+    NoRecord,
     Out,
     PluginFile,
     Quiet,
@@ -59,6 +60,7 @@ def optimise(
     date: Date = None,
     seed: Seed = 0,
     plugin: PluginFile = None,
+    no_record: NoRecord = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -81,7 +83,7 @@ def optimise(
             certify=certify,
             yield_target=target,
         )
-    outcome = _outcome(result)
+    outcome = outcome_of(result)
     stopped = outcome == ExitCode.INTERRUPTED
     saved, unsaved = _saved(result, outcome, write, actuator)
     timed = None if trial is None or stopped else _timed(trial, result)
@@ -94,9 +96,29 @@ def optimise(
         say_files(saved + files)
     if unsaved:
         streams.err(unsaved)
+    if not no_record:
+        recorded(result, actuator, command_line(), date, tables)
     if outcome == ExitCode.MET and timed is not None and not timed.met:
         outcome = ExitCode.MISSED
     sys.exit(outcome)  # an Exit with the status of an interrupt would be told as one
+
+
+def recorded(
+    result: Optimisation,
+    actuator: Actuator,
+    command: str,
+    date: str | None,
+    tables: list[ExtraTable],
+) -> None:
+    """Keep a record of the run; where that fails, one line says so."""
+    from .verbs import record
+
+    try:
+        record(result, actuator=actuator, command=command, date=date, extra_tables=tables)
+    except ActuatorError as error:
+        fault = error.diagnostics[0]
+        remedy = "set ACTUATOR_OPT_RUNS to another folder, or give --no-record"
+        streams.err(f"the run is not recorded: {replace(fault, remedy=remedy)}")
 
 
 def _scenario(file: str | None, actuator: Actuator) -> Trial | None:
@@ -165,7 +187,7 @@ def _dynamics_tables(timed: Verification | None) -> list[ExtraTable]:
     return [*verification_rows(timed)]
 
 
-def _outcome(result: Optimisation) -> ExitCode:
+def outcome_of(result: Optimisation) -> ExitCode:
     """The exit status of an optimisation."""
     if result.status == "undefined":
         return ExitCode.SOLVER_FAILED
@@ -210,4 +232,4 @@ def sensitivity(
         shown = prices.terminal(result, moving=True, **style)
         streams.out(shown or infeasibility_card.terminal(result, **style) or result.sentence)
         say_files(files)
-    raise typer.Exit(_outcome(result))
+    raise typer.Exit(outcome_of(result))

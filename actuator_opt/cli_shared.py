@@ -66,9 +66,13 @@ def command_line() -> str:
             skip = False
         elif word in _TARGETS:
             skip = True
-        elif word not in ("--json", "--report", "--quiet", "-q") and not word.startswith(
-            tuple(f"{one}=" for one in _TARGETS)
-        ):
+        elif word not in (
+            "--json",
+            "--report",
+            "--quiet",
+            "-q",
+            "--no-record",
+        ) and not word.startswith(tuple(f"{one}=" for one in _TARGETS)):
             kept.append(word)
     return shlex.join(["actuator-opt", *kept])
 

@@ -91,5 +91,8 @@ VerifyDynamics = Annotated[
         help="Simulate the best design in this scenario: does each dynamic requirement hold?",
     ),
 ]
+NoRecord = Annotated[
+    bool, typer.Option("--no-record", help="Keep no record of the run (see: runs list).")
+]
 Report = Annotated[bool, typer.Option("--report", help="Write the report (PDF and PNG) too.")]
 REPORTS = Path("reports")

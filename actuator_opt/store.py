@@ -6,6 +6,7 @@ import contextlib
 import errno
 import os
 import sys
+import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TextIO
@@ -207,3 +208,25 @@ def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the r
         reason = f"cannot write {what}: {error.strerror or type(error).__name__}"
         fault = Diagnostic(reason, "choose a folder with --out", file=str(folder))
         raise InputError(fault) from None
+
+
+def unwritable(folder: Path) -> str:
+    """Why nothing can be written into a folder, by trying it; "" where it can.
+
+    A folder that is missing is judged by the nearest one above it that is there.
+    """
+    place = folder.absolute()
+    while not place.exists() and place != place.parent:
+        place = place.parent
+    if not place.is_dir():
+        return f"{place} is a file"
+    try:
+        descriptor, name = tempfile.mkstemp(prefix=".actuator-opt.", suffix=".part", dir=place)
+        try:
+            os.write(descriptor, b"\n")
+        finally:
+            os.close(descriptor)
+            os.unlink(name)
+    except OSError as error:
+        return f"{place}: {error.strerror or type(error).__name__}"
+    return ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 
 from hypothesis import settings
 
@@ -13,3 +14,8 @@ for library in ("OPENBLAS", "OMP", "MKL"):
 # A loaded machine is no failure; continuous integration tries the same examples every time.
 settings.register_profile("house", deadline=None, derandomize="CI" in os.environ)
 settings.load_profile("house")
+
+# No test writes into a person's own folders, nor does a process that a test starts.
+_RUNS = tempfile.TemporaryDirectory(prefix="actuator-opt-runs-")
+os.environ["ACTUATOR_OPT_RUNS"] = _RUNS.name
+os.environ.pop("ACTUATOR_OPT_NO_RECORD", None)

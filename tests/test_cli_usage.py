@@ -31,6 +31,14 @@ COMMANDS = [
     ("seal",),
     ("export",),
     ("pareto",),
+    ("doctor",),
+    ("rerun",),
+    ("compare",),
+    ("runs",),
+    ("runs", "list"),
+    ("runs", "show"),
+    ("runs", "delete"),
+    ("runs", "prune"),
 ]
 VERBS = ["check", "evaluate", "optimise", "optimize", "sensitivity", "report"]
 

@@ -161,7 +161,19 @@ def evaluate(subject: Subject) -> Evaluation:
         lengths=outline.lengths(design, done.geometry),
         wall=study.study(subject, v, done),
         dynamics=dynamics.study(subject, v, done, metrics["stiffness_min"].case),
+        friction_parts=_friction_parts(computed, v, metrics["friction_running"].case),
     )
+
+
+def _friction_parts(computed: Computed, v: Values, case: str | None) -> dict[str, float]:
+    """Running friction of each seal in a case; parts that rub nowhere are left out."""
+    found = {}
+    for label, array in computed.friction_parts.items():
+        values = dict(by_case(computed, "friction_running", array, v.cases))
+        value = float(values.get(case or ALL_CASES, values.get(ALL_CASES, np.zeros(1)))[0])
+        if value:
+            found[label] = value
+    return found
 
 
 def _finite(value: float) -> bool:

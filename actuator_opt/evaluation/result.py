@@ -154,6 +154,8 @@ class Evaluation:
     """The barrel through its thickness; None where its model is the paper's own."""
     dynamics: DynamicsStudy | None = None
     """Modes along the stroke, dynamic stiffness over frequency, and the position loop."""
+    friction_parts: Mapping[str, float] = field(default_factory=dict)
+    """Running friction of each seal (N) in the case that governs it; wipers and guides together."""
 
     @property
     def met(self) -> bool:

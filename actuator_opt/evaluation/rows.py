@@ -29,6 +29,8 @@ class Computed:
     why: dict[str, str] = field(default_factory=dict)
     applies: dict[str, Array] = field(default_factory=dict)
     applies_at: dict[tuple[str, str], Array] = field(default_factory=dict)
+    friction_parts: dict[str, Array] = field(default_factory=dict)
+    """Running friction of each seal; the parts sum to `friction_running`."""
 
     def put(self, name: str, value: Array | dict[str, Array], cases: Array = None) -> None:
         """Record a metric: one array, or one per place; `cases` marks where it applies."""

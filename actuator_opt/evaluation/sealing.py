@@ -74,14 +74,18 @@ def compute(
         }
         if ring.element.friction == "film":
             film = films.get(ring.label)
-            total = total + _lubricated(contact, ring, film)
+            own = _lubricated(contact, ring, film)
             if film is not None:
                 rows["film_thickness"] = film.thickness
         else:
-            total = total + _friction(_row_load(ring, contact), ring, state.speed)
+            own = _friction(_row_load(ring, contact), ring, state.speed)
+        total = total + own
+        out.friction_parts[ring.label] = own.running
         for metric, value in rows.items():
             by_metric.setdefault(metric, {})[ring.label] = value
-    total = total + _beside(v, design, geometry, state)
+    beside = _beside(v, design, geometry, state)
+    total = total + beside
+    out.friction_parts["wipers and guides"] = beside.running
     for metric, by_place in by_metric.items():
         out.put(metric, by_place, cases=moving if metric == "film_thickness" else None)
     for name in ("seal_squeeze", "seal_squeeze_max", "seal_fill", "seal_stretch", "seal_section"):

@@ -165,7 +165,7 @@ def _result(
             actuator.goal.shown(record.objective) if record.feasible else None
             for record in solution.starts
         ),
-        trace=solution.trace,
+        trace=tuple((n, actuator.goal.shown(f), missed) for n, f, missed in solution.trace),
         algorithm=solution.algorithm,
         warnings=(
             *solution.warnings,

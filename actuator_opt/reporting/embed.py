@@ -7,9 +7,12 @@ import zlib
 from collections.abc import Sequence
 from datetime import UTC, datetime
 
-from ..errors import InputError
+from ..errors import Diagnostic, InputError
 
 _EMBEDDED = re.compile(rb"<<([^<>]*/EmbeddedFile(?:[^<>]|<<[^<>]*>>)*)>>\s*stream\r?\n")
+MOST_BYTES = 50_000_000
+"""Of an attachment: a choice far above any input."""
+_DAMAGED = Diagnostic("its attachment is damaged", "take the original file")
 
 
 def embed(pdf: bytes, files: Sequence[tuple[str, str, bytes]], timestamp: int = 0) -> bytes:
@@ -60,14 +63,46 @@ def _update(objects: dict[int, bytes], offset: int, size: int, root: int, previo
 
 
 def extract(pdf: bytes) -> dict[str, bytes]:
-    """Attached files by media type; reads what `embed` and the Typst report write."""
+    """Attached files by media type; reads what `embed`, the Typst report and most editors write.
+
+    Streams are found by their own dictionaries, whatever the cross-reference table says.
+
+    Raises
+    ------
+    InputError : an attachment is damaged, too large, or not alone of its kind
+    """
     found: dict[str, bytes] = {}
     for match in _EMBEDDED.finditer(pdf):
         kind = re.search(rb"/Subtype\s*/([\w#.+-]+)", match[1])
-        length = re.search(rb"/Length (\d+)", match[1])
-        if kind is None or length is None:
+        if kind is None:
             continue
-        stream = pdf[match.end() : match.end() + int(length[1])]
-        content = zlib.decompress(stream) if b"FlateDecode" in match[1] else stream
-        found[kind[1].replace(b"#2F", b"/").decode()] = content
+        name = kind[1].replace(b"#2F", b"/").replace(b"#2f", b"/").decode("ascii", "replace")
+        content = _content(pdf, match.end(), match[1])
+        if found.setdefault(name, content) != content:
+            message = f"carries several attachments of the kind {name}"
+            raise InputError(Diagnostic(message, "give the report of one design"))
     return found
+
+
+def _content(pdf: bytes, begin: int, about: bytes) -> bytes:
+    """What an embedded file holds; its size must be the one it states."""
+    if re.search(rb"/Filter\s*(?:\[\s*)?/FlateDecode\s*\]?", about):
+        packed = zlib.decompressobj()
+        try:
+            content = packed.decompress(pdf[begin:], MOST_BYTES)
+        except zlib.error:
+            raise InputError(_DAMAGED) from None
+        if packed.unconsumed_tail:
+            raise InputError(f"its attachment is larger than {MOST_BYTES // 1_000_000} MB")
+        whole = packed.eof
+    elif b"/Filter" in about:
+        raise InputError("its attachment is packed in a way that is not read")
+    else:
+        length = re.search(rb"/Length\s+(\d+)(?!\s+\d+\s+R)\b", about)
+        end = begin + int(length[1]) if length else pdf.find(b"endstream", begin)
+        content = pdf[begin:end] if length else pdf[begin:end].removesuffix(b"\n")
+        whole = begin <= end <= len(pdf)
+    size = re.search(rb"/Size\s+(\d+)", about)
+    if not whole or (size is not None and int(size[1]) != len(content)):
+        raise InputError(_DAMAGED)
+    return content

@@ -18,10 +18,10 @@ from ..design.material import Material
 from ..design.material_laws import bulk_modulus_law, viscosity_law
 from ..evaluation import oil
 from ..models.fluid import LEAST_VISCOSITY
-from . import fallback, writer
+from . import fallback
 from .console import Column, Console
 from .figures import Axes, ticks
-from .image import images
+from .image import write_ink
 from .ink import BLUE, GREY, PALE, RED, WHITE, Ink, spread_within, text_width
 from .text import MINUS, number, trimmed
 
@@ -346,6 +346,4 @@ def _modulus_panel(
 
 def write_figure(material: Material, folder: Path) -> list[Path]:
     """Write NAME.png and NAME.svg into a folder, whole or not at all."""
-    contents = images(fluid_figure(material), material.name)
-    writer.write_all(folder, contents)
-    return [folder / name for name in contents]
+    return write_ink(fluid_figure(material), folder, material.name)

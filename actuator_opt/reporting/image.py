@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+from pathlib import Path
 from typing import Any
 
+from ..store import write_all
 from . import fallback
 from .ink import Ink
 from .writer import PIXELS_PER_INCH
@@ -30,3 +32,10 @@ def images(ink: Ink, stem: str) -> dict[str, bytes]:
             figure.savefig(file, format=kind, dpi=PIXELS_PER_INCH, metadata=about)
             contents[f"{stem}.{kind}"] = file.getvalue()
     return contents
+
+
+def write_ink(ink: Ink, folder: Path, stem: str) -> list[Path]:
+    """Write STEM.png and STEM.svg into a folder, whole or not at all."""
+    contents = images(ink, stem)
+    write_all(folder, contents, what="the figure")
+    return [folder / name for name in contents]

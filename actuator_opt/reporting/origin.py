@@ -48,7 +48,7 @@ class Origin:
             "command": self.command,
             "source_name": self.source_name,
             "spec_hash": self.spec_hash,
-        }
+        } | ({} if self.date is None else {"date": self.date})
 
 
 def tile(label: str, words: str, note: str, state: str = "none") -> dict[str, Any]:

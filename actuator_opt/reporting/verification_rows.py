@@ -119,7 +119,7 @@ def verdict(found: Verification) -> str:
 
 def effort(found: Verification) -> str:
     """How much was run."""
-    return f"{found.runs} runs, {number(found.seconds, 2)} s."
+    return f"{found.runs} runs."
 
 
 def verification_rows(found: Verification) -> tuple[ExtraTable, ...]:
@@ -199,7 +199,7 @@ def sensitivity_notes(found: Sensitivities) -> list[str]:
     if found.skipped:
         left = [f"{path} ({why})" for path, why in found.skipped.items()]
         notes.append(f"Left out: {'; '.join(left)}.")
-    notes.append(f"{found.runs} runs, {number(found.seconds, 2)} s.")
+    notes.append(f"{found.runs} runs.")
     return notes
 
 

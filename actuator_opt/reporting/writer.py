@@ -11,7 +11,7 @@ import importlib.util
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from ..errors import Diagnostic, InputError
 from ..evaluation.result import Evaluation
 from ..evaluation.study.seal import SealStudy
 from ..optimisation.result import Optimisation
+from ..store import read_bytes
 from ..store import write_all as write_all
 from .blocks import ExtraTable, printable
 from .embed import extract
@@ -27,6 +28,8 @@ from .origin import Origin
 from .page import page, parts_of
 
 PIXELS_PER_INCH = 150.0
+_MOST_BYTES = 200_000_000
+_OURS = "give a PDF that actuator-opt wrote"
 TEMPLATE = Path(__file__).with_name("template.typ")
 
 
@@ -101,11 +104,27 @@ def write_report(
         folder=folder,
         stem=stem,
         actuator_opt=evaluation.version,
+        result=outcome(subject),
     )
 
 
+def outcome(subject: Evaluation | Optimisation) -> dict[str, Any]:
+    """The numbers that say whether a result repeats: SI, by metric and by PATH."""
+    evaluation, optimisation = parts_of(subject)
+    found: dict[str, Any] = {
+        "metrics": {one.name: one.value for one in evaluation.metrics.values()},
+        "spec_hash": evaluation.spec_hash,
+    }
+    if optimisation is None:
+        return found
+    return found | {
+        "status": optimisation.status,
+        "variables": {one.path: one.value for one in optimisation.best_variables},
+    }
+
+
 def write_page(
-    data: Mapping[str, Any], origin: Origin, *, title: str, folder: Path, stem: str, **run: str
+    data: Mapping[str, Any], origin: Origin, *, title: str, folder: Path, stem: str, **run: Any
 ) -> list[ReportFile]:
     """Write a page of data to PDF and PNG.
 
@@ -140,19 +159,36 @@ def write_page(
 
 
 def read_attachment(path: Path) -> Attachment:
-    """The input and the command that a report of ours carries; raises `InputError` if none."""
+    """The input and the command that a report of ours carries.
+
+    Raises
+    ------
+    InputError : no such file, no PDF, encrypted, damaged, or not written by this program
+    """
+    content = read_bytes(path, most=_MOST_BYTES, kinds=(".pdf",), what="PDF")
     try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(Diagnostic(f"cannot read: {error.strerror}", file=str(path))) from None
-    found = extract(content)
-    try:
-        source = found["application/yaml"].decode("utf-8")
-        return Attachment(source, json.loads(found["application/json"]))
+        if b"%PDF-" not in content[:1024]:
+            raise InputError(Diagnostic("is no PDF", _OURS))
+        if re.search(rb"/Encrypt\s+\d+\s+\d+\s+R", content):
+            raise InputError(Diagnostic("is encrypted", "save it without a password"))
+        found = extract(content)
+        source, run = found["application/yaml"].decode(), json.loads(found["application/json"])
+        if not isinstance(run, dict) or "actuator_opt" not in run:
+            raise KeyError("actuator_opt")
     except KeyError:
-        remedy = "give a PDF that actuator-opt wrote"
-        fault = Diagnostic("carries no input to run again", remedy, file=str(path))
+        raise InputError(Diagnostic(_carries(content), _OURS, str(path))) from None
+    except ValueError:
+        fault = Diagnostic("its attachment is damaged", "take the original file", str(path))
         raise InputError(fault) from None
+    except InputError as error:
+        raise InputError([replace(x, file=str(path)) for x in error.diagnostics]) from None
+    return Attachment(source, run)
+
+
+def _carries(content: bytes) -> str:
+    """Why there is no input in a PDF: it never was, or the end of the file is lost."""
+    ended = b"%%EOF" in content[-2048:]
+    return "carries no input to run again" if ended else "is cut off and carries no input"
 
 
 def _encodable(text: str) -> str:
@@ -191,7 +227,7 @@ def sheets(source: bytes, data: Mapping[str, Any], timestamp: int) -> tuple[byte
     compiler = typst.Compiler(
         source,
         font_paths=typst.Fonts(
-            include_system_fonts=False, include_embedded_fonts=True, font_paths=_font_folders()
+            include_system_fonts=False, include_embedded_fonts=True, font_paths=font_folders()
         ),
         sys_inputs={"data": json.dumps(data, ensure_ascii=False, sort_keys=True)},
     )
@@ -204,7 +240,7 @@ def sheets(source: bytes, data: Mapping[str, Any], timestamp: int) -> tuple[byte
     return bytes(pdf), [images] if isinstance(images, bytes) else list(images)
 
 
-def _font_folders() -> list[str]:
+def font_folders() -> list[str]:
     """Matplotlib's fonts, found without importing it."""
     found = importlib.util.find_spec("matplotlib")
     if found is None or found.origin is None:

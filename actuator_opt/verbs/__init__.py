@@ -1,10 +1,26 @@
 """The verbs of the library: one name each in the terminal and in scripts."""
 
+from ..evaluation.comparison import Comparison
 from .actuator import Actuator, read
 from .checking import check
+from .comparing import compare, comparison_json, draw_comparison
 from .exports import export
 from .fronts import pareto, write_front, write_front_csv
+from .installation import Installation, doctor
 from .optimum import evaluate, optimise, sensitivity
+from .recorded_runs import (
+    Restored,
+    Run,
+    delete_run,
+    draw_run,
+    prune_runs,
+    read_run,
+    record,
+    record_run,
+    report_run,
+    restore,
+    runs,
+)
 from .records import (
     Calibrated,
     bending,
@@ -15,6 +31,7 @@ from .records import (
     write_identification,
     write_series,
 )
+from .repeating import Rerun, rerun
 from .reports import date_from_environment, report, save
 from .seals import seal, with_contact, write_seal
 from .simulations import (
@@ -37,22 +54,41 @@ __all__ = [
     "Actuator",
     "Calibrated",
     "Compared",
+    "Comparison",
+    "Installation",
+    "Rerun",
+    "Restored",
+    "Run",
     "Trial",
     "bending",
     "calibrate",
     "check",
+    "compare",
     "compare_measured",
+    "comparison_json",
     "date_from_environment",
+    "delete_run",
+    "doctor",
+    "draw_comparison",
+    "draw_run",
     "evaluate",
     "export",
     "fitting",
     "identify",
     "optimise",
     "pareto",
+    "prune_runs",
     "read",
     "read_record",
+    "read_run",
     "read_scenario",
+    "record",
+    "record_run",
     "report",
+    "report_run",
+    "rerun",
+    "restore",
+    "runs",
     "save",
     "seal",
     "sensitivity",

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..design import Design, LoadedDesign, Source, read_design, with_values
+from ..design.reader import TEXT
 from ..errors import Diagnostic, InputError
 from ..evaluation import Subject, compute, prepare
 from ..evaluation.plugin import Plugin, View, collect, load
@@ -35,7 +36,8 @@ class Actuator:
         return Actuator(design, self.source, self.plugins)
 
 
-def _plugins(given: Plugins) -> tuple[Plugin, ...]:
+def plugins_of(given: Plugins) -> tuple[Plugin, ...]:
+    """The plugins of functions and Python files."""
     found: list[Plugin] = []
     for item in given:
         if isinstance(item, Plugin):
@@ -70,7 +72,7 @@ def read(
     InputError
         with every fault of the file, each with its place and remedy
     """
-    own = _plugins(plugins)
+    own = plugins_of(plugins)
     pairs = set.items() if isinstance(set, Mapping) else set
     loaded: LoadedDesign = read_design(
         source,
@@ -80,12 +82,32 @@ def read(
     return Actuator(loaded.design, loaded.source, own)
 
 
+def read_as(
+    text: str,
+    name: str,
+    *,
+    set: Sequence[tuple[str, str]] = (),
+    plugins: Plugins = (),
+) -> Actuator:
+    """The design of a file's text, as if read from a file of that name; parameters as `read`."""
+    try:
+        actuator = read(f"{text}\n", set=set, plugins=plugins)
+    except InputError as error:
+        raise InputError(
+            [replace(x, file=name if x.file == TEXT else x.file) for x in error.diagnostics]
+        ) from None
+    source = actuator.source
+    assert source is not None
+    document = replace(source.document, file=name, text=text)
+    return replace(actuator, source=replace(source, document=document))
+
+
 def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -> Actuator:
     """Any form of a design as an actuator."""
     if isinstance(design, Actuator):
         return design
     if isinstance(design, Design):
-        return Actuator(design, None, _plugins(plugins))
+        return Actuator(design, None, plugins_of(plugins))
     return read(design, plugins=plugins)
 
 

@@ -1,0 +1,46 @@
+"""`compare`: designs and recorded runs side by side."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from . import store, streams
+from .cli_shared import assignments
+from .options import Json, PluginFile, Quiet, Set
+
+
+def compare(
+    designs: Annotated[
+        list[str],
+        typer.Argument(metavar="DESIGN", help="Two or more design files or runs (id, last)."),
+    ],
+    sets: Set = None,
+    plugin: PluginFile = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="Draw mass, compliance and friction into this folder."
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """What differs between designs, and which parts decide."""
+    from . import verbs
+    from .reporting.compare_text import comparison_text
+
+    if out is not None:
+        store.require_folder(out)
+    found = verbs.compare(*designs, set=assignments(sets), plugins=plugin or [])
+    paths = [] if out is None else verbs.draw_comparison(found, out)
+    if as_json:
+        files: dict[str, Any] = {"files": [{"path": str(path)} for path in paths]} if paths else {}
+        streams.out_json(verbs.comparison_json(found) | files)
+    elif not quiet:
+        streams.out(comparison_text(found, **streams.style()), end="")
+        for path in paths:
+            streams.err(f"wrote {path}")

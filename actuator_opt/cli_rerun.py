@@ -1,0 +1,79 @@
+"""`rerun`: the command of a report once more, from the input that the PDF carries."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from . import store, streams
+from .cli_optimise import outcome_of, recorded
+from .cli_shared import check_targets, say_files
+from .errors import ExitCode
+from .options import Json, NoRecord, PluginFile, Quiet
+
+if TYPE_CHECKING:
+    from .verbs import Rerun
+
+
+def rerun(
+    report: Annotated[str, typer.Argument(metavar="REPORT.pdf", help="Report of actuator-opt.")],
+    plugin: PluginFile = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Write the report into this folder again."),
+    ] = None,
+    no_record: NoRecord = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run the command of a report again, from the input it carries."""
+    from . import verbs
+    from .optimisation.result import Optimisation
+
+    check_targets(out, None)
+    if out is not None:
+        store.require_apart(out / f"{Path(report).stem}.pdf", report)
+    with streams.watching():
+        found = verbs.rerun(report, plugins=plugin or [])
+    files = [] if out is None else _written(found, out)
+    subject = found.subject
+    if isinstance(subject, Optimisation):
+        code = outcome_of(subject)
+        if not no_record:
+            recorded(subject, found.actuator, found.command, found.date, list(found.tables))
+    else:
+        code = ExitCode.MET if subject.met else ExitCode.MISSED
+    if as_json:
+        streams.out_json(found.to_dict() | ({"files": files} if files else {}))
+    elif not quiet:
+        _tell(found)
+        say_files(files)
+    if found.repeats is False and code == ExitCode.MET:
+        code = ExitCode.MISSED
+    sys.exit(code)
+
+
+def _written(found: Rerun, out: Path) -> list[dict[str, Any]]:
+    from . import verbs
+
+    files = verbs.report(
+        found.subject, folder=out, actuator=found.actuator, command=found.command,
+        date=found.date, extra_tables=found.tables,
+    )  # fmt: skip
+    return [file.to_dict() for file in files]
+
+
+def _tell(found: Rerun) -> None:
+    """The tables of the command, then whether they are those of the report."""
+    from .optimisation.result import Optimisation
+    from .reporting.terminal import evaluation_text, optimisation_text
+
+    style = streams.style()
+    if isinstance(found.subject, Optimisation):
+        streams.out(optimisation_text(found.subject, **style), end="")
+    else:
+        streams.out(evaluation_text(found.subject, **style), end="")
+    streams.err(f"{found.command}\n{found.sentence}")

@@ -1,0 +1,303 @@
+"""Designs side by side: what differs in their inputs, and which parts make one better.
+
+Three questions, each with the parts that answer it: lighter (mass of parts), stiffer (compliances
+at the weakest position, which add up), smoother (running friction of seals, which adds up).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from ..design import Design
+from ..design.build import to_tree
+from ..design.kinds import Fraction
+from ..design.paths import quantity_of
+from ..errors import InputError
+from ..quantities import METRICS, Quantity
+from .result import Evaluation
+
+Value: TypeAlias = float | bool | str | Fraction | None
+Name: TypeAlias = Literal["lighter", "stiffer", "smoother"]
+SAME = 1e-9
+"""Relative difference up to which two numbers are the same: a choice, above rounding."""
+_IDLE = ("name", "notes")
+"""Keys of a design that change nothing."""
+_DUTY = ("supply", "load", "load_cases", "fluid", "environment", "linkage")
+"""Keys of a design that say what is asked of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """An input that differs: SI numbers, words, or None where a design has none.
+
+    A whole block that only some designs have is one change, its value "given".
+    """
+
+    path: str
+    quantity: Quantity | None
+    values: tuple[Value, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """Which design is better in one respect, and the parts that make it so.
+
+    `values` are of the metric (SI), `parts` of what adds up: mass in kg, compliance in m/N,
+    friction in N; `best` and `other` are positions of the designs that the parts explain, None
+    where there is no better one.
+    """
+
+    name: Name
+    metric: str
+    values: tuple[float | None, ...]
+    parts: Mapping[str, tuple[float, ...]]
+    best: int | None
+    other: int | None
+
+    @property
+    def steps(self) -> tuple[tuple[str, float], ...]:
+        """What each part adds (SI) on the way from the other design to the best, largest first."""
+        if self.best is None or self.other is None:
+            return ()
+        rows = [(part, x[self.best] - x[self.other]) for part, x in self.parts.items()]
+        return tuple(sorted((row for row in rows if row[1]), key=lambda row: -abs(row[1])))
+
+    @property
+    def leaders(self) -> tuple[int, ...]:
+        """Positions of the best design and of those that are as good; none without a best."""
+        best = None if self.best is None else self.values[self.best]
+        if best is None:
+            return ()
+        near = [None if v is None else abs(v - best) <= SAME * abs(best) for v in self.values]
+        return tuple(k for k, same in enumerate(near) if same)
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Designs side by side; the first is what the others are held against."""
+
+    labels: tuple[str, ...]
+    """A, B, C, ..."""
+    origins: tuple[str, ...]
+    """File or run of each."""
+    evaluations: tuple[Evaluation, ...]
+    changes: tuple[Change, ...]
+    questions: tuple[Question, ...]
+
+    @property
+    def duties_differ(self) -> tuple[str, ...]:
+        """PATHs of what is asked of the designs where that differs."""
+        roots = ((c.path, c.path.partition(".")[0].partition("[")[0]) for c in self.changes)
+        return tuple(path for path, root in roots if root in _DUTY)
+
+    def limits(self) -> Iterator[tuple[str, str, tuple[Any, ...]]]:
+        """Name, sense and the rows of every requirement, None where a design does not have it."""
+        known = [{(r.name, r.sense): r for r in e.requirements} for e in self.evaluations]
+        for key in dict.fromkeys(key for rows in known for key in rows):
+            yield *key, tuple(rows.get(key) for rows in known)
+
+    def metrics(self) -> Iterator[tuple[str, Quantity, tuple[float | None, ...]]]:
+        """Every metric that some design has a value of."""
+        names = dict.fromkeys(name for e in self.evaluations for name in e.metrics)
+        for name in names:
+            rows = [e.metrics.get(name) for e in self.evaluations]
+            values = tuple(None if row is None else row.value for row in rows)
+            if any(value is not None for value in values):
+                yield name, next(row.quantity for row in rows if row is not None), values
+
+    def to_dict(self) -> dict[str, Any]:
+        """The `compare --json` object (SI), but for the sentences."""
+        return {
+            "designs": [
+                {
+                    "label": label,
+                    "origin": origin,
+                    "name": e.name,
+                    "spec_hash": e.spec_hash,
+                    "met": e.met,
+                    "missed": [row.name for row in e.requirements if not row.met],
+                    "mass_parts": dict(e.mass_parts),
+                    "compliance": weakest(e),
+                    "friction_parts": dict(e.friction_parts),
+                }
+                for label, origin, e in zip(
+                    self.labels, self.origins, self.evaluations, strict=True
+                )
+            ],
+            "differences": [
+                {
+                    "path": c.path,
+                    "unit": None if c.quantity is None else c.quantity.si_unit,
+                    "values": [_plain(x) for x in c.values],
+                }
+                for c in self.changes
+            ],
+            "requirements": [
+                {
+                    "name": name,
+                    "sense": sense,
+                    "limits": [None if r is None else r.limit for r in rows],
+                    "values": [None if r is None else r.value for r in rows],
+                    "margins": [None if r is None else r.margin for r in rows],
+                    "met": [None if r is None else r.met for r in rows],
+                }
+                for name, sense, rows in self.limits()
+            ],
+            "metrics": {
+                name: {"unit": quantity.si_unit, "values": list(values)}
+                for name, quantity, values in self.metrics()
+            },
+        }
+
+
+def compare(evaluations: Sequence[Evaluation], origins: Sequence[str]) -> Comparison:
+    """Put evaluated designs side by side.
+
+    Parameters
+    ----------
+    evaluations : two or more, the first is held against
+    origins : file or run of each, in words
+
+    Raises
+    ------
+    InputError : two of them are the same design
+    """
+    labels = tuple(chr(ord("A") + k) for k in range(len(evaluations)))
+    trees = [_tree(e.design) for e in evaluations]
+    for k, tree in enumerate(trees):
+        if tree in trees[:k]:
+            first = trees.index(tree)
+            raise InputError(f"{origins[first]} and {origins[k]} are the same design")
+    changes = tuple(
+        Change(path, _quantity(path, values, evaluations), tuple(map(_value, values)))
+        for path, values in _differences(trees, "")
+    )
+    masses = _union([e.mass_parts for e in evaluations])
+    soft = _union([weakest(e) for e in evaluations])
+    rubbing = _union([e.friction_parts for e in evaluations])
+    questions = (
+        _question("lighter", "mass", evaluations, masses),
+        _question("stiffer", "stiffness_min", evaluations, soft),
+        _question("smoother", "friction_running", evaluations, rubbing),
+    )
+    return Comparison(labels, tuple(origins), tuple(evaluations), changes, questions)
+
+
+def weakest(evaluation: Evaluation) -> dict[str, float]:
+    """Compliance (m/N) of every part where the actuator is weakest over its stroke."""
+    curve = evaluation.curve
+    stiffness = np.asarray(curve.stiffness, dtype=float)
+    if not np.isfinite(stiffness).any():
+        return {}
+    place = int(np.nanargmin(stiffness))
+    found = {name: float(values[place]) for name, values in curve.contributions.items()}
+    return {name: value for name, value in found.items() if value}
+
+
+def _union(parts: Sequence[Mapping[str, float]]) -> dict[str, tuple[float, ...]]:
+    names = dict.fromkeys(name for one in parts for name in one)
+    return {name: tuple(one.get(name, 0.0) for one in parts) for name in names}
+
+
+def _question(
+    name: Name, metric: str, evaluations: Sequence[Evaluation], parts: dict[str, tuple[float, ...]]
+) -> Question:
+    """The best design against the first, or the first against the next best."""
+    values = tuple(e.metrics[metric].value for e in evaluations)
+    sign = -1.0 if name == "stiffer" else 1.0
+    known = [(sign * v, k) for k, v in enumerate(values) if v is not None and math.isfinite(v)]
+    if len(known) < 2:
+        return Question(name, metric, values, parts, None, None)
+    ranked = sorted(known)
+    lead, best = ranked[0]
+    behind = [k for v, k in ranked if abs(v - lead) > SAME * max(abs(v), abs(lead))]
+    if not behind:
+        return Question(name, metric, values, parts, None, None)
+    return Question(name, metric, values, parts, best, 0 if 0 in behind else behind[0])
+
+
+class _Missing:
+    """What a design does not have."""
+
+
+_MISSING = _Missing()
+
+
+def _tree(design: Design) -> dict[str, Any]:
+    """A design without what changes nothing (also where a search starts); load cases by name."""
+    tree = {key: value for key, value in to_tree(design).items() if key not in _IDLE}
+    tree["variables"] = {
+        path: {key: value for key, value in variable.items() if key != "start"}
+        for path, variable in tree.get("variables", {}).items()
+    }
+    cases = tree.get("load_cases", [])
+    names = [case.get("name") for case in cases]
+    if len(set(names)) == len(names):
+        tree["load_cases"] = _Named({f"[{case['name']}]": case for case in cases})
+    return tree
+
+
+class _Named(dict[str, Any]):
+    """A list whose entries have names in brackets."""
+
+
+def _differences(nodes: Sequence[Any], path: str) -> Iterator[tuple[str, tuple[Any, ...]]]:
+    """PATH and values of what is not the same in all trees, blocks whole where one lacks them."""
+    if all(_same(node, nodes[0]) for node in nodes):
+        return
+    if all(isinstance(node, dict) for node in nodes):
+        for key in dict.fromkeys(key for node in nodes for key in node):
+            bracket = isinstance(nodes[0], _Named)
+            below = f"{path}{key}" if bracket or not path else f"{path}.{key}"
+            yield from _differences([node.get(key, _MISSING) for node in nodes], below)
+    elif all(isinstance(node, list) for node in nodes):
+        for k in range(max(map(len, nodes))):
+            entries = [node[k] if k < len(node) else _MISSING for node in nodes]
+            yield from _differences(entries, f"{path}[{k}]")
+    else:
+        yield path, tuple(nodes)
+
+
+def _same(a: Any, b: Any) -> bool:
+    if isinstance(a, float) and isinstance(b, float):
+        return abs(a - b) <= SAME * max(abs(a), abs(b))
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(_same, a, b))
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(_same(a[key], b[key]) for key in a)
+    return bool(a == b)
+
+
+def _value(node: Any) -> Value:
+    """A leaf as it is; a block in a word."""
+    if node is _MISSING or node == {} or node == []:
+        return None
+    if isinstance(node, dict):
+        stated = node.get("material")
+        return stated if isinstance(stated, str) else "given"
+    if isinstance(node, list):
+        flat = all(isinstance(one, (str, int, float)) for one in node)
+        return ", ".join(map(str, node)) if flat else f"{len(node)} given"
+    return float(node) if isinstance(node, int) and not isinstance(node, bool) else node
+
+
+def _quantity(
+    path: str, values: Sequence[Any], evaluations: Sequence[Evaluation]
+) -> Quantity | None:
+    """The quantity of the numbers at a PATH, by the first design that has one there."""
+    for value, evaluation in zip(values, evaluations, strict=True):
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            try:
+                return quantity_of(path, evaluation.design)
+            except InputError:
+                return METRICS.get(path.split(".")[-2]) if path.count(".") else None
+    return None
+
+
+def _plain(value: Value) -> Any:
+    return f"{100 * value.value:.12g} %" if isinstance(value, Fraction) else value

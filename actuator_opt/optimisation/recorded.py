@@ -1,0 +1,133 @@
+"""An optimisation as plain data that gives it back: what a run record keeps of it.
+
+Designs are kept as trees of SI numbers, which build the very same design again; evaluations are
+kept as their designs and evaluated again. The rest is dataclasses, by their own annotations.
+"""
+
+from __future__ import annotations
+
+import math
+import types
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass, replace
+from functools import cache
+from typing import Any, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from ..design import Design
+from ..design.build import build, to_tree
+from ..design.kinds import Fraction
+from ..errors import InputError
+from ..evaluation import Evaluation, evaluate, prepare
+from ..evaluation.plugin import Plugin
+from ..quantities import METRICS
+from .result import Optimisation
+
+_DESIGN, _EVALUATION, _FRACTION, _NUMBER = "$design", "$evaluation", "$fraction", "$number"
+
+
+def to_plain(found: Optimisation) -> dict[str, Any]:
+    """An optimisation as data for JSON: its `designs`, and the `result` that refers to them."""
+    designs: list[dict[str, Any]] = []
+
+    def place(design: Design) -> int:
+        tree = plain(to_tree(design))
+        if tree not in designs:
+            designs.append(tree)
+        return designs.index(tree)
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, np.generic):
+            value = value.item()
+        if value is None or isinstance(value, (str, bool, int)):
+            return value
+        if isinstance(value, float):
+            return value if math.isfinite(value) else {_NUMBER: repr(value)}
+        if isinstance(value, Fraction):
+            return {_FRACTION: value.value}
+        if isinstance(value, Design):
+            return {_DESIGN: place(value)}
+        if isinstance(value, Evaluation):
+            return {_EVALUATION: place(value.design)}
+        if isinstance(value, Mapping):
+            return {key: plain(below) for key, below in value.items()}
+        if is_dataclass(value):
+            return {one.name: plain(getattr(value, one.name)) for one in fields(value)}
+        assert isinstance(value, Iterable), f"no plain data: {type(value).__name__}"
+        return [plain(below) for below in value]
+
+    return {"result": plain(found), "designs": designs}
+
+
+def from_plain(data: Mapping[str, Any], plugins: tuple[Plugin, ...] = ()) -> Optimisation:
+    """The optimisation that `to_plain` made the data of.
+
+    Parameters
+    ----------
+    data : as it came from JSON
+    plugins : the user's own metrics, if the design asks for some
+
+    Raises
+    ------
+    InputError
+        data that is none, or of a version with other names
+    """
+    metrics = METRICS | {plugin.name: plugin.quantity for plugin in plugins}
+    evaluated: dict[int, Evaluation] = {}
+
+    def design(index: int) -> Design:
+        built = build(special(data["designs"][index]), metrics=metrics, contradictions=False)
+        if built.design is None:
+            raise InputError(f"the design in it: {built.faults[0].message}")
+        return built.design
+
+    def evaluation(index: int) -> Evaluation:
+        if index not in evaluated:
+            subject = prepare(design(index), None, plugins)
+            evaluated[index] = evaluate(replace(subject, lenient=True))
+        return evaluated[index]
+
+    def special(value: Any) -> Any:
+        if isinstance(value, list):
+            return [special(below) for below in value]
+        if not isinstance(value, dict):
+            return value
+        if len(value) == 1:
+            ((key, below),) = value.items()
+            known = {_DESIGN: design, _EVALUATION: evaluation, _FRACTION: Fraction, _NUMBER: float}
+            if key in known:
+                return known[key](below)
+        return {key: special(below) for key, below in value.items()}
+
+    try:
+        found = _typed(Optimisation, special(data["result"]))
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(f"does not fit this version ({type(error).__name__}: {error})") from None
+    assert isinstance(found, Optimisation)
+    return found
+
+
+@cache
+def _hints(kind: type) -> dict[str, Any]:
+    return get_type_hints(kind)
+
+
+def _typed(kind: Any, value: Any) -> Any:
+    """A value of JSON as its annotation has it: dataclasses and tuples again."""
+    if value is None:
+        return None
+    if isinstance(kind, type) and is_dataclass(kind):
+        if isinstance(value, kind):
+            return value
+        return kind(**{name: _typed(_hints(kind)[name], below) for name, below in value.items()})
+    origin, inner = get_origin(kind), get_args(kind)
+    if origin is tuple:
+        inner = (inner[0],) * len(value) if inner[-1] is ... else inner
+        return tuple(_typed(one, below) for one, below in zip(inner, value, strict=True))
+    if origin in (Union, types.UnionType):
+        options = [one for one in inner if one is not type(None)]
+        return _typed(options[0], value) if len(options) == 1 else value
+    if isinstance(origin, type) and issubclass(origin, Mapping):
+        return {key: _typed(inner[1], below) for key, below in value.items()}
+    return value

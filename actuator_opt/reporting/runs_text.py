@@ -1,0 +1,152 @@
+"""Recorded runs as text for the terminal. Pure functions on heads and bodies of records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from ..quantities import INPUTS, of_metric
+from .console import Column, Console
+from .text import DASH, number, pretty
+
+MET = 1e-6
+"""Largest miss of a limit that counts as met (contract)."""
+_MOST_STEPS = 8
+_SHOWN = (("value", 5), ("lower", 4), ("upper", 4))
+"""Columns of the variables, with the digits of each."""
+
+
+def runs_table(
+    rows: Iterable[tuple[str, Mapping[str, Any]]],
+    *,
+    colour: bool = False,
+    unicode: bool = True,
+    width: int = 100,
+) -> str:
+    """Ids and heads, one run a line."""
+    console = Console(colour, unicode, width)
+    columns = [
+        Column("run"),
+        Column("command", drop=2),
+        Column("design", flexible=True),
+        Column("outcome", flexible=True),
+        Column("objective", flexible=True, drop=1),
+        Column("seed", "right", drop=4),
+        Column("version", drop=3),
+    ]
+    cells, styles = [], []
+    for name, head in rows:
+        found = outcome(head)
+        cells.append(
+            [
+                name,
+                str(head.get("kind", "")),
+                str(head.get("name", "")),
+                found,
+                objective(head),
+                str(head.get("seed", "")),
+                str(head.get("version", "")),
+            ]
+        )
+        paint = "green" if found == "met" else "yellow"
+        styles.append(["bold", "dim", "", paint, "", "dim", "dim"])
+    return "\n".join(console.table(columns, cells, styles)) + "\n"
+
+
+def outcome(head: Mapping[str, Any]) -> str:
+    """How a run ended, in a word or two."""
+    status = str(head.get("status", DASH))
+    if status == "optimal":
+        return "met" if head.get("met") else "requirement missed"
+    return status.replace("_", " ")
+
+
+def objective(head: Mapping[str, Any]) -> str:
+    """What was minimised or maximised, in its display unit."""
+    found = head.get("objective") or {}
+    value = found.get("value")
+    if value is None:
+        return DASH
+    metric = str(found.get("metric", ""))
+    return f"{metric} {value_text(metric, value)}"
+
+
+def value_text(metric: str, value: float) -> str:
+    """An objective in its display unit; a weighted sum and a user's own metric have none."""
+    return of_metric(metric).text(value, 5)
+
+
+def run_text(
+    name: str,
+    head: Mapping[str, Any],
+    body: Mapping[str, Any],
+    *,
+    colour: bool = False,
+    unicode: bool = True,
+    width: int = 100,
+) -> str:
+    """Everything of a run that a person asks for: what was asked, with what, what came out."""
+    console = Console(colour, unicode, width)
+    given = body["input"]
+    versions = ", ".join(f"{key} {value}" for key, value in body["versions"].items())
+    facts = [
+        ("design", f"{head['name']} ({given['name']}, hash {head['spec_hash']})"),
+        ("command", head["command"] or "from a script"),
+        ("started", head["started"]),
+        ("seed", str(head["seed"])),
+        ("versions", versions),
+        *(("set", f"{path} = {value}") for path, value in given["set"]),
+        *(("plugin", one["file"] or "a function of a script") for one in given["plugins"]),
+        ("outcome", pretty(str(head.get("outcome") or outcome(head)))),
+        ("objective", objective(head)),
+    ]
+    lines = [console.heading(f"run {name}")]
+    inner = Console(colour, unicode, max(width - 11, 24))
+    for label, text in facts:
+        told = inner.wrap(text).split("\n")
+        lines.append(f"{console.paint(f'{label:<9}', 'dim')}  {told[0]}")
+        lines += [f"{'':11}{line}" for line in told[1:]]
+    variables = body.get("state", {}).get("result", {}).get("variables", [])
+    if variables:
+        lines += ["", *_variables(variables, console)]
+    lines += trace_lines(head, body.get("trace", ()), console)
+    return "\n".join(lines) + "\n"
+
+
+def _variables(rows: Sequence[Mapping[str, Any]], console: Console) -> list[str]:
+    columns = [
+        Column("variable", flexible=True),
+        Column("value", "right"),
+        Column("lower", "right", drop=2),
+        Column("upper", "right", drop=2),
+        Column("", drop=1),
+    ]
+    cells = []
+    for row in rows:
+        quantity = INPUTS[row["quantity"]]
+        numbers = [quantity.text(row[key], digits) for key, digits in _SHOWN]
+        bound = f"at {row['at_bound']} bound" if row["at_bound"] else ""
+        cells.append([row["path"], *numbers, bound])
+    return console.table(columns, cells)
+
+
+def trace_lines(
+    head: Mapping[str, Any], trace: Sequence[Sequence[float]], console: Console
+) -> list[str]:
+    """The improvements of the search, at most `_MOST_STEPS` of them, first and last among them."""
+    if not trace:
+        return []
+    metric = str((head.get("objective") or {}).get("metric", ""))
+    last = len(trace) - 1
+    size = min(len(trace), _MOST_STEPS) - 1
+    picked = sorted({round(k * last / size) for k in range(size + 1)} if size else {0})
+    cells = []
+    for count, value, missed in (trace[k] for k in picked):
+        left = "all met" if missed <= MET else f"{number(100 * missed, 2)} %"
+        cells.append([f"{count:.0f}", value_text(metric, value), left])
+    columns = [
+        Column("evaluation", "right"),
+        Column("objective of the best so far", "right"),
+        Column("worst limit missed by", "right"),
+    ]
+    return ["", *console.table(columns, cells)]

@@ -1,0 +1,246 @@
+"""Records of runs: one file each in a folder of the person's own, written whole or not at all.
+
+A record is a file of two lines of JSON: a short head, by which records are listed, and the rest.
+Nothing here knows what a run is; nothing is ever deleted unless asked.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .errors import Diagnostic, InputError
+from .suggest import shown
+
+FOLDER, SWITCH = "ACTUATOR_OPT_RUNS", "ACTUATOR_OPT_NO_RECORD"
+"""Environment variables: where records go, and that none are made (any text but "0")."""
+FORMAT = 1
+"""Of the files; a newer one is refused by name."""
+SUFFIX = ".run"
+_ID = re.compile(r"[0-9]{8}-[0-9]{6}-[0-9a-f]{6}")
+_BEGINNING = re.compile(r"[0-9]{4,8}(-[0-9]{0,6}(-[0-9a-f]{0,6})?)?")
+_MOST = 200_000_000
+"""Bytes of a record, at most: a choice far above what a run leaves."""
+_HEAD = 100_000
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A record as listed: its file and its head."""
+
+    path: Path
+    head: Mapping[str, Any]
+
+    @property
+    def id(self) -> str:
+        """What it is called by: its file's name."""
+        return self.path.name.removesuffix(SUFFIX)
+
+
+def folder() -> Path | None:
+    """Where records go: ACTUATOR_OPT_RUNS, else the person's data folder; None: switched off."""
+    if os.environ.get(SWITCH, "") not in ("", "0"):
+        return None
+    stated = os.environ.get(FOLDER, "")
+    return Path(stated).expanduser() if stated else _data() / "actuator-opt" / "runs"
+
+
+def _data() -> Path:
+    """Folder of a person's own data by the custom of the system."""
+    if sys.platform == "win32":
+        local = os.environ.get("LOCALAPPDATA", "")
+        return Path(local) if local else Path.home() / "AppData" / "Local"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Application Support"
+    stated = os.environ.get("XDG_DATA_HOME", "")
+    if Path(stated).is_absolute():  # others are to be ignored, says the standard
+        return Path(stated)
+    return Path.home() / ".local" / "share"
+
+
+def write(place: Path, started: str, head: Mapping[str, Any], body: Mapping[str, Any]) -> Path:
+    """Write a record aside, then give it a name that no other has.
+
+    Parameters
+    ----------
+    place : folder, made where missing
+    started : ``20261122-104500``, the beginning of its id
+    head, body : plain data; the head is what lists show
+
+    Raises
+    ------
+    InputError : it cannot be written; nothing is left
+    """
+    import json
+
+    text = "".join(
+        json.dumps(part, ensure_ascii=True, allow_nan=False, separators=(",", ":")) + "\n"
+        for part in ({"record": FORMAT} | dict(head), body)
+    )
+    aside = place / f".{_random(8)}.part"
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+        aside.write_text(text, encoding="ascii")
+        while True:
+            path = place / f"{started}-{_random(3)}{SUFFIX}"
+            with contextlib.suppress(FileExistsError):
+                _claim(aside, path)
+                return path
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            aside.unlink(missing_ok=True)
+        reason = f"cannot write: {error.strerror or type(error).__name__}"
+        raise InputError(Diagnostic(reason, "", str(place))) from None
+
+
+def _random(size: int) -> str:
+    """Hexadecimal digits of random bytes."""
+    return os.urandom(size).hex()
+
+
+def _claim(aside: Path, path: Path) -> None:
+    """Give a written file its name; FileExistsError where another has it."""
+    try:
+        os.link(aside, path)
+    except FileExistsError:
+        raise
+    except OSError:  # a file system without links
+        if path.exists():
+            raise FileExistsError(path) from None
+        aside.replace(path)
+        return
+    aside.unlink()
+
+
+def entries(place: Path) -> tuple[list[Entry], list[Diagnostic]]:
+    """The records of a folder, newest first, and what is wrong with those that cannot be read."""
+    found: list[tuple[int, str, Entry]] = []
+    faults = []
+    try:
+        paths = sorted(path for path in place.iterdir() if is_record(path))
+    except FileNotFoundError:
+        return [], []
+    except OSError as error:
+        reason = f"cannot be read: {error.strerror or type(error).__name__}"
+        raise InputError(
+            Diagnostic(reason, f"set {FOLDER} to another folder", str(place))
+        ) from None
+    for path in paths:
+        try:
+            with path.open("rb") as stream:
+                line, written = stream.readline(_HEAD), os.fstat(stream.fileno()).st_mtime_ns
+            entry = Entry(path, _parsed(line, path))
+        except FileNotFoundError:  # deleted meanwhile
+            continue
+        except OSError as error:
+            reason = f"cannot be read: {error.strerror or type(error).__name__}"
+            faults.append(Diagnostic(reason, "", str(path)))
+        except InputError as error:
+            faults += error.diagnostics
+        else:
+            found.append((written, entry.id, entry))
+    found.sort(key=lambda row: row[:2], reverse=True)
+    return [entry for _, _, entry in found], faults
+
+
+def is_record(path: Path) -> bool:
+    """Whether a file is called as records are."""
+    return path.suffix == SUFFIX and _ID.fullmatch(path.stem) is not None
+
+
+def _parsed(line: bytes, path: Path) -> dict[str, Any]:
+    """A line of a record as an object."""
+    import json
+
+    try:
+        data = json.loads(line)
+    except (ValueError, RecursionError):
+        data = None
+    if not isinstance(data, dict):
+        remedy = "delete the file; the run itself is to be repeated"
+        raise InputError(Diagnostic("is no record of a run, or a damaged one", remedy, str(path)))
+    return data
+
+
+def is_name(text: str) -> bool:
+    """Whether a text names a run, and no design file of that name is there."""
+    if Path(text).suffix == SUFFIX:
+        return True
+    named = text == "last" or _BEGINNING.fullmatch(text) is not None
+    return named and not Path(text).exists()
+
+
+def find(place: Path | None, name: str) -> Path:
+    """The file of a record: by id, the beginning of one, ``last``, or the path of a file.
+
+    Raises
+    ------
+    InputError : none, or several
+    """
+    path = Path(name)
+    if path.suffix == SUFFIX or os.sep in name:
+        return path
+    if place is None:
+        raise InputError(Diagnostic("no runs are recorded", f"unset {SWITCH}"))
+    if name == "last":
+        known, _ = entries(place)
+        if not known:
+            raise InputError(Diagnostic("no run is recorded yet", "run e.g. optimise", str(place)))
+        return known[0].path
+    found = [one for one in _named(place) if one.name.startswith(name)] if name else []
+    if len(found) == 1:
+        return found[0]
+    what = f'"{shown(name)}"'
+    if found:
+        ids = ", ".join(one.stem for one in found[:3])
+        more = f" and {len(found) - 3} more" if len(found) > 3 else ""
+        raise InputError(Diagnostic(f"{what} begins several runs: {ids}{more}", "write more of it"))
+    raise InputError(Diagnostic(f"no run {what}", "see: actuator-opt runs list", str(place)))
+
+
+def _named(place: Path) -> list[Path]:
+    try:
+        return sorted(path for path in place.iterdir() if is_record(path))
+    except OSError:
+        return []
+
+
+def read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Head and body of a record.
+
+    Raises
+    ------
+    InputError : no such file, no record, a damaged or a newer one
+    """
+    from .store import read_bytes
+
+    data = read_bytes(path, most=_MOST, kinds=(SUFFIX,), what="record")
+    lines = data.splitlines()
+    head = _parsed(lines[0] if lines else b"", path)
+    known = head.get("record")
+    if isinstance(known, int) and known > FORMAT:
+        version = shown(str(head.get("version", "")))
+        message = f"was written by actuator-opt {version}, in a newer form"
+        raise InputError(Diagnostic(message, "install that version, or a later one", str(path)))
+    body = _parsed(lines[1] if len(lines) > 1 else b"", path)
+    return head, body
+
+
+def delete(path: Path) -> None:
+    """Delete a record.
+
+    Raises
+    ------
+    InputError : it cannot be
+    """
+    try:
+        path.unlink()
+    except OSError as error:
+        reason = f"cannot be deleted: {error.strerror or type(error).__name__}"
+        raise InputError(Diagnostic(reason, "", str(path))) from None

@@ -1,0 +1,207 @@
+"""`compare`: every difference is named, parts add up to what they explain, nothing else is said."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+from cli_runner import BENCH, DESIGNS, run
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import actuator_opt as ao
+from actuator_opt.reporting.compare_figure import comparison_figure
+from actuator_opt.reporting.compare_text import comparison_text, sentences
+
+SMALL = BENCH.replace("  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n", "")
+SHIPPED = sorted(DESIGNS.glob("*.yaml"))
+
+
+@pytest.fixture(scope="module")
+def base():
+    """The bench design as it stands."""
+    return ao.read(SMALL)
+
+
+@pytest.fixture(scope="module")
+def shipped():
+    """The shipped designs, evaluated once: those with oil films take seconds."""
+    return {path.stem: ao.evaluate(path) for path in SHIPPED}
+
+
+@pytest.mark.parametrize("name", [path.stem for path in SHIPPED])
+def test_parts_add_up(shipped, name):
+    """Mass parts to the mass, compliances to 1/stiffness, frictions to the friction."""
+    other = next(e for key, e in shipped.items() if key != name)
+    found = ao.compare(shipped[name], other)
+    for question in found.questions:
+        value = question.values[0]
+        total = sum(values[0] for values in question.parts.values())
+        if value is None or not question.parts:
+            continue
+        expected = 1 / value if question.name == "stiffer" else value
+        assert total == pytest.approx(expected, rel=2e-3 if question.name == "stiffer" else 1e-9)
+
+
+def test_what_is_set_is_what_differs(base):
+    """Exactly the PATHs changed, in SI with their unit, the friction by hand."""
+    other = ao.read(SMALL, set={
+        "cylinder.bore": "24 mm", "seals.rod.friction_coefficient": 0.05, "load_cases[swing].force":
+        "1 kN", "name": "other",
+        "requirements.burst_factor.min": 4.0,
+    })  # fmt: skip
+    found = ao.compare(base, other)
+    changes = {c.path: c.values for c in found.changes}
+    assert changes == {
+        "cylinder.bore": (0.022, 0.024),
+        "seals.rod.friction_coefficient": (0.10, 0.05),
+        "load_cases[swing].force": (2000.0, 1000.0),
+        "requirements.burst_factor.min": (3.0, 4.0),
+    }
+    data = ao.comparison_json(found)
+    units = {row["path"]: row["unit"] for row in data["differences"]}
+    assert units["cylinder.bore"] == "m"
+    assert units["load_cases[swing].force"] == "N"
+    # at one pressure and speed the friction of a seal is its coefficient times its contact load
+    half = ao.compare(base, ao.read(SMALL, set={"seals.rod.friction_coefficient": 0.05}))
+    rod = half.questions[2].parts["rod seal"]
+    assert rod[1] == pytest.approx(rod[0] / 2, rel=1e-9)
+    piston = half.questions[2].parts["piston seal"]
+    assert piston[1] == pytest.approx(piston[0], rel=1e-12)
+    assert half.questions[2].steps == (("rod seal", rod[1] - rod[0]),)
+    assert (half.questions[0].best, half.questions[1].best, half.questions[2].best) == (
+        None,
+    ) * 2 + (1,)
+    assert any("swing" in path for path in found.duties_differ)
+
+
+def test_one_part_alone_is_the_reason(base):
+    """A cap of half the thickness: all of the saved mass is in the caps, none elsewhere."""
+    thin = base.changed({"caps.thickness": 0.004})
+    found = ao.compare(base, thin)
+    lighter = found.questions[0]
+    assert (lighter.best, lighter.other) == (1, 0)
+    parts = dict(lighter.steps)
+    saved = lighter.values[1] - lighter.values[0]
+    assert sum(parts.values()) == pytest.approx(saved, rel=1e-9)
+    assert parts["caps"] < 0
+    assert sentences(found)[0].startswith("lighter: B, ")
+
+
+def test_ties_have_no_winner_and_groups_do(base):
+    """Equal designs in a respect are equal in words; two that lead are both named."""
+    slow = base.changed({"load_cases[swing].speed": 0.15})
+    found = ao.compare(base, slow)
+    assert sentences(found)[0] == "lighter: none, all are equally light"
+    heavy = base.changed({"caps.thickness": 0.012})
+    three = ao.compare(base, slow, heavy)
+    assert three.questions[0].leaders == (0, 1)
+    assert sentences(three)[0].startswith("lighter: A and B, ")
+    assert "their duties differ (load_cases[swing].speed)" in sentences(three)[-1]
+
+
+def test_any_pair_of_shipped_designs(shipped):
+    """Whatever their build: tables fit the terminal, labels the paper, JSON is JSON."""
+    for a, b in itertools.combinations(shipped.values(), 2):
+        found = ao.compare(a, b)
+        for width in (80, 100):
+            text = comparison_text(found, width=width)
+            assert max(map(len, text.splitlines())) <= width, (a.name, b.name)
+        assert comparison_text(found, unicode=False).isascii()
+        ink = comparison_figure(found)
+        boxes = ink.text_boxes()
+        for words, left, top, right, bottom in boxes:
+            assert left >= 0, words
+            assert right <= ink.width, words
+            assert top >= 0, words
+            assert bottom <= ink.height, words
+        for one, two in itertools.combinations(boxes, 2):
+            apart = one[3] <= two[1] or two[3] <= one[1] or one[4] <= two[2] or two[4] <= one[2]
+            assert apart, (one, two)
+
+
+def test_many_designs_at_once(shipped):
+    """All shipped ones: the first in every piece of a table, each design in some piece."""
+    found = ao.compare(*shipped.values())
+    text = comparison_text(found, width=80)
+    assert max(map(len, text.splitlines())) <= 80
+    heads = [line.split() for line in text.splitlines() if line.split()[:1] == ["A"]][1:]
+    assert all(head[0] == "A" and len(head) > 1 for head in heads)
+    assert {label for head in heads for label in head} >= set(found.labels)
+    data = ao.comparison_json(found)
+    assert [one["label"] for one in data["designs"]] == list("ABCDEFGH"[: len(SHIPPED)])
+    for row in data["differences"]:
+        assert len(row["values"]) == len(SHIPPED)
+        assert len({str(value) for value in row["values"]}) > 1, row
+    assert set(data["answers"]) == {"lighter", "stiffer", "smoother"}
+
+
+@settings(max_examples=6)
+@given(st.floats(0.0205, 0.029), st.floats(0.0005, 0.004))
+def test_turned_round_it_says_the_same(bore, thickness):
+    """The better design and what each part changes do not depend on the order."""
+    a = ao.evaluate(ao.read(SMALL))
+    b = ao.evaluate(
+        ao.read(SMALL, set={"cylinder.bore": bore, "barrel.layup[1].thickness": thickness})
+    )
+    one, two = ao.compare(a, b), ao.compare(b, a)
+    assert [c.path for c in one.changes] == [c.path for c in two.changes]
+    for x, y in zip(one.questions, two.questions, strict=True):
+        assert (x.best is None) == (y.best is None)
+        if x.best is not None:
+            assert x.best == 1 - y.best
+            assert dict(x.steps) == dict(y.steps)
+
+
+def test_runs_are_compared_as_they_were(tmp_path, monkeypatch):
+    """The optimum of a run beside the file it came from; --set does not reach a run."""
+    monkeypatch.setenv("ACTUATOR_OPT_RUNS", str(tmp_path / "runs"))
+    design = tmp_path / "small.yaml"
+    design.write_text(SMALL)
+    optimum = run("optimise", design, "--json").json
+    result = run("compare", design, "last", "--json", "--out", tmp_path / "out")
+    data = result.json
+    assert data["metrics"]["mass"]["values"][1] == optimum["metrics"]["mass"]["value"]
+    assert {row["path"] for row in data["differences"]} >= {"cylinder.bore"}
+    assert data["designs"][1]["origin"].startswith("run ")
+    assert sorted(one.name for one in (tmp_path / "out").iterdir()) == [
+        "comparison.png", "comparison.svg",
+    ]  # fmt: skip
+    assert run("compare", design, "last", "--set", "load.mass=3 kg").code == 2
+    assert run("compare", "last", "last", "--json").code == 3
+
+
+def test_what_cannot_be_compared(tmp_path):
+    """One, none, the same twice, unreadable ones: all faults at once, nothing written."""
+    good = tmp_path / "good.yaml"
+    good.write_text(SMALL)
+    renamed = tmp_path / "renamed.yaml"
+    renamed.write_text(SMALL.replace("name: test bench", "name: other"))
+    bad = tmp_path / "bad.yaml"
+    bad.write_text(SMALL.replace("22 mm", "-22 mm"))
+    assert run("compare").code == 2
+    one = run("compare", good, "--json")
+    assert (one.code, one.errors[0]["message"]) == (2, "one design cannot be compared")
+    for twice in ((good, good), (good, renamed)):
+        same = run("compare", *twice, "--json", "--out", tmp_path / "out")
+        assert same.code == 3
+        assert "are the same design" in same.errors[0]["message"]
+    faults = run("compare", good, bad, tmp_path / "none.yaml", "--json").errors
+    assert {fault["file"] for fault in faults} == {str(bad), str(tmp_path / "none.yaml")}
+    assert run("compare", *[good] * 13).code == 2
+    assert run("compare", good, "2024", "--json").code == 3
+    assert not (tmp_path / "out").exists()
+    piped = run("compare", "-", DESIGNS / "knee.yaml", "--json", stdin=SMALL.encode())
+    assert piped.json["designs"][0]["origin"] == "<stdin>"
+
+
+def test_an_unknown_value_is_said(base):
+    """A metric without an answer has no winner; the reason stands in the sentence."""
+    evaluation = ao.evaluate(base)
+    from dataclasses import replace
+
+    lost = dict(evaluation.metrics)
+    lost["stiffness_min"] = replace(lost["stiffness_min"], value=None, why="no stroke")
+    other = ao.evaluate(base.changed({"caps.thickness": 0.005}))
+    found = ao.compare(other, replace(evaluation, metrics=lost))
+    assert "cannot be said; stiffness of B is not known: no stroke" in sentences(found)[1]
