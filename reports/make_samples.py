@@ -14,7 +14,15 @@ import actuator_opt as ao
 
 ROOT = Path(__file__).resolve().parent.parent
 SAMPLES = ROOT / "reports" / "samples"
-STUDIES = ("aalto_rig", "knee_materials", "knee_dynamics", "knee_seals", "course_servo")
+STUDIES = (
+    "aalto_rig",
+    "knee_materials",
+    "knee_dynamics",
+    "knee_seals",
+    "knee_pressure",
+    "knee_custom_constraint",
+    "course_servo",
+)
 
 
 def designs() -> None:

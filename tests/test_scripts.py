@@ -43,13 +43,18 @@ def test_every_script_of_the_folder_is_tested() -> None:
         "course_servo.py",
         "custom_metric.py",
         "knee_calibration.py",
+        "knee_custom_constraint.py",
         "knee_dynamics.py",
+        "knee_pressure.py",
         "knee_seals.py",
         "knee_materials.py",
     }
 
 
-@pytest.mark.parametrize("name", ["composite_saving.py", "custom_metric.py"])
+@pytest.mark.parametrize(
+    "name",
+    ["composite_saving.py", "custom_metric.py", "knee_custom_constraint.py", "knee_pressure.py"],
+)
 def test_a_script_serves_as_a_plugin_file(name) -> None:
     """What a script declares can be evaluated with ``--plugin``, finite and with its own label."""
     plugins = load(SCRIPTS / name)

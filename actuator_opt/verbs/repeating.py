@@ -146,6 +146,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--plugin", action="append", default=[])
     made.add_argument("--starts", type=int, default=6)
     made.add_argument("--seed", type=int, default=0)
+    made.add_argument("--yield", type=float, dest="yield_target")
     for name in _VALUES:
         made.add_argument(name)
     for name in _FLAGS:
@@ -191,6 +192,7 @@ def _again(
         whole_plies=asked.whole_plies,
         standard_sizes=asked.standard_sizes,
         certify=asked.certify,
+        yield_target=asked.yield_target,
     )
     if asked.verify_dynamics is None:
         return found, []
