@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from . import streams
-from .cli_shared import read_actuator
-from .errors import Diagnostic, ExitCode, UsageError
+from .cli_shared import check_targets, read_actuator, say_files
+from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from .options import REPORTS, DesignFile, Json, PluginFile, Quiet, Seed, Set
+
+if TYPE_CHECKING:
+    from .variants import Swept
 
 METHODS = ("grid", "sobol", "lhs")
 
@@ -51,6 +54,22 @@ def sweep(
         str | None,
         typer.Option("--scheduler", metavar="ADDRESS", help="Work on this Dask cluster instead."),
     ] = None,
+    figures: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--figure",
+            metavar="KIND",
+            help="Draw parallel, scatter, contour or ucurves as PNG and SVG. Repeatable.",
+        ),
+    ] = None,
+    show: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--show",
+            metavar="METRIC",
+            help="A metric of the figures; default: the objective and requirements. Repeatable.",
+        ),
+    ] = None,
     yes: Annotated[
         bool, typer.Option("--yes", help="Keep more than a million points without asking.")
     ] = False,
@@ -59,7 +78,9 @@ def sweep(
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
-    out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Folder of the figures.")
+    ] = REPORTS,
 ) -> None:
     """Evaluate many variants of a design."""
     from . import verbs
@@ -69,6 +90,10 @@ def sweep(
         raise UsageError(Diagnostic(f"--method {method}: unknown", f"use {', '.join(METHODS)}"))
     if workers is not None and workers < 1:
         raise UsageError(Diagnostic(f"--workers {workers}", "give 1 or more"))
+    if show and not figures:
+        raise UsageError(Diagnostic("--show without --figure", "add --figure parallel, say"))
+    if figures:
+        check_targets(out, None)
     actuator = read_actuator(design, sets, plugin)
     with nullcontext() if quiet else streams.watching():
         found = verbs.sweep(
@@ -84,17 +109,43 @@ def sweep(
             workers=workers,
             scheduler=scheduler,
             yes=yes,
+            figures=figures or [],
+            show=show or [],
         )
+    files, fault = _drawn(found, figures or [], show or [], out)
     if as_json:
-        streams.out_json(found.to_dict())
+        told = found.to_dict() | ({"files": files} if files else {})
+        faults = [] if fault is None else [one.to_dict() for one in fault.diagnostics]
+        streams.out_json(told | ({"errors": faults} if faults else {}))
+        if fault is not None:
+            raise typer.Exit(fault.exit_code)
     else:
         from .reporting.sweep_text import sweep_text
 
         streams.out(sweep_text(found, **streams.style()))
         if not quiet and csv is not None:
             streams.err(f"wrote {csv}")
+        if not quiet:
+            say_files(files)
+        if fault is not None:
+            raise fault
     if not found.feasible:
         raise typer.Exit(ExitCode.MISSED)
+
+
+def _drawn(
+    found: Swept, figures: list[str], show: list[str], out: Path
+) -> tuple[list[dict[str, str]], ActuatorError | None]:
+    """The files of figures, or the fault that is told once the sweep's results are."""
+    from . import verbs
+
+    if not figures:
+        return [], None
+    try:
+        paths = verbs.draw_sweep(found, figures, show=show, out=out)
+    except ActuatorError as error:
+        return [], error
+    return [{"path": str(path)} for path in paths], None
 
 
 def _kept(reduce: str | None, store: Path | None, csv: Path | None) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from .build import SENSES, TOLERANCE
 from .kernel import Subject, compute
 from .limits import Limit, all_limits
 from .rows import Computed, by_case, rows_of
+from .values import Values
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,13 +60,34 @@ def evaluate_many(
     }
     limits = limits_of(subject)
     margin, missed = np.full(count, np.inf), np.zeros(count, dtype=np.int32)
+    for number, value in _margins(limits, computed, v, count):
+        worse = ~(value >= margin)  # NaN is worst
+        margin = np.where(worse, np.where(np.isnan(value), -np.inf, value), margin)
+        missed[worse] = number
+    return Many(metrics, margin, missed, limits)
+
+
+@np.errstate(all="ignore")
+def margins_of(subject: Subject, varied: Mapping[str, Array], count: int) -> Array:
+    """The margin of every limit of such designs, (limits, designs), in the order of `limits_of`.
+
+    Infinity where a limit does not apply, NaN where it has no finite answer.
+    """
+    v = subject.values(varied)
+    limits = limits_of(subject)
+    found = np.full((len(limits), count), np.inf)
+    for number, value in _margins(limits, compute(subject, v).computed, v, count):
+        found[number] = np.minimum(found[number], value)
+    return found
+
+
+def _margins(
+    limits: Sequence[Limit], computed: Computed, v: Values, count: int
+) -> Iterator[tuple[int, Array]]:
+    """Number of a limit, with its margins (designs,) in one case at one place."""
     for number, limit in enumerate(limits):
         for row in rows_of(limit, computed, v):
-            value = np.broadcast_to(row.margin, (count,))
-            worse = ~(value >= margin)  # NaN is worst
-            margin = np.where(worse, np.where(np.isnan(value), -np.inf, value), margin)
-            missed[worse] = number
-    return Many(metrics, margin, missed, limits)
+            yield number, np.broadcast_to(row.margin, (count,))
 
 
 def limits_of(subject: Subject) -> tuple[Limit, ...]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..store import write_all
 from . import fallback
+from .blocks import printable
 from .ink import Ink
 from .writer import PIXELS_PER_INCH
 
@@ -23,6 +24,9 @@ def images(ink: Ink, stem: str) -> dict[str, bytes]:
         "text.usetex": False,
         "svg.hashsalt": stem,
     }
+    for mark in ink.marks:
+        if "text" in mark:
+            mark["text"] = printable(mark["text"])
     contents = {}
     with mpl.rc_context(style):
         figure = fallback.drawn(ink)

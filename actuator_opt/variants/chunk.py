@@ -76,6 +76,8 @@ class Study:
     plugins: tuple[Plugin, ...] = ()
     full: bool = True
     """Whether every metric is asked for, or only what tells the best."""
+    more: tuple[str, ...] = ()
+    """Metrics asked for beside what tells the best."""
     goal: Goal = field(init=False)
     apart: tuple[str, ...] = field(init=False)
     contradicts: bool = field(init=False)
@@ -87,9 +89,9 @@ class Study:
         subject = self._made({})
         self.goal = goal_of(subject)
         self._quantities = dict(subject.quantities)
-        limits = limits_of(subject)
-        self.limits = tuple(limit.name for limit in limits)
-        judged = {limit.metric for limit in limits} | set(self.goal.weights) | {"mass"}
+        self.binding = limits_of(subject)
+        self.limits = tuple(limit.name for limit in self.binding)
+        judged = {limit.metric for limit in self.binding} | {*self.goal.weights, "mass", *self.more}
         self.wanted = None if self.full or self.plugins else frozenset(judged)
         self.metrics = tuple(
             name for name in self._quantities if self.wanted is None or name in self.wanted
@@ -153,7 +155,7 @@ class Study:
         rows = np.full((n, len(self.columns)), np.nan)
         rows[:, : len(points.numbers)] = points.numbers[self.order].T
         failures: dict[int, str] = {}
-        for places, subject, varied in self._groups(points):
+        for places, subject, varied in self.groups(points):
             if isinstance(subject, str):
                 failures |= dict.fromkeys(map(int, places), subject)
                 continue
@@ -223,7 +225,7 @@ class Study:
         margin = np.where(np.isfinite(found.margin), found.margin, np.nan)
         rows[places, -3:] = np.stack([margin, found.missed, found.feasible], axis=1)
 
-    def _groups(self, points: Points) -> Iterator[tuple[Array, Subject | str, dict[str, Array]]]:
+    def groups(self, points: Points) -> Iterator[tuple[Array, Subject | str, dict[str, Array]]]:
         """Points of one prepared design, with the arrays that vary; why, where there is none."""
         paths = [axis.path for axis in self.plan.numeric]
         apart = [k for k, path in enumerate(paths) if path in self.apart]
@@ -258,6 +260,10 @@ class Study:
     def quantity(self, metric: str) -> Quantity:
         """What a metric is."""
         return self._quantities[metric]
+
+    def place(self, name: str) -> int:
+        """The column of a number that varies, of a metric or of what tells the verdict."""
+        return next(k for k, column in enumerate(self.columns) if column.name == name)
 
     @property
     def text(self) -> str:

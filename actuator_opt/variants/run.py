@@ -6,7 +6,7 @@ import heapq
 import os
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
@@ -21,6 +21,7 @@ from ..numeric import Array
 from ..version import VERSION
 from .chunk import Chunk, Study
 from .cluster import on_cluster
+from .sample import Sample
 
 CHUNK = 4096
 """Points of a chunk: one transaction, one message between processes."""
@@ -75,6 +76,8 @@ class Swept:
     missed: dict[str, int] = field(default_factory=dict)
     """How often each limit was the one missed most."""
     seconds: float = 0.0
+    sample: Sample = field(default_factory=Sample)
+    """Rows to draw."""
 
     def variables(self, best: Best) -> dict[str, float | str]:
         """The varied values of one of the best designs, by PATH (SI)."""
@@ -116,6 +119,8 @@ class Swept:
         self.computed += chunk.computed
         self.reused += max(len(chunk.rows.numbers) - chunk.computed, 0)
         self.screened += 0 if chunk.places is None else chunk.computed - len(chunk.places)
+        if chunk.places is None:
+            self.sample.add(self.study, chunk)
         self.failed += len(chunk.rows.failures)
         for reason in chunk.rows.failures.values():
             self.failures[reason] = self.failures.get(reason, 0) + 1
@@ -144,6 +149,7 @@ def sweep(
     workers: int | None = None,
     scheduler: str | None = None,
     each: Callable[[Chunk], None] | None = None,
+    watch: Sequence[str] = (),
 ) -> Swept:
     """Evaluate every point of a sweep.
 
@@ -155,6 +161,7 @@ def sweep(
     workers : processes; default: one per core
     scheduler : address of a Dask scheduler to work on instead
     each : called with every chunk, in order
+    watch : metrics whose Pareto lines are kept, of every design
 
     Raises
     ------
@@ -162,7 +169,7 @@ def sweep(
         the database cannot be used
     """
     began = time.perf_counter()
-    found = Swept(study, study.plan.count)
+    found = Swept(study, study.plan.count, sample=Sample(tuple(watch)))
     size = CHUNK if study.full else REDUCED
     starts = range(0, study.plan.count, size)
     computed = partial(_computed, study, len(starts), workers, scheduler)

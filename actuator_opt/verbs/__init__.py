@@ -47,7 +47,7 @@ from .simulations import (
     write_signals,
     write_simulation,
 )
-from .sweeping import sweep
+from .sweeping import draw_sweep, sweep
 from .uncertain import uncertainty, write_draws, write_uncertainty
 
 __all__ = [
@@ -71,6 +71,7 @@ __all__ = [
     "doctor",
     "draw_comparison",
     "draw_run",
+    "draw_sweep",
     "evaluate",
     "export",
     "fitting",

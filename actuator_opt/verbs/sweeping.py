@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 from ..design import Design
 from ..errors import Diagnostic, InputError, UsageError
 from .actuator import Actuator, Plugins, as_actuator, unanswered
+from .reports import file_name
 
 if TYPE_CHECKING:
     from ..variants import Swept
+    from ..variants.chunk import Study
     from ..variants.plan import Method
 
 LARGE = 1_000_000
@@ -33,6 +35,9 @@ def sweep(
     scheduler: str | None = None,
     yes: bool = False,
     plugins: Plugins = (),
+    figures: Sequence[str] = (),
+    show: Sequence[str] = (),
+    out: str | Path | None = None,
 ) -> Swept:
     """Evaluate many variants of a design.
 
@@ -51,11 +56,15 @@ def sweep(
     scheduler : address of a Dask scheduler to work on instead (extra `cluster`)
     yes : whether a sweep of a million points that are all kept is meant
     plugins : the user's metrics and constraints
+    figures : "parallel", "scatter", "contour", "ucurves", drawn as PNG and SVG
+    show : metrics of the figures; default: the objective and the requirements
+    out : folder of the figures; without it they are only prepared for `draw_sweep`
 
     Raises
     ------
     UsageError
-        nothing to vary, a form that is not one, or a size that must be confirmed
+        nothing to vary, a form that is not one, a size that must be confirmed, or a figure that
+        does not fit the sweep
     InputError
         a PATH or value that is none, or a store that cannot be used
     """
@@ -76,7 +85,7 @@ def sweep(
         message = f"{chosen.count:,} points would all be kept".replace(",", " ")
         remedy = "add --yes, or keep the best alone with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
-    study = Study(free, chosen, actuator.plugins, full=not reduce)
+    study = Study(free, chosen, actuator.plugins, full=not reduce, more=tuple(show))
     if actuator.plugins and scheduler is not None:
         message = "own metrics cannot travel to other machines"
         raise UsageError(Diagnostic(message, "leave out --scheduler or --plugin"))
@@ -85,8 +94,64 @@ def sweep(
         "keep": keep,
         "workers": 1 if actuator.plugins else workers,
         "scheduler": scheduler,
+        "watch": _watched(study, figures, show),
     }
     if csv is None:
-        return run(study, **how)
-    with SweepTable(study, Path(csv)) as table:
-        return run(study, each=table.add, **how)
+        found = run(study, **how)
+    else:
+        with SweepTable(study, Path(csv)) as table:
+            found = run(study, each=table.add, **how)
+    if figures and out is not None:
+        draw_sweep(found, figures, show=show, out=out)
+    return found
+
+
+def _watched(study: Study, figures: Sequence[str], show: Sequence[str]) -> tuple[str, ...]:
+    """The metrics whose Pareto lines figures need; a faulty figure is refused before the work."""
+    if not figures:
+        return ()
+    from ..reporting.sweep_figures import watched
+
+    return watched(study, figures, show)
+
+
+def draw_sweep(
+    swept: Swept,
+    figures: Sequence[str],
+    *,
+    show: Sequence[str] = (),
+    out: str | Path = "reports",
+    stem: str | None = None,
+) -> list[Path]:
+    """Draw figures of a sweep as PNG and SVG.
+
+    Parameters
+    ----------
+    swept : what `sweep` came to
+    figures : "parallel" (what varies, the objective, metrics), "scatter" (metrics in pairs with
+        their Pareto lines), "contour" (of metrics over the two numbers of a grid, with the
+        boundary of every limit), "ucurves" (stiffness over the stroke of the best designs)
+    show : metrics; default: the objective and the requirements, in a contour the objective
+    out, stem : where to; default: the design's name in ``reports/``
+
+    Returns
+    -------
+    the files
+
+    Raises
+    ------
+    UsageError
+        no such figure or metric, or a sweep that does not fit it
+    InputError
+        no feasible design, a metric without values, or a folder that cannot be written
+
+    Notes
+    -----
+    At most 4096 of the feasible designs and of the others are kept to be drawn, an even choice of
+    more, which the figure tells. Pareto lines are of every feasible design where the metrics were
+    known before the sweep (``sweep(..., figures=["scatter"], show=...)``), and of those kept else.
+    """
+    from ..reporting.sweep_figures import write_figures
+
+    name = stem or Path(file_name(swept.study.design, None)).stem
+    return write_figures(swept, figures, show, Path(out), name)
