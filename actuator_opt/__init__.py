@@ -5,10 +5,10 @@
 '0.6.0'
 
 The verbs (`read`, `check`, `evaluate`, `optimise`, `sensitivity`, `pareto`, `sweep`,
-`uncertainty`, `compare`, `seal`, `identify`, `calibrate`, `simulate`, `report`, `export`, `save`)
-are the same as in the terminal; `bending` is `identify --span` there, `compare_measured`,
-`servo_sensitivities` and `verify_dynamics` are options. Heavy modules load when a verb needs
-them.
+`uncertainty`, `compare`, `explore`, `seal`, `identify`, `calibrate`, `simulate`, `report`,
+`export`, `save`) are the same as in the terminal; `bending` is `identify --span` there,
+`compare_measured`, `servo_sensitivities` and `verify_dynamics` are options. Heavy modules load
+when a verb needs them.
 """
 
 from __future__ import annotations
@@ -46,6 +46,7 @@ if TYPE_CHECKING:
         draw_run,
         draw_sweep,
         evaluate,
+        explore,
         export,
         identify,
         optimise,
@@ -117,6 +118,7 @@ _HOMES = {
     "draw_sweep": "verbs",
     "evaluate": "verbs",
     "export": "verbs",
+    "explore": "verbs",
     "identify": "verbs",
     "load_library": "design.materials",
     "metric": "evaluation.plugin",
@@ -187,6 +189,7 @@ __all__ = [
     "draw_run",
     "draw_sweep",
     "evaluate",
+    "explore",
     "export",
     "identify",
     "load_library",

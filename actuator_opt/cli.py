@@ -17,6 +17,7 @@ from typer.exceptions import TyperException
 from . import cli_materials, cli_runs, run_store, streams
 from .cli_compare import compare
 from .cli_doctor import doctor
+from .cli_explore import explore
 from .cli_export import export
 from .cli_optimise import optimise, outcome_of, sensitivity
 from .cli_pareto import pareto
@@ -191,6 +192,7 @@ app.command()(identify)
 app.command()(calibrate)
 app.command()(simulate)
 app.command()(sweep)
+app.command()(explore)
 app.command()(sensitivity)
 app.command()(export)
 app.command()(uncertainty)

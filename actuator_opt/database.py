@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
@@ -35,6 +35,9 @@ CREATE TABLE IF NOT EXISTS rows (
   id INTEGER PRIMARY KEY, study INTEGER NOT NULL, key BLOB NOT NULL, numbers BLOB, failure TEXT,
   UNIQUE (study, key)
 );
+CREATE TABLE IF NOT EXISTS texts (
+  study INTEGER NOT NULL, path TEXT NOT NULL, text TEXT NOT NULL, PRIMARY KEY (study, path, text)
+) WITHOUT ROWID;
 """
 
 
@@ -93,7 +96,14 @@ class Database:
 
 @contextmanager
 def opened(
-    path: Path, *, study: str, name: str, design: str, columns: Sequence[Column], version: str
+    path: Path,
+    *,
+    study: str,
+    name: str,
+    design: str,
+    columns: Sequence[Column],
+    version: str,
+    texts: Iterable[tuple[str, str]] = (),
 ) -> Iterator[Database]:
     """Open or begin the database of a study.
 
@@ -104,6 +114,7 @@ def opened(
     name, design : of the study, for whoever reads the file
     columns : of its rows
     version : of the models; another one's rows are not mixed in
+    texts : PATHs with the texts (materials, ...) they take, which rows name by their key alone
 
     Raises
     ------
@@ -123,7 +134,10 @@ def opened(
             select = "SELECT id, columns FROM studies WHERE hash = ?"
             number, kept = connection.execute(select, (study,)).fetchone()
             if kept != told:
-                raise _refused(path, "holds other columns of this study", "name another file")
+                raise refused(path, "holds other columns of this study", "name another file")
+            with connection:
+                put = "INSERT OR IGNORE INTO texts VALUES (?, ?, ?)"
+                connection.executemany(put, [(number, *one) for one in texts])
             yield Database(connection, number, len(columns))
         finally:
             connection.close()
@@ -133,7 +147,7 @@ def _require_ours(connection: sqlite3.Connection, path: Path, version: str) -> N
     """Make the tables of a new file; refuse what is not ours."""
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
     if tables and "meta" not in tables:
-        raise _refused(path, "is another program's database", "name another file")
+        raise refused(path, "is another program's database", "name another file")
     connection.execute("PRAGMA journal_mode = WAL")
     connection.execute("PRAGMA synchronous = NORMAL")
     connection.execute(
@@ -144,15 +158,22 @@ def _require_ours(connection: sqlite3.Connection, path: Path, version: str) -> N
             connection.execute(statement)
         put = "INSERT OR IGNORE INTO meta VALUES (?, ?)"
         connection.executemany(put, [("format", str(FORMAT)), ("version", version)])
+    require_version(connection, path, version, "name another file for the new rows")
+
+
+def require_version(connection: sqlite3.Connection, path: Path, version: str, remedy: str) -> None:
+    """Refuse another format, and rows of other models."""
     meta = dict(connection.execute("SELECT key, value FROM meta"))
-    if meta["format"] != str(FORMAT):
-        raise _refused(path, f"has the format {meta['format']}, not {FORMAT}", "name another file")
-    if meta["version"] != version:
-        message = f"holds rows of the models {meta['version']}, these are {version}"
-        raise _refused(path, message, "name another file for the new rows")
+    if meta.get("format") != str(FORMAT):
+        message = f"has the format {meta.get('format')}, not {FORMAT}"
+        raise refused(path, message, "name another file")
+    if meta.get("version") != version:
+        message = f"holds rows of the models {meta.get('version')}, these are {version}"
+        raise refused(path, message, remedy)
 
 
-def _refused(path: Path, message: str, remedy: str) -> InputError:
+def refused(path: Path, message: str, remedy: str) -> InputError:
+    """What is wrong with a database, in one line."""
     return InputError(Diagnostic(message, remedy, str(path)))
 
 
@@ -164,8 +185,8 @@ def _diagnosed(path: Path) -> Iterator[None]:
     except sqlite3.DatabaseError as error:
         text = str(error)
         if "not a database" in text or "malformed" in text:
-            raise _refused(path, "is no database of sweeps", "name another file") from None
+            raise refused(path, "is no database of sweeps", "name another file") from None
         remedy = "rows kept so far stay; make room, or name a file where you may write"
         if "unable to open" in text:
             remedy = "name a file in a folder that is there and where you may write"
-        raise _refused(path, f"cannot be written: {text}", remedy) from None
+        raise refused(path, f"cannot be written: {text}", remedy) from None

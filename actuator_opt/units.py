@@ -215,8 +215,8 @@ class Unit:
     def from_si(self, value: float) -> float:
         """A value in this unit of an SI value."""
         inverse = _INVERSES.get(self.scale)
-        value -= self.offset
-        return value / self.scale if inverse is None else value * inverse
+        moved = value - self.offset  # not in place: it may be an array of the caller's
+        return moved / self.scale if inverse is None else moved * inverse
 
 
 def _normalise(text: str) -> str:

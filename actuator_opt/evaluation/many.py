@@ -81,6 +81,18 @@ def margins_of(subject: Subject, varied: Mapping[str, Array], count: int) -> Arr
     return found
 
 
+def margins_many(subject: Subject, varied: Mapping[str, Array], count: int) -> dict[str, Array]:
+    """The margin of every limit (designs,) of designs that differ in some numbers, by its name.
+
+    Infinite where it asks nothing of a design; minus infinity where it cannot be known.
+    """
+    found = margins_of(subject, varied, count)
+    return {
+        limit.name: np.where(np.isnan(row), -np.inf, row)
+        for limit, row in zip(limits_of(subject), found, strict=True)
+    }
+
+
 def _margins(
     limits: Sequence[Limit], computed: Computed, v: Values, count: int
 ) -> Iterator[tuple[int, Array]]:

@@ -97,7 +97,7 @@ def write_figures(
     swept: Swept, kinds: Sequence[str], show: Sequence[str], folder: Path, stem: str
 ) -> list[Path]:
     """Write STEM-sweep-FIGURE.png and .svg of every figure, whole or not at all."""
-    contents = {}
+    contents: dict[str, bytes] = {}
     for name, ink in sweep_figures(swept, kinds, show).items():
         contents |= images(ink, f"{stem}-sweep-{name}")
     writer.write_all(folder, contents)

@@ -292,9 +292,7 @@ class Study:
         data = np.ascontiguousarray(points.numbers[self.order].T, dtype="<f8").tobytes()
         width = 8 * len(points.numbers)
         heads = {
-            variant: hashlib.blake2b(
-                json.dumps(self.plan.texts(variant), sort_keys=True).encode(), digest_size=16
-            )
+            variant: key_head(self.plan.texts(variant))
             for variant in map(int, np.unique(points.variant))
         }
         found = []
@@ -303,6 +301,11 @@ class Study:
             digest.update(data[k * width : (k + 1) * width])
             found.append(digest.digest())
         return found
+
+
+def key_head(texts: Mapping[str, str]) -> hashlib.blake2b:
+    """A key as far as its texts decide it; the row's numbers come after them."""
+    return hashlib.blake2b(json.dumps(dict(texts), sort_keys=True).encode(), digest_size=16)
 
 
 def _first(error: InputError) -> str:

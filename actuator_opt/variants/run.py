@@ -242,6 +242,7 @@ def _stored(
         design=study.text,
         columns=study.columns,
         version=VERSION,
+        texts=[(axis.path, text) for axis in study.plan.named for text in axis.texts],
     ) as base:
         halves: deque[_Half] = deque()
 

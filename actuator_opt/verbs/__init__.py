@@ -4,6 +4,7 @@ from ..evaluation.comparison import Comparison
 from .actuator import Actuator, read
 from .checking import check
 from .comparing import compare, comparison_json, draw_comparison
+from .exploring import explore
 from .exports import export
 from .fronts import pareto, write_front, write_front_csv
 from .installation import Installation, doctor
@@ -73,6 +74,7 @@ __all__ = [
     "draw_run",
     "draw_sweep",
     "evaluate",
+    "explore",
     "export",
     "fitting",
     "identify",

@@ -1,0 +1,41 @@
+"""`explore`: a kept sweep as one page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from . import streams
+from .cli_shared import say_files
+from .options import REPORTS, Json, PluginFile, Quiet
+
+
+def explore(
+    store: Annotated[Path, typer.Argument(metavar="F.db", help="Database of `sweep --store`.")],
+    study: Annotated[
+        int | None,
+        typer.Option("--study", metavar="N", help="Which of its studies; default: the newest."),
+    ] = None,
+    rows: Annotated[
+        int,
+        typer.Option("--rows", metavar="N", help="Most designs shown; of more, an even sample."),
+    ] = 5000,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FILE", help="The page (.html), or a folder for it.")
+    ] = REPORTS,
+    plugin: PluginFile = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+) -> None:
+    """Write a kept sweep as one HTML page to look through, offline."""
+    from . import verbs
+
+    found = verbs.explore(store, out=out, study=study, rows=rows, plugins=plugin or [])
+    files = [file.to_dict() for file in found]
+    if as_json:
+        streams.out_json({"files": files})
+    elif not quiet:
+        say_files(files)

@@ -1,0 +1,150 @@
+"""Reading the database of a sweep: nothing is made, changed or locked."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import quote
+
+import numpy as np
+
+from .database import BUSY, Column, refused, require_version
+from .errors import Diagnostic, InputError
+from .numeric import Array
+from .store import read_bytes
+
+MAGIC = b"SQLite format 3\0"
+"""First bytes of every SQLite file."""
+
+SOME = 4096
+"""Rows read at once."""
+
+
+class Kept(NamedTuple):
+    """One study of a database; `texts` are those that its rows may take, by PATH."""
+
+    number: int
+    hash: str
+    name: str
+    design: str
+    columns: tuple[Column, ...]
+    rows: int
+    failures: dict[str, int]
+    """How often each reason made a design fail."""
+    texts: dict[str, tuple[str, ...]]
+
+
+class Reader:
+    """An open database."""
+
+    def __init__(self, connection: sqlite3.Connection, path: Path) -> None:
+        self.connection, self.path = connection, path
+
+    def study(self, number: int | None = None) -> Kept:
+        """The study of a number, or the newest.
+
+        Raises
+        ------
+        InputError
+            no such study, or one without rows
+        """
+        select = "SELECT id, hash, name, design, columns FROM studies ORDER BY id"
+        every = self.connection.execute(select).fetchall()
+        if not every:
+            raise refused(self.path, "holds no study", "run `sweep --store` on it first")
+        found = [one for one in every if number in (None, one[0])]
+        if not found:
+            have = ", ".join(f"{one[0]} ({one[2]})" for one in every[-8:])
+            raise refused(self.path, f"has no study {number}", f"--study is one of {have}")
+        number, hashed, name, design, columns = found[-1]
+        count = "SELECT count(*) FROM rows WHERE study = ?"
+        rows = self.connection.execute(count, (number,)).fetchone()[0]
+        if not rows:
+            raise refused(self.path, f"study {number} has no rows yet", "let its sweep run first")
+        count = "SELECT failure, count(*) FROM rows WHERE study = ? GROUP BY failure"
+        reasons = dict(self.connection.execute(count, (number,)))
+        reasons.pop(None, None)
+        return Kept(
+            number,
+            hashed,
+            name,
+            design,
+            tuple(Column(*column) for column in json.loads(columns)),
+            rows,
+            dict(sorted(reasons.items(), key=lambda one: (-one[1], one[0]))),
+            self._texts(number),
+        )
+
+    def _texts(self, number: int) -> dict[str, tuple[str, ...]]:
+        tables = {row[0] for row in self.connection.execute("SELECT name FROM sqlite_master")}
+        if "texts" not in tables:
+            return {}
+        found: dict[str, tuple[str, ...]] = {}
+        select = "SELECT path, text FROM texts WHERE study = ? ORDER BY path, text"
+        for path, text in self.connection.execute(select, (number,)):
+            found[path] = (*found.get(path, ()), text)
+        return found
+
+    def rows(self, study: Kept) -> Iterator[tuple[list[bytes], Array]]:
+        """Keys and numbers of the rows that did not fail, some at once, by their key.
+
+        A key is a hash, so that every n-th row is an even sample of the study.
+        """
+        select = "SELECT key, numbers FROM rows WHERE study = ? AND failure IS NULL ORDER BY key"
+        cursor = self.connection.execute(select, (study.number,))
+        width = len(study.columns)
+        while some := cursor.fetchmany(SOME):
+            data = b"".join(numbers for _, numbers in some)
+            if len(data) != 8 * width * len(some):
+                raise refused(self.path, "holds a damaged row", "run its sweep anew")
+            yield [key for key, _ in some], np.frombuffer(data, dtype="<f8").reshape(-1, width)
+
+
+@contextmanager
+def reading(path: Path, version: str) -> Iterator[Reader]:
+    """Open the database of sweeps to read it.
+
+    Raises
+    ------
+    InputError
+        no such file, none of ours, rows of other models, or not to be read
+    """
+    kinds = (".db", ".sqlite", ".sqlite3")
+    if read_bytes(path, most=len(MAGIC), kinds=kinds, what="database of sweeps") != MAGIC:
+        raise refused(path, "is no database of sweeps", "name the file of `sweep --store`")
+    try:
+        connection = _connected(path)
+        try:
+            _require_tables(connection, path)
+            require_version(connection, path, version, "run the sweep again with --store")
+            yield Reader(connection, path)
+        finally:
+            connection.close()
+    except (sqlite3.DatabaseError, json.JSONDecodeError) as error:
+        remedy = "name the file of `sweep --store`, whole"
+        raise InputError(Diagnostic(f"cannot be read: {error}", remedy, str(path))) from None
+
+
+def _connected(path: Path) -> sqlite3.Connection:
+    """A connection that only reads; where no lock can be kept beside the file, it stands still."""
+    name = f"file:{quote(str(path.resolve()))}?mode=ro"
+    connection = sqlite3.connect(name, uri=True, timeout=BUSY)
+    try:
+        connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
+    except sqlite3.OperationalError:
+        connection.close()
+        log = path.with_name(f"{path.name}-wal")
+        if log.exists() and log.stat().st_size:
+            raise
+        connection = sqlite3.connect(f"{name}&immutable=1", uri=True, timeout=BUSY)
+    return connection
+
+
+def _require_tables(connection: sqlite3.Connection, path: Path) -> None:
+    tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
+    if not {"meta", "studies", "rows"} <= tables:
+        raise refused(path, "is no database of sweeps", "name the file of `sweep --store`")

@@ -1,0 +1,156 @@
+// Parallel axes: a line per design; ranges by dragging, or by the handles at their ends.
+const TOP = 66, FOOT = 24;
+let AXES = [];
+
+function axisPlaces() {
+  const box = byId("axes").getBoundingClientRect(), n = STATE.axes.length, side = Math.min(70, box.width / (2 * n));
+  const apart = n > 1 ? (box.width - 2 * side) / (n - 1) : 0;
+  return { apart: n > 1 ? apart : box.width - 20, low: box.height - FOOT, at: (k) => side + k * apart };
+}
+function shareOf(column, value) { return column.high > column.low ? (held(column, value) - column.low) / (column.high - column.low) : 0.5; }
+
+function drawLines() {
+  const { g, w, h } = canvas("lines"), { at, low } = axisPlaces();
+  const columns = STATE.axes.map((k) => COLUMNS[k]), c = COLUMNS[STATE.c];
+  const y = (column, v) => low - shareOf(column, v) * (low - TOP);
+  const trace = (row) => {
+    let pen = false;
+    g.beginPath();
+    columns.forEach((column, k) => {
+      const v = column.values[row];
+      if (v !== v) { pen = false; return; }
+      if (pen) g.lineTo(at(k), y(column, v)); else g.moveTo(at(k), y(column, v));
+      pen = true;
+    });
+    g.stroke();
+  };
+  g.lineWidth = 1;
+  g.strokeStyle = ink("--faint"); g.globalAlpha = Math.min(0.6, 250 / (N - COUNT + 1) + 0.06);
+  for (let k = 0; k < N; k++) if (!VISIBLE[k]) trace(k);
+  g.globalAlpha = Math.min(0.9, 300 / (COUNT + 1) + 0.15);
+  for (let k = 0; k < N; k++) if (VISIBLE[k]) { g.strokeStyle = colour(c, c.values[k]); trace(k); }
+  g.globalAlpha = 1;
+  for (const [row, name] of [[STATE.hover, "--grey"], [STATE.pinned, "--ink"]]) if (row >= 0) {
+    g.lineWidth = 2.5; g.strokeStyle = ink(name); trace(row);
+  }
+  columns.forEach((column, k) => drawAxis(g, w, column, at(k), low, y, STATE.ranges.get(STATE.axes[k])));
+}
+function drawAxis(g, w, column, x, low, y, range) {
+  g.lineWidth = 1.5; g.strokeStyle = ink("--ink");
+  g.beginPath(); g.moveTo(x, TOP); g.lineTo(x, low); g.stroke();
+  if (range) {
+    const from = y(column, Math.min(range[1], column.high)), to = y(column, Math.max(range[0], column.low));
+    g.fillStyle = ink("--accent"); g.globalAlpha = 0.3; g.fillRect(x - 8, from, 16, Math.max(to - from, 2)); g.globalAlpha = 1;
+  }
+  g.fillStyle = ink("--ink"); g.textAlign = "center";
+  g.fillText(fitted(g, highText(column), 90), x, TOP - 9);
+  g.fillText(fitted(g, lowText(column), 90), x, low + 18);
+}
+
+function setRange(column, low, high) {
+  const one = COLUMNS[column];
+  if (low > high) [low, high] = [high, low];
+  if (low <= one.low && high >= one.high) STATE.ranges.delete(column);
+  else STATE.ranges.set(column, [low <= one.low ? -Infinity : low, high >= one.high ? Infinity : high]);
+  refresh();
+}
+// The range of a column within its scale; an end of the scale is no limit.
+function rangeOf(column) { return (STATE.ranges.get(column) || [-Infinity, Infinity]).map((v) => held(COLUMNS[column], v)); }
+
+// A column's name, which may break where a PATH has its joints.
+function broken(column) {
+  const words = document.createElement("span");
+  for (const part of (column.unit ? `${column.name}, ${column.unit}` : column.name).split(/(?<=[._\]])/)) {
+    words.append(part, document.createElement("wbr"));
+  }
+  return words;
+}
+// Names of the axes, and two sliders each.
+function buildAxes() {
+  const box = byId("axes");
+  for (const one of AXES) for (const node of [one.name, ...one.handles]) node.remove();
+  AXES = STATE.axes.map((column) => {
+    const name = document.createElement("div");
+    name.className = "axis-name"; name.append(broken(COLUMNS[column])); name.title = COLUMNS[column].head;
+    const handles = ["least", "most"].map((word, end) => {
+      const node = document.createElement("div");
+      node.className = "handle"; node.tabIndex = 0;
+      node.setAttribute("role", "slider"); node.setAttribute("aria-orientation", "vertical");
+      node.setAttribute("aria-label", `${word} ${COLUMNS[column].head}`);
+      node.addEventListener("keydown", (event) => slide(event, column, end));
+      node.addEventListener("pointerdown", (event) => { event.preventDefault(); node.focus(); brush(event, column, end); });
+      return node;
+    });
+    box.append(name, ...handles);
+    return { column, name, handles };
+  });
+  placeAxes();
+}
+function placeAxes() {
+  const { at, low, apart } = axisPlaces();
+  AXES.forEach((one, k) => {
+    const column = COLUMNS[one.column], wide = Math.min(apart - 8, 170);
+    one.name.style.width = `${wide}px`; one.name.style.left = `${Math.max(at(k) - wide / 2, 0)}px`;
+    rangeOf(one.column).forEach((value, end) => {
+      const node = one.handles[end], share = column.high > column.low ? shareOf(column, value) : end;
+      node.style.left = `${at(k)}px`; node.style.top = `${low - share * (low - TOP) + (end ? -1 : 1)}px`;
+      node.setAttribute("aria-valuemin", column.low); node.setAttribute("aria-valuemax", column.high);
+      node.setAttribute("aria-valuenow", value);
+      node.setAttribute("aria-valuetext", `${shown(column, column.texts ? Math.round(value) : value)} ${column.unit || ""}`.trim());
+    });
+  });
+}
+function slide(event, column, end) {
+  const one = COLUMNS[column], span = one.high - one.low, range = rangeOf(column).slice();
+  const step = one.texts ? 1 : span / 50, far = one.texts ? 1 : span / 5;
+  const moves = { ArrowUp: step, ArrowRight: step, ArrowDown: -step, ArrowLeft: -step, PageUp: far, PageDown: -far };
+  if (event.key === "Delete" || event.key === "Backspace" || event.key === "Escape") setRange(column, one.low, one.high);
+  else if (event.key === "Home") { range[end] = end ? range[0] : one.low; setRange(column, ...range); }
+  else if (event.key === "End") { range[end] = end ? one.high : range[1]; setRange(column, ...range); }
+  else if (moves[event.key]) {
+    let value = Math.min(Math.max(range[end] + moves[event.key], one.low), one.high);
+    value = end ? Math.max(value, range[0]) : Math.min(value, range[1]);
+    if (Math.abs(value - one.low) < span * 1e-6) value = one.low;
+    if (Math.abs(value - one.high) < span * 1e-6) value = one.high;
+    range[end] = value; setRange(column, ...range);
+  } else return;
+  event.preventDefault();
+  say(`${COUNT} of ${N} designs left`);
+}
+// Drag a range: a new one, or one end of the range there is.
+function brush(event, column, end) {
+  const one = COLUMNS[column], box = byId("axes").getBoundingClientRect(), { low } = axisPlaces();
+  const value = (e) => one.low + Math.min(Math.max((low - (e.clientY - box.top)) / (low - TOP), 0), 1) * (one.high - one.low);
+  const started = value(event), from = event.clientY;
+  let moved = false;
+  const move = (e) => {
+    if (Math.abs(e.clientY - from) < 4 && !moved) return;
+    moved = true;
+    let range = [started, value(e)];
+    if (end !== undefined) { range = rangeOf(column).slice(); range[end] = end ? Math.max(value(e), range[0]) : Math.min(value(e), range[1]); }
+    if (one.texts) range = [Math.ceil(Math.min(...range) - 0.5), Math.floor(Math.max(...range) + 0.5)];
+    setRange(column, ...range);
+  };
+  const up = () => {
+    window.removeEventListener("pointermove", move); window.removeEventListener("pointerup", up);
+    if (!moved && end === undefined) setRange(column, one.low, one.high);
+    say(`${COUNT} of ${N} designs left`);
+  };
+  window.addEventListener("pointermove", move); window.addEventListener("pointerup", up);
+}
+function onLines(event) {
+  const box = byId("axes").getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
+  const { at, low } = axisPlaces();
+  const k = STATE.axes.findIndex((_, i) => Math.abs(at(i) - x) < 12);
+  if (k >= 0 && y > TOP - 10 && y < low + 10) { event.preventDefault(); brush(event, STATE.axes[k]); return; }
+  const i = STATE.axes.findIndex((_, j) => j + 1 < STATE.axes.length && at(j) < x && x < at(j + 1));
+  if (i < 0) return;
+  const a = COLUMNS[STATE.axes[i]], b = COLUMNS[STATE.axes[i + 1]], part = (x - at(i)) / (at(i + 1) - at(i));
+  let best = 8, found = -1;
+  for (let row = 0; row < N; row++) if (VISIBLE[row]) {
+    const share = shareOf(a, a.values[row]) * (1 - part) + shareOf(b, b.values[row]) * part;
+    const d = Math.abs(low - share * (low - TOP) - y);
+    if (d < best) { best = d; found = row; }
+  }
+  if (found >= 0) pin(found);
+}

@@ -1,0 +1,107 @@
+"""The page of an explored sweep: markup, style, script and data in one file that loads nothing.
+
+Data stand in a JSON block in which no text can end the block; the script writes texts as texts,
+and the page's own policy runs no other script than this one.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ...store import write_text
+from ...variants.explored import Explored
+from .payload import payload
+
+FOLDER = Path(__file__).parent
+SCRIPTS = ("data", "scatter", "axes", "section", "main")
+_ESCAPES = {c: f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}
+
+
+@dataclass(frozen=True, slots=True)
+class ExplorerFile:
+    """A file of the explorer, with its hash."""
+
+    path: Path
+    sha256: str
+
+    def to_dict(self) -> dict[str, object]:
+        """The JSON form."""
+        return {"path": str(self.path), "sha256": self.sha256}
+
+
+def page(explored: Explored, *, design: str, plugins: Sequence[str] = ()) -> str:
+    """The page as HTML.
+
+    Parameters
+    ----------
+    explored : the sweep
+    design : name of the base design's file, beside the page
+    plugins : files with the user's metrics, for the command
+    """
+    data = payload(explored, design=design, plugins=plugins)
+    style = _text("page.css")
+    script = "".join(_text(f"{name}.js") for name in SCRIPTS)
+    parts = {
+        "TITLE": html.escape(f"{explored.study.design.name}: sweep"),
+        "STYLE": style,
+        "STYLE_HASH": _hash(style),
+        "SCRIPT": script,
+        "SCRIPT_HASH": _hash(script),
+        "DATA": _json(data),
+    }
+    return re.sub("@([A-Z_]+)@", lambda found: parts[found[1]], _text("page.html"))
+
+
+def design_beside(target: Path) -> Path:
+    """The base design's file, beside the page."""
+    return target.with_name(f"{target.stem}_base.yaml")
+
+
+def write_explorer(
+    explored: Explored, target: Path, *, plugins: Sequence[str] = ()
+) -> list[ExplorerFile]:
+    """Write the page, and beside it the base design that its command names.
+
+    Parameters
+    ----------
+    explored : the sweep
+    target : the page's file
+    plugins : files with the user's metrics, for the command
+
+    Raises
+    ------
+    InputError
+        a file cannot be written
+    """
+    design = design_beside(target)
+    texts = {
+        target: page(explored, design=design.name, plugins=plugins),
+        design: explored.kept.design,
+    }
+    return [
+        ExplorerFile(write_text(path, text), hashlib.sha256(text.encode()).hexdigest())
+        for path, text in texts.items()
+    ]
+
+
+def _text(name: str) -> str:
+    return (FOLDER / name).read_text("utf-8")
+
+
+def _hash(text: str) -> str:
+    digest = base64.b64encode(hashlib.sha256(text.encode()).digest())
+    return f"sha256-{digest.decode()}"
+
+
+def _json(data: dict[str, Any]) -> str:
+    """JSON in which nothing reads as markup."""
+    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return re.sub("[<>&\u2028\u2029]", lambda found: _ESCAPES[found[0]], text)

@@ -1,0 +1,70 @@
+// The section of a design: a template whose points move with its dimensions, in mm.
+const SHAPES = DATA.shapes;
+const DIMENSIONS = SHAPES.dimensions.map((text) => decoded(text, Float32Array));
+const WHICH = decoded(SHAPES.which, Int16Array);
+const SVG = "http://www.w3.org/2000/svg";
+let EXTENT = null;
+
+function numbersOf(row) {
+  const template = SHAPES.templates[WHICH[row]];
+  if (!template) return null;
+  const found = Float64Array.from(template.numbers);
+  for (const [number, dimension, slope] of template.slopes) found[number] += slope * DIMENSIONS[dimension][row];
+  return { template, found };
+}
+// Every section stands at one scale, so that two can be compared: that of the largest.
+function extent() {
+  if (EXTENT) return EXTENT;
+  let left = Infinity, right = -Infinity, radius = 0;
+  for (let row = 0; row < N; row++) {
+    const drawn = numbersOf(row);
+    if (!drawn) continue;
+    for (let k = 0; k < drawn.found.length - SHAPES.lengths.length; k += 2) {
+      left = Math.min(left, drawn.found[k]); right = Math.max(right, drawn.found[k]);
+      radius = Math.max(radius, drawn.found[k + 1]);
+    }
+  }
+  EXTENT = { left, right, radius };
+  return EXTENT;
+}
+function element(name, attributes, text) {
+  const node = document.createElementNS(SVG, name);
+  for (const key in attributes) node.setAttribute(key, attributes[key]);
+  if (text !== undefined) node.textContent = text;
+  return node;
+}
+function drawSection(row) {
+  const svg = byId("section");
+  svg.replaceChildren();
+  byId("lengths").textContent = "";
+  const drawn = row < 0 ? null : numbersOf(row);
+  if (!drawn) {
+    svg.setAttribute("aria-label", "No section");
+    if (row >= 0) byId("lengths").textContent = "No section: the form of its parts is not known here.";
+    return;
+  }
+  const { left, right, radius } = extent(), { template, found } = drawn;
+  const pad = (right - left) * 0.02, foot = (right - left) * 0.09, wide = right - left + 2 * pad;
+  svg.setAttribute("viewBox", `${left - pad} ${-radius - pad} ${wide} ${2 * radius + 2 * pad + foot}`);
+  let at = 0;
+  const paths = template.parts.map(({ part, kind, polygons }) => {
+    let d = "";
+    for (const points of polygons) {
+      const shape = [];
+      for (let k = 0; k < points; k++, at += 2) shape.push([found[at], found[at + 1]]);
+      for (const side of [1, -1]) d += "M" + shape.map(([x, r]) => `${x.toFixed(4)} ${(side * r).toFixed(4)}`).join("L") + "Z";
+    }
+    const path = element("path", { class: kind, d });
+    path.append(element("title", {}, part));
+    return path;
+  });
+  svg.append(...paths.filter((p) => p.classList.contains("oil")), ...paths.filter((p) => !p.classList.contains("oil")));
+  svg.append(element("path", { class: "centre", d: `M${left - pad} 0H${right + pad}` }));
+  const bar = [500, 200, 100, 50, 20, 10, 5, 2, 1].find((length) => length < (right - left) / 4) || 1, y = radius + pad + foot * 0.45;
+  svg.append(element("path", { class: "bar", d: `M${left} ${y - foot / 8}V${y + foot / 8}M${left} ${y}H${left + bar}M${left + bar} ${y - foot / 8}V${y + foot / 8}` }));
+  svg.append(element("text", { x: left + bar + foot / 4, y: y + foot * 0.16, "font-size": foot * 0.5 }, `${bar} mm`));
+  const base = found.length - SHAPES.lengths.length;
+  const told = SHAPES.lengths.map((name, k) => `${name} ${trimmed(found[base + k])}`).join(" · ") + " mm";
+  byId("lengths").textContent = `To scale, retracted: ${told}${SHAPES.hidden ? `. Not shown: ${SHAPES.hidden}` : ""}`;
+  svg.setAttribute("aria-label", `Section to scale, retracted: ${told}`);
+}

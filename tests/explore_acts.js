@@ -1,0 +1,42 @@
+// What a person does with the page; what it came to stands in #result.
+const TOLD = {};
+const press = (node, key) => node.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+const point = (node, kind, x, y) => node.dispatchEvent(new PointerEvent(kind, { clientX: x, clientY: y, bubbles: true, cancelable: true }));
+const told = () => ({ pinned: STATE.pinned, title: byId("design-title").textContent, command: byId("command").textContent, count: COUNT });
+setTimeout(() => {
+  TOLD.began = told();
+  byId("none").click(); TOLD.none = told();
+  const scatter = byId("scatter");
+  scatter.focus(); TOLD.focus = document.activeElement.id;
+  press(scatter, "Escape"); TOLD.escaped = told();
+  press(scatter, "Home"); TOLD.home = told();
+  press(scatter, "ArrowRight"); TOLD.right = told();
+  press(scatter, "ArrowLeft"); TOLD.left = told();
+  press(scatter, "End"); TOLD.end = told();
+  drawScatter();
+  const box = scatter.getBoundingClientRect(), at = (row) => [box.left + PLACED.px[row], box.top + PLACED.py[row]];
+  point(scatter, "pointermove", ...at(3)); TOLD.over = told();
+  point(scatter, "pointerleave", 0, 0); TOLD.away = told();
+  scatter.dispatchEvent(new MouseEvent("click", { clientX: at(3)[0], clientY: at(3)[1], bubbles: true })); TOLD.clicked = told();
+  TOLD.paths = document.querySelectorAll("#section path").length;
+  const handle = document.querySelectorAll(".handle")[0];
+  TOLD.slider = [handle.getAttribute("role"), handle.tabIndex, handle.getAttribute("aria-valuenow") !== null];
+  press(handle, "PageUp"); press(handle, "PageUp"); TOLD.slid = told();
+  press(handle, "Delete"); TOLD.deleted = told();
+  const lines = byId("lines"), frame = byId("axes").getBoundingClientRect(), place = axisPlaces();
+  const x = frame.left + place.at(0), y = (share) => frame.top + place.low - share * (place.low - TOP);
+  point(lines, "pointerdown", x, y(0.9)); point(window, "pointermove", x, y(0.4)); point(window, "pointerup", x, y(0.4));
+  TOLD.brushed = told(); TOLD.range = rangeOf(STATE.axes[0]);
+  byId("clear").click(); TOLD.cleared = told();
+  byId("every").click(); TOLD.every = told();
+  const boxes = [...document.querySelectorAll("#limits input")];
+  boxes.forEach((one, k) => { if (LIMITS[k].count) one.click(); }); TOLD.unticked = told();
+  for (const node of document.querySelectorAll("select, input, canvas[tabindex], svg, [role=group], [role=slider]"))
+    if (!(node.labels && node.labels.length) && !node.getAttribute("aria-label") && !node.getAttribute("aria-labelledby")) FAULTS.push("no label: " + node.id);
+  TOLD.limits = LIMITS.map((one) => [one.name, one.count]);
+  TOLD.commands = Array.from({ length: N }, (_, row) => commandOf(row));
+  TOLD.wide = document.documentElement.scrollWidth;
+  const result = document.createElement("pre"); result.id = "result";
+  result.textContent = JSON.stringify({ faults: FAULTS, ...TOLD });
+  document.body.append(result);
+}, 200);
