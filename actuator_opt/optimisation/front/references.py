@@ -53,7 +53,7 @@ def lattice(objectives: int, steps: int) -> Vector:
     """Levels (objectives, k) of a lattice with so many steps from the middle to an anchor's level.
 
     >>> lattice(3, 1).shape, lattice(3, 2).shape
-    ((3, 7), (3, 19))
+    ((3, 1), (3, 7))
     """
     axis = range(-steps, steps + 1)
     whole = [
