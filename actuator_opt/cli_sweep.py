@@ -16,80 +16,79 @@ from .options import REPORTS, DesignFile, Json, PluginFile, Quiet, Seed, Set
 if TYPE_CHECKING:
     from .variants import Swept
 
-METHODS = ("grid", "sobol", "lhs")
+Vary = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--vary",
+        metavar="PATH=A..B:N",
+        help="A range with its steps, or a list: PATH=a,b,c. Repeatable.",
+    ),
+]
+Way = Annotated[
+    str,
+    typer.Option("--method", help="grid (every combination), sobol or lhs (Latin hypercube)."),
+]
+Count = Annotated[int | None, typer.Option("-n", metavar="N", help="Points of sobol and lhs.")]
+Store = Annotated[
+    Path | None,
+    typer.Option("--store", metavar="F.db", help="Keep every row here; a later run goes on."),
+]
+Csv = Annotated[Path | None, typer.Option("--csv", metavar="F.csv", help="Write every row here.")]
+Reduce = Annotated[
+    str | None,
+    typer.Option("--reduce", metavar="best:K", help="Keep the K best alone, nothing else."),
+]
+Workers = Annotated[
+    int | None, typer.Option("--workers", metavar="N", help="Processes; default: every core.")
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option("--scheduler", metavar="ADDRESS", help="Work on this Dask cluster instead."),
+]
+Figures = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--figure",
+        metavar="KIND",
+        help="Draw parallel, scatter, contour or ucurves as PNG and SVG. Repeatable.",
+    ),
+]
+Show = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--show",
+        metavar="METRIC",
+        help="A metric of the figures; default: the objective and requirements. Repeatable.",
+    ),
+]
+Yes = Annotated[bool, typer.Option("--yes", help="Keep more than a million points without asking.")]
+Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the figures.")]
 
 
 def sweep(
     design: DesignFile,
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--vary",
-            metavar="PATH=A..B:N",
-            help="A range with its steps, or a list: PATH=a,b,c. Repeatable.",
-        ),
-    ] = None,
-    method: Annotated[
-        str,
-        typer.Option("--method", help="grid (every combination), sobol or lhs (Latin hypercube)."),
-    ] = "grid",
-    count: Annotated[
-        int | None, typer.Option("-n", metavar="N", help="Points of sobol and lhs.")
-    ] = None,
-    store: Annotated[
-        Path | None,
-        typer.Option("--store", metavar="F.db", help="Keep every row here; a later run goes on."),
-    ] = None,
-    csv: Annotated[
-        Path | None, typer.Option("--csv", metavar="F.csv", help="Write every row here.")
-    ] = None,
-    reduce: Annotated[
-        str | None,
-        typer.Option("--reduce", metavar="best:K", help="Keep the K best alone, nothing else."),
-    ] = None,
-    workers: Annotated[
-        int | None, typer.Option("--workers", metavar="N", help="Processes; default: every core.")
-    ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="Work on this Dask cluster instead."),
-    ] = None,
-    figures: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--figure",
-            metavar="KIND",
-            help="Draw parallel, scatter, contour or ucurves as PNG and SVG. Repeatable.",
-        ),
-    ] = None,
-    show: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--show",
-            metavar="METRIC",
-            help="A metric of the figures; default: the objective and requirements. Repeatable.",
-        ),
-    ] = None,
-    yes: Annotated[
-        bool, typer.Option("--yes", help="Keep more than a million points without asking.")
-    ] = False,
+    vary: Vary = None,
+    method: Way = "grid",
+    count: Count = None,
+    store: Store = None,
+    csv: Csv = None,
+    reduce: Reduce = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    figures: Figures = None,
+    show: Show = None,
+    yes: Yes = False,
     sets: Set = None,
     plugin: PluginFile = None,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Folder of the figures.")
-    ] = REPORTS,
+    out: Folder = REPORTS,
 ) -> None:
     """Evaluate many variants of a design."""
     from . import verbs
 
     keep = _kept(reduce, store, csv)
-    if method not in METHODS:
-        raise UsageError(Diagnostic(f"--method {method}: unknown", f"use {', '.join(METHODS)}"))
-    if workers is not None and workers < 1:
-        raise UsageError(Diagnostic(f"--workers {workers}", "give 1 or more"))
     if show and not figures:
         raise UsageError(Diagnostic("--show without --figure", "add --figure parallel, say"))
     if figures:
@@ -114,23 +113,40 @@ def sweep(
         )
     files, fault = _drawn(found, figures or [], show or [], out)
     if as_json:
-        told = found.to_dict() | ({"files": files} if files else {})
-        faults = [] if fault is None else [one.to_dict() for one in fault.diagnostics]
-        streams.out_json(told | ({"errors": faults} if faults else {}))
-        if fault is not None:
-            raise typer.Exit(fault.exit_code)
+        _tell_json(found, files, fault)
     else:
-        from .reporting.sweep_text import sweep_text
-
-        streams.out(sweep_text(found, **streams.style()))
-        if not quiet and csv is not None:
-            streams.err(f"wrote {csv}")
-        if not quiet:
-            say_files(files)
-        if fault is not None:
-            raise fault
+        _tell(found, csv, files, fault, quiet=quiet)
     if not found.feasible:
         raise typer.Exit(ExitCode.MISSED)
+
+
+def _tell_json(found: Swept, files: list[dict[str, str]], fault: ActuatorError | None) -> None:
+    """One object; a figure that could not be drawn is told beside the results."""
+    told = found.to_dict() | ({"files": files} if files else {})
+    faults = [] if fault is None else [one.to_dict() for one in fault.diagnostics]
+    streams.out_json(told | ({"errors": faults} if faults else {}))
+    if fault is not None:
+        raise typer.Exit(fault.exit_code)
+
+
+def _tell(
+    found: Swept,
+    csv: Path | None,
+    files: list[dict[str, str]],
+    fault: ActuatorError | None,
+    *,
+    quiet: bool,
+) -> None:
+    """Results as text, then the files, then what could not be drawn."""
+    from .reporting.sweep_text import sweep_text
+
+    streams.out(sweep_text(found, **streams.style()))
+    if not quiet and csv is not None:
+        streams.err(f"wrote {csv}")
+    if not quiet:
+        say_files(files)
+    if fault is not None:
+        raise fault
 
 
 def _drawn(

@@ -167,13 +167,12 @@ def aside(path: Path) -> Iterator[TextIO]:
         with part.open("w", encoding="utf-8") as stream:
             yield stream
         part.replace(path)
-    except BaseException as error:
-        with contextlib.suppress(OSError):
-            part.unlink(missing_ok=True)
-        if not isinstance(error, OSError):
-            raise
+    except OSError as error:
         reason = f"cannot write: {error.strerror or type(error).__name__}"
         raise InputError(Diagnostic(reason, "choose another file or folder", str(path))) from None
+    finally:  # nothing is left of it once it is in place
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
 
 
 def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the report") -> None:

@@ -10,7 +10,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from ..numeric import Array
 from .axes import Axis
 
 Method = Literal["grid", "sobol", "lhs"]
+METHODS = get_args(Method)
 MOST = 2**30
 """Most points of the sampled methods: those of a Sobol sequence of 30 bits."""
 
@@ -120,8 +121,10 @@ def plan(axes: Sequence[Axis], *, method: Method, count: int | None, seed: int =
     Raises
     ------
     UsageError
-        nothing to vary, a PATH twice, a range without steps, or no count
+        an unknown method, nothing to vary, a PATH twice, a range without steps, or no count
     """
+    if method not in METHODS:
+        raise UsageError(Diagnostic(f"--method {method}: unknown", f"use {', '.join(METHODS)}"))
     if not axes:
         raise UsageError(Diagnostic("nothing to vary", 'add --vary PATH=A..B:N or PATH="a,b,c"'))
     paths = [axis.path for axis in axes]

@@ -79,10 +79,6 @@ class Swept:
     sample: Sample = field(default_factory=Sample)
     """Rows to draw."""
 
-    def variables(self, best: Best) -> dict[str, float | str]:
-        """The varied values of one of the best designs, by PATH (SI)."""
-        return self.study.values(best.number)
-
     def metrics(self, best: Best) -> dict[str, float | None]:
         """The metrics of one of the best designs (SI); None where there is none."""
         values = dict(zip([c.name for c in self.study.columns], best.row, strict=True))
@@ -106,7 +102,7 @@ class Swept:
             "feasible": self.feasible,
             "screened": self.screened,
             "best": [
-                {"variables": self.variables(best), "metrics": self.metrics(best)}
+                {"variables": self.study.values(best.number), "metrics": self.metrics(best)}
                 for best in self.best
             ],
             "failures": self.failures,

@@ -73,6 +73,8 @@ def sweep(
     from ..variants import sweep as run
     from ..variants.chunk import Study
 
+    if workers is not None and workers < 1:
+        raise UsageError(Diagnostic(f"--workers {workers}", "give 1 or more"))
     actuator = as_actuator(design, plugins)
     faults = unanswered(actuator, actuator.subject())
     if faults:
