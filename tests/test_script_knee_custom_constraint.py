@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
-from io import BytesIO
 from math import sqrt
 from pathlib import Path
 from typing import Any
 
 import pytest
-from script_loader import script
+from script_loader import carried, ran, script, text_of
 
 import actuator_opt as ao
 
@@ -23,41 +18,16 @@ REPORT = ROOT / "reports" / "samples" / "knee_custom_constraint.pdf"
 study = script("knee_custom_constraint")
 
 
-def _words(pdf: bytes) -> str:
-    """Text of a PDF as one line."""
-    pypdf = pytest.importorskip("pypdf")
-    text = " ".join(page.extract_text() for page in pypdf.PdfReader(BytesIO(pdf)).pages)
-    return " ".join(text.split())
-
-
-def _numbers(pdf: Path) -> dict[str, Any]:
-    pypdf = pytest.importorskip("pypdf")
-    return json.loads(pypdf.PdfReader(pdf).attachments["knee_custom_constraint.json"][0])
-
-
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory) -> tuple[str, Path]:
     """What the script prints and writes when run as a person runs it, at few widths."""
-    pytest.importorskip("typst")
-    folder = tmp_path_factory.mktemp("reports")
-    done = subprocess.run(
-        [sys.executable, "-W", "error", str(SCRIPT), "--quick", "--out", str(folder)],
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        cwd=folder,
-        env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONUTF8": "1"},
-        timeout=300,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout, folder / "knee_custom_constraint.pdf"
+    return ran("knee_custom_constraint", tmp_path_factory.mktemp("reports"))
 
 
 @pytest.fixture(params=["quick", "committed"])
 def numbers(request, quick) -> dict[str, Any]:
     """The numbers of a quick run, and those that the committed report carries inside."""
-    return _numbers(quick[1] if request.param == "quick" else REPORT)
+    return carried(quick[1] if request.param == "quick" else REPORT)
 
 
 def test_the_width_by_hand() -> None:
@@ -110,7 +80,7 @@ def test_without_the_rules_it_is_the_knee_as_shipped(numbers) -> None:
 
 def test_narrower_than_the_least_is_no_knee() -> None:
     """Half a millimetre less than the least width: infeasible, and the card says the width."""
-    found = _numbers(REPORT)["least"]
+    found = carried(REPORT)["least"]
     knee = study.wishes(width=found["width"] - 0.5e-3).changed(found["values"])
     told = ao.optimise(knee, starts=1, prices=False)
     assert told.infeasibility is not None
@@ -122,7 +92,7 @@ def test_the_page_says_the_numbers(numbers) -> None:
     pdf, sheets = study.page(numbers)
     assert study.page(numbers)[0] == pdf
     assert len(sheets) == 1
-    words = _words(pdf).replace("- ", "")
+    words = text_of(pdf).replace("- ", "")
     for said in study.lead(numbers):
         assert said.replace("- ", "") in words
     for row in study.points(numbers):
@@ -132,12 +102,12 @@ def test_the_page_says_the_numbers(numbers) -> None:
 def test_the_committed_report_is_made_of_its_own_numbers() -> None:
     """The script makes the committed text of the attached numbers."""
     pytest.importorskip("typst")
-    assert _words(study.page(_numbers(REPORT))[0]) == _words(REPORT.read_bytes())
+    assert text_of(study.page(carried(REPORT))[0]) == text_of(REPORT.read_bytes())
 
 
 def test_the_quick_run_prints_what_it_writes(quick) -> None:
     """Every sentence of the attached numbers is printed."""
     printed, pdf = quick
-    for said in study.lead(_numbers(pdf)):
+    for said in study.lead(carried(pdf)):
         assert said in printed
     assert pdf.with_suffix(".png").is_file()

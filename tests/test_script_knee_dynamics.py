@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import itertools
-import json
-import os
 import re
-import subprocess
-import sys
-from io import BytesIO
 from math import pi
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from script_loader import script
+from script_loader import carried, ran, script, text_of
 
 import actuator_opt as ao
 
@@ -27,41 +22,16 @@ REPORT = ROOT / "reports" / "samples" / "knee_dynamics.pdf"
 study = script("knee_dynamics")
 
 
-def _words(pdf: bytes) -> str:
-    """Text of a PDF as one line."""
-    pypdf = pytest.importorskip("pypdf")
-    text = " ".join(page.extract_text() for page in pypdf.PdfReader(BytesIO(pdf)).pages)
-    return " ".join(text.split())
-
-
-def _numbers(pdf: Path) -> dict[str, Any]:
-    pypdf = pytest.importorskip("pypdf")
-    return json.loads(pypdf.PdfReader(pdf).attachments["knee_dynamics.json"][0])
-
-
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory) -> tuple[str, Path]:
     """What the script prints and writes when run as a person runs it, with few points."""
-    pytest.importorskip("typst")
-    folder = tmp_path_factory.mktemp("reports")
-    done = subprocess.run(
-        [sys.executable, "-W", "error", str(SCRIPT), "--quick", "--out", str(folder)],
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        cwd=folder,
-        env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONUTF8": "1"},
-        timeout=300,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout, folder / "knee_dynamics.pdf"
+    return ran("knee_dynamics", tmp_path_factory.mktemp("reports"))
 
 
 @pytest.fixture(params=["quick", "committed"])
 def numbers(request, quick) -> dict[str, Any]:
     """The numbers of a quick run, and those that the committed report carries inside."""
-    return _numbers(quick[1] if request.param == "quick" else REPORT)
+    return carried(quick[1] if request.param == "quick" else REPORT)
 
 
 @pytest.mark.parametrize("spool", [60.0, 120.0, 240.0])
@@ -128,7 +98,7 @@ def test_what_is_free_is_free(numbers) -> None:
 
 def test_a_multiplier_lies_between_the_slopes_beside_it() -> None:
     """Mass is convex here: the price of a point is that of neither chord, but between them."""
-    for metric, found in _numbers(REPORT)["series"].items():
+    for metric, found in carried(REPORT)["series"].items():
         rows, priced = [*found["points"], found["most"]], 0
         for before, row, after in zip(rows, rows[1:], rows[2:], strict=False):
             if metric in row["prices"]:
@@ -153,7 +123,7 @@ def test_the_closed_forms_agree_with_the_model(numbers) -> None:
 
 def test_a_quick_spool_comes_to_merritts_limit() -> None:
     """With a spool of 1 kHz the model's bandwidth lies within 10 % of 2 zeta f_0 over the rest."""
-    row = _numbers(REPORT)["changes"]["spool of 1 kHz"]
+    row = carried(REPORT)["changes"]["spool of 1 kHz"]
     assert row["metrics"]["bandwidth"] == pytest.approx(row["merritt"], rel=0.1)
 
 
@@ -169,7 +139,7 @@ def test_changes_are_compared_at_one_mass(numbers) -> None:
 
 def test_what_the_page_says_in_words_holds() -> None:
     """A quicker spool takes bandwidth, a heavier load margin; dearer points are stiffer, wider."""
-    found = _numbers(REPORT)
+    found = carried(REPORT)
     spools = [found["changes"][name] for name in found["changes"] if name.startswith("spool")]
     widths = [row["metrics"]["bandwidth"] for row in spools]
     assert len(widths) == 3
@@ -190,7 +160,7 @@ def test_what_the_page_says_in_words_holds() -> None:
 
 def test_losses_and_sag_are_those_by_hand() -> None:
     """0.2 l/min at 50 bar is 195.7 W over two edge pairs at 205 bar; sag is g F/(A^2 K_v)."""
-    row = _numbers(REPORT)["required"]
+    row = carried(REPORT)["required"]
     edge = 0.2e-3 / 60 * (102.5 / 50) ** 0.5
     assert row["valve_power"] == pytest.approx(2 * edge * 205e5, rel=1e-6)
     bleed, bore = (row["values"][path] for path in ("piston.leakage_conductance", "cylinder.bore"))
@@ -204,7 +174,7 @@ def test_the_page_says_the_numbers(numbers) -> None:
     pdf, sheets = study.page(numbers)
     assert study.page(numbers)[0] == pdf
     assert len(sheets) == 1
-    words = _words(pdf)
+    words = text_of(pdf)
     for metric, found in numbers["series"].items():
         assert study.sentence(metric, found) in words.replace("- ", "")
         for row in found["points"]:
@@ -216,7 +186,7 @@ def test_the_page_says_the_numbers(numbers) -> None:
 def test_the_quick_run_prints_what_it_writes(quick) -> None:
     """Every mass of the attached numbers stands in the printed tables."""
     printed, pdf = quick
-    rows = _numbers(pdf)["series"]
+    rows = carried(pdf)["series"]
     masses = re.findall(r"^ +[\d.]+ +(\d{3}\.\d) ", printed, re.MULTILINE)
     wanted = [f"{1e3 * r['mass']:.1f}" for f in rows.values() for r in [*f["points"], f["most"]]]
     assert masses == wanted
@@ -226,4 +196,4 @@ def test_the_quick_run_prints_what_it_writes(quick) -> None:
 def test_the_committed_report_is_made_of_its_own_numbers() -> None:
     """The script makes the committed text of the attached numbers."""
     pytest.importorskip("typst")
-    assert _words(study.page(_numbers(REPORT))[0]) == _words(REPORT.read_bytes())
+    assert text_of(study.page(carried(REPORT))[0]) == text_of(REPORT.read_bytes())

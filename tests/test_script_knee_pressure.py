@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import os
 import re
-import subprocess
-import sys
-from io import BytesIO
 from math import log, pi, sqrt
 from pathlib import Path
 from typing import Any
 
 import pytest
-from script_loader import script
+from script_loader import carried, ran, script, text_of
 
 import actuator_opt as ao
 
@@ -24,41 +19,16 @@ REPORT = ROOT / "reports" / "samples" / "knee_pressure.pdf"
 study = script("knee_pressure")
 
 
-def _words(pdf: bytes) -> str:
-    """Text of a PDF as one line."""
-    pypdf = pytest.importorskip("pypdf")
-    text = " ".join(page.extract_text() for page in pypdf.PdfReader(BytesIO(pdf)).pages)
-    return " ".join(text.split())
-
-
-def _numbers(pdf: Path) -> dict[str, Any]:
-    pypdf = pytest.importorskip("pypdf")
-    return json.loads(pypdf.PdfReader(pdf).attachments["knee_pressure.json"][0])
-
-
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory) -> tuple[str, Path]:
     """What the script prints and writes when run as a person runs it, at few pressures."""
-    pytest.importorskip("typst")
-    folder = tmp_path_factory.mktemp("reports")
-    done = subprocess.run(
-        [sys.executable, "-W", "error", str(SCRIPT), "--quick", "--out", str(folder)],
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        cwd=folder,
-        env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONUTF8": "1"},
-        timeout=300,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout, folder / "knee_pressure.pdf"
+    return ran("knee_pressure", tmp_path_factory.mktemp("reports"))
 
 
 @pytest.fixture(params=["quick", "committed"])
 def numbers(request, quick) -> dict[str, Any]:
     """The numbers of a quick run, and those that the committed report carries inside."""
-    return _numbers(quick[1] if request.param == "quick" else REPORT)
+    return carried(quick[1] if request.param == "quick" else REPORT)
 
 
 def _knee(row: dict[str, Any], *, free: bool = True) -> Any:
@@ -146,7 +116,7 @@ def test_force_binds_below_stiffness_above(numbers) -> None:
 
 def test_masses_rise_on_both_sides_of_the_best() -> None:
     """Along the committed pressures: down to the best, up from there, no bumps."""
-    found = _numbers(REPORT)
+    found = carried(REPORT)
     assert [round(study.bar(row)) for row in found["rows"]] == list(study.PRESSURES)
     best = study.bar(found["best"])
     masses = [(study.bar(row), study.total(row)) for row in found["rows"]]
@@ -158,7 +128,7 @@ def test_masses_rise_on_both_sides_of_the_best() -> None:
 
 def test_longer_pipes_ask_for_more_pressure() -> None:
     """Oil and pipes fall with pressure: the longer they are, the higher the best one."""
-    rows = _numbers(REPORT)["lengths"]
+    rows = carried(REPORT)["lengths"]
     assert list(map(float, rows)) == sorted(map(float, rows))
     pressures = [row["pressure"] for row in rows.values()]
     assert pressures == sorted(pressures)
@@ -166,7 +136,7 @@ def test_longer_pipes_ask_for_more_pressure() -> None:
 
 def test_a_search_from_many_starts_finds_no_lighter_one() -> None:
     """Warm starts along the pressures do not end in a worse optimum: 275 bar from four starts."""
-    row = next(r for r in _numbers(REPORT)["rows"] if round(study.bar(r)) == 275)
+    row = next(r for r in carried(REPORT)["rows"] if round(study.bar(r)) == 275)
     found = ao.optimise(study.wishes().changed(study.at(275e5)), starts=4, prices=False)
     assert found.objective_value == pytest.approx(study.total(row), rel=1e-5)
 
@@ -200,7 +170,7 @@ def test_the_page_says_the_numbers(numbers) -> None:
     pdf, sheets = study.page(numbers)
     assert study.page(numbers)[0] == pdf
     assert len(sheets) == 2 or len(numbers["rows"]) == len(study.QUICK)
-    words = _words(pdf).replace("- ", "")
+    words = text_of(pdf).replace("- ", "")
     for said in study.lead(numbers):
         assert said.replace("- ", "") in words
     for row in filter(study.met, numbers["rows"]):
@@ -210,13 +180,13 @@ def test_the_page_says_the_numbers(numbers) -> None:
 def test_the_committed_report_is_made_of_its_own_numbers() -> None:
     """The script makes the committed text of the attached numbers."""
     pytest.importorskip("typst")
-    assert _words(study.page(_numbers(REPORT))[0]) == _words(REPORT.read_bytes())
+    assert text_of(study.page(carried(REPORT))[0]) == text_of(REPORT.read_bytes())
 
 
 def test_the_quick_run_prints_what_it_writes(quick) -> None:
     """Every mass of the attached numbers stands in the printed table."""
     printed, pdf = quick
-    found = _numbers(pdf)
+    found = carried(pdf)
     masses = set(re.findall(r"\d+\.\d", printed))
     assert {f"{1e3 * study.total(row):.1f}" for row in found["rows"]} <= masses
     assert f"lightest at {study.bar(found['best']):.0f} bar" in printed
@@ -225,7 +195,7 @@ def test_the_quick_run_prints_what_it_writes(quick) -> None:
 
 def test_a_pressure_nobody_meets_is_told() -> None:
     """A row without a design names what is missed and how the shipped glands end."""
-    found = _numbers(REPORT)
+    found = carried(REPORT)
     assert not study.met(found["shipped"][-1])
     assert "friction_running" in {one["metric"] for one in found["shipped"][-1]["lacks"]}
     lacking = {**found["rows"][-1], "lacks": [{"metric": "burst_factor"}]}

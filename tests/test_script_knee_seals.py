@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import os
 import re
-import subprocess
-import sys
-from io import BytesIO
 from math import pi
 from pathlib import Path
 from typing import Any
 
 import pytest
-from script_loader import script
+from script_loader import carried, ran, script, text_of
 
 import actuator_opt as ao
 
@@ -24,41 +19,16 @@ REPORT = ROOT / "reports" / "samples" / "knee_seals.pdf"
 study = script("knee_seals")
 
 
-def _words(pdf: bytes) -> str:
-    """Text of a PDF as one line."""
-    pypdf = pytest.importorskip("pypdf")
-    text = " ".join(page.extract_text() for page in pypdf.PdfReader(BytesIO(pdf)).pages)
-    return " ".join(text.split())
-
-
-def _numbers(pdf: Path) -> dict[str, Any]:
-    pypdf = pytest.importorskip("pypdf")
-    return json.loads(pypdf.PdfReader(pdf).attachments["knee_seals.json"][0])
-
-
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory) -> tuple[str, Path]:
     """What the script prints and writes when run as a person runs it, with few points."""
-    pytest.importorskip("typst")
-    folder = tmp_path_factory.mktemp("reports")
-    done = subprocess.run(
-        [sys.executable, "-W", "error", str(SCRIPT), "--quick", "--out", str(folder)],
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        cwd=folder,
-        env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONUTF8": "1"},
-        timeout=300,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout, folder / "knee_seals.pdf"
+    return ran("knee_seals", tmp_path_factory.mktemp("reports"))
 
 
 @pytest.fixture(params=["quick", "committed"])
 def numbers(request, quick) -> dict[str, Any]:
     """The numbers of a quick run, and those that the committed report carries inside."""
-    return _numbers(quick[1] if request.param == "quick" else REPORT)
+    return carried(quick[1] if request.param == "quick" else REPORT)
 
 
 def test_less_friction_never_weighs_less(numbers) -> None:
@@ -92,7 +62,7 @@ def test_every_point_by_coefficient_meets_every_requirement(numbers) -> None:
 
 def test_the_film_meets_its_limit_within_the_error_of_its_surrogate() -> None:
     """Solved without a surrogate's box, friction on the film is within 2 % of what was asked."""
-    rows = _numbers(REPORT)["series"]["film"][1:]
+    rows = carried(REPORT)["series"]["film"][1:]
     assert len(rows) >= 2
     for row in rows:
         film = ao.evaluate(study.wishes("film", still=True).changed(row["values"]))
@@ -152,7 +122,7 @@ def test_a_multiplier_is_a_slope(numbers) -> None:
 
 def test_leakage_has_a_price_on_the_film() -> None:
     """Where the rod may leave less oil than it would, mass rises, and the price says so."""
-    prices = _numbers(REPORT)["prices"]["film"]
+    prices = carried(REPORT)["prices"]["film"]
     assert prices["prices"]["rod_leakage"] < 0
     assert prices["metrics"]["rod_leakage"] == pytest.approx(prices["at"]["rod_leakage"], rel=0.02)
 
@@ -177,7 +147,7 @@ def test_the_page_says_the_numbers(numbers) -> None:
     pdf, sheets = study.page(numbers)
     assert study.page(numbers)[0] == pdf
     assert len(sheets) in (1, 2)
-    words = _words(pdf).replace("- ", "")
+    words = text_of(pdf).replace("- ", "")
     for said in study.lead(numbers):
         assert said in words
     for rows in numbers["series"].values():
@@ -189,7 +159,7 @@ def test_the_quick_run_prints_what_it_writes(quick) -> None:
     """Every mass of the attached numbers stands in the printed tables."""
     printed, pdf = quick
     masses = re.findall(r" (\d{3}\.\d) ", printed)
-    for rows in _numbers(pdf)["series"].values():
+    for rows in carried(pdf)["series"].values():
         assert {f"{1e3 * row['mass']:.1f}" for row in rows} <= set(masses)
     assert pdf.with_suffix(".png").is_file()
 
@@ -197,4 +167,4 @@ def test_the_quick_run_prints_what_it_writes(quick) -> None:
 def test_the_committed_report_is_made_of_its_own_numbers() -> None:
     """The script makes the committed text of the attached numbers."""
     pytest.importorskip("typst")
-    assert _words(study.page(_numbers(REPORT))[0]) == _words(REPORT.read_bytes())
+    assert text_of(study.page(carried(REPORT))[0]) == text_of(REPORT.read_bytes())

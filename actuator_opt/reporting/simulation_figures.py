@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from ..quantities import SCENARIOS
 from ..simulation.result import Simulation
-from . import fallback
 from .figures import Axes
 from .identification_axes import Box, even_ticks
 from .identification_series import thinned
@@ -155,24 +152,6 @@ def figures(
         one.draw(ink, (1.0, 0.0, 88.0, height))
         made[one.name] = ink
     return made
-
-
-def image(ink: Ink, pixels_per_inch: float = 200.0) -> bytes:
-    """A drawing as PNG."""
-    import matplotlib as mpl
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    style: Any = {
-        "font.family": "DejaVu Sans",
-        "text.parse_math": False,
-        "text.usetex": False,
-    }
-    file = io.BytesIO()
-    with mpl.rc_context(style):
-        figure = fallback.drawn(ink)
-        FigureCanvasAgg(figure)
-        figure.savefig(file, format="png", dpi=pixels_per_inch, metadata={"Software": None})
-    return file.getvalue()
 
 
 # ---- panels of single kinds of run ----
