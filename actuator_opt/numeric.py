@@ -16,6 +16,8 @@ import numpy as np
 Array: TypeAlias = Any
 """A float, or an array of any array-API namespace, real or (under differentiation) complex."""
 
+_PLAIN = (float, int, complex, np.generic)
+
 STEP = 1e-30
 """Imaginary step of the complex-step derivative: far below rounding, so the error is O(1e-60)."""
 
@@ -23,9 +25,7 @@ STEP = 1e-30
 def namespace(*values: Array) -> Any:
     """The array-API namespace of the arguments: NumPy unless an array brings its own."""
     for value in values:
-        if type(value) is np.ndarray:  # arrays of one call share their namespace
-            return np
-        if not isinstance(value, (float, int, complex, np.generic)):
+        if type(value) is not np.ndarray and not isinstance(value, _PLAIN):
             return value.__array_namespace__()
     return np
 

@@ -13,6 +13,10 @@ from actuator_opt.optimisation.certificate.box import Box, Layout
 from actuator_opt.optimisation.certificate.certify import certify
 from actuator_opt.optimisation.certificate.search import Search
 
+FREE_PRESSURE = (
+    ("variables.supply.pressure.lower", "150 bar"),
+    ("variables.supply.pressure.upper", "210 bar"),
+)
 CASES = {
     "steel": ("steel_baseline", ("piston.material", "al_7075_t6")),
     "knee": ("knee",),
@@ -23,6 +27,8 @@ CASES = {
         ("requirements.stiffness_min.min", "4e6"),
     ),
     "aerospace": ("aerospace",),
+    "knee of free pressure": ("knee", *FREE_PRESSURE),
+    "steel of free pressure": ("steel_baseline", *FREE_PRESSURE),
 }
 ROUNDING = 1e-9
 """Relative rounding of traced values."""
