@@ -116,7 +116,7 @@ def sweep(
         _tell_json(found, files, fault)
     else:
         _tell(found, csv, files, fault, quiet=quiet)
-    if not found.feasible:
+    if not found.best:
         raise typer.Exit(ExitCode.MISSED)
 
 

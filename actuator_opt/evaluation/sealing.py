@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
 from ..design.model import Design
 from ..design.seals import Wiper
 from ..models import damping, friction, gland, lip_seal, retention, wear
@@ -59,7 +61,7 @@ def compute(
     full_growth = SEAL_STEP * wall.growth
     by_metric: dict[str, dict[str, Array]] = {}
     total = Friction()
-    moving = real(state.speed)[:, 0] > 0
+    moving = np.atleast_2d(real(state.speed))[:, 0] > 0
     for ring in rings:
         grown = full_growth if ring.name == "piston" else 0.0
         contact = touch(_share(ring, films))

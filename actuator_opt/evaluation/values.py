@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..numeric import Array
+from ..numeric import Array, namespace
 
 
 class Values:
@@ -54,6 +54,8 @@ def stacked(rows: Sequence[Array]) -> Array:
     """One number per load case, floats or arrays (designs,), as (cases, 1) or (cases, designs)."""
     if all(isinstance(row, float) for row in rows):
         return np.array(rows)[:, None]
+    if len(rows) == 1 and namespace(rows[0]) is not np:  # a traced value stands alone
+        return rows[0]
     return np.stack(np.broadcast_arrays(*[np.atleast_1d(np.asarray(row)) for row in rows]))
 
 

@@ -178,9 +178,11 @@ class Drawn:
         """How many designs there are, and which of them are drawn."""
         swept = self.swept
         words = f"{_many(swept.requested)} variants, "
-        if swept.screened:
-            words += f"{_many(swept.screened)} screened out, "
-        words += f"{_many(swept.feasible)} feasible"
+        if swept.feasible is None:
+            looked = swept.computed - swept.screened
+            words += f"{_many(swept.screened)} ruled out early, {_many(looked)} evaluated in full"
+        else:
+            words += f"{_many(swept.feasible)} feasible"
         if swept.failed:
             words += f", {_many(swept.failed)} failed (not drawn)"
         thinned = [f"every {_nth(step)} {what}" for what, step in drawn if step > 1]

@@ -18,13 +18,10 @@ def sweep_text(
     """Counts, the best feasible designs, why designs failed."""
     console = Console(colour, unicode, width)
     study = swept.study
-    reused = f", {swept.reused} reused" if swept.reused else ""
-    reused += f", {swept.screened} of them screened out" if swept.screened else ""
     rate = swept.computed / swept.seconds if swept.seconds > 0 else 0.0
     lines = [
         console.heading(f"{study.design.name}: {swept.requested} variants"),
-        f"{swept.computed} computed{reused}, {swept.failed} failed, {swept.feasible} feasible "
-        f"({swept.seconds:.1f} s, {rate:.0f}/s)",
+        f"{_counts(swept)} ({swept.seconds:.1f} s, {rate:.0f}/s)",
     ]
     if swept.best:
         lines += ["", *_table(console, swept)]
@@ -38,12 +35,22 @@ def sweep_text(
     return "\n".join(lines)
 
 
+def _counts(swept: Swept) -> str:
+    """How many were computed, failed, are feasible; of the best alone, how many looked at."""
+    if swept.feasible is None:
+        looked = swept.computed - swept.screened
+        return f"{swept.screened} ruled out early, {looked} evaluated in full"
+    reused = f", {swept.reused} reused" if swept.reused else ""
+    return f"{swept.computed} computed{reused}, {swept.failed} failed, {swept.feasible} feasible"
+
+
 def _nothing(swept: Swept) -> str:
     missed = sorted(swept.missed.items(), key=lambda one: (-one[1], one[0]))
     if not missed:
         return "None of them has a finite answer."
     name, times = missed[0]
-    words = f"None meets every requirement and check; {name} is missed most, by {times} of them"
+    whom = "them" if swept.feasible is not None else f"{sum(swept.missed.values())} looked at"
+    words = f"None meets every requirement and check; {name} is missed most, by {times} of {whom}"
     return f"{words}. Widen what varies, or see why with `optimise`."
 
 

@@ -139,6 +139,9 @@ class Symbol:
     def __pow__(self, other: Any) -> Any:
         return power(self, other)
 
+    def __rpow__(self, other: Any) -> Any:
+        return power(other, self)
+
     def __neg__(self) -> Any:
         return negative(self)
 

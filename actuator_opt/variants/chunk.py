@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import inspect
 import json
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -29,6 +30,9 @@ from .screen import Screen, screen
 
 KEPT = 64
 """Prepared designs that a process keeps."""
+
+WORTH = 2048
+"""Designs from which a screen, some 20 ms of work, is worth it."""
 
 AT_ONCE = 4096
 """Most designs of one call of the models: more would take memory, not less time."""
@@ -83,7 +87,7 @@ class Study:
     contradicts: bool = field(init=False)
     """Whether some value of an axis contradicts the rest of the design, as its file would say."""
     _subjects: dict[tuple[object, ...], Subject | str] = field(default_factory=dict, repr=False)
-    _screens: dict[int, Screen | None] = field(default_factory=dict, repr=False)
+    _screens: dict[tuple[object, ...], Screen | None] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         subject = self._made({})
@@ -148,6 +152,15 @@ class Study:
 
     def chunk(self, first: int, count: int, some: Array | None = None) -> Chunk:
         """Rows of some points in a row, or of those of them that are numbered in `some`."""
+        found = self._evaluated(first, count, some)
+        if not self.contradicts:
+            return found
+        failures = found.rows.failures | self._contradictions(found, some)
+        found.rows.numbers[list(failures), len(self.order) :] = np.nan
+        return self.judged(first, Rows(found.rows.numbers, failures), found.computed)
+
+    def _evaluated(self, first: int, count: int, some: Array | None) -> Chunk:
+        """Rows as the models judge them, without what only the design's file would refuse."""
         points = self.plan.points(first, count)
         if some is not None:
             points = Points(points.variant[some], points.numbers[:, some])
@@ -163,50 +176,82 @@ class Study:
             self._fill(rows, places, found)
             lost = places[np.isnan(found.metrics["mass"])]
             failures |= dict.fromkeys(map(int, lost), NO_ANSWER)
-        if self.contradicts:
-            failures |= self._contradictions(first, rows, some)
         rows[list(failures), len(points.numbers) :] = np.nan
         return self.judged(first, Rows(rows, failures), n)
 
-    def reduced(self, first: int, count: int, limit: float) -> Chunk:
-        """Rows of the points that may be feasible and have an objective below `limit`."""
+    def reduced(self, first: int, count: int, limit: float, keep: int) -> Chunk:
+        """Rows of the points that may be among the `keep` best, with an objective below `limit`."""
         points = self.plan.points(first, count)
         kept = np.ones(len(points.variant), dtype=bool)
-        for variant in np.unique(points.variant):
-            sieve = None if self.apart else self._screen(int(variant))
+        moving = [k for k, axis in enumerate(self.plan.numeric) if axis.path not in self.apart]
+        for own, variant, fixed in self._alike(points):
+            sieve = self._screen(variant, fixed)
             if sieve is None:
                 continue
-            own = np.flatnonzero(points.variant == variant)
-            own_kept = sieve.values(points.numbers[:, own]) < limit
-            own_kept[own_kept] = sieve.passing(points.numbers[:, own[own_kept]])
+            numbers = points.numbers[np.ix_(moving, own)]
+            own_kept = sieve.values(numbers) < limit
+            own_kept[own_kept] = sieve.passing(numbers[:, own_kept])
             kept[own] = own_kept
         some = np.flatnonzero(kept)
-        found = self.chunk(first, count, some)
-        return replace(found, computed=len(kept), places=first + some)
+        found = self._evaluated(first, count, some)
+        failures, out = dict(found.rows.failures), np.zeros(len(some), dtype=bool)
+        if self.contradicts:
+            failures |= self._contradictions(found, some, keep)
+        feasible = found.feasible.copy()
+        feasible[list(failures)] = False
+        good = np.flatnonzero(feasible)
+        out[good[np.argsort(found.objective[good], kind="stable")[keep:]]] = True
+        found.rows.numbers[list(failures), len(self.order) :] = np.nan
+        left = np.flatnonzero(~out)
+        place = {int(k): n for n, k in enumerate(left)}
+        rows = Rows(
+            found.rows.numbers[left], {place[k]: why for k, why in failures.items() if k in place}
+        )
+        return replace(self.judged(first, rows, len(kept)), places=first + some[left])
 
-    def _screen(self, variant: int) -> Screen | None:
-        """The screen of one combination of texts."""
-        if variant not in self._screens:
-            texts = dict(self.plan.texts(variant))
-            axes = self.plan.numeric
-            found = None
-            if axes and not self.plugins:
-                ends = np.array([[min(a.numbers()), max(a.numbers())] for a in axes])
-                with contextlib.suppress(InputError):
-                    design = with_values(self.design, texts) if texts else self.design
-                    found = screen(design, [axis.path for axis in axes], ends)
-            self._screens[variant] = found
-        return self._screens[variant]
+    def _screen(self, variant: int, fixed: Mapping[str, float]) -> Screen | None:
+        """The screen of designs that differ in numbers alone, where they are enough to be worth it.
 
-    def _contradictions(self, first: int, rows: Array, some: Array | None) -> dict[int, str]:
-        """What the design's file would refuse among the feasible rows; models look at less."""
-        found = {}
-        for k in np.flatnonzero(rows[:, -1] == 1.0):
-            number = first + int(k if some is None else some[k])
+        None for the user's own metrics, which are no expressions.
+        """
+        axes = [axis for axis in self.plan.numeric if axis.path not in self.apart]
+        apart = [axis for axis in self.plan.numeric if axis.path in self.apart]
+        alike = self.plan.count / self.plan.variants
+        for axis in apart:
+            alike /= axis.size or math.inf
+        if not axes or self.plugins or alike < WORTH:
+            return None
+        key = (variant, *fixed.values())
+        if key not in self._screens:
+            if len(self._screens) >= KEPT:
+                self._screens.pop(next(iter(self._screens)))
+            found: Screen | None = None
+            values: dict[str, float | str] = {**self.plan.texts(variant), **fixed}
+            ends = np.array([[min(axis.numbers()), max(axis.numbers())] for axis in axes])
+            with contextlib.suppress(InputError):
+                design = with_values(self.design, values) if values else self.design
+                found = screen(design, [axis.path for axis in axes], ends)
+            self._screens[key] = found
+        return self._screens[key]
+
+    def _contradictions(
+        self, chunk: Chunk, some: Array | None, most: int | None = None
+    ) -> dict[int, str]:
+        """What the design's file would refuse among feasible rows; models look at less.
+
+        Rows are tried from the best on, until `most` stand.
+        """
+        found: dict[int, str] = {}
+        good = np.flatnonzero(chunk.feasible)
+        order = good[np.argsort(chunk.objective[good], kind="stable")]
+        for tried, k in enumerate(map(int, order)):
+            if most is not None and tried - len(found) >= most:
+                break
+            number = chunk.first + int(k if some is None else some[k])
             try:
                 with_values(self.design, dict(self.values(number)))
             except InputError as error:
-                found[int(k)] = _first(error)
+                found[k] = _first(error)
         return found
 
     def judged(self, first: int, rows: Rows, computed: int) -> Chunk:
@@ -225,17 +270,27 @@ class Study:
         margin = np.where(np.isfinite(found.margin), found.margin, np.nan)
         rows[places, -3:] = np.stack([margin, found.missed, found.feasible], axis=1)
 
+    def _alike(self, points: Points) -> Iterator[tuple[Array, int, dict[str, float]]]:
+        """Numbers of points of one prepared design, its combination of texts, what is set apart."""
+        paths = [axis.path for axis in self.plan.numeric]
+        apart = [k for k, path in enumerate(paths) if path in self.apart]
+        if not apart and self.plan.variants == 1:
+            yield np.arange(len(points.variant)), 0, {}
+            return
+        keys = np.vstack([points.variant.astype(float), points.numbers[apart]])
+        unique, which = np.unique(keys, axis=1, return_inverse=True)
+        order = np.argsort(which.ravel(), kind="stable")
+        starts = np.searchsorted(which.ravel()[order], np.arange(unique.shape[1]))
+        for number, every in enumerate(np.split(order, starts[1:])):
+            variant, *set_apart = unique[:, number]
+            fixed = {paths[k]: float(x) for k, x in zip(apart, set_apart, strict=True)}
+            yield every, int(variant), fixed
+
     def groups(self, points: Points) -> Iterator[tuple[Array, Subject | str, dict[str, Array]]]:
         """Points of one prepared design, with the arrays that vary; why, where there is none."""
         paths = [axis.path for axis in self.plan.numeric]
-        apart = [k for k, path in enumerate(paths) if path in self.apart]
-        keys = np.vstack([points.variant.astype(float), points.numbers[apart]])
-        unique, which = np.unique(keys, axis=1, return_inverse=True)
-        for number in range(unique.shape[1]):
-            every = np.flatnonzero(which.ravel() == number)
-            variant, *set_apart = unique[:, number]
-            fixed = {paths[k]: float(x) for k, x in zip(apart, set_apart, strict=True)}
-            subject = self._prepared(int(variant), fixed)
+        for every, variant, fixed in self._alike(points):
+            subject = self._prepared(variant, fixed)
             for first in range(0, len(every), AT_ONCE):
                 places = every[first : first + AT_ONCE]
                 varied = {

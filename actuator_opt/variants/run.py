@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,8 +30,11 @@ CHUNK = 4096
 REDUCED = 65_536
 """Points of a chunk of which the best alone are kept."""
 
-ALONE = 4
-"""Chunks up to which other processes are not worth their start."""
+LOOKS = 16
+"""Places of a sweep without a feasible design that are looked at to say why."""
+
+ALONE = 0.5
+"""Seconds of work up to which other processes are not worth their start."""
 
 
 class Task(NamedTuple):
@@ -41,6 +45,8 @@ class Task(NamedTuple):
     some: Array | None = None
     limit: float | None = None
     """Objective that a design must be below, where the best alone are asked for."""
+    keep: int = 0
+    """How many of the best, then."""
 
 
 @dataclass(frozen=True, order=True)
@@ -66,10 +72,10 @@ class Swept:
     computed: int = 0
     reused: int = 0
     failed: int = 0
-    feasible: int = 0
-    """Of those that were evaluated in full."""
+    feasible: int | None = 0
+    """None where the best alone are asked for: then most are never evaluated."""
     screened: int = 0
-    """Variants that cannot be among the best, by closed expressions alone."""
+    """Variants that closed expressions or better ones of their chunk rule out, where so."""
     best: list[Best] = field(default_factory=list)
     failures: dict[str, int] = field(default_factory=dict)
     """How often each reason made a design fail."""
@@ -110,6 +116,15 @@ class Swept:
             "seconds": self.seconds,
         }
 
+    def count_missed(self, chunk: Chunk) -> None:
+        """Count the limits that the designs of a chunk miss most."""
+        worst = chunk.rows.numbers[~chunk.feasible, -2]
+        for number, times in zip(
+            *np.unique(worst[np.isfinite(worst)], return_counts=True), strict=True
+        ):
+            name = self.study.limits[int(number)]
+            self.missed[name] = self.missed.get(name, 0) + int(times)
+
     def add(self, chunk: Chunk, keep: int) -> None:
         """Count a chunk."""
         self.computed += chunk.computed
@@ -121,13 +136,9 @@ class Swept:
         for reason in chunk.rows.failures.values():
             self.failures[reason] = self.failures.get(reason, 0) + 1
         good = np.flatnonzero(chunk.feasible)
-        worst = chunk.rows.numbers[~chunk.feasible, -2]
-        for number, times in zip(
-            *np.unique(worst[np.isfinite(worst)], return_counts=True), strict=True
-        ):
-            name = self.study.limits[int(number)]
-            self.missed[name] = self.missed.get(name, 0) + int(times)
-        self.feasible += len(good)
+        self.count_missed(chunk)
+        if self.feasible is not None:
+            self.feasible += len(good)
         if keep and len(good):
             order = good[np.argsort(chunk.objective[good], kind="stable")[:keep]]
             found = [
@@ -165,12 +176,17 @@ def sweep(
         the database cannot be used
     """
     began = time.perf_counter()
-    found = Swept(study, study.plan.count, sample=Sample(tuple(watch)))
+    found = Swept(
+        study,
+        study.plan.count,
+        feasible=0 if study.full else None,
+        sample=Sample(tuple(watch)),
+    )
     size = CHUNK if study.full else REDUCED
     starts = range(0, study.plan.count, size)
     computed = partial(_computed, study, len(starts), workers, scheduler)
     if not study.full:
-        chunks = computed(Task(first, size, None, found.limit(keep)) for first in starts)
+        chunks = computed(Task(first, size, None, found.limit(keep), keep) for first in starts)
     elif store is None:
         chunks = computed(Task(first, size) for first in starts)
     else:
@@ -180,8 +196,18 @@ def sweep(
         if each is not None:
             each(chunk)
         progress.tell("evaluating designs", (number + 1) / len(starts))
+    if not study.full and not found.best:
+        _explain(found)
     found.seconds = time.perf_counter() - began
     return found
+
+
+def _explain(found: Swept) -> None:
+    """Count what some designs miss, where none is feasible and few were evaluated."""
+    count, part = found.study.plan.count, max(CHUNK // LOOKS, 1)
+    found.missed = {}
+    for first in dict.fromkeys(np.linspace(0, count - 1, LOOKS).astype(int).tolist()):
+        found.count_missed(found.study.chunk(first, part))
 
 
 def _computed(
@@ -191,19 +217,32 @@ def _computed(
     if scheduler is not None:
         yield from on_cluster(scheduler, study, _chunk, tasks)
         return
-    count = min(workers or os.cpu_count() or 1, chunks)
-    if count <= 1 or (workers is None and chunks <= ALONE):
-        for task in tasks:
-            yield _chunk(study, task)
+    rest = iter(tasks)
+    count = workers or os.cpu_count() or 1
+    if workers is None or count == 1:
+        yield from _here(study, chunks, rest, patient=count == 1)
+    first = next(rest, None)
+    if first is None:
         return
     with ProcessPoolExecutor(count, initializer=_begin, initargs=(study,)) as pool:
         waiting: deque[Future[Chunk]] = deque()
-        for task in tasks:
+        for task in chain([first], rest):
             waiting.append(pool.submit(_work, task))
             if len(waiting) > 2 * count:
                 yield waiting.popleft().result()
         while waiting:
             yield waiting.popleft().result()
+
+
+def _here(study: Study, chunks: int, tasks: Iterator[Task], *, patient: bool) -> Iterator[Chunk]:
+    """Chunks of this process: all of them, or until the rest is worth the start of others."""
+    for done, task in enumerate(tasks, start=1):
+        began = time.perf_counter()
+        chunk = _chunk(study, task)
+        took = time.perf_counter() - began
+        yield chunk
+        if not patient and done > 1 and (chunks - done) * took > ALONE:  # the first takes longer
+            return
 
 
 _STUDY: list[Study] = []
@@ -220,7 +259,7 @@ def _work(task: Task) -> Chunk:
 
 def _chunk(study: Study, task: Task) -> Chunk:
     if task.limit is not None:
-        return study.reduced(task.first, task.size, task.limit)
+        return study.reduced(task.first, task.size, task.limit, task.keep)
     return study.chunk(task.first, task.size, task.some)
 
 

@@ -6,7 +6,7 @@ varies are compiled. What passes is evaluated in full, so that a screen changes 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,15 +27,36 @@ from ..symbolic.order import needed
 ROOM = 2 * TOLERANCE
 """Margin below which a variant is out: beyond the rounding of another order of operations."""
 
+TRIED = 512
+"""Points that tell which limits rule out most."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Compiled values of some limits, with their bounds and senses (1 for a least value)."""
+
+    compiled: Any
+    bounds: Array
+    signs: Array
+
+    def missed(self, numbers: Array) -> Iterator[Array]:
+        """For each limit in turn whether it is missed, (n,) or one for all."""
+        with np.errstate(all="ignore"):
+            for value, bound, sign in zip(
+                self.compiled(numbers), self.bounds, self.signs, strict=True
+            ):
+                yield sign * (value - bound) < -ROOM * (abs(bound) or 1.0)
+
 
 @dataclass(frozen=True)
 class Screen:
-    """Compiled objective and limits of variants that differ in numbers (axes, n)."""
+    """Compiled objective and limits of variants that differ in numbers (axes, n).
+
+    `stages` are limits one after the other: later ones see only what passes those before.
+    """
 
     objective: Any
-    limits: Any
-    bounds: Array
-    signs: Array
+    stages: tuple[Limits, ...]
 
     def values(self, numbers: Array) -> Array:
         """The objective, to be minimised, (n,)."""
@@ -48,16 +69,15 @@ class Screen:
 
     def passing(self, numbers: Array) -> Array:
         """Whether every compiled limit is met, (n,); what has no finite value is kept."""
-        passed = np.ones(numbers.shape[1], dtype=bool)
-        if not len(self.bounds):
-            return passed
-        with np.errstate(all="ignore"):
-            for value, bound, sign in zip(
-                self.limits(numbers), self.bounds, self.signs, strict=True
-            ):
-                size = abs(bound) or 1.0
-                passed &= ~(sign * (value - bound) < -ROOM * size)
-        return passed
+        left = np.arange(numbers.shape[1])
+        for stage in self.stages:
+            passed = np.ones(len(left), dtype=bool)
+            for missed in stage.missed(numbers[:, left]):
+                passed &= ~missed
+            left = left[passed]
+        found = np.zeros(numbers.shape[1], dtype=bool)
+        found[left] = True
+        return found
 
 
 def screen(design: Design, paths: Sequence[str], ends: Array) -> Screen | None:
@@ -78,18 +98,40 @@ def screen(design: Design, paths: Sequence[str], ends: Array) -> Screen | None:
     objectives = list(dict.fromkeys(traced.objectives))
     if not objectives or not all(_closed(one, own) for one in objectives):
         return None
-    claims = [claim for claim in traced.claims if _closed(claim.value, own)]
-    values = [claim.value for claim in claims]
+    claims = list(
+        {
+            (claim.value, claim.bound, claim.limit.sense): claim
+            for claim in traced.claims
+            if _closed(claim.value, own)
+        }.values()
+    )
+    shares = np.random.default_rng(0).random((len(paths), TRIED))
+    tried = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * shares
+    first = _telling(_limits(claims, own), tried) if claims else []
+    rest = [claim for k, claim in enumerate(claims) if k not in first]
+    stages = [[claims[k] for k in first], rest]
     return Screen(
         vectorised("objective", "v", {}, objectives, known=own),
-        vectorised("limits", "v", {}, values, known=own),
-        np.array([claim.bound for claim in claims]),
-        np.array([_sign(claim) for claim in claims]),
+        tuple(_limits(some, own) for some in stages if some),
     )
 
 
-def _sign(claim: Claim) -> float:
-    return 1.0 if claim.limit.sense == "min" else -1.0
+def _limits(claims: Sequence[Claim], own: Mapping[Symbol, str]) -> Limits:
+    return Limits(
+        vectorised("limits", "v", {}, [claim.value for claim in claims], known=own),
+        np.array([claim.bound for claim in claims]),
+        np.array([1.0 if claim.limit.sense == "min" else -1.0 for claim in claims]),
+    )
+
+
+def _telling(limits: Limits, tried: Array) -> list[int]:
+    """Numbers of few limits that together rule out every point that any of them does."""
+    missed = np.stack([np.broadcast_to(one, tried.shape[1]) for one in limits.missed(tried)])
+    found = []
+    while missed.any():
+        found.append(int(missed.sum(axis=1).argmax()))
+        missed = missed & ~missed[found[-1]]
+    return found
 
 
 def _closed(value: Any, own: dict[Symbol, str]) -> bool:

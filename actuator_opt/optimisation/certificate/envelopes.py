@@ -365,8 +365,8 @@ def _hoop(layer: plies.Layer) -> Array:
 
 
 def _largest(values: Sequence[Array]) -> float:
-    """The largest of some numbers."""
-    return max(float(np.max(value)) for value in values)
+    """The largest of some numbers, and what one that varies is never above."""
+    return max(bounds_of(one)[1] for value in values for one in np.ravel(value))
 
 
 def _wraps(layer: plies.Layer) -> bool:
@@ -374,6 +374,8 @@ def _wraps(layer: plies.Layer) -> bool:
     if layer.isotropic:
         return True
     low, high = bounds_of(layer.angle)
+    if any(isinstance(part, Symbol) for part in layer.solid):
+        return False
     c11, c12, _, c22, _, c33, c66 = (float(np.max(part)) for part in layer.solid)
     room = 1 + 1e-9
     stiff = c33 <= c22 * room and c22 <= c11 * room and c22 <= (c12 + 2 * c66) * room

@@ -175,13 +175,19 @@ def _collect(
         if limit.case is not None and limit.case != case:
             continue
         rows = list(_applying(out, limit.metric, case))
-        bound = float(np.squeeze(limit.value(values)))
+        limited = limit.value(values)
+        varies = isinstance(limited, Symbol)
+        if varies and not limited.bounds[0] > 0:
+            found.dropped[limit.name] = "its limit varies and may be zero"
+            continue
+        bound = 1.0 if varies else float(np.squeeze(limited))
         for place, value in rows:
             if limit.places is not None and place not in limit.places:
                 continue
-            if isinstance(value, Symbol):
+            if isinstance(value, Symbol) or varies:
                 where = ", ".join(x for x in (case, place) if x)
-                found.claims.append(Claim(limit, f"{limit.name} ({where})", value, bound))
+                claimed = value / limited if varies else value
+                found.claims.append(Claim(limit, f"{limit.name} ({where})", claimed, bound))
             else:
                 found.dropped.setdefault(limit.name, "no variable changes it where it is traced")
         if not rows and (first or limit.case is not None):
