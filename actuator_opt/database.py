@@ -24,6 +24,9 @@ FORMAT = 1
 BUSY = 60.0
 """Seconds to wait for another process that writes."""
 
+ASKED = 500
+"""Keys of one question; SQLite takes at least 999 parameters."""
+
 _PUT = "INSERT OR IGNORE INTO rows (study, key, numbers, failure) VALUES (?, ?, ?, ?)"
 _TABLES = """
 CREATE TABLE IF NOT EXISTS meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -63,16 +66,17 @@ class Database:
 
     def known(self, keys: Sequence[bytes]) -> dict[int, tuple[bytes | None, str | None]]:
         """Rows that stand already, by the number of their key."""
-        cursor = self.connection.execute("SELECT count(*) FROM rows WHERE study = ?", (self.study,))
-        if not cursor.fetchone()[0]:
+        some = "SELECT 1 FROM rows WHERE study = ? LIMIT 1"
+        if self.connection.execute(some, (self.study,)).fetchone() is None:
             return {}
-        select = "SELECT numbers, failure FROM rows WHERE study = ? AND key = ?"
-        found = {}
-        for number, key in enumerate(keys):
-            row = self.connection.execute(select, (self.study, key)).fetchone()
-            if row is not None:
-                found[number] = row
-        return found
+        kept: dict[bytes, tuple[bytes | None, str | None]] = {}
+        for first in range(0, len(keys), ASKED):
+            part = keys[first : first + ASKED]
+            marks = ",".join("?" * len(part))
+            select = f"SELECT key, numbers, failure FROM rows WHERE study = ? AND key IN ({marks})"
+            for key, *row in self.connection.execute(select, (self.study, *part)):
+                kept[key] = tuple(row)
+        return {number: kept[key] for number, key in enumerate(keys) if key in kept}
 
     def put(self, keys: Sequence[bytes], rows: Rows) -> None:
         """Keep a chunk, all of it or nothing; what stands already stays."""

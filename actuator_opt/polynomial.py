@@ -12,6 +12,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
+from .cubic import cubic_roots
 from .numeric import Array, namespace, real
 
 Polynomial: TypeAlias = tuple[Array, ...]
@@ -119,7 +120,7 @@ def square_of_magnitude(polynomial: Polynomial) -> Polynomial:
 
 
 def roots(polynomial: Polynomial) -> np.ndarray:
-    """All roots, (..., degree) complex: eigenvalues of the scaled companion matrix.
+    """All roots, (..., degree) complex: eigenvalues of the scaled companion matrix, or a cubic's.
 
     Real parts of the coefficients count. Columns like the one before along the last axis (the
     copies of a design under a complex step) are solved once. A leading coefficient of zero in an
@@ -132,15 +133,15 @@ def roots(polynomial: Polynomial) -> np.ndarray:
     coefficients = np.stack(rows, axis=-1)
     shape = coefficients.shape[:-1]
     if not shape or shape[-1] < 2:
-        return _companion_roots(coefficients)
+        return _scaled_roots(coefficients)
     other = coefficients[..., 1:, :] != coefficients[..., :-1, :]
     new = np.concatenate([[True], other.any(axis=(*range(len(shape) - 1), -1))])
     if new.all():
-        return _companion_roots(coefficients)
-    return _companion_roots(coefficients[..., new, :])[..., np.cumsum(new) - 1, :]
+        return _scaled_roots(coefficients)
+    return _scaled_roots(coefficients[..., new, :])[..., np.cumsum(new) - 1, :]
 
 
-def _companion_roots(coefficients: np.ndarray) -> np.ndarray:
+def _scaled_roots(coefficients: np.ndarray) -> np.ndarray:
     """Roots of polynomials (..., degree + 1) whose variable is scaled to mean magnitude one."""
     degree = coefficients.shape[-1] - 1
     lead = coefficients[..., -1]
@@ -151,16 +152,20 @@ def _companion_roots(coefficients: np.ndarray) -> np.ndarray:
         monic = monic * size[..., None] ** (np.arange(degree) - degree)
     broken = ~np.all(np.isfinite(monic), axis=-1)
     monic = np.where(broken[..., None], 0.0, monic)
-    companion = np.zeros((*monic.shape[:-1], degree, degree))
-    companion[..., 1:, :-1] = np.eye(degree - 1)
-    companion[..., :, -1] = -monic
-    found = np.linalg.eigvals(companion).astype(complex) * size[..., None]
+    if degree == 3:
+        found = cubic_roots(monic[..., 2], monic[..., 1], monic[..., 0])
+    else:
+        companion = np.zeros((*monic.shape[:-1], degree, degree))
+        companion[..., 1:, :-1] = np.eye(degree - 1)
+        companion[..., :, -1] = -monic
+        found = np.linalg.eigvals(companion).astype(complex)
+    found *= size[..., None]
     found = np.where(broken[..., None], np.nan, found)
     lower = (lead == 0) & np.all(np.isfinite(coefficients), axis=-1)
     if lower.any():
         found[lower, 0] = -np.inf
         if degree > 1:
-            found[lower, 1:] = _companion_roots(coefficients[lower, :-1])
+            found[lower, 1:] = _scaled_roots(coefficients[lower, :-1])
     return found
 
 

@@ -121,3 +121,43 @@ def test_roots_move_as_the_differences_say():
         ) / (2e-5 * abs(base[k]))
         assert polished.imag / STEP == pytest.approx(moved, rel=1e-6)
     assert polynomial.positive_root((3.0,), 1.0) == 1.0
+
+
+def test_roots_of_a_cubic_far_apart_keep_their_digits():
+    """A real root of -1e8 beside a lightly damped pair: damping ratio to 1e-13, size to 1e-15."""
+    far, size, damping = 1e8, 2.0**10, 2.0**-6  # (s + far) (s^2 + 2 damping size s + size^2)
+    pair = (size**2, 2 * damping * size, 1.0)
+    found = polynomial.roots(polynomial.multiply((far, 1.0), pair))
+    order = np.argsort(np.abs(found))
+    assert found[order[2]] == pytest.approx(-far, rel=1e-15)
+    one, two = found[order[:2]]
+    assert one == np.conj(two)
+    assert abs(one) == pytest.approx(size, rel=1e-14)
+    assert -one.real / abs(one) == pytest.approx(damping, rel=1e-9)  # the products round at 1e8
+
+
+CUBIC = st.floats(-1e4, 1e4).filter(lambda value: value == 0 or abs(value) > 1e-4)
+
+
+@given(st.lists(st.tuples(CUBIC, CUBIC, CUBIC), min_size=1, max_size=5))
+def test_cubics_are_zero_at_their_roots(rows):
+    """Sum, pair products and product of the roots are the coefficients, to their rounding."""
+    square, slope, constant = np.array(rows).T
+    found = polynomial.roots((constant, slope, square, 1.0))
+    x, y, z = np.moveaxis(found, -1, 0)
+    size = np.abs(found).max(axis=-1)
+    assert (np.abs(x + y + z + square) <= 1e-14 * (size + np.abs(square))).all()
+    assert (np.abs(x * y + y * z + z * x - slope) <= 1e-13 * size**2 + 1e-300).all()
+    assert (np.abs(x * y * z + constant) <= 1e-13 * size**3 + 1e-300).all()
+    assert (found.imag.sum(axis=-1) == 0).all()
+
+
+@pytest.mark.parametrize("root", [-3.0, 0.0, 1e-5, 7e6])
+def test_multiple_roots_of_a_cubic(root):
+    """Three roots in one place, and two beside another, as far as their rounding allows."""
+    one = (-root, 1.0)
+    found = polynomial.roots(polynomial.multiply(one, one, one))
+    np.testing.assert_allclose(found, root, rtol=3e-5, atol=1e-12)
+    other = (-5 * root - 1, 1.0)
+    found = np.sort(polynomial.roots(polynomial.multiply(one, one, other)).real)
+    np.testing.assert_allclose(found, sorted([root, root, 5 * root + 1]), rtol=1e-6, atol=1e-7)

@@ -17,7 +17,7 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.errors import InputError, UsageError
-from actuator_opt.variants import run
+from actuator_opt.variants import chunk, run
 
 KNEE = "designs/knee.yaml"
 STEEL = "designs/steel_baseline.yaml"
@@ -90,16 +90,27 @@ def test_the_best_are_those_of_all_rows(knee, tmp_path):
     assert [one.number for one in again.best] == [one.number for one in swept.best]
 
 
-@pytest.mark.parametrize("named", [False, True])
-def test_a_screen_loses_none_of_the_best(named, monkeypatch):
+MORE = {
+    "dimensions": [],
+    "materials": ["rod.material=steel_42crmo4,ti_6al4v"],
+    "pressures": ["supply.pressure=195..210 bar"],
+    "limits": ["requirements.stiffness_min.min=4..6 MN/m", "load_cases[stance].force=5000..5500 N"],
+    "temperatures": ["fluid.temperature=30,40,50 degC"],
+    "plies": ["materials.t700_epoxy.youngs_modulus_1=120..135 GPa", "supply.proof_ratio=1.4,1.5"],
+}
+
+
+@pytest.mark.parametrize("more", MORE)
+def test_a_screen_loses_none_of_the_best(more, monkeypatch):
     """The best of a reduced sweep are those of all rows, found in chunks with a falling limit."""
     monkeypatch.setattr(run, "REDUCED", 256)
+    monkeypatch.setattr(chunk, "WORTH", 100)
     near = ao.read(KNEE, set=NEAR)
     vary = [
         "cylinder.bore=20.8..21.2 mm", "barrel.layup[1].thickness=2.4..3.4 mm",
         "retention.length=18..20 mm", "rod.inner_diameter=4..6 mm",
     ]  # fmt: skip
-    vary += ["rod.material=steel_42crmo4,ti_6al4v"] if named else []
+    vary += MORE[more]
     how = {"method": "lhs", "n": 2000, "seed": 4, "keep": 7}
     every, reduced = ao.sweep(near, vary, **how), ao.sweep(near, vary, reduce=True, **how)
     assert every.feasible >= 7
@@ -179,7 +190,7 @@ def test_a_changed_design_is_another_study(tmp_path):
 SCRIPT = """
 import sys
 import actuator_opt as ao
-from actuator_opt.variants import run
+from actuator_opt.variants import chunk, run
 run.CHUNK = 128
 found = ao.sweep(sys.argv[1], sys.argv[3:], method="lhs", n=4000, store=sys.argv[2], workers=2)
 print(found.requested, found.computed, found.reused)

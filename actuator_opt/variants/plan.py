@@ -167,29 +167,50 @@ def _latin(index: Array, dimension: int, count: int, seed: int) -> Array:
     found = np.empty((dimension, len(index)))
     for axis in range(dimension):
         keys = np.random.default_rng([seed, axis]).integers(2**63, size=ROUNDS + 1, dtype=np.uint64)
-        place = _permuted(index.astype(np.uint64), count, keys[:ROUNDS])
-        jitter = _hash(index.astype(np.uint64) ^ keys[ROUNDS]) >> np.uint64(11)
-        found[axis] = (place + jitter.astype(float) * 2.0**-53) / count
+        jitter = _mixed(index.astype(np.uint64) ^ keys[ROUNDS]) >> np.uint64(11)
+        found[axis] = jitter
+        found[axis] *= 2.0**-53
+        found[axis] += _permuted(index.astype(np.uint32), count, keys[:ROUNDS].astype(np.uint32))
+        found[axis] /= count
     return found
 
 
 def _permuted(index: Array, count: int, keys: Array) -> Array:
+    """Numbers below `count` (at most 2^32) in another order."""
     half = max(math.ceil(math.log2(max(count, 2)) / 2), 1)
-    mask, shift = np.uint64(2**half - 1), np.uint64(half)
-    place, out = index.copy(), np.ones(len(index), dtype=bool)
-    while out.any():
-        left, right = place[out] >> shift, place[out] & mask
-        for key in keys:
-            left, right = right, left ^ (_hash(right ^ key) & mask)
-        place[out] = (left << shift) | right
-        out = place >= count
+    mask, shift = np.uint32(2**half - 1), np.uint32(half)
+    place = _rounds(index, keys, mask, shift)
+    out = np.flatnonzero(place >= count)
+    while len(out):
+        moved = _rounds(place[out], keys, mask, shift)
+        place[out] = moved
+        out = out[moved >= count]
     return place
 
 
-def _hash(x: Array) -> Array:
+def _rounds(place: Array, keys: Array, mask: np.uint32, shift: np.uint32) -> Array:
+    left, right = place >> shift, place & mask
+    for key in keys:
+        mixed = _mixed_half(right ^ key)
+        mixed &= mask
+        left, right = right, left ^ mixed
+    found: Array = (left << shift) | right
+    return found
+
+
+def _mixed_half(x: Array) -> Array:
+    """A mix of 32 bits (the finaliser of MurmurHash3 [Appleby2011])."""
+    x = x ^ (x >> np.uint32(16))
+    x *= np.uint32(0x85EBCA6B)
+    x ^= x >> np.uint32(13)
+    x *= np.uint32(0xC2B2AE35)
+    x ^= x >> np.uint32(16)
+    return x
+
+
+def _mixed(x: Array) -> Array:
     """A mix of 64 bits (the finaliser of SplitMix64 [Steele2014])."""
-    with np.errstate(over="ignore"):
-        x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-        x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     mixed: Array = x ^ (x >> np.uint64(31))
     return mixed
