@@ -290,3 +290,24 @@ def test_metrics_of_the_best_are_numbers_or_none(knee):
         for value in one["metrics"].values():
             assert value is None or math.isfinite(value)
     assert np.isfinite(list(told["best"][0]["variables"].values())).all()
+
+
+def test_temperatures_that_leave_strengths_alone_move_together(tmp_path):
+    """Within the environment's temperatures oil varies as an array; beyond, designs stand apart."""
+    from actuator_opt.variants.chunk import Study
+
+    for vary, apart in (
+        ("fluid.temperature=20..60 degC:5", False),
+        ("fluid.temperature=20..95 degC:5", True),
+    ):
+        file = tmp_path / "rows.csv"
+        swept = ao.sweep(KNEE, [vary], csv=file)
+        assert isinstance(swept.study, Study)
+        assert bool(swept.study.designs.apart) == apart
+        for number, row in enumerate(table(file)):
+            (value,) = swept.study.values(number).values()
+            alone = ao.evaluate(ao.read(KNEE, set={"fluid.temperature": value}))
+            for name in ("friction_running", "yield_factor", "proof_factor", "damping_pipe"):
+                found = next(float(row[key]) for key in row if key.split(" [")[0] == name)
+                metric = alone.metrics[name]
+                assert found == pytest.approx(metric.quantity.to_display(metric.value), rel=1e-8)

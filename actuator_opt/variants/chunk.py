@@ -6,8 +6,7 @@ import contextlib
 import hashlib
 import inspect
 import json
-import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -17,31 +16,18 @@ from ..design import Design, with_values
 from ..design.paths import quantity_of
 from ..design.writer import to_yaml
 from ..errors import InputError
-from ..evaluation import Subject, prepare
 from ..evaluation.build import spec_hash
 from ..evaluation.many import Many, evaluate_many, limits_of
 from ..evaluation.plugin import Plugin
 from ..numeric import Array
 from ..optimisation.actuator import Goal, goal_of
 from ..quantities import Quantity
-from .axes import Axis
+from .designs import KEPT, Designs, first_fault
 from .plan import Plan, Points
 from .screen import Screen, screen
 
-KEPT = 64
-"""Prepared designs that a process keeps."""
-
 WORTH = 2048
 """Designs from which a screen, some 20 ms of work, is worth it."""
-
-AT_ONCE = 4096
-"""Most designs of one call of the models: more would take memory, not less time."""
-
-TRIED = (0.0, 1.0, 0.5, 0.25, 0.75)
-"""Shares of a range that are tried until two make a design."""
-
-AGREE = 1e-9
-"""Relative difference up to which a number that varies counts as the same as one that is set."""
 
 NO_ANSWER = "the models have no finite answer for these dimensions"
 MARGIN, MISSED, FEASIBLE = "least_margin", "governing_limit", "feasible"
@@ -70,10 +56,7 @@ class Chunk:
 
 @dataclass
 class Study:
-    """A design with what varies: rows of any of its points.
-
-    `apart` are numbers that a design must be made anew for: temperatures of strengths, say.
-    """
+    """A design with what varies: rows of any of its points."""
 
     design: Design
     plan: Plan
@@ -83,14 +66,12 @@ class Study:
     more: tuple[str, ...] = ()
     """Metrics asked for beside what tells the best."""
     goal: Goal = field(init=False)
-    apart: tuple[str, ...] = field(init=False)
-    contradicts: bool = field(init=False)
-    """Whether some value of an axis contradicts the rest of the design, as its file would say."""
-    _subjects: dict[tuple[object, ...], Subject | str] = field(default_factory=dict, repr=False)
+    designs: Designs = field(init=False)
     _screens: dict[tuple[object, ...], Screen | None] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
-        subject = self._made({})
+        self.designs = Designs(self.design, self.plan, self.plugins)
+        subject = self.designs.made({})
         self.goal = goal_of(subject)
         self._quantities = dict(subject.quantities)
         self.binding = limits_of(subject)
@@ -100,8 +81,6 @@ class Study:
         self.metrics = tuple(
             name for name in self._quantities if self.wanted is None or name in self.wanted
         )
-        self.contradicts = False
-        self.apart = tuple(axis.path for axis in self.plan.numeric if not self._moves(axis))
         paths = [axis.path for axis in self.plan.numeric]
         self.order = sorted(range(len(paths)), key=paths.__getitem__)
         """The plan's numbers by PATH, whatever the order they are given in."""
@@ -114,46 +93,12 @@ class Study:
         )
 
     def __getstate__(self) -> dict[str, object]:
-        return self.__dict__ | {"_subjects": {}, "_screens": {}}
-
-    def _made(self, values: Mapping[str, float | str]) -> Subject:
-        """The design with other values, prepared; raises `InputError`."""
-        design = with_values(self.design, dict(values)) if values else self.design
-        return prepare(design, plugins=self.plugins)
-
-    def _moves(self, axis: Axis) -> bool:
-        """Whether a number may be moved as an array: two values as if the design had them.
-
-        Temperatures may not: strengths and oils are prepared for them.
-        """
-        assert axis.values is not None
-        if quantity_of(axis.path, self.design).dimension == "temperature":
-            return False
-        texts = self.plan.texts(0)
-        low, high = axis.values[[0, -1]]
-        alone: dict[float, Many] = {}
-        for share in TRIED:
-            value = float(low + share * (high - low))
-            try:
-                alone[value] = evaluate_many(self._made({**texts, axis.path: value}), {}, 1)
-            except InputError:
-                self.contradicts = True
-            if len(alone) == 2:
-                break
-        if not alone:
-            return False
-        base = self._made({**texts, axis.path: next(iter(alone))})
-        together = evaluate_many(base, {axis.path: np.array(list(alone))}, len(alone))
-        return all(
-            np.isclose(values[k], one.metrics[name][0], rtol=AGREE, atol=0.0, equal_nan=True)
-            for name, values in together.metrics.items()
-            for k, one in enumerate(alone.values())
-        )
+        return self.__dict__ | {"_screens": {}}
 
     def chunk(self, first: int, count: int, some: Array | None = None) -> Chunk:
         """Rows of some points in a row, or of those of them that are numbered in `some`."""
         found = self._evaluated(first, count, some)
-        if not self.contradicts:
+        if not self.designs.contradicts:
             return found
         failures = found.rows.failures | self._contradictions(found, some)
         found.rows.numbers[list(failures), len(self.order) :] = np.nan
@@ -168,7 +113,7 @@ class Study:
         rows = np.full((n, len(self.columns)), np.nan)
         rows[:, : len(points.numbers)] = points.numbers[self.order].T
         failures: dict[int, str] = {}
-        for places, subject, varied in self.groups(points):
+        for places, subject, varied in self.designs.groups(points):
             if isinstance(subject, str):
                 failures |= dict.fromkeys(map(int, places), subject)
                 continue
@@ -183,8 +128,10 @@ class Study:
         """Rows of the points that may be among the `keep` best, with an objective below `limit`."""
         points = self.plan.points(first, count)
         kept = np.ones(len(points.variant), dtype=bool)
-        moving = [k for k, axis in enumerate(self.plan.numeric) if axis.path not in self.apart]
-        for own, variant, fixed in self._alike(points):
+        moving = [
+            k for k, axis in enumerate(self.plan.numeric) if axis.path not in self.designs.apart
+        ]
+        for own, variant, fixed in self.designs.alike(points):
             sieve = self._screen(variant, fixed)
             if sieve is None:
                 continue
@@ -195,7 +142,7 @@ class Study:
         some = np.flatnonzero(kept)
         found = self._evaluated(first, count, some)
         failures, out = dict(found.rows.failures), np.zeros(len(some), dtype=bool)
-        if self.contradicts:
+        if self.designs.contradicts:
             failures |= self._contradictions(found, some, keep)
         feasible = found.feasible.copy()
         feasible[list(failures)] = False
@@ -214,11 +161,8 @@ class Study:
 
         None for the user's own metrics, which are no expressions.
         """
-        axes = [axis for axis in self.plan.numeric if axis.path not in self.apart]
-        apart = [axis for axis in self.plan.numeric if axis.path in self.apart]
-        alike = self.plan.count / self.plan.variants
-        for axis in apart:
-            alike /= axis.size or math.inf
+        axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
+        alike = self.plan.count / self.plan.variants / self.designs.apart_count
         if not axes or self.plugins or alike < WORTH:
             return None
         key = (variant, *fixed.values())
@@ -251,7 +195,7 @@ class Study:
             try:
                 with_values(self.design, dict(self.values(number)))
             except InputError as error:
-                found[k] = _first(error)
+                found[k] = first_fault(error)
         return found
 
     def judged(self, first: int, rows: Rows, computed: int) -> Chunk:
@@ -269,48 +213,6 @@ class Study:
             rows[places, start + k] = found.metrics[name]
         margin = np.where(np.isfinite(found.margin), found.margin, np.nan)
         rows[places, -3:] = np.stack([margin, found.missed, found.feasible], axis=1)
-
-    def _alike(self, points: Points) -> Iterator[tuple[Array, int, dict[str, float]]]:
-        """Numbers of points of one prepared design, its combination of texts, what is set apart."""
-        paths = [axis.path for axis in self.plan.numeric]
-        apart = [k for k, path in enumerate(paths) if path in self.apart]
-        if not apart and self.plan.variants == 1:
-            yield np.arange(len(points.variant)), 0, {}
-            return
-        keys = np.vstack([points.variant.astype(float), points.numbers[apart]])
-        unique, which = np.unique(keys, axis=1, return_inverse=True)
-        order = np.argsort(which.ravel(), kind="stable")
-        starts = np.searchsorted(which.ravel()[order], np.arange(unique.shape[1]))
-        for number, every in enumerate(np.split(order, starts[1:])):
-            variant, *set_apart = unique[:, number]
-            fixed = {paths[k]: float(x) for k, x in zip(apart, set_apart, strict=True)}
-            yield every, int(variant), fixed
-
-    def groups(self, points: Points) -> Iterator[tuple[Array, Subject | str, dict[str, Array]]]:
-        """Points of one prepared design, with the arrays that vary; why, where there is none."""
-        paths = [axis.path for axis in self.plan.numeric]
-        for every, variant, fixed in self._alike(points):
-            subject = self._prepared(variant, fixed)
-            for first in range(0, len(every), AT_ONCE):
-                places = every[first : first + AT_ONCE]
-                varied = {
-                    path: points.numbers[k][places]
-                    for k, path in enumerate(paths)
-                    if path not in self.apart
-                }
-                yield places, subject, varied
-
-    def _prepared(self, variant: int, fixed: dict[str, float]) -> Subject | str:
-        """A prepared design, or why there is none; the last few are kept."""
-        key = (variant, *fixed.values())
-        if key not in self._subjects:
-            if len(self._subjects) >= KEPT:
-                self._subjects.pop(next(iter(self._subjects)))
-            try:
-                self._subjects[key] = self._made({**self.plan.texts(variant), **fixed})
-            except InputError as error:
-                self._subjects[key] = _first(error)
-        return self._subjects[key]
 
     def quantity(self, metric: str) -> Quantity:
         """What a metric is."""
@@ -338,7 +240,7 @@ class Study:
         """Hash of the design, its materials, its own metrics, the models and what varies."""
         sources = [_source(plugin) for plugin in self.plugins]
         paths = sorted(axis.path for axis in self.plan.axes)
-        text = json.dumps([spec_hash(self._made({})), sources, paths, self.columns])
+        text = json.dumps([spec_hash(self.designs.made({})), sources, paths, self.columns])
         return hashlib.sha256(text.encode()).hexdigest()[:32]
 
     def keys(self, first: int, count: int) -> list[bytes]:
@@ -361,12 +263,6 @@ class Study:
 def key_head(texts: Mapping[str, str]) -> hashlib.blake2b:
     """A key as far as its texts decide it; the row's numbers come after them."""
     return hashlib.blake2b(json.dumps(dict(texts), sort_keys=True).encode(), digest_size=16)
-
-
-def _first(error: InputError) -> str:
-    """The first fault in words."""
-    fault = error.diagnostics[0]
-    return fault.message if fault.path is None else f"{fault.path}: {fault.message}"
 
 
 def _source(plugin: Plugin) -> str:

@@ -127,7 +127,7 @@ def _evaluated(
     alone: list[tuple[Array, Subject]] = []
     shared: dict[int, tuple[list[Array], Subject]] = {}
     points = Points(variant, numbers[:, : len(paths)].T)
-    for places, subject, varied in study.groups(points):
+    for places, subject, varied in study.designs.groups(points):
         if isinstance(subject, str):
             continue
         limits |= {limit.name: limit for limit in limits_of(subject)}

@@ -98,7 +98,7 @@ class Field:
 
         They move along that edge; they stay where each design must be made anew.
         """
-        if self.study.apart or not curves:
+        if self.study.designs.apart or not curves:
             return list(curves)
         every = np.concatenate(curves)
         points, which = np.unique(np.round(every, 15), axis=0, return_inverse=True)
@@ -158,7 +158,9 @@ def margins_at(study: Study, numbers: Array) -> Array:
     """The margin of every limit, (limits, n), where the plan's numbers are (axes, n)."""
     count = numbers.shape[1]
     found = np.full((len(study.binding), count), np.nan)
-    for places, subject, varied in study.groups(Points(np.zeros(count, dtype=int), numbers)):
+    for places, subject, varied in study.designs.groups(
+        Points(np.zeros(count, dtype=int), numbers)
+    ):
         if not isinstance(subject, str):
             found[:, places] = margins_of(subject, varied, len(places))
     return found

@@ -22,6 +22,7 @@ from ..numeric import Array
 from ..version import VERSION
 from .chunk import Chunk, Study
 from .cluster import on_cluster
+from .designs import KEPT
 from .sample import Sample
 
 CHUNK = 4096
@@ -32,6 +33,9 @@ REDUCED = 65_536
 
 LOOKS = 16
 """Places of a sweep without a feasible design that are looked at to say why."""
+
+ANEW = 8
+"""Points of a chunk of designs that are made anew one by one, some with tables of oil films."""
 
 ALONE = 0.5
 """Seconds of work up to which other processes are not worth their start."""
@@ -182,7 +186,7 @@ def sweep(
         feasible=0 if study.full else None,
         sample=Sample(tuple(watch)),
     )
-    size = CHUNK if study.full else REDUCED
+    size = _chunk_size(study)
     starts = range(0, study.plan.count, size)
     computed = partial(_computed, study, len(starts), workers, scheduler)
     if not study.full:
@@ -200,6 +204,13 @@ def sweep(
         _explain(found)
     found.seconds = time.perf_counter() - began
     return found
+
+
+def _chunk_size(study: Study) -> int:
+    """Points of a chunk: fewer where most of them are designs to be made anew, which takes long."""
+    if study.designs.apart_count > KEPT:
+        return ANEW
+    return CHUNK if study.full else REDUCED
 
 
 def _explain(found: Swept) -> None:
@@ -283,11 +294,11 @@ def _stored(
 
         def tasks() -> Iterator[Task]:
             for first in starts:
-                half = _half(base, study, first)
+                half = _half(base, study, first, starts.step)
                 halves.append(half)
                 if len(half.missing):
                     every = len(half.missing) == len(half.keys)
-                    yield Task(first, CHUNK, None if every else half.missing)
+                    yield Task(first, starts.step, None if every else half.missing)
 
         for fresh in computed(tasks()):
             while not len(halves[0].missing):
@@ -308,9 +319,9 @@ class _Half(NamedTuple):
     missing: Array
 
 
-def _half(base: Database, study: Study, first: int) -> _Half:
-    keys = study.keys(first, CHUNK)
-    points = study.plan.points(first, CHUNK)
+def _half(base: Database, study: Study, first: int, count: int) -> _Half:
+    keys = study.keys(first, count)
+    points = study.plan.points(first, count)
     numbers = np.full((len(keys), len(study.columns)), np.nan)
     numbers[:, : len(points.numbers)] = points.numbers[study.order].T
     failures, known = {}, base.known(keys)

@@ -1,0 +1,162 @@
+"""The designs of a plan: which of its numbers move as arrays, which make a design anew."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..design import Design, with_values
+from ..design.paths import quantity_of
+from ..errors import InputError
+from ..evaluation import Subject, prepare
+from ..evaluation.allow import extremes
+from ..evaluation.many import Many, evaluate_many
+from ..evaluation.plugin import Plugin
+from ..numeric import Array
+from .axes import Axis
+from .plan import Plan, Points
+
+KEPT = 64
+"""Prepared designs that a process keeps."""
+
+AT_ONCE = 4096
+"""Most designs of one call of the models: more would take memory, not less time."""
+
+TRIED = (0.0, 1.0, 0.5, 0.25, 0.75)
+"""Shares of a range that are tried until two make a design."""
+
+AGREE = 1e-9
+"""Relative difference up to which a number that varies counts as the same as one that is set."""
+
+
+@dataclass
+class Designs:
+    """The designs of a plan, prepared where needed.
+
+    `apart` are numbers that a design must be made anew for: temperatures of strengths, say.
+    """
+
+    design: Design
+    plan: Plan
+    plugins: tuple[Plugin, ...] = ()
+    apart: tuple[str, ...] = field(init=False)
+    contradicts: bool = field(init=False, default=False)
+    """Whether some value of an axis contradicts the rest of the design, as its file would say."""
+    _subjects: dict[tuple[object, ...], Subject | str] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        self.apart = tuple(axis.path for axis in self.plan.numeric if not self._moves(axis))
+
+    def __getstate__(self) -> dict[str, object]:
+        return self.__dict__ | {"_subjects": {}}
+
+    def made(self, values: Mapping[str, float | str]) -> Subject:
+        """The design with other values, prepared; raises `InputError`."""
+        design = with_values(self.design, dict(values)) if values else self.design
+        return prepare(design, plugins=self.plugins)
+
+    def _is_temperature(self, axis: Axis) -> bool:
+        return quantity_of(axis.path, self.design).dimension == "temperature"
+
+    def _same_extremes(self) -> bool:
+        """Whether the lowest and the highest of all temperatures stay where they are.
+
+        Strengths are prepared for these two, which rise with each temperature: they are the same
+        everywhere where they are at both ends of what varies.
+        """
+        warm = {a.path: a.numbers() for a in self.plan.numeric if self._is_temperature(a)}
+        found = []
+        for pick in (np.min, np.max) if warm else ():
+            ends = {path: float(pick(values)) for path, values in warm.items()}
+            try:
+                subject = self.made({**self.plan.texts(0), **ends})
+            except InputError:
+                return False
+            found.append(extremes(subject.design, subject.numbers))
+        return all(one == found[0] for one in found)
+
+    @property
+    def apart_count(self) -> float:
+        """Designs that must be made anew for numbers that are set apart, infinite for a range."""
+        found = 1.0
+        for axis in self.plan.numeric:
+            if axis.path in self.apart:
+                found *= axis.size or math.inf
+        return found
+
+    def _moves(self, axis: Axis) -> bool:
+        """Whether a number may be moved as an array: two values as if the design had them."""
+        assert axis.values is not None
+        if self._is_temperature(axis) and not self._same_extremes():
+            return False
+        texts = self.plan.texts(0)
+        low, high = axis.values[[0, -1]]
+        alone: dict[float, Many] = {}
+        for share in TRIED:
+            value = float(low + share * (high - low))
+            try:
+                alone[value] = evaluate_many(self.made({**texts, axis.path: value}), {}, 1)
+            except InputError:
+                self.contradicts = True
+            if len(alone) == 2:
+                break
+        if not alone:
+            return False
+        base = self.made({**texts, axis.path: next(iter(alone))})
+        together = evaluate_many(base, {axis.path: np.array(list(alone))}, len(alone))
+        return all(
+            np.isclose(values[k], one.metrics[name][0], rtol=AGREE, atol=0.0, equal_nan=True)
+            for name, values in together.metrics.items()
+            for k, one in enumerate(alone.values())
+        )
+
+    def alike(self, points: Points) -> Iterator[tuple[Array, int, dict[str, float]]]:
+        """Numbers of points of one prepared design, its combination of texts, what is set apart."""
+        paths = [axis.path for axis in self.plan.numeric]
+        apart = [k for k, path in enumerate(paths) if path in self.apart]
+        if not apart and self.plan.variants == 1:
+            yield np.arange(len(points.variant)), 0, {}
+            return
+        keys = np.vstack([points.variant.astype(float), points.numbers[apart]])
+        unique, which = np.unique(keys, axis=1, return_inverse=True)
+        order = np.argsort(which.ravel(), kind="stable")
+        starts = np.searchsorted(which.ravel()[order], np.arange(unique.shape[1]))
+        for number, every in enumerate(np.split(order, starts[1:])):
+            variant, *set_apart = unique[:, number]
+            fixed = {paths[k]: float(x) for k, x in zip(apart, set_apart, strict=True)}
+            yield every, int(variant), fixed
+
+    def groups(self, points: Points) -> Iterator[tuple[Array, Subject | str, dict[str, Array]]]:
+        """Points of one prepared design, with the arrays that vary; why, where there is none."""
+        paths = [axis.path for axis in self.plan.numeric]
+        for every, variant, fixed in self.alike(points):
+            subject = self._prepared(variant, fixed)
+            for first in range(0, len(every), AT_ONCE):
+                places = every[first : first + AT_ONCE]
+                varied = {
+                    path: points.numbers[k][places]
+                    for k, path in enumerate(paths)
+                    if path not in self.apart
+                }
+                yield places, subject, varied
+
+    def _prepared(self, variant: int, fixed: dict[str, float]) -> Subject | str:
+        """A prepared design, or why there is none; the last few are kept."""
+        key = (variant, *fixed.values())
+        if key not in self._subjects:
+            if len(self._subjects) >= KEPT:
+                self._subjects.pop(next(iter(self._subjects)))
+            try:
+                self._subjects[key] = self.made({**self.plan.texts(variant), **fixed})
+            except InputError as error:
+                self._subjects[key] = first_fault(error)
+        return self._subjects[key]
+
+
+def first_fault(error: InputError) -> str:
+    """The first fault in words."""
+    fault = error.diagnostics[0]
+    return fault.message if fault.path is None else f"{fault.path}: {fault.message}"
