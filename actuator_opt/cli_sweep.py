@@ -62,6 +62,10 @@ Show = Annotated[
     ),
 ]
 Yes = Annotated[bool, typer.Option("--yes", help="Keep more than a million points without asking.")]
+Screening = Annotated[
+    str,
+    typer.Option("--engine", help="What --reduce screens with: numpy, or jax (extra gpu)."),
+]
 Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder of the figures.")]
 
 
@@ -77,6 +81,7 @@ def sweep(
     scheduler: Scheduler = None,
     figures: Figures = None,
     show: Show = None,
+    engine: Screening = "numpy",
     yes: Yes = False,
     sets: Set = None,
     plugin: PluginFile = None,
@@ -107,10 +112,13 @@ def sweep(
             reduce=reduce is not None,
             workers=workers,
             scheduler=scheduler,
+            engine=engine,  # type: ignore[arg-type]
             yes=yes,
             figures=figures or [],
             show=show or [],
         )
+    if found.study.engine != engine and not quiet:
+        streams.err("JAX is missing (pip install 'actuator-opt[gpu]'): NumPy did its work")
     files, fault = _drawn(found, figures or [], show or [], out)
     if as_json:
         _tell_json(found, files, fault)

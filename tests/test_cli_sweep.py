@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 
 import pytest
 from cli_runner import run
@@ -49,6 +50,8 @@ def test_no_feasible_variant_is_exit_1():
         ([*BORES, "--method", "dice"], "use grid, sobol, lhs", 2),
         ([*BORES, "--reduce", "worst:3"], "write best:K", 2),
         ([*BORES, "--reduce", "best:3", "--csv", "x.csv"], "leave out --store and --csv", 2),
+        ([*BORES, "--reduce", "best:3", "--engine", "abacus"], "use numpy or jax", 2),
+        ([*BORES, "--engine", "jax"], "add --reduce best:K", 2),
         ([*BORES, "--workers", "0"], "give 1 or more", 2),
         ([*BORES, "--csv", "/nowhere/x.csv"], "cannot write", 3),
         (["--vary", "fluid.flavour=1..2:3"], "no such PATH", 3),
@@ -60,3 +63,28 @@ def test_bad_input_is_one_line(words, text, code):
     assert done.code == code, done.err
     assert text in done.err
     assert len(done.err.strip().splitlines()) == 1
+
+
+def test_a_missing_engine_is_told_and_numpy_works(monkeypatch):
+    """Without JAX the answer is the same, with one line that says what was missing."""
+    monkeypatch.setitem(sys.modules, "jax", None)
+    words = ["sweep", KNEE, *SETS, *BORES, "--reduce", "best:1", "--json"]
+    plain, asked = run(*words), run(*words, "--engine", "jax")
+    assert asked.err.strip().splitlines() == [
+        "JAX is missing (pip install 'actuator-opt[gpu]'): NumPy did its work"
+    ]
+    plain, asked = json.loads(plain.out), json.loads(asked.out)
+    assert asked["engine"] == "numpy"
+    assert asked["best"] == plain["best"]
+
+
+def test_the_best_alone_say_how_many_were_looked_at():
+    """Counts that a screen cannot know are null; without a feasible design some are looked at."""
+    done = run("sweep", STEEL, "--vary", "cylinder.bore=18..20 mm:3000", "--reduce", "best:2")
+    assert done.code == 1
+    assert "ruled out early, 0 evaluated in full" in done.out
+    assert "looked at" in done.out
+    told = json.loads(run("sweep", KNEE, *SETS, *BORES, "--reduce", "best:2", "--json").out)
+    assert told["feasible"] is None
+    assert told["computed"] == 3
+    assert len(told["best"]) == 2

@@ -101,8 +101,11 @@ MORE = {
 
 
 @pytest.mark.parametrize("more", MORE)
-def test_a_screen_loses_none_of_the_best(more, monkeypatch):
+@pytest.mark.parametrize("engine", ["numpy", "jax"])
+def test_a_screen_loses_none_of_the_best(more, engine, monkeypatch):
     """The best of a reduced sweep are those of all rows, found in chunks with a falling limit."""
+    if engine == "jax":
+        pytest.importorskip("jax")
     monkeypatch.setattr(run, "REDUCED", 256)
     monkeypatch.setattr(chunk, "WORTH", 100)
     near = ao.read(KNEE, set=NEAR)
@@ -112,7 +115,11 @@ def test_a_screen_loses_none_of_the_best(more, monkeypatch):
     ]  # fmt: skip
     vary += MORE[more]
     how = {"method": "lhs", "n": 2000, "seed": 4, "keep": 7}
-    every, reduced = ao.sweep(near, vary, **how), ao.sweep(near, vary, reduce=True, **how)
+    every, reduced = (
+        ao.sweep(near, vary, **how),
+        ao.sweep(near, vary, reduce=True, engine=engine, **how),
+    )
+    assert reduced.to_dict()["engine"] == engine
     assert every.feasible >= 7
     assert reduced.computed == reduced.requested == 2000
     assert reduced.screened > 500

@@ -41,13 +41,15 @@ def vectorised(
     unpack: Mapping[str, str],
     outputs: Sequence[Any],
     known: Mapping[Symbol, str] | None = None,
+    library: Any = np,
 ) -> Callable[..., Any]:
-    """As `function`, of NumPy arrays; both branches of every choice are computed.
+    """As `function`, of arrays; both branches of every choice are computed.
 
-    `known` expressions are not computed but taken from the code given for them.
+    `known` expressions are not computed but taken from the code given for them; `library` is NumPy
+    or one that names its functions alike.
     """
-    scope: dict[str, Any] = {f"_{key}": getattr(np, _NUMPY.get(key, key)) for key in _MATH}
-    scope["_where"], scope["_not"] = np.where, np.logical_not
+    scope: dict[str, Any] = {f"_{key}": getattr(library, _NUMPY.get(key, key)) for key in _MATH}
+    scope["_where"], scope["_not"] = library.where, library.logical_not
     return _compiled(name, arguments, unpack, outputs, scope, known or {}, many=True)
 
 

@@ -23,8 +23,9 @@ from ..numeric import Array
 from ..optimisation.actuator import Goal, goal_of
 from ..quantities import Quantity
 from .designs import KEPT, Designs, first_fault
+from .engine import Engine, Kept
 from .plan import Plan, Points
-from .screen import Screen, screen
+from .screen import screen
 
 WORTH = 2048
 """Designs from which a screen, some 20 ms of work, is worth it."""
@@ -65,9 +66,11 @@ class Study:
     """Whether every metric is asked for, or only what tells the best."""
     more: tuple[str, ...] = ()
     """Metrics asked for beside what tells the best."""
+    engine: Engine = "numpy"
+    """What tells early which designs cannot be among the best."""
     goal: Goal = field(init=False)
     designs: Designs = field(init=False)
-    _screens: dict[tuple[object, ...], Screen | None] = field(default_factory=dict, repr=False)
+    _screens: dict[tuple[object, ...], Kept | None] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         self.designs = Designs(self.design, self.plan, self.plugins)
@@ -135,10 +138,7 @@ class Study:
             sieve = self._screen(variant, fixed)
             if sieve is None:
                 continue
-            numbers = points.numbers[np.ix_(moving, own)]
-            own_kept = sieve.values(numbers) < limit
-            own_kept[own_kept] = sieve.passing(numbers[:, own_kept])
-            kept[own] = own_kept
+            kept[own] = sieve(points.numbers[np.ix_(moving, own)], limit)
         some = np.flatnonzero(kept)
         found = self._evaluated(first, count, some)
         failures, out = dict(found.rows.failures), np.zeros(len(some), dtype=bool)
@@ -156,7 +156,7 @@ class Study:
         )
         return replace(self.judged(first, rows, len(kept)), places=first + some[left])
 
-    def _screen(self, variant: int, fixed: Mapping[str, float]) -> Screen | None:
+    def _screen(self, variant: int, fixed: Mapping[str, float]) -> Kept | None:
         """The screen of designs that differ in numbers alone, where they are enough to be worth it.
 
         None for the user's own metrics, which are no expressions.
@@ -169,12 +169,12 @@ class Study:
         if key not in self._screens:
             if len(self._screens) >= KEPT:
                 self._screens.pop(next(iter(self._screens)))
-            found: Screen | None = None
+            found: Kept | None = None
             values: dict[str, float | str] = {**self.plan.texts(variant), **fixed}
             ends = np.array([[min(axis.numbers()), max(axis.numbers())] for axis in axes])
             with contextlib.suppress(InputError):
                 design = with_values(self.design, values) if values else self.design
-                found = screen(design, [axis.path for axis in axes], ends)
+                found = screen(design, [axis.path for axis in axes], ends, self.engine)
             self._screens[key] = found
         return self._screens[key]
 

@@ -111,6 +111,7 @@ class Swept:
             "failed": self.failed,
             "feasible": self.feasible,
             "screened": self.screened,
+            "engine": self.study.engine,
             "best": [
                 {"variables": self.study.values(best.number), "metrics": self.metrics(best)}
                 for best in self.best

@@ -23,9 +23,13 @@ from ..optimisation.certificate.relaxation import Unknown
 from ..optimisation.certificate.trace import Claim, trace
 from ..symbolic import Symbol, vectorised
 from ..symbolic.order import needed
+from .engine import Engine, Kept, array_library, fused
 
 ROOM = 2 * TOLERANCE
 """Margin below which a variant is out: beyond the rounding of another order of operations."""
+
+CLOSE = 1e-9
+"""Relative room of the objective, for the same reason."""
 
 TRIED = 512
 """Points that tell which limits rule out most."""
@@ -52,36 +56,49 @@ class Limits:
 class Screen:
     """Compiled objective and limits of variants that differ in numbers (axes, n).
 
-    `stages` are limits one after the other: later ones see only what passes those before.
+    `stages` are limits one after the other: later ones see only what passes those before. They
+    are compiled for arrays of `library`.
     """
 
     objective: Any
     stages: tuple[Limits, ...]
+    library: Any = np
 
-    def values(self, numbers: Array) -> Array:
-        """The objective, to be minimised, (n,)."""
-        with np.errstate(all="ignore"):
-            parts = self.objective(numbers)
-        found: Array = parts[0]
-        for part in parts[1:]:
-            found = np.maximum(found, part)
-        return np.broadcast_to(np.asarray(found, dtype=float), numbers.shape[1:])
+    def kept(self, numbers: Array, limit: Array) -> Array:
+        """Which designs, (n,), may meet every limit with an objective below `limit`.
 
-    def passing(self, numbers: Array) -> Array:
-        """Whether every compiled limit is met, (n,); what has no finite value is kept."""
-        left = np.arange(numbers.shape[1])
+        What has no finite value is kept.
+        """
+        found = self.below(numbers, limit) & np.ones(numbers.shape[1], dtype=bool)
         for stage in self.stages:
+            left = np.flatnonzero(found)
             passed = np.ones(len(left), dtype=bool)
             for missed in stage.missed(numbers[:, left]):
                 passed &= ~missed
-            left = left[passed]
-        found = np.zeros(numbers.shape[1], dtype=bool)
-        found[left] = True
+            found[left] = passed
+        return found
+
+    def below(self, numbers: Array, limit: Array) -> Array:
+        """Which designs may have an objective, to be minimised, below `limit`: (n,) or one."""
+        with np.errstate(all="ignore"):
+            first, *others = self.objective(numbers)
+        for other in others:
+            first = self.library.maximum(first, other)
+        return ~(first > limit + CLOSE * abs(limit))
+
+    def kept_at_once(self, numbers: Array, limit: Array) -> Array:
+        """As `kept`, with every limit of every design: arithmetic alone, for a compiler."""
+        found = self.below(numbers, limit)
+        for stage in self.stages:
+            for missed in stage.missed(numbers):
+                found = found & ~missed
         return found
 
 
-def screen(design: Design, paths: Sequence[str], ends: Array) -> Screen | None:
-    """The screen of a design whose numbers at `paths` vary between `ends` (axes, 2).
+def screen(
+    design: Design, paths: Sequence[str], ends: Array, engine: Engine = "numpy"
+) -> Kept | None:
+    """What tells which designs to keep whose numbers at `paths` vary between `ends` (axes, 2).
 
     None where the objective is no closed expression of them, or a number is none that may move.
     """
@@ -110,15 +127,19 @@ def screen(design: Design, paths: Sequence[str], ends: Array) -> Screen | None:
     first = _telling(_limits(claims, own), tried) if claims else []
     rest = [claim for k, claim in enumerate(claims) if k not in first]
     stages = [[claims[k] for k in first], rest]
-    return Screen(
-        vectorised("objective", "v", {}, objectives, known=own),
-        tuple(_limits(some, own) for some in stages if some),
+    library = array_library(engine)
+    found = Screen(
+        vectorised("objective", "v", {}, objectives, known=own, library=library),
+        tuple(_limits(some, own, library) for some in stages if some),
+        library,
     )
+    return found.kept if library is np else fused(found.kept_at_once)
 
 
-def _limits(claims: Sequence[Claim], own: Mapping[Symbol, str]) -> Limits:
+def _limits(claims: Sequence[Claim], own: Mapping[Symbol, str], library: Any = np) -> Limits:
+    values = [claim.value for claim in claims]
     return Limits(
-        vectorised("limits", "v", {}, [claim.value for claim in claims], known=own),
+        vectorised("limits", "v", {}, values, known=own, library=library),
         np.array([claim.bound for claim in claims]),
         np.array([1.0 if claim.limit.sense == "min" else -1.0 for claim in claims]),
     )

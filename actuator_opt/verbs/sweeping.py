@@ -14,6 +14,7 @@ from .reports import file_name
 if TYPE_CHECKING:
     from ..variants import Swept
     from ..variants.chunk import Study
+    from ..variants.engine import Engine
     from ..variants.plan import Method
 
 LARGE = 1_000_000
@@ -33,6 +34,7 @@ def sweep(
     reduce: bool = False,
     workers: int | None = None,
     scheduler: str | None = None,
+    engine: Engine = "numpy",
     yes: bool = False,
     plugins: Plugins = (),
     figures: Sequence[str] = (),
@@ -54,6 +56,7 @@ def sweep(
     reduce : whether only what tells the best is computed
     workers : processes; default: one per core
     scheduler : address of a Dask scheduler to work on instead (extra `cluster`)
+    engine : what `reduce` screens with, "numpy" or "jax" (extra `gpu`); NumPy where JAX is missing
     yes : whether a sweep of a million points that are all kept is meant
     plugins : the user's metrics and constraints
     figures : "parallel", "scatter", "contour", "ucurves", drawn as PNG and SVG
@@ -72,7 +75,9 @@ def sweep(
     from ..variants import plan, read_axis
     from ..variants import sweep as run
     from ..variants.chunk import Study
+    from ..variants.engine import usable_engine
 
+    engine = usable_engine(engine, reduced=reduce)
     if workers is not None and workers < 1:
         raise UsageError(Diagnostic(f"--workers {workers}", "give 1 or more"))
     actuator = as_actuator(design, plugins)
@@ -87,14 +92,14 @@ def sweep(
         message = f"{chosen.count:,} points would all be kept".replace(",", " ")
         remedy = "add --yes, or keep the best alone with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
-    study = Study(free, chosen, actuator.plugins, full=not reduce, more=tuple(show))
+    study = Study(free, chosen, actuator.plugins, full=not reduce, more=tuple(show), engine=engine)
     if actuator.plugins and scheduler is not None:
         message = "own metrics cannot travel to other machines"
         raise UsageError(Diagnostic(message, "leave out --scheduler or --plugin"))
     how: dict[str, Any] = {
         "store": None if store is None else Path(store),
         "keep": keep,
-        "workers": 1 if actuator.plugins else workers,
+        "workers": 1 if actuator.plugins or engine != "numpy" else workers,
         "scheduler": scheduler,
         "watch": _watched(study, figures, show),
     }
