@@ -137,3 +137,14 @@ def test_what_is_no_sweep_is_said_in_one_line(axes, method, count, words):
     """An empty sweep, missing steps or points, a PATH twice."""
     with pytest.raises(UsageError, match=words):
         plan(axes, method=method, count=count)
+
+
+@pytest.mark.parametrize(("dimension", "first"), [(1, 0), (3, 4090), (6, 70_001)])
+def test_sobol_points_are_those_of_the_library_in_its_order(dimension, first):
+    """Points from any number on are, to the bit, those that the library comes to one by one."""
+    engine = qmc.Sobol(dimension, scramble=True, rng=np.random.default_rng(5))
+    engine.fast_forward(first)
+    expected = engine.random(128).T
+    axes = [numbers(f"p{k}", 0.0, 1.0) for k in range(dimension)]
+    points = plan(axes, method="sobol", count=100_000, seed=5).points(first, 128)
+    assert (points.numbers == expected).all()

@@ -6,7 +6,7 @@ import contextlib
 import hashlib
 import inspect
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -23,9 +23,12 @@ from ..numeric import Array
 from ..optimisation.actuator import Goal, goal_of
 from ..quantities import Quantity
 from .designs import KEPT, Designs, first_fault
-from .engine import Engine, Kept
+from .engine import Engine, Scores
 from .plan import Plan, Points
-from .screen import screen
+from .screen import roomy, screen
+
+LOOKED = 1024
+"""Designs evaluated at once in search of the best of a chunk."""
 
 WORTH = 2048
 """Designs from which a screen, some 20 ms of work, is worth it."""
@@ -50,9 +53,10 @@ class Chunk:
     feasible: Array
     places: Array | None = None
 
-    def number(self, row: int) -> int:
-        """Number of the point of a row."""
-        return self.first + row if self.places is None else int(self.places[row])
+    @property
+    def numbers(self) -> Array:
+        """Number of the point of each row."""
+        return self.first + np.arange(len(self.objective)) if self.places is None else self.places
 
 
 @dataclass
@@ -70,7 +74,7 @@ class Study:
     """What tells early which designs cannot be among the best."""
     goal: Goal = field(init=False)
     designs: Designs = field(init=False)
-    _screens: dict[tuple[object, ...], Kept | None] = field(default_factory=dict, repr=False)
+    _screens: dict[tuple[object, ...], Scores | None] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         self.designs = Designs(self.design, self.plan, self.plugins)
@@ -100,18 +104,11 @@ class Study:
 
     def chunk(self, first: int, count: int, some: Array | None = None) -> Chunk:
         """Rows of some points in a row, or of those of them that are numbered in `some`."""
-        found = self._evaluated(first, count, some)
-        if not self.designs.contradicts:
-            return found
-        failures = found.rows.failures | self._contradictions(found, some)
-        found.rows.numbers[list(failures), len(self.order) :] = np.nan
-        return self.judged(first, Rows(found.rows.numbers, failures), found.computed)
-
-    def _evaluated(self, first: int, count: int, some: Array | None) -> Chunk:
-        """Rows as the models judge them, without what only the design's file would refuse."""
         points = self.plan.points(first, count)
-        if some is not None:
-            points = Points(points.variant[some], points.numbers[:, some])
+        return self._evaluated(first, points if some is None else points.some(some))
+
+    def _evaluated(self, first: int, points: Points, keep: int | None = None) -> Chunk:
+        """Rows of points; where `keep` is given, only so many of the best must stand as designs."""
         n = len(points.variant)
         rows = np.full((n, len(self.columns)), np.nan)
         rows[:, : len(points.numbers)] = points.numbers[self.order].T
@@ -125,38 +122,61 @@ class Study:
             lost = places[np.isnan(found.metrics["mass"])]
             failures |= dict.fromkeys(map(int, lost), NO_ANSWER)
         rows[list(failures), len(points.numbers) :] = np.nan
+        chunk = self.judged(first, Rows(rows, failures), n)
+        if not self.designs.contradicts:
+            return chunk
+        failures |= self._contradictions(chunk, points, keep)
+        rows[list(failures), len(points.numbers) :] = np.nan
         return self.judged(first, Rows(rows, failures), n)
 
     def reduced(self, first: int, count: int, limit: float, keep: int) -> Chunk:
-        """Rows of the points that may be among the `keep` best, with an objective below `limit`."""
+        """Rows of points that may be among the `keep` best, with an objective below `limit`.
+
+        The most promising are evaluated first, until so many stand that the others cannot join.
+        """
         points = self.plan.points(first, count)
-        kept = np.ones(len(points.variant), dtype=bool)
-        moving = [
-            k for k, axis in enumerate(self.plan.numeric) if axis.path not in self.designs.apart
-        ]
+        scores = self._scores(points, limit)
+        order = np.argsort(scores, kind="stable")
+        order = order[scores[order] < np.inf]
+        parts: list[Chunk] = []
+        best: list[float] = []
+        for start in range(0, len(order), LOOKED):
+            some = order[start : start + LOOKED]
+            if len(best) == keep and scores[some[0]] > roomy(best[-1]):
+                break
+            part = self._evaluated(first, points.some(some), keep)
+            parts.append(replace(part, places=first + some))
+            best = sorted([*best, *part.objective[part.feasible].tolist()])[:keep]
+        return self._joined(first, parts, len(scores), keep)
+
+    def _scores(self, points: Points, limit: float) -> Array:
+        """The objective that each point promises: infinite where ruled out, minus where unknown."""
+        found = np.full(len(points.variant), -np.inf)
+        apart = self.designs.apart
+        moving = [k for k, axis in enumerate(self.plan.numeric) if axis.path not in apart]
         for own, variant, fixed in self.designs.alike(points):
             sieve = self._screen(variant, fixed)
-            if sieve is None:
-                continue
-            kept[own] = sieve(points.numbers[np.ix_(moving, own)], limit)
-        some = np.flatnonzero(kept)
-        found = self._evaluated(first, count, some)
-        failures, out = dict(found.rows.failures), np.zeros(len(some), dtype=bool)
-        if self.designs.contradicts:
-            failures |= self._contradictions(found, some, keep)
-        feasible = found.feasible.copy()
-        feasible[list(failures)] = False
-        good = np.flatnonzero(feasible)
-        out[good[np.argsort(found.objective[good], kind="stable")[keep:]]] = True
-        found.rows.numbers[list(failures), len(self.order) :] = np.nan
-        left = np.flatnonzero(~out)
-        place = {int(k): n for n, k in enumerate(left)}
-        rows = Rows(
-            found.rows.numbers[left], {place[k]: why for k, why in failures.items() if k in place}
-        )
-        return replace(self.judged(first, rows, len(kept)), places=first + some[left])
+            if sieve is not None:
+                found[own] = sieve(points.numbers[np.ix_(moving, own)], limit)
+        return found
 
-    def _screen(self, variant: int, fixed: Mapping[str, float]) -> Kept | None:
+    def _joined(self, first: int, parts: Sequence[Chunk], computed: int, keep: int) -> Chunk:
+        """Parts as one reduced chunk, without feasible designs beyond the `keep` best."""
+        rows, failures, places = [np.empty((0, len(self.columns)))], {}, [np.empty(0, dtype=int)]
+        done = 0
+        for part in parts:
+            good = np.flatnonzero(part.feasible)
+            worse = good[np.argsort(part.objective[good], kind="stable")[keep:]]
+            left = np.setdiff1d(np.arange(len(part.feasible)), worse)
+            rows.append(part.rows.numbers[left])
+            places.append(part.numbers[left])
+            for k in np.flatnonzero(np.isin(left, list(part.rows.failures))):
+                failures[done + int(k)] = part.rows.failures[int(left[k])]
+            done += len(left)
+        joined = self.judged(first, Rows(np.concatenate(rows), failures), computed)
+        return replace(joined, places=np.concatenate(places))
+
+    def _screen(self, variant: int, fixed: Mapping[str, float]) -> Scores | None:
         """The screen of designs that differ in numbers alone, where they are enough to be worth it.
 
         None for the user's own metrics, which are no expressions.
@@ -169,7 +189,7 @@ class Study:
         if key not in self._screens:
             if len(self._screens) >= KEPT:
                 self._screens.pop(next(iter(self._screens)))
-            found: Kept | None = None
+            found: Scores | None = None
             values: dict[str, float | str] = {**self.plan.texts(variant), **fixed}
             ends = np.array([[min(axis.numbers()), max(axis.numbers())] for axis in axes])
             with contextlib.suppress(InputError):
@@ -178,9 +198,7 @@ class Study:
             self._screens[key] = found
         return self._screens[key]
 
-    def _contradictions(
-        self, chunk: Chunk, some: Array | None, most: int | None = None
-    ) -> dict[int, str]:
+    def _contradictions(self, chunk: Chunk, points: Points, most: int | None) -> dict[int, str]:
         """What the design's file would refuse among feasible rows; models look at less.
 
         Rows are tried from the best on, until `most` stand.
@@ -191,9 +209,8 @@ class Study:
         for tried, k in enumerate(map(int, order)):
             if most is not None and tried - len(found) >= most:
                 break
-            number = chunk.first + int(k if some is None else some[k])
             try:
-                with_values(self.design, dict(self.values(number)))
+                with_values(self.design, self._at(points, k))
             except InputError as error:
                 found[k] = first_fault(error)
         return found
@@ -229,10 +246,12 @@ class Study:
 
     def values(self, number: int) -> dict[str, float | str]:
         """The varied values of a point, by PATH (SI)."""
-        points = self.plan.points(number, 1)
+        return self._at(self.plan.points(number, 1), 0)
+
+    def _at(self, points: Points, k: int) -> dict[str, float | str]:
         paths = [axis.path for axis in self.plan.numeric]
-        numbers = dict(zip(paths, map(float, points.numbers[:, 0]), strict=True))
-        found: dict[str, float | str] = {**numbers, **self.plan.texts(int(points.variant[0]))}
+        numbers = dict(zip(paths, map(float, points.numbers[:, k]), strict=True))
+        found: dict[str, float | str] = {**numbers, **self.plan.texts(int(points.variant[k]))}
         return {axis.path: found[axis.path] for axis in self.plan.axes}
 
     @property

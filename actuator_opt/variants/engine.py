@@ -13,8 +13,8 @@ from ..numeric import Array
 Engine: TypeAlias = Literal["numpy", "jax"]
 ENGINES: tuple[Engine, ...] = get_args(Engine)
 
-Kept: TypeAlias = Callable[[Array, Array], Array]
-"""Which designs of numbers (axes, n) to keep, (n,), with an objective below another number."""
+Scores: TypeAlias = Callable[[Array, Array], Array]
+"""Objective that numbers (axes, n) promise, (n,), to be below another; infinite where ruled out."""
 
 LEAST = 1024
 """Designs of the smallest call of a compiled function; larger ones double, each compiled once."""
@@ -47,11 +47,11 @@ def array_library(engine: Engine) -> Any:
     return np
 
 
-def fused(kept: Kept) -> Kept:
+def fused(scores: Scores) -> Scores:
     """A function of JAX arrays as one of NumPy arrays, compiled for JAX's device in doubles."""
     import jax
 
-    compiled = jax.jit(kept)
+    compiled = jax.jit(scores)
 
     def padded(numbers: Array, limit: Array) -> Array:
         count = numbers.shape[1]

@@ -10,6 +10,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal, get_args
 
 import numpy as np
@@ -23,6 +24,12 @@ METHODS = get_args(Method)
 MOST = 2**30
 """Most points of the sampled methods: those of a Sobol sequence of 30 bits."""
 
+BITS = 30
+"""Of a coordinate of a Sobol point."""
+
+DIGITS = 12
+"""Binary digits of the numbers of Sobol points in a table."""
+
 ROUNDS = 6
 """Rounds of the permutation of a Latin hypercube."""
 
@@ -33,6 +40,10 @@ class Points:
 
     variant: Array
     numbers: Array
+
+    def some(self, places: Array) -> Points:
+        """Those at some places."""
+        return Points(self.variant[places], self.numbers[:, places])
 
 
 @dataclass(frozen=True)
@@ -146,16 +157,36 @@ def plan(axes: Sequence[Axis], *, method: Method, count: int | None, seed: int =
 
 
 def _sobol(index: Array, dimension: int, count: int, seed: int) -> Array:
-    """Scrambled Sobol points (dimension, n) of some numbers in a row [Sobol1967] [Owen1998]."""
+    """Scrambled Sobol points (dimension, n) of some numbers [Sobol1967] [Owen1998].
+
+    A point is the exclusive or of one number for each digit of the Gray code of its own number k,
+    k ^ k/2, and of the first point; the lower `DIGITS` come from a table.
+    """
+    table, digits = _sobol_parts(dimension, max(count - 1, 1).bit_length(), seed)
+    low, high = index & (len(table) - 1), index >> DIGITS
+    unique, which = np.unique(high, return_inverse=True)
+    heads = np.zeros((len(unique), dimension), dtype=np.int64)
+    gray = (unique << DIGITS) ^ (unique << DIGITS >> 1)
+    for number, digit in enumerate(digits, start=DIGITS - 1):
+        heads ^= np.where((gray >> number & 1)[:, None], digit, 0)
+    found: Array = (table[low] ^ heads[which.ravel()]).T * 2.0**-BITS
+    return found
+
+
+@lru_cache(maxsize=4)
+def _sobol_parts(dimension: int, bits: int, seed: int) -> tuple[Array, Array]:
+    """The first points, and the numbers of the digits of the Gray code from `DIGITS` - 1 on."""
     from scipy.stats import qmc
 
-    engine = qmc.Sobol(dimension, scramble=True, rng=np.random.default_rng(seed))
-    if len(index) and index[0]:
-        engine.fast_forward(int(index[0]))
-    with warnings.catch_warnings():  # it asks for powers of two in every part
-        warnings.simplefilter("ignore", UserWarning)
-        found: Array = engine.random(len(index)).T
-    return found
+    engine = qmc.Sobol(dimension, scramble=True, bits=BITS, rng=np.random.default_rng(seed))
+    table = (engine.random(2**DIGITS) * 2.0**BITS).astype(np.int64)
+    digits = [table[-1] ^ table[0]]
+    for number in range(DIGITS, bits):
+        engine.fast_forward(2 ** (number + 1) - 1 - engine.num_generated)
+        with warnings.catch_warnings():  # it asks for powers of two in every part
+            warnings.simplefilter("ignore", UserWarning)
+            digits.append((engine.random(1)[0] * 2.0**BITS).astype(np.int64) ^ table[0])
+    return table, np.array(digits)
 
 
 def _latin(index: Array, dimension: int, count: int, seed: int) -> Array:

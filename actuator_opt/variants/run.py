@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import heapq
 import os
+import sys
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -145,9 +146,10 @@ class Swept:
         if self.feasible is not None:
             self.feasible += len(good)
         if keep and len(good):
+            numbers = chunk.numbers
             order = good[np.argsort(chunk.objective[good], kind="stable")[:keep]]
             found = [
-                Best(float(chunk.objective[k]), chunk.number(int(k)), tuple(chunk.rows.numbers[k]))
+                Best(float(chunk.objective[k]), int(numbers[k]), tuple(chunk.rows.numbers[k]))
                 for k in order
             ]
             self.best = heapq.nsmallest(keep, [*self.best, *found])
@@ -230,7 +232,7 @@ def _computed(
         yield from on_cluster(scheduler, study, _chunk, tasks)
         return
     rest = iter(tasks)
-    count = workers or os.cpu_count() or 1
+    count = workers or (1 if "jax" in sys.modules else os.cpu_count() or 1)  # its threads bar forks
     if workers is None or count == 1:
         yield from _here(study, chunks, rest, patient=count == 1)
     first = next(rest, None)

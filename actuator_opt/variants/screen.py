@@ -23,7 +23,7 @@ from ..optimisation.certificate.relaxation import Unknown
 from ..optimisation.certificate.trace import Claim, trace
 from ..symbolic import Symbol, vectorised
 from ..symbolic.order import needed
-from .engine import Engine, Kept, array_library, fused
+from .engine import Engine, Scores, array_library, fused
 
 ROOM = 2 * TOLERANCE
 """Margin below which a variant is out: beyond the rounding of another order of operations."""
@@ -64,41 +64,48 @@ class Screen:
     stages: tuple[Limits, ...]
     library: Any = np
 
-    def kept(self, numbers: Array, limit: Array) -> Array:
-        """Which designs, (n,), may meet every limit with an objective below `limit`.
+    def scores(self, numbers: Array, limit: Array) -> Array:
+        """What designs promise as objective, (n,): infinite where they miss a limit or `limit`.
 
-        What has no finite value is kept.
+        Minus infinity where that has no finite value.
         """
-        found = self.below(numbers, limit) & np.ones(numbers.shape[1], dtype=bool)
+        found = self.promised(numbers, limit) + np.zeros(numbers.shape[1])
         for stage in self.stages:
-            left = np.flatnonzero(found)
+            left = np.flatnonzero(found < np.inf)
             passed = np.ones(len(left), dtype=bool)
             for missed in stage.missed(numbers[:, left]):
                 passed &= ~missed
-            found[left] = passed
+            found[left[~passed]] = np.inf
         return found
 
-    def below(self, numbers: Array, limit: Array) -> Array:
-        """Which designs may have an objective, to be minimised, below `limit`: (n,) or one."""
+    def promised(self, numbers: Array, limit: Array) -> Array:
+        """The objective, (n,) or one for all: infinite where it is above `limit`."""
+        arrays = self.library
         with np.errstate(all="ignore"):
-            first, *others = self.objective(numbers)
+            found, *others = self.objective(numbers)
         for other in others:
-            first = self.library.maximum(first, other)
-        return ~(first > limit + CLOSE * abs(limit))
+            found = arrays.maximum(found, other)
+        found = arrays.where(arrays.isnan(found), -np.inf, found)
+        return arrays.where(found > roomy(limit), np.inf, found)
 
-    def kept_at_once(self, numbers: Array, limit: Array) -> Array:
-        """As `kept`, with every limit of every design: arithmetic alone, for a compiler."""
-        found = self.below(numbers, limit)
+    def scores_at_once(self, numbers: Array, limit: Array) -> Array:
+        """As `scores`, with every limit of every design: arithmetic alone, for a compiler."""
+        found = self.promised(numbers, limit)
         for stage in self.stages:
             for missed in stage.missed(numbers):
-                found = found & ~missed
+                found = self.library.where(missed, np.inf, found)
         return found
+
+
+def roomy(objective: Array) -> Array:
+    """An objective with room for rounding, above which designs are worse."""
+    return objective + CLOSE * abs(objective)
 
 
 def screen(
     design: Design, paths: Sequence[str], ends: Array, engine: Engine = "numpy"
-) -> Kept | None:
-    """What tells which designs to keep whose numbers at `paths` vary between `ends` (axes, 2).
+) -> Scores | None:
+    """What tells early how good designs are whose numbers at `paths` vary between `ends` (axes, 2).
 
     None where the objective is no closed expression of them, or a number is none that may move.
     """
@@ -133,7 +140,7 @@ def screen(
         tuple(_limits(some, own, library) for some in stages if some),
         library,
     )
-    return found.kept if library is np else fused(found.kept_at_once)
+    return found.scores if library is np else fused(found.scores_at_once)
 
 
 def _limits(claims: Sequence[Claim], own: Mapping[Symbol, str], library: Any = np) -> Limits:
