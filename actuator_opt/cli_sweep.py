@@ -34,6 +34,12 @@ Store = Annotated[
     typer.Option("--store", metavar="F.db", help="Keep every row here; a later run goes on."),
 ]
 Csv = Annotated[Path | None, typer.Option("--csv", metavar="F.csv", help="Write every row here.")]
+Parquet = Annotated[
+    Path | None,
+    typer.Option(
+        "--parquet", metavar="F.parquet", help="The same as Apache Parquet (extra parquet)."
+    ),
+]
 Reduce = Annotated[
     str | None,
     typer.Option("--reduce", metavar="best:K", help="Keep the K best alone, nothing else."),
@@ -76,6 +82,7 @@ def sweep(
     count: Count = None,
     store: Store = None,
     csv: Csv = None,
+    parquet: Parquet = None,
     reduce: Reduce = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
@@ -93,7 +100,7 @@ def sweep(
     """Evaluate many variants of a design."""
     from . import verbs
 
-    keep = _kept(reduce, store, csv)
+    keep = _kept(reduce, store, csv, parquet)
     if show and not figures:
         raise UsageError(Diagnostic("--show without --figure", "add --figure parallel, say"))
     if figures:
@@ -108,6 +115,7 @@ def sweep(
             seed=seed,
             store=store,
             csv=csv,
+            parquet=parquet,
             keep=keep,
             reduce=reduce is not None,
             workers=workers,
@@ -123,7 +131,7 @@ def sweep(
     if as_json:
         _tell_json(found, files, fault)
     else:
-        _tell(found, csv, files, fault, quiet=quiet)
+        _tell(found, [csv, parquet], files, fault, quiet=quiet)
     if not found.best:
         raise typer.Exit(ExitCode.MISSED)
 
@@ -139,7 +147,7 @@ def _tell_json(found: Swept, files: list[dict[str, str]], fault: ActuatorError |
 
 def _tell(
     found: Swept,
-    csv: Path | None,
+    tables: list[Path | None],
     files: list[dict[str, str]],
     fault: ActuatorError | None,
     *,
@@ -149,9 +157,9 @@ def _tell(
     from .reporting.sweep_text import sweep_text
 
     streams.out(sweep_text(found, **streams.style()))
-    if not quiet and csv is not None:
-        streams.err(f"wrote {csv}")
     if not quiet:
+        for path in filter(None, tables):
+            streams.err(f"wrote {path}")
         say_files(files)
     if fault is not None:
         raise fault
@@ -172,12 +180,13 @@ def _drawn(
     return [{"path": str(path)} for path in paths], None
 
 
-def _kept(reduce: str | None, store: Path | None, csv: Path | None) -> int:
+def _kept(reduce: str | None, *kept: Path | None) -> int:
     """How many of the best to keep."""
     if reduce is None:
         return 10
-    if store is not None or csv is not None:
-        raise UsageError(Diagnostic("--reduce keeps the best alone", "leave out --store and --csv"))
+    if any(file is not None for file in kept):
+        remedy = "leave out --store, --csv and --parquet"
+        raise UsageError(Diagnostic("--reduce keeps the best alone", remedy))
     name, _, number = reduce.partition(":")
     if name != "best" or not number.isdecimal() or int(number) < 1:
         raise UsageError(Diagnostic(f"--reduce {reduce}: unknown", "write best:K, e.g. best:20"))

@@ -9,7 +9,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TextIO
+from typing import BinaryIO, TextIO
 
 from .errors import Diagnostic, InputError
 from .suggest import closest
@@ -158,21 +158,42 @@ def aside(path: Path) -> Iterator[TextIO]:
     ------
     InputError : it cannot be written; nothing partial is left
     """
+    with _part(path) as part, part.open("w", encoding="utf-8") as stream:
+        yield stream
+
+
+@contextlib.contextmanager
+def aside_bytes(path: Path) -> Iterator[BinaryIO]:
+    """As `aside`, of bytes."""
+    with _part(path) as part, part.open("wb") as stream:
+        yield stream
+
+
+@contextlib.contextmanager
+def _part(path: Path) -> Iterator[Path]:
+    """Where to write a file aside; it is renamed once that is done, and gone if it is not."""
     path = path.resolve() if path.is_symlink() else path
     if path.exists() and not path.is_file():
         message = "is a folder" if path.is_dir() else "is no regular file"
         raise InputError(Diagnostic(message, "choose another file or folder", str(path)))
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        with part.open("w", encoding="utf-8") as stream:
-            yield stream
-        part.replace(path)
-    except OSError as error:
-        reason = f"cannot write: {error.strerror or type(error).__name__}"
-        raise InputError(Diagnostic(reason, "choose another file or folder", str(path))) from None
+        with writing(path):
+            yield part
+            part.replace(path)
     finally:  # nothing is left of it once it is in place
         with contextlib.suppress(OSError):
             part.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Say in one line why a file cannot be written; raises `InputError`."""
+    try:
+        yield
+    except OSError as error:
+        reason = f"cannot write: {error.strerror or type(error).__name__}"
+        raise InputError(Diagnostic(reason, "choose another file or folder", str(path))) from None
 
 
 def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the report") -> None:

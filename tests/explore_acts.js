@@ -28,6 +28,18 @@ setTimeout(() => {
   point(lines, "pointerdown", x, y(0.9)); point(window, "pointermove", x, y(0.4)); point(window, "pointerup", x, y(0.4));
   TOLD.brushed = told(); TOLD.range = rangeOf(STATE.axes[0]);
   byId("clear").click(); TOLD.cleared = told();
+  drawScatter(); TOLD.front = front(); TOLD.line = byId("front").textContent;
+  const area = scatter.getBoundingClientRect(), corner = [area.left + MARGIN.left, area.top + MARGIN.top];
+  const inner = [area.right - MARGIN.right, area.bottom - MARGIN.bottom], middle = corner.map((low, k) => (low + inner[k]) / 2);
+  point(scatter, "pointerdown", ...corner); point(window, "pointermove", ...middle); point(window, "pointerup", ...middle);
+  scatter.dispatchEvent(new MouseEvent("click", { clientX: middle[0], clientY: middle[1], bubbles: true }));
+  TOLD.framed = { ...told(), x: rangeOf(STATE.x), y: rangeOf(STATE.y) };
+  press(scatter, "Delete"); TOLD.unframed = told();
+  STATE.x = COLUMNS.findIndex((one) => one.name === "rod.outer_diameter"); refresh(); drawScatter();
+  TOLD.undirected = [front(), byId("front").textContent];
+  STATE.x = DATA.start.x; refresh();
+  window.dispatchEvent(new Event("beforeprint")); TOLD.printed = [document.documentElement.className, getComputedStyle(byId("clear")).display, byId("axes").clientWidth];
+  window.dispatchEvent(new Event("afterprint")); TOLD.after = document.documentElement.className;
   byId("every").click(); TOLD.every = told();
   const boxes = [...document.querySelectorAll("#limits input")];
   boxes.forEach((one, k) => { if (LIMITS[k].count) one.click(); }); TOLD.unticked = told();

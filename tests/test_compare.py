@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import pytest
 from cli_runner import BENCH, DESIGNS, run
@@ -108,16 +109,33 @@ def test_any_pair_of_shipped_designs(shipped):
             text = comparison_text(found, width=width)
             assert max(map(len, text.splitlines())) <= width, (a.name, b.name)
         assert comparison_text(found, unicode=False).isascii()
-        ink = comparison_figure(found)
-        boxes = ink.text_boxes()
-        for words, left, top, right, bottom in boxes:
-            assert left >= 0, words
-            assert right <= ink.width, words
-            assert top >= 0, words
-            assert bottom <= ink.height, words
-        for one, two in itertools.combinations(boxes, 2):
-            apart = one[3] <= two[1] or two[3] <= one[1] or one[4] <= two[2] or two[4] <= one[2]
-            assert apart, (one, two)
+        _require_clear(comparison_figure(found))
+
+
+def _require_clear(ink):
+    """No words beyond the paper, none on others."""
+    boxes = ink.text_boxes()
+    for words, left, top, right, bottom in boxes:
+        assert left >= 0, words
+        assert right <= ink.width, words
+        assert top >= 0, words
+        assert bottom <= ink.height, words
+    for one, two in itertools.combinations(boxes, 2):
+        apart = one[3] <= two[1] or two[3] <= one[1] or one[4] <= two[2] or two[4] <= one[2]
+        assert apart, (one, two)
+
+
+def test_long_names_are_whole_in_the_figure(shipped):
+    """Six designs with names and files of two lines; a chamber is told apart from a design."""
+    long = " ".join(["a knee of the second generation with a thicker barrel"] * 3)
+    found = ao.compare(*list(shipped.values())[:6])
+    named = tuple(replace(one, name=long) for one in found.evaluations)
+    origins = tuple(f"{'folder/' * 30}{k}.yaml" for k in range(6))
+    ink = comparison_figure(replace(found, evaluations=named, origins=origins))
+    _require_clear(ink)
+    said = " ".join(mark["text"] for mark in ink.marks if "text" in mark)
+    assert said.count(long) == 6
+    assert "oil in chamber A" in said
 
 
 def test_many_designs_at_once(shipped):

@@ -189,6 +189,24 @@ def test_no_text_breaks_out_of_the_script(tmp_path):
     assert shlex.split(shlex.join(words)) == words
 
 
+def test_columns_know_which_way_is_better(store, text):
+    """Less mass by the objective, more stiffness by its requirement; inputs neither way."""
+    data = data_of(text)
+    ways = {one["name"]: one.get("better", 0) for one in data["columns"]}
+    assert (ways["mass"], ways["stiffness_min"], ways["friction_running"]) == (-1, 1, -1)
+    assert ways["cylinder.bore"] == ways["rod.material"] == ways["closed_length"] == 0
+    shown = [data["columns"][data["start"][name]]["name"] for name in "xyc"]
+    assert shown == ["stiffness_min", "mass", "cylinder.bore"]
+
+
+def test_the_page_without_its_data_is_small(text):
+    """Markup, style and script; nothing is loaded from anywhere."""
+    data = re.search(r'id="data">(.*?)</script>', text, re.DOTALL)[1]
+    assert len(text.encode()) - len(data.encode()) < 200_000
+    bare = text.replace(data, "")
+    assert set(re.findall(r"https?://[^\s\"']+", bare)) <= {"http://www.w3.org/2000/svg"}
+
+
 def test_same_input_same_bytes(store, tmp_path):
     """Twice the same, wherever it is written."""
     one = ao.explore(store, out=tmp_path / "a")

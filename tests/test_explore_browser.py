@@ -11,7 +11,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from test_explore import command_of, data_of
+from test_explore import command_of, data_of, unpacked
 from test_sweep import KNEE, NEAR
 
 import actuator_opt as ao
@@ -30,6 +30,20 @@ console.error = console.warn = (...words) => FAULTS.push(words.join(" "));
 </script>"""
 
 ACTS = (Path(__file__).parent / "explore_acts.js").read_text("utf-8")
+
+
+def pareto(data):
+    """Rows that no other betters in stiffness and mass, by comparing all pairs, stiffest first."""
+    place = {one["name"]: unpacked(one["data"]) for one in data["columns"] if "data" in one}
+    stiff, mass = place["stiffness_min"], place["mass"]
+    rows = [
+        k
+        for k in range(len(mass))
+        if not (
+            (stiff >= stiff[k]) & (mass <= mass[k]) & ((stiff > stiff[k]) | (mass < mass[k]))
+        ).any()
+    ]
+    return sorted(rows, key=lambda k: -stiff[k])
 
 
 def dumped(path, tmp_path):
@@ -90,6 +104,26 @@ def test_pointer_and_keys_choose_filter_and_let_go(page, tmp_path):
     assert 0 < told["slid"]["count"] < 40 == told["deleted"]["count"]
     assert 0 < told["brushed"]["count"] <= 40 == told["cleared"]["count"]
     assert told["range"][0] < told["range"][1]
+    assert told["front"] == pareto(data)
+    assert f"{len(told['front'])} designs that none betters in both" in told["line"]
+    pair = [data["columns"][data["start"][name]] for name in "xy"]
+    assert [one["name"] for one in pair] == ["stiffness_min", "mass"]
+    framed = told["framed"]
+    values = [unpacked(one["data"]) for one in pair]
+    inside = [
+        (one >= low) & (one <= high)
+        for one, (low, high) in zip(values, (framed["x"], framed["y"]), strict=True)
+    ]
+    assert 0 < framed["count"] == int((inside[0] & inside[1]).sum()) < 40
+    assert framed["x"][0] == values[0].min()
+    assert framed["y"][1] == values[1].max()
+    assert framed["pinned"] == told["cleared"]["pinned"]
+    assert told["unframed"]["count"] == 40
+    assert told["undirected"][0] == []
+    assert "nothing says which way rod.outer_diameter is better" in told["undirected"][1]
+    assert told["printed"][:2] == ["printing", "none"]
+    assert told["printed"][2] < 690
+    assert told["after"] == ""
     assert told["every"]["count"] == told["began"]["count"] < 40 == told["unticked"]["count"]
     assert told["wide"] <= 1024
     for row, one in enumerate(told["commands"]):

@@ -10,9 +10,9 @@ from math import cos, radians, sin, sqrt, tan
 from typing import Any, TypeAlias
 
 from ..evaluation.result import Evaluation, Outline
+from ..extras import library
 from . import dimensions
 from .layout import Paper
-from .library import library
 from .solids import EYES, Profile, joined, millimetres, title
 from .words import plain
 

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from ..errors import Diagnostic, UsageError
 from ..evaluation.result import Evaluation
+from ..extras import library
 from ..store import write_all
 from ..suggest import shown
-from .library import library
 
 FORMATS = ("step", "dxf", "xlsx")
 """Formats, each the ending of its files."""

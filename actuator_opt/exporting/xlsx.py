@@ -18,8 +18,8 @@ from typing import Any
 from .. import quantities, units
 from ..design.paths import get, quantity_of
 from ..evaluation.result import Check, Evaluation, Requirement
+from ..extras import library
 from ..quantities import Quantity
-from .library import library
 from .words import plain
 
 TOLERANCE = "0.000001"

@@ -3,29 +3,41 @@
 from __future__ import annotations
 
 from ..evaluation.comparison import Comparison, Question
-from .compare_text import PART_TITLES, PART_UNITS
-from .figures import AREAS, fills, fitted
+from .compare_text import PART_TITLES, PART_UNITS, answer, duties, named, part_name
+from .fallback import wrap
+from .figures import AREAS, fills
 from .ink import BLACK, GREY, Ink, text_width
-from .text import number
+from .text import number, pretty
 
 _WIDTH, _RIGHT = 180.0, 20.0
 _BAR, _STEP, _LINE = 5.6, 7.6, 4.2
-_GAP = 5.0
+_GAP, _TOP, _SMALL = 5.0, 8.4, 3.3
+_NOTE = "Parts of a bar in the order of their key; bold: the best."
 
 
 def comparison_figure(found: Comparison) -> Ink:
     """A bar for every design and question; equal parts have equal fills; lengths are to scale."""
     questions = [q for q in found.questions if any(map(sum, q.parts.values()))]
+    heads = [
+        wrap(named(one, origin), _WIDTH - 12.0, 7.0)
+        for origin, one in zip(found.origins, found.evaluations, strict=True)
+    ]
+    notes = [line for said in (_NOTE, *duties(found)) for line in _wrapped(said)]
+    above = _TOP + 1.0 + _LINE * sum(map(len, heads)) + _SMALL * len(notes) + 4.0
     heights = [_height(found, question) for question in questions]
-    names = 6.0 + _LINE * len(found.labels)
-    ink = Ink(_WIDTH, names + sum(heights) + 2.0)
-    top = 4.0
-    for label, origin, one in zip(found.labels, found.origins, found.evaluations, strict=True):
-        told = one.name if origin == one.name else f"{one.name} ({origin})"
+    ink = Ink(_WIDTH, above + sum(heights) + 2.0)
+    ink.text(4.0, 4.0, "Designs side by side", size=9.0, bold=True)
+    top = _TOP
+    for line in notes:
+        ink.text(4.0, top, line, color=GREY)
+        top += _SMALL
+    top += 1.0
+    for label, lines in zip(found.labels, heads, strict=True):
         ink.text(4.0, top, label, size=7.5, bold=True)
-        ink.text(9.0, top, fitted(told, _WIDTH - 12.0, 7.0), size=7.0)
-        top += _LINE
-    top += 2.0
+        for line in lines:
+            ink.text(9.0, top, line, size=7.0)
+            top += _LINE
+    top = above
     for question, height in zip(questions, heights, strict=True):
         _bars(ink, found, question, top)
         top += height
@@ -33,8 +45,17 @@ def comparison_figure(found: Comparison) -> Ink:
 
 
 def _height(found: Comparison, question: Question) -> float:
-    lines = len(_legend(list(question.parts)))
-    return 7.0 + _STEP * len(found.labels) + _LINE * lines + _GAP
+    lines, said = len(_legend(list(question.parts))), len(_said(found, question))
+    return 7.0 + _SMALL * said + _STEP * len(found.labels) + _LINE * lines + _GAP
+
+
+def _said(found: Comparison, question: Question) -> list[str]:
+    """The answer in lines."""
+    return _wrapped(answer(found, question))
+
+
+def _wrapped(said: str) -> list[str]:
+    return wrap(pretty(said[:1].upper() + said[1:]), _WIDTH - 8.0, 6.5)
 
 
 def _legend(parts: list[str]) -> list[list[str]]:
@@ -42,17 +63,13 @@ def _legend(parts: list[str]) -> list[list[str]]:
     lines: list[list[str]] = [[]]
     used = 0.0
     for part in parts:
-        wide = text_width(_name(part), 6.5) + 8.0
+        wide = text_width(part_name(part), 6.5) + 8.0
         if lines[-1] and used + wide > _WIDTH - 8.0:
             lines.append([])
             used = 0.0
         lines[-1].append(part)
         used += wide
     return lines
-
-
-def _name(part: str) -> str:
-    return part.replace("_", " ")
 
 
 def _bars(ink: Ink, found: Comparison, question: Question, top: float) -> None:
@@ -65,6 +82,9 @@ def _bars(ink: Ink, found: Comparison, question: Question, top: float) -> None:
     room = _WIDTH - 9.0 - _RIGHT
     ink.text(4.0, top + 2.0, f"{PART_TITLES[question.name]}, {unit}", size=7.5, bold=True)
     y = top + 6.0
+    for line in _said(found, question):
+        ink.text(4.0, y, line, color=GREY)
+        y += _SMALL
     for k, label in enumerate(found.labels):
         ink.text(4.0, y + _BAR / 2, label, size=7.0, bold=k in question.leaders)
         x = 9.0
@@ -78,10 +98,10 @@ def _bars(ink: Ink, found: Comparison, question: Question, top: float) -> None:
         ink.text(x + 1.5, y + _BAR / 2, number(scale * sums[k], 4), size=7.0,
                  bold=k in question.leaders)  # fmt: skip
         y += _STEP
-    for line in _legend(parts):
+    for names in _legend(parts):
         x = 9.0
-        for part in line:
+        for part in names:
             ink.box(x, y + 0.2, 2.4, 2.4, fill=paints[part], stroke=GREY, pen=0.1)
-            ink.text(x + 3.6, y + 1.4, _name(part), size=6.5)
-            x += text_width(_name(part), 6.5) + 8.0
+            ink.text(x + 3.6, y + 1.4, part_name(part), size=6.5)
+            x += text_width(part_name(part), 6.5) + 8.0
         y += _LINE

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from ..design.kinds import Fraction
 from ..evaluation.comparison import Change, Comparison, Question, Value
+from ..evaluation.result import Evaluation
 from ..quantities import Quantity, of_metric
 from . import text
 from .console import Column, Console, visible
@@ -29,7 +30,7 @@ _GAP = 2
 
 def sentences(found: Comparison) -> list[str]:
     """The answer to each question, then what to know before believing it."""
-    said = [_answer(found, question) for question in found.questions]
+    said = [answer(found, question) for question in found.questions]
     damping = [e.metrics["damping_ratio"].value for e in found.evaluations]
     if len(set(damping)) > 1:
         values = ", ".join(
@@ -40,15 +41,29 @@ def sentences(found: Comparison) -> list[str]:
         missed = [row.name for row in one.requirements if not row.met]
         if missed:
             said.append(f"{label} misses {len(missed)} of its requirements: {', '.join(missed)}")
-    duties = found.duties_differ
-    if duties:
-        more = f" and {len(duties) - 3} more" if len(duties) > 3 else ""
-        paths = ", ".join(duties[:3]) + more
-        said.append(f"their duties differ ({paths}): each is judged at its own")
-    return said
+    return [*said, *duties(found)]
 
 
-def _answer(found: Comparison, question: Question) -> str:
+def duties(found: Comparison) -> list[str]:
+    """That designs do not do the same work, where they do not."""
+    paths = found.duties_differ
+    if not paths:
+        return []
+    more = f" and {len(paths) - 3} more" if len(paths) > 3 else ""
+    return [f"their duties differ ({', '.join(paths[:3])}{more}): each is judged at its own"]
+
+
+def part_name(part: str) -> str:
+    """A part in words; a chamber is told apart from a design of the same letter.
+
+    >>> part_name("piston_seal"), part_name("oil A")
+    ('piston seal', 'oil in chamber A')
+    """
+    words = part.replace("_", " ")
+    return words.replace("oil ", "oil in chamber ") if words in ("oil A", "oil B") else words
+
+
+def answer(found: Comparison, question: Question) -> str:
     """One question in a sentence, with the parts that decide it."""
     name, quantity = question.name, of_metric(question.metric)
     unknown = [k for k, value in enumerate(question.values) if value is None]
@@ -78,7 +93,7 @@ def _parts(question: Question) -> str:
     floor = 0.02 * abs(steps[0][1])
     told = [(part, step) for part, step in steps if abs(step) >= floor]
     words = [
-        f"{part.replace('_', ' ')} {number(scale * step, 3, signed=True)} {unit}"
+        f"{part_name(part)} {number(scale * step, 3, signed=True)} {unit}"
         for part, step in told[:_MOST_PARTS]
     ]
     where = " of compliance" if question.name == "stiffer" else ""
@@ -92,9 +107,7 @@ def comparison_text(
     console = Console(colour, unicode, width)
     lines = []
     for label, origin, one in zip(found.labels, found.origins, found.evaluations, strict=True):
-        state = "requirements met" if one.met else "REQUIREMENTS MISSED"
-        origin = "" if origin == one.name else f" ({origin})"
-        lines.append(console.wrap(f"{label}  {one.name}{origin}, {state.lower()}", "bold"))
+        lines.append(console.wrap(f"{label}  {named(one, origin)}", "bold"))
     lines += ["", *(console.wrap(text.pretty(said)) for said in sentences(found))]
     changes = [
         [c.path, *(console.cut(shown(c, v), _LONGEST) for v in c.values)]
@@ -107,7 +120,7 @@ def comparison_text(
     for question in found.questions:
         scale, unit = PART_UNITS[question.name]
         rows = [
-            [part.replace("_", " "), *(number(scale * x, 4) if x else DASH for x in values)]
+            [part_name(part), *(number(scale * x, 4) if x else DASH for x in values)]
             for part, values in question.parts.items()
         ]
         sums = [sum(column) for column in zip(*question.parts.values(), strict=True)]
@@ -115,6 +128,12 @@ def comparison_text(
             rows.append(["sum", *(number(scale * x, 4) for x in sums)])
             lines += _tables(console, found, f"{PART_TITLES[question.name]}, {unit}", rows)
     return "\n".join(lines) + "\n"
+
+
+def named(one: Evaluation, origin: str) -> str:
+    """A design's name, where it is from, and whether it meets what is asked of it."""
+    beside = "" if origin == one.name else f" ({origin})"
+    return f"{one.name}{beside}, requirements {'met' if one.met else 'missed'}"
 
 
 def shown(change: Change, value: Value) -> str:

@@ -58,7 +58,7 @@ class _Labels:
             if any(_touch(box, other) for other in self.boxes):
                 continue
             inside = (np.abs(self.crowd - (x, y)) < (half, tall)).all(axis=1)
-            score = (float(np.count_nonzero(inside)) * 0.02 + share, x, y, box)
+            score = (float(np.count_nonzero(inside)) * 0.06 + share, x, y, box)
             if best is None or score < best:
                 best = score
         if best is None:
@@ -92,6 +92,14 @@ def _candidates(lines: Sequence[Sequence[Point]]) -> Iterator[tuple[float, Point
             at = size * k / 32
             place = tuple(float(np.interp(at, along, points[:, j])) for j in (0, 1))
             yield abs(k / 32 - 0.5) + (longest - size) / (longest or 1.0), (place[0], place[1])
+
+
+def _even(line: Sequence[Point]) -> Array:
+    """Points of a line a millimetre apart."""
+    points = np.array(line)
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    at = np.arange(0.0, along[-1], 1.0)
+    return np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1)
 
 
 def contour_figure(drawn: Drawn, field: Field, boundaries: Sequence[Boundary], metric: str) -> Ink:
@@ -132,8 +140,8 @@ def contour_figure(drawn: Drawn, field: Field, boundaries: Sequence[Boundary], m
         x, y = _paper(axes, at, scale)[0]
         ink.circle(x, y, 1.2, fill=WHITE, stroke=BLACK, pen=0.5)
         labels.boxes.append((x - 1.4, y - 1.4, x + 1.4, y + 1.4))
-    every = [p for lines in (*levels.values(), *edges.values()) for line in lines for p in line]
-    labels.crowd = np.array(every).reshape(-1, 2)
+    every = [_even(line) for lines in (*levels.values(), *edges.values()) for line in lines]
+    labels.crowd = np.concatenate([*every, np.empty((0, 2))])
     key = _name(drawn, labels, edges, styles)
     for level, lines in levels.items():
         place = labels.place(lines, trimmed(level))

@@ -13,7 +13,7 @@ from ..evaluation import evaluate, prepare
 from ..evaluation.result import StrokeCurve
 from .fallback import wrap
 from .figures import Axes
-from .identification_axes import even_ticks
+from .identification_axes import even_range, even_ticks
 from .ink import GREY, RED, Ink, spread_within
 from .simulation_axes import COLOURS, DASHES
 from .sweep_marks import Drawn, heading, value_words
@@ -22,7 +22,7 @@ from .text import limit_text, margin_text
 MOST = 6
 """Curves (a choice: as many as can be told apart)."""
 NBSP = "\N{NO-BREAK SPACE}"
-_LEFT, _WIDE, _TALL, _SIZE = 14.0, 138.0, 78.0, 6.3
+_LEFT, _WIDE, _TALL, _LOW, _SIZE = 14.0, 138.0, 78.0, 32.0, 6.3
 STYLES: tuple[dict[str, Any], ...] = tuple(
     {"stroke": colour, "pen": 0.45, "dash": dash}
     for colour, dash in zip(COLOURS, DASHES, strict=False)
@@ -65,8 +65,39 @@ def ucurves_figure(drawn: Drawn) -> Ink:
         ink.line((right, ends[k]), (right + 2.5, y), pen=0.13, stroke=GREY)
         said = value_words(drawn.goal, float(drawn.goals(drawn.best(k))[0]))
         ink.text(right + 3.2, y, f"{k + 1}: {said}", size=_SIZE, color=STYLES[k]["stroke"])
-    ink.height = _key(drawn, ink, top + _TALL + 14.0, count)
+    below = top + _TALL + 14.0
+    if count > 1:
+        below = _differences(ink, below + 6.0, axes.x_range, curves) + 14.0
+    ink.height = _key(drawn, ink, below, count)
     return ink
+
+
+def _differences(
+    ink: Ink, top: float, span: tuple[float, float], curves: list[tuple[list[float], list[float]]]
+) -> float:
+    """What each curve differs from the first by, where both are; the height it ends at.
+
+    The best designs of a sweep are often so near that their curves lie on one another.
+    """
+    places, stiffness = (np.array(one) for one in curves[0])
+    found = []
+    for curve in curves:
+        xs, ys = (np.array(one) for one in curve)
+        both = (xs >= min(places, default=0.0)) & (xs <= max(places, default=0.0))
+        beside = np.interp(xs[both], places, stiffness) if both.any() else xs[both]
+        found.append((xs[both].tolist(), (100.0 * (ys[both] / beside - 1.0)).tolist()))
+    every = [y for _, ys in found for y in ys]
+    if not every:
+        return top
+    axes = Axes(ink, (_LEFT, top, _WIDE, _LOW), span, even_range(every))
+    axes.frame_at(
+        "Difference from design 1, %", "piston position from the cap end, mm",
+        even_ticks(*span, 8), even_ticks(*axes.y_range, 4), upright=True,
+    )  # fmt: skip
+    for (xs, ys), style in zip(found, STYLES, strict=False):
+        if len(xs) > 1:
+            ink.path(axes.clipped(xs, ys), **style)
+    return top + _LOW
 
 
 def _points(curve: StrokeCurve) -> tuple[list[float], list[float]]:
@@ -115,7 +146,7 @@ def _key(drawn: Drawn, ink: Ink, y: float, count: int) -> float:
         ]
         ink.line((2.0, y), (8.0, y), **STYLES[k])
         ink.text(9.4, y, f"{k + 1}", size=_SIZE, bold=True)
-        margin = f"least margin {margin_text(drawn.bests()[k].margin)}"
+        margin = f"least margin {margin_text(drawn.bests()[k].margin)}".replace(" ", NBSP)
         for line in wrap("; ".join([*said, margin]), 166.0, _SIZE):
             ink.text(13.0, y, line, size=_SIZE)
             y += 3.5

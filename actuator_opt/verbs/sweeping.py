@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from .reports import file_name
 
 if TYPE_CHECKING:
     from ..variants import Swept
-    from ..variants.chunk import Study
+    from ..variants.chunk import Chunk, Study
     from ..variants.engine import Engine
     from ..variants.plan import Method
 
@@ -30,6 +31,7 @@ def sweep(
     seed: int = 0,
     store: str | Path | None = None,
     csv: str | Path | None = None,
+    parquet: str | Path | None = None,
     keep: int = 10,
     reduce: bool = False,
     workers: int | None = None,
@@ -52,6 +54,7 @@ def sweep(
     seed : of "sobol" and "lhs"
     store : database to take rows from and put them into
     csv : file to write every row into
+    parquet : the same as Apache Parquet, typed and with metadata (extra `parquet`)
     keep : best feasible designs to return
     reduce : whether only what tells the best is computed
     workers : processes; default: one per core
@@ -71,7 +74,6 @@ def sweep(
     InputError
         a PATH or value that is none, or a store that cannot be used
     """
-    from ..reporting.sweep_csv import SweepTable
     from ..variants import plan, read_axis
     from ..variants import sweep as run
     from ..variants.chunk import Study
@@ -80,6 +82,7 @@ def sweep(
     engine = usable_engine(engine, reduced=reduce)
     if workers is not None and workers < 1:
         raise UsageError(Diagnostic(f"--workers {workers}", "give 1 or more"))
+    _require_apart(store, csv, parquet)
     actuator = as_actuator(design, plugins)
     faults = unanswered(actuator, actuator.subject())
     if faults:
@@ -88,7 +91,7 @@ def sweep(
     given = [f"{k}={v}" for k, v in vary.items()] if isinstance(vary, Mapping) else list(vary)
     axes = [read_axis(text, free) for text in given]
     chosen = plan(axes, method=method, count=n, seed=seed)
-    if chosen.count > LARGE and (store is not None or csv is not None) and not yes:
+    if chosen.count > LARGE and any(file is not None for file in (store, csv, parquet)) and not yes:
         message = f"{chosen.count:,} points would all be kept".replace(",", " ")
         remedy = "add --yes, or keep the best alone with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
@@ -103,14 +106,45 @@ def sweep(
         "scheduler": scheduler,
         "watch": _watched(study, figures, show),
     }
-    if csv is None:
-        found = run(study, **how)
-    else:
-        with SweepTable(study, Path(csv)) as table:
-            found = run(study, each=table.add, **how)
+    with _writing(study, csv, parquet) as each:
+        found = run(study, each=each, **how)
     if figures and out is not None:
         draw_sweep(found, figures, show=show, out=out)
     return found
+
+
+@contextmanager
+def _writing(
+    study: Study, csv: str | Path | None, parquet: str | Path | None
+) -> Iterator[Callable[[Chunk], None]]:
+    """What writes a chunk into every file asked for, all in place once the last is complete."""
+    from ..reporting.sweep_csv import SweepTable
+    from ..reporting.sweep_parquet import SweepParquet
+
+    with ExitStack() as files:
+        tables: list[SweepTable | SweepParquet] = []
+        if csv is not None:
+            tables.append(files.enter_context(SweepTable(study, Path(csv))))
+        if parquet is not None:
+            tables.append(files.enter_context(SweepParquet(study, Path(parquet))))
+
+        def each(chunk: Chunk) -> None:
+            for table in tables:
+                table.add(chunk)
+
+        yield each
+
+
+def _require_apart(*files: str | Path | None) -> None:
+    """Refuse one file for two things, and standard output; raises `UsageError`."""
+    if "-" in map(str, files):
+        message = "-: standard output carries the results"
+        raise UsageError(Diagnostic(message, "name a file for --store, --csv or --parquet"))
+    places = [Path(file).resolve() for file in files if file is not None]
+    for place in places:
+        if places.count(place) > 1:
+            message = f"{place.name}: one file for two of --store, --csv and --parquet"
+            raise UsageError(Diagnostic(message, "name another file"))
 
 
 def _watched(study: Study, figures: Sequence[str], show: Sequence[str]) -> tuple[str, ...]:

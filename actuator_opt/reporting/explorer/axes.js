@@ -1,5 +1,5 @@
 // Parallel axes: a line per design; ranges by dragging, or by the handles at their ends.
-const TOP = 66, FOOT = 24;
+const TOP = 80, FOOT = 24;
 let AXES = [];
 
 function axisPlaces() {
@@ -9,31 +9,44 @@ function axisPlaces() {
 }
 function shareOf(column, value) { return column.high > column.low ? (held(column, value) - column.low) / (column.high - column.low) : 0.5; }
 
+const MOST = [4000, 10000];
+// Designs to draw as lines, of those cut and of those that pass: every n-th of more, and n.
+function thinned(visible) {
+  const step = Math.ceil((visible ? COUNT : N - COUNT) / MOST[visible]), rows = [];
+  for (let k = 0, seen = 0; k < N; k++) if (VISIBLE[k] === visible && seen++ % step === 0) rows.push(k);
+  return [rows, step];
+}
 function drawLines() {
-  const { g, w, h } = canvas("lines"), { at, low } = axisPlaces();
-  const columns = STATE.axes.map((k) => COLUMNS[k]), c = COLUMNS[STATE.c];
-  const y = (column, v) => low - shareOf(column, v) * (low - TOP);
-  const trace = (row) => {
-    let pen = false;
-    g.beginPath();
-    columns.forEach((column, k) => {
-      const v = column.values[row];
-      if (v !== v) { pen = false; return; }
-      if (pen) g.lineTo(at(k), y(column, v)); else g.moveTo(at(k), y(column, v));
-      pen = true;
-    });
-    g.stroke();
-  };
-  g.lineWidth = 1;
-  g.strokeStyle = ink("--faint"); g.globalAlpha = Math.min(0.6, 250 / (N - COUNT + 1) + 0.06);
-  for (let k = 0; k < N; k++) if (!VISIBLE[k]) trace(k);
-  g.globalAlpha = Math.min(0.9, 300 / (COUNT + 1) + 0.15);
-  for (let k = 0; k < N; k++) if (VISIBLE[k]) { g.strokeStyle = colour(c, c.values[k]); trace(k); }
-  g.globalAlpha = 1;
+  const { g } = kept("lines", paintLines), { at, low } = axisPlaces();
   for (const [row, name] of [[STATE.hover, "--grey"], [STATE.pinned, "--ink"]]) if (row >= 0) {
-    g.lineWidth = 2.5; g.strokeStyle = ink(name); trace(row);
+    g.lineWidth = 2.5; g.strokeStyle = ink(name); trace(g, STATE.axes.map((k) => COLUMNS[k]), at, low, row);
   }
+}
+function trace(g, columns, at, low, row) {
+  let pen = false;
+  g.beginPath();
+  columns.forEach((column, k) => {
+    const v = column.values[row];
+    if (v !== v) { pen = false; return; }
+    const y = low - shareOf(column, v) * (low - TOP);
+    if (pen) g.lineTo(at(k), y); else g.moveTo(at(k), y);
+    pen = true;
+  });
+  g.stroke();
+}
+function paintLines(g, w) {
+  const { at, low } = axisPlaces(), columns = STATE.axes.map((k) => COLUMNS[k]), c = COLUMNS[STATE.c];
+  const y = (column, v) => low - shareOf(column, v) * (low - TOP);
+  const [cut, nth] = thinned(0), [left, every] = thinned(1);
+  g.lineWidth = 1;
+  g.strokeStyle = ink("--faint"); g.globalAlpha = Math.min(0.6, 250 / (cut.length + 1) + 0.06);
+  for (const k of cut) trace(g, columns, at, low, k);
+  g.globalAlpha = Math.min(0.9, 300 / (left.length + 1) + 0.15);
+  for (const k of left) { g.strokeStyle = colour(c, c.values[k]); trace(g, columns, at, low, k); }
+  g.globalAlpha = 1;
   columns.forEach((column, k) => drawAxis(g, w, column, at(k), low, y, STATE.ranges.get(STATE.axes[k])));
+  byId("lines-drawn").textContent = [[every, "passes"], [nth, "is cut"]].filter(([step]) => step > 1)
+    .map(([step, words]) => `One line in ${step} of what ${words} is drawn.`).join(" ");
 }
 function drawAxis(g, w, column, x, low, y, range) {
   g.lineWidth = 1.5; g.strokeStyle = ink("--ink");
@@ -43,8 +56,11 @@ function drawAxis(g, w, column, x, low, y, range) {
     g.fillStyle = ink("--accent"); g.globalAlpha = 0.3; g.fillRect(x - 8, from, 16, Math.max(to - from, 2)); g.globalAlpha = 1;
   }
   g.fillStyle = ink("--ink"); g.textAlign = "center";
-  g.fillText(fitted(g, highText(column), 90), x, TOP - 9);
-  g.fillText(fitted(g, lowText(column), 90), x, low + 18);
+  const room = Math.min(axisPlaces().apart - 4, 110);
+  for (const [words, y] of [[highText(column), TOP - 9], [lowText(column), low + 18]]) {
+    const text = fitted(g, words, room), half = g.measureText(text).width / 2;
+    g.fillText(text, Math.min(Math.max(x, half), w - half), y);
+  }
 }
 
 function setRange(column, low, high) {
@@ -65,10 +81,15 @@ function broken(column) {
   }
   return words;
 }
+// Have axes of some columns, where their ranges can be seen.
+function showAxes(columns) {
+  for (const column of columns) if (!STATE.axes.includes(column)) CHOICES[column].click();
+}
 // Names of the axes, and two sliders each.
 function buildAxes() {
   const box = byId("axes");
   for (const one of AXES) for (const node of [one.name, ...one.handles]) node.remove();
+  box.style.minWidth = `${76 * STATE.axes.length}px`;
   AXES = STATE.axes.map((column) => {
     const name = document.createElement("div");
     name.className = "axis-name"; name.append(broken(COLUMNS[column])); name.title = COLUMNS[column].head;
@@ -87,13 +108,14 @@ function buildAxes() {
   placeAxes();
 }
 function placeAxes() {
-  const { at, low, apart } = axisPlaces();
+  const { at, low, apart } = axisPlaces(), { width } = byId("axes").getBoundingClientRect();
+  const across = (x) => `${100 * x / width}%`;
   AXES.forEach((one, k) => {
     const column = COLUMNS[one.column], wide = Math.min(apart - 8, 170);
-    one.name.style.width = `${wide}px`; one.name.style.left = `${Math.max(at(k) - wide / 2, 0)}px`;
+    one.name.style.width = across(wide); one.name.style.left = across(Math.max(at(k) - wide / 2, 0));
     rangeOf(one.column).forEach((value, end) => {
       const node = one.handles[end], share = column.high > column.low ? shareOf(column, value) : end;
-      node.style.left = `${at(k)}px`; node.style.top = `${low - share * (low - TOP) + (end ? -1 : 1)}px`;
+      node.style.left = across(at(k)); node.style.top = `${low - share * (low - TOP) + (end ? -1 : 1)}px`;
       node.setAttribute("aria-valuemin", column.low); node.setAttribute("aria-valuemax", column.high);
       node.setAttribute("aria-valuenow", value);
       node.setAttribute("aria-valuetext", `${shown(column, column.texts ? Math.round(value) : value)} ${column.unit || ""}`.trim());

@@ -92,10 +92,11 @@ function ticks(low, high, most) {
   return found;
 }
 const STOPS = [[58, 91, 208], [34, 143, 190], [42, 168, 118], [186, 152, 28], [212, 92, 42]];
+const NONE = "#888888";
 const KINDS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8f7bd8", "#7a8a3a"];
 function colour(column, value) {
   if (column.texts) return KINDS[value % KINDS.length];
-  if (!Number.isFinite(value)) return "#888888";
+  if (!Number.isFinite(value)) return NONE;
   const share = column.high > column.low ? (value - column.low) / (column.high - column.low) : 0.5;
   const at = Math.min(Math.max(share, 0), 1) * (STOPS.length - 1), k = Math.min(Math.floor(at), STOPS.length - 2);
   const part = at - k;
@@ -112,4 +113,16 @@ function canvas(id) {
   g.clearRect(0, 0, w, h);
   g.font = "12px system-ui, 'DejaVu Sans', sans-serif";
   return { g, w, h };
+}
+// A canvas as it was painted last, or painted anew where that is out of date.
+const KEPT = new Map();
+function kept(id, paint) {
+  const drawn = canvas(id), { g, w, h } = drawn;
+  if (KEPT.has(id)) { g.drawImage(KEPT.get(id), 0, 0, w, h); return drawn; }
+  paint(g, w, h);
+  const copy = document.createElement("canvas"), node = byId(id);
+  copy.width = node.width; copy.height = node.height;
+  copy.getContext("2d").drawImage(node, 0, 0);
+  KEPT.set(id, copy);
+  return drawn;
 }

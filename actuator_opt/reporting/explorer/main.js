@@ -1,9 +1,18 @@
 // The parts together: one state, drawn anew where it changes.
 let WAITING = false;
-function redraw() {
+const CHOICES = [];
+// Everything; or, with `above`, only what stands above what is painted.
+function redraw(above) {
+  if (above !== true) KEPT.clear();
   if (WAITING) return;
   WAITING = true;
-  requestAnimationFrame(() => { WAITING = false; drawScatter(); drawLegend(); drawLines(); placeAxes(); });
+  requestAnimationFrame(() => { WAITING = false; draw(); });
+}
+function draw() { drawScatter(); drawLegend(); drawLines(); placeAxes(); }
+// On paper: dark on white, at the width of a sheet, drawn for it.
+function printing(on) {
+  document.documentElement.classList.toggle("printing", on);
+  KEPT.clear(); draw();
 }
 function say(text) { byId("live").textContent = text; }
 function refresh() {
@@ -47,7 +56,7 @@ function marginText(limit, row) {
 function pin(row) {
   STATE.pinned = row; STATE.hover = -1;
   describe(row);
-  redraw();
+  redraw(true);
   const x = COLUMNS[STATE.x], y = COLUMNS[STATE.y];
   say(row < 0 ? "No design chosen" : `Design ${row + 1}: ${x.label} ${shown(x, x.values[row])} ${x.unit}, ${y.label} ${shown(y, y.values[row])} ${y.unit}. ${byId("verdict").textContent}`);
 }
@@ -55,7 +64,7 @@ function hover(row) {
   if (row === STATE.hover) return;
   STATE.hover = row;
   describe(row < 0 ? STATE.pinned : row);
-  redraw();
+  redraw(true);
 }
 async function copy(text, button) {
   let done = true;
@@ -86,7 +95,7 @@ function buildLimits() {
     one.note = document.createElement("small");
     const { label, box } = ticked(byId("limits"), one.text, one.asked, (on) => { one.asked = on; refresh(); say(byId("count").textContent); }, one.note);
     one.box = box;
-    const light = (lit) => () => { STATE.lit = lit; redraw(); };
+    const light = (lit) => () => { STATE.lit = lit; redraw(true); };
     label.addEventListener("pointerenter", light(number)); label.addEventListener("pointerleave", light(-1));
     box.addEventListener("focus", () => { if (box.matches(":focus-visible")) light(number)(); }); box.addEventListener("blur", light(-1));
   }
@@ -102,11 +111,11 @@ function buildChoices() {
     list.value = STATE[key];
     list.addEventListener("change", () => { STATE[key] = Number(list.value); refresh(); });
   }
-  COLUMNS.forEach((column, k) => ticked(byId("choose"), column.head, STATE.axes.includes(k), (on) => {
+  COLUMNS.forEach((column, k) => CHOICES.push(ticked(byId("choose"), column.head, STATE.axes.includes(k), (on) => {
     STATE.axes = on ? [...STATE.axes, k].sort((a, b) => a - b) : STATE.axes.filter((one) => one !== k);
     if (!on) STATE.ranges.delete(k);
     buildAxes(); refresh();
-  }));
+  }).box));
 }
 function begin() {
   byId("name").textContent = DATA.name;
@@ -117,13 +126,16 @@ function begin() {
   const scatter = byId("scatter");
   scatter.addEventListener("pointermove", (event) => hover(nearest(event)));
   scatter.addEventListener("pointerleave", () => hover(-1));
-  scatter.addEventListener("click", (event) => pin(nearest(event)));
+  scatter.addEventListener("click", (event) => { if (DRAGGED) DRAGGED = false; else pin(nearest(event)); });
+  scatter.addEventListener("pointerdown", brushFrame);
   scatter.addEventListener("keydown", keyed);
   byId("lines").addEventListener("pointerdown", onLines);
   byId("clear").addEventListener("click", () => { STATE.ranges.clear(); refresh(); say(byId("count").textContent); });
   byId("copy").addEventListener("click", () => copy(byId("command").textContent, byId("copy")));
   byId("copy-base").addEventListener("click", () => copy(DATA.design, byId("copy-base")));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+  window.addEventListener("beforeprint", () => printing(true));
+  window.addEventListener("afterprint", () => printing(false));
   new ResizeObserver(redraw).observe(byId("axes"));
   new ResizeObserver(redraw).observe(scatter);
   refresh();

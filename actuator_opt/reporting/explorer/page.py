@@ -21,7 +21,7 @@ from ...variants.explored import Explored
 from .payload import payload
 
 FOLDER = Path(__file__).parent
-SCRIPTS = ("data", "scatter", "axes", "section", "main")
+SCRIPTS = ("data", "front", "scatter", "axes", "section", "main")
 _ESCAPES = {c: f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}
 
 

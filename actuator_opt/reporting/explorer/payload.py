@@ -18,7 +18,9 @@ from ...evaluation.shapes import LENGTHS, Template
 from ...numeric import Array
 from ...quantities import METRICS, Quantity
 from ...variants.explored import BEST, Explored
+from ...variants.sample import MORE_IS_BETTER, better
 from ...version import VERSION
+from ..text import SENSES, limit_text, pretty, unit_text
 
 AXES = 8
 """Parallel axes shown at first."""
@@ -42,6 +44,7 @@ def payload(explored: Explored, *, design: str, plugins: Sequence[str]) -> dict[
         "name": explored.study.design.name,
         "summary": _summary(explored),
         "rows": len(explored.numbers),
+        "thinned": explored.thinned,
         "columns": columns,
         "exact": _exact(explored),
         "command": command,
@@ -61,14 +64,17 @@ def _base64(values: Array, kind: str) -> str:
 
 def _column(name: str, label: str, unit: str, values: Array) -> dict[str, Any]:
     """One column in the unit people read; a number where all rows have the same."""
-    told: dict[str, Any] = {"name": name, "label": label, "unit": unit}
+    told: dict[str, Any] = {"name": name, "label": label, "unit": unit_text(unit)}
     if np.isfinite(values[0]) and (values == values[0]).all():
         return told | {"value": float(np.float32(values[0]))}
     return told | {"data": _base64(values, "<f4")}
 
 
 def _columns(explored: Explored) -> list[dict[str, Any]]:
-    """What varies, then the least margin and every metric that some design has."""
+    """What varies, then the least margin and every metric that some design has.
+
+    `better` is 1 where more is better, -1 where less is, 0 where nothing says so.
+    """
     study, numbers = explored.study, explored.numbers
     count = len(study.order)
     found = [_texts(explored, path) for path in explored.kept.texts]
@@ -76,12 +82,14 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
         quantity = quantity_of(column.name, study.design)
         shown = quantity.to_display(numbers[:, k])
         found.append(_column(column.name, column.name, quantity.unit, np.asarray(shown)))
-    found.append(_column("least_margin", "least margin of all", "%", 100 * numbers[:, -3]))
+    margin = _column("least_margin", "least margin of all", "%", 100 * numbers[:, -3])
+    found.append(margin | {"better": MORE_IS_BETTER})
     for k, name in enumerate(study.metrics, count):
         quantity = study.quantity(name)
         values = quantity.to_display(numbers[:, k])
         if not np.isnan(values).all():
-            found.append(_column(name, quantity.label, quantity.unit, np.asarray(values)))
+            told = _column(name, quantity.label, quantity.unit, np.asarray(values))
+            found.append(told | {"better": better(study, name)})
     return found
 
 
@@ -124,12 +132,13 @@ def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
         moved = limit.path in varied or limit.lever in varied
         bound = None if moved else float(limit.value(base))
         quantity = quantities[limit.metric]
-        words = "a limit that varies" if bound is None else quantity.text(bound)
-        sign = "≥" if limit.sense == "min" else "≤"
+        words = f"{SENSES[limit.sense]} a limit that varies"
+        if bound is not None:
+            words = limit_text(quantity, limit.sense, bound)
         found.append(
             {
                 "name": limit.name,
-                "text": f"{_label(limit, quantity, study.plugins)} {sign} {words}",
+                "text": f"{_label(limit, quantity, study.plugins)} {words}",
                 "plain": bound == 0.0,
                 "margin": _base64(np.where(margin == np.inf, 1e30, margin), "<f4"),
             }
@@ -145,7 +154,7 @@ def _label(limit: Limit, quantity: Quantity, plugins: Sequence[Plugin]) -> str:
 
 
 def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
-    """What is shown at first: the objective over the first number that varies."""
+    """What is shown at first: the objective over the first metric asked for, else what varies."""
     place = {column["name"]: k for k, column in enumerate(columns)}
     study = explored.study
     margin = place["least_margin"]
@@ -155,12 +164,12 @@ def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
     asked = [metric for metric in study.design.requirements if metric in place]
     shown = [k for k in (*varied[: AXES - 3], goal, *asked) if "value" not in columns[place[k]]]
     axes = sorted({place[name] for name in dict.fromkeys(shown[: AXES - 1])} | {margin})
-    across = next((k for k in numbers if "value" not in columns[place[k]]), varied[0])
-    tint = next((k for k in asked if k != goal and "value" not in columns[place[k]]), "")
+    moved = next((k for k in numbers if "value" not in columns[place[k]]), varied[0])
+    across = next((k for k in asked if k != goal and "value" not in columns[place[k]]), moved)
     return {
         "x": place[across],
         "y": place[goal],
-        "c": place.get(tint, margin),
+        "c": margin if across == moved else place[moved],
         "axes": axes,
         "asked": bool((explored.numbers[:, -1] == 1.0).any()),
     }
@@ -171,7 +180,7 @@ def _summary(explored: Explored) -> str:
     kept = explored.kept
     good, shown = kept.rows - explored.failed, len(explored.numbers)
     feasible = int((explored.numbers[:, -1] == 1.0).sum())
-    words = f"Study {kept.number}, {good} designs with an answer"
+    words = f"Study {kept.number}, {good} design{'s' * (good != 1)} with an answer"
     if explored.thinned:
         words += (
             f"; {shown} of them are shown: one in {-(-good // explored.most)}, spread evenly, "
@@ -183,7 +192,7 @@ def _summary(explored: Explored) -> str:
         told = "; ".join(f"{times} times {reason}" for reason, times in reasons[:TOLD])
         more = f"; and {len(reasons) - TOLD} more reasons" if len(reasons) > TOLD else ""
         words += f" {explored.failed} failed, which have no numbers: {told}{more}."
-    return f"{words} Models of version {VERSION}."
+    return f"{pretty(words)} Models of version {VERSION}."
 
 
 def _shapes(explored: Explored) -> dict[str, Any]:

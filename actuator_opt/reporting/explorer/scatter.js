@@ -6,8 +6,17 @@ function axisSpan(column) {
   const room = (column.high - column.low || Math.abs(column.high) || 1) * 0.04;
   return [column.low - room, column.high + room];
 }
+// What stands while the pointer moves is drawn once, what it chooses above it.
 function drawScatter() {
-  const { g, w, h } = canvas("scatter"), m = MARGIN;
+  const { g, w, h } = kept("scatter", paintScatter), { px, py } = PLACED, m = MARGIN;
+  if (STATE.lit >= 0) { g.save(); g.beginPath(); g.rect(m.left, m.top, w - m.left - m.right, h - m.top - m.bottom); g.clip(); drawCut(g, LIMITS[STATE.lit].cut); g.restore(); }
+  for (const [row, name] of [[STATE.pinned, "--ink"], [STATE.hover, "--grey"]]) if (row >= 0 && px[row] === px[row] && py[row] === py[row]) {
+    g.strokeStyle = ink(name); g.lineWidth = 2;
+    g.beginPath(); g.arc(px[row], py[row], 7, 0, 7); g.stroke();
+  }
+}
+function paintScatter(g, w, h) {
+  const m = MARGIN;
   const x = COLUMNS[STATE.x], y = COLUMNS[STATE.y], c = COLUMNS[STATE.c];
   const [x0, x1] = axisSpan(x), [y0, y1] = axisSpan(y);
   const toX = (v) => m.left + (v - x0) / (x1 - x0) * (w - m.left - m.right);
@@ -16,23 +25,23 @@ function drawScatter() {
   const { px, py } = PLACED;
   g.save();
   g.beginPath(); g.rect(m.left, m.top, w - m.left - m.right, h - m.top - m.bottom); g.clip();
+  const small = N > 500 ? 2 : 3.2;
   g.fillStyle = ink("--faint");
   for (let k = 0; k < N; k++) {
     px[k] = toX(held(x, x.values[k])); py[k] = toY(held(y, y.values[k]));
-    if (!VISIBLE[k] && px[k] === px[k] && py[k] === py[k]) { g.beginPath(); g.arc(px[k], py[k], 2, 0, 7); g.fill(); }
+    if (!VISIBLE[k] && px[k] === px[k] && py[k] === py[k]) { g.beginPath(); g.arc(px[k], py[k], small, 0, 7); g.fill(); }
   }
   const size = N > 2500 ? 2.6 : 3.6;
   for (let k = 0; k < N; k++) if (VISIBLE[k] && px[k] === px[k] && py[k] === py[k]) {
     g.fillStyle = colour(c, c.values[k]);
     g.beginPath(); g.arc(px[k], py[k], size, 0, 7); g.fill();
   }
-  if (STATE.lit >= 0) drawCut(g, LIMITS[STATE.lit].cut);
+  const best = front();
+  drawFront(g, best);
+  drawRanges(g, toX, toY);
   g.restore();
-  for (const [row, name] of [[STATE.pinned, "--ink"], [STATE.hover, "--grey"]]) if (row >= 0 && px[row] === px[row] && py[row] === py[row]) {
-    g.strokeStyle = ink(name); g.lineWidth = 2;
-    g.beginPath(); g.arc(px[row], py[row], 7, 0, 7); g.stroke();
-  }
   if (!COUNT) { g.fillStyle = ink("--grey"); g.textAlign = "center"; g.fillText("No design passes all that is asked for; those it cuts are faint.", w / 2, m.top + 16); }
+  tellFront(best);
 }
 // A cross over every design that a requirement cuts.
 function drawCut(g, cut) {
@@ -78,7 +87,7 @@ function fitted(g, text, room) {
 function drawLegend() {
   const { g, w } = canvas("legend"), c = COLUMNS[STATE.c];
   g.fillStyle = ink("--ink"); g.textBaseline = "top";
-  g.fillText(fitted(g, `colour: ${c.head}`, w - 20), MARGIN.left, 0);
+  g.fillText(fitted(g, `colour: ${c.head}`, w - MARGIN.left), MARGIN.left, 2);
   if (c.texts) {
     let at = MARGIN.left;
     for (let k = 0; k < c.texts.length && at < w - 60; k++) {
@@ -96,6 +105,7 @@ function drawLegend() {
   g.fillStyle = ink("--ink");
   g.fillText(lowText(c), MARGIN.left, 30);
   g.textAlign = "right"; g.fillText(highText(c), MARGIN.left + wide, 30); g.textAlign = "left";
+  if (c.values.some((v) => v !== v)) { g.fillStyle = NONE; g.fillRect(MARGIN.left + wide + 16, 18, 8, 8); g.fillStyle = ink("--ink"); g.fillText("none", MARGIN.left + wide + 28, 16); }
 }
 function nearest(event) {
   const box = byId("scatter").getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
@@ -128,6 +138,7 @@ function keyed(event) {
   const ways = { ArrowRight: [x, y, 1], ArrowLeft: [x, y, -1], ArrowUp: [y, x, 1], ArrowDown: [y, x, -1],
     Home: [x, y, "first"], End: [x, y, "last"] };
   if (event.key === "Escape") pin(-1);
+  else if (event.key === "Delete" || event.key === "Backspace") { for (const one of [x, y]) STATE.ranges.delete(one); refresh(); say(byId("count").textContent); }
   else if (ways[event.key]) pin(stepped(...ways[event.key]));
   else return;
   event.preventDefault();

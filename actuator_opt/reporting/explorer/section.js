@@ -40,11 +40,12 @@ function drawSection(row) {
   const drawn = row < 0 ? null : numbersOf(row);
   if (!drawn) {
     svg.setAttribute("aria-label", "No section");
-    if (row >= 0) byId("lengths").textContent = "No section: the form of its parts is not known here.";
+    byId("lengths").textContent = row < 0 ? "Click a point of the scatter, or press an arrow key in it." : "No section: the form of its parts is not known here.";
     return;
   }
   const { left, right, radius } = extent(), { template, found } = drawn;
-  const pad = (right - left) * 0.02, foot = (right - left) * 0.09, wide = right - left + 2 * pad;
+  const pad = (right - left) * 0.02, wide = right - left + 2 * pad;
+  const pixel = Math.max(wide / (svg.clientWidth || 400), 2 * (radius + pad) / ((svg.clientHeight || 190) - 30)), foot = 28 * pixel;
   svg.setAttribute("viewBox", `${left - pad} ${-radius - pad} ${wide} ${2 * radius + 2 * pad + foot}`);
   let at = 0;
   const paths = template.parts.map(({ part, kind, polygons }) => {
@@ -62,7 +63,7 @@ function drawSection(row) {
   svg.append(element("path", { class: "centre", d: `M${left - pad} 0H${right + pad}` }));
   const bar = [500, 200, 100, 50, 20, 10, 5, 2, 1].find((length) => length < (right - left) / 4) || 1, y = radius + pad + foot * 0.45;
   svg.append(element("path", { class: "bar", d: `M${left} ${y - foot / 8}V${y + foot / 8}M${left} ${y}H${left + bar}M${left + bar} ${y - foot / 8}V${y + foot / 8}` }));
-  svg.append(element("text", { x: left + bar + foot / 4, y: y + foot * 0.16, "font-size": foot * 0.5 }, `${bar} mm`));
+  svg.append(element("text", { x: left + bar + foot / 4, y: y + foot * 0.16, "font-size": 13 * pixel }, `${bar} mm`));
   const base = found.length - SHAPES.lengths.length;
   const told = SHAPES.lengths.map((name, k) => `${name} ${trimmed(found[base + k])}`).join(" · ") + " mm";
   byId("lengths").textContent = `To scale, retracted: ${told}${SHAPES.hidden ? `. Not shown: ${SHAPES.hidden}` : ""}`;

@@ -5,9 +5,9 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from ..errors import ActuatorError, Diagnostic
+from .errors import ActuatorError, Diagnostic
 
-EXTRAS = {"ezdxf": ("DXF", "cad"), "openpyxl": ("XLSX", "excel")}
+EXTRAS = {"ezdxf": ("DXF", "cad"), "openpyxl": ("XLSX", "excel"), "pyarrow": ("Parquet", "parquet")}
 """Format and extra of every library."""
 
 
