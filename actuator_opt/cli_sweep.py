@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -100,13 +101,13 @@ def sweep(
     """Evaluate many variants of a design."""
     from . import verbs
 
-    keep = _kept(reduce, store, csv, parquet)
+    keep = _kept(reduce)
     if show and not figures:
         raise UsageError(Diagnostic("--show without --figure", "add --figure parallel, say"))
     if figures:
         check_targets(out, None)
     actuator = read_actuator(design, sets, plugin)
-    with nullcontext() if quiet else streams.watching():
+    with _kept_rows(store, quiet), nullcontext() if quiet else streams.watching():
         found = verbs.sweep(
             actuator,
             vary or [],
@@ -134,6 +135,17 @@ def sweep(
         _tell(found, [csv, parquet], files, fault, quiet=quiet)
     if not found.best:
         raise typer.Exit(ExitCode.MISSED)
+
+
+@contextmanager
+def _kept_rows(store: Path | None, quiet: bool) -> Iterator[None]:
+    """Where Ctrl-C ends a sweep with a store, say how it goes on."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if store is not None and not quiet:
+            streams.err(f"{store} keeps the rows so far; the same command goes on from there")
+        raise
 
 
 def _tell_json(found: Swept, files: list[dict[str, str]], fault: ActuatorError | None) -> None:
@@ -180,13 +192,10 @@ def _drawn(
     return [{"path": str(path)} for path in paths], None
 
 
-def _kept(reduce: str | None, *kept: Path | None) -> int:
+def _kept(reduce: str | None) -> int:
     """How many of the best to keep."""
     if reduce is None:
         return 10
-    if any(file is not None for file in kept):
-        remedy = "leave out --store, --csv and --parquet"
-        raise UsageError(Diagnostic("--reduce keeps the best alone", remedy))
     name, _, number = reduce.partition(":")
     if name != "best" or not number.isdecimal() or int(number) < 1:
         raise UsageError(Diagnostic(f"--reduce {reduce}: unknown", "write best:K, e.g. best:20"))

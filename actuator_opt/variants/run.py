@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import heapq
 import os
+import signal
 import sys
 import time
 from collections import deque
@@ -264,6 +265,7 @@ _STUDY: list[Study] = []
 
 
 def _begin(study: Study) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that waits
     _STUDY[:] = [study]
 
 

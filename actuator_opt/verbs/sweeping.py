@@ -83,6 +83,9 @@ def sweep(
     if workers is not None and workers < 1:
         raise UsageError(Diagnostic(f"--workers {workers}", "give 1 or more"))
     _require_apart(store, csv, parquet)
+    if reduce and any(file is not None for file in (store, csv, parquet)):
+        message = "--reduce keeps the best alone"
+        raise UsageError(Diagnostic(message, "leave out --store, --csv and --parquet"))
     actuator = as_actuator(design, plugins)
     faults = unanswered(actuator, actuator.subject())
     if faults:
