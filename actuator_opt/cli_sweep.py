@@ -68,7 +68,9 @@ Show = Annotated[
         help="A metric of the figures; default: the objective and requirements. Repeatable.",
     ),
 ]
-Yes = Annotated[bool, typer.Option("--yes", help="Keep more than a million points without asking.")]
+Yes = Annotated[
+    bool, typer.Option("--yes", help="Evaluate a million points in full without asking.")
+]
 Screening = Annotated[
     str,
     typer.Option("--engine", help="What --reduce screens with: numpy, or jax (extra gpu)."),

@@ -298,7 +298,7 @@ def test_a_full_disk_keeps_the_rows_that_stand(tmp_path):
 def test_a_million_rows_must_be_meant(tmp_path):
     """A large grid that is kept states its size and asks; a reduced one does not."""
     vary = ["cylinder.bore=18..26 mm:1200", "rod.outer_diameter=9..13 mm:1200"]
-    with pytest.raises(UsageError, match="1 440 000 points would all be kept"):
+    with pytest.raises(UsageError, match="1 440 000 points would all be evaluated in full"):
         ao.sweep(STEEL, vary, csv=tmp_path / "rows.csv")
     assert not list(tmp_path.iterdir())
 
@@ -333,3 +333,11 @@ def test_temperatures_that_leave_strengths_alone_move_together(tmp_path):
                 found = next(float(row[key]) for key in row if key.split(" [")[0] == name)
                 metric = alone.metrics[name]
                 assert found == pytest.approx(metric.quantity.to_display(metric.value), rel=1e-8)
+
+
+def test_a_path_that_no_model_reads_is_refused():
+    """A constant of another law of the oil; with materials that vary too, some may read it."""
+    law = "materials.iso_vg_32.tait_modulus=1..2 GPa:3"
+    with pytest.raises(InputError, match=r"tait_modulus: no model reads this number"):
+        ao.sweep(KNEE, [law])
+    assert ao.sweep(KNEE, [law, "rod.material=steel_42crmo4,ti_6al4v"]).computed == 6

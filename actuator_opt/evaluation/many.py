@@ -20,13 +20,15 @@ class Many:
     """Arrays (designs,) of many designs.
 
     `metrics` are the governing values, NaN where there is none; `margin` is the least of all
-    limits, of the check list too, and `missed` the number of its limit in `limits`.
+    limits, of the check list too, and `missed` the number of its limit in `limits`. `read` are the
+    PATHs of what models and limits looked at.
     """
 
     metrics: dict[str, Array]
     margin: Array
     missed: Array
     limits: tuple[Limit, ...]
+    read: frozenset[str]
 
     @property
     def feasible(self) -> Array:
@@ -64,7 +66,7 @@ def evaluate_many(
         worse = ~(value >= margin)  # NaN is worst
         margin = np.where(worse, np.where(np.isnan(value), -np.inf, value), margin)
         missed[worse] = number
-    return Many(metrics, margin, missed, limits)
+    return Many(metrics, margin, missed, limits, frozenset(v.read))
 
 
 @np.errstate(all="ignore")

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..design import Design, with_values
 from ..design.paths import quantity_of
-from ..errors import InputError
+from ..errors import Diagnostic, InputError
 from ..evaluation import Subject, prepare
 from ..evaluation.allow import extremes
 from ..evaluation.many import Many, evaluate_many
@@ -36,7 +36,8 @@ AGREE = 1e-9
 class Designs:
     """The designs of a plan, prepared where needed.
 
-    `apart` are numbers that a design must be made anew for: temperatures of strengths, say.
+    `apart` are numbers that a design must be made anew for: temperatures of strengths, say. A
+    number that no model reads is refused, where no text makes other designs: `InputError`.
     """
 
     design: Design
@@ -88,7 +89,13 @@ class Designs:
         return found
 
     def _moves(self, axis: Axis) -> bool:
-        """Whether a number may be moved as an array: two values as if the design had them."""
+        """Whether a number may be moved as an array: two values as if the design had them.
+
+        Raises
+        ------
+        InputError
+            no model reads it, and it makes no other design
+        """
         assert axis.values is not None
         if self._is_temperature(axis) and not self._same_extremes():
             return False
@@ -107,11 +114,17 @@ class Designs:
             return False
         base = self.made({**texts, axis.path: next(iter(alone))})
         together = evaluate_many(base, {axis.path: np.array(list(alone))}, len(alone))
-        return all(
+        moves = all(
             np.isclose(values[k], one.metrics[name][0], rtol=AGREE, atol=0.0, equal_nan=True)
             for name, values in together.metrics.items()
             for k, one in enumerate(alone.values())
         )
+        if moves and axis.path not in together.read and not self.plan.named:
+            remedy = "vary another, or check that the part it belongs to is used"
+            raise InputError(
+                Diagnostic("no model reads this number of this design", remedy, path=axis.path)
+            )
+        return moves
 
     def alike(self, points: Points) -> Iterator[tuple[Array, int, dict[str, float]]]:
         """Numbers of points of one prepared design, its combination of texts, what is set apart."""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..variants.plan import Method
 
 LARGE = 1_000_000
-"""Points from which a sweep that keeps them all must be meant."""
+"""Points from which a sweep that evaluates them all in full must be meant."""
 
 
 def sweep(
@@ -60,7 +60,7 @@ def sweep(
     workers : processes; default: one per core
     scheduler : address of a Dask scheduler to work on instead (extra `cluster`)
     engine : what `reduce` screens with, "numpy" or "jax" (extra `gpu`); NumPy where JAX is missing
-    yes : whether a sweep of a million points that are all kept is meant
+    yes : whether a sweep of a million points that are all evaluated in full is meant
     plugins : the user's metrics and constraints
     figures : "parallel", "scatter", "contour", "ucurves", drawn as PNG and SVG
     show : metrics of the figures; default: the objective and the requirements
@@ -94,8 +94,8 @@ def sweep(
     given = [f"{k}={v}" for k, v in vary.items()] if isinstance(vary, Mapping) else list(vary)
     axes = [read_axis(text, free) for text in given]
     chosen = plan(axes, method=method, count=n, seed=seed)
-    if chosen.count > LARGE and any(file is not None for file in (store, csv, parquet)) and not yes:
-        message = f"{chosen.count:,} points would all be kept".replace(",", " ")
+    if chosen.count > LARGE and not reduce and not yes:
+        message = f"{chosen.count:,} points would all be evaluated in full".replace(",", " ")
         remedy = "add --yes, or keep the best alone with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
     study = Study(free, chosen, actuator.plugins, full=not reduce, more=tuple(show), engine=engine)
