@@ -19,7 +19,7 @@ from .cli_compare import compare
 from .cli_doctor import doctor
 from .cli_explore import explore
 from .cli_export import export
-from .cli_optimise import optimise, outcome_of, sensitivity
+from .cli_optimise import optimise, sensitivity
 from .cli_pareto import pareto
 from .cli_records import calibrate, identify
 from .cli_rerun import rerun
@@ -221,9 +221,7 @@ def report(
 
     check_targets(out, date)
     if run_store.is_name(design):
-        found = cli_runs.restored(design, sets, plugin)
-        files = [x.to_dict() for x in verbs.report_run(found, folder=out, date=date)]
-        code = outcome_of(found.optimisation)
+        files, code = cli_runs.reported(design, sets, plugin, out, date)
     else:
         actuator = read_actuator(design, sets, plugin)
         evaluation = verbs.evaluate(actuator)

@@ -1,4 +1,4 @@
-"""`explore`: a kept sweep as one page."""
+"""`explore`: a kept sweep, or a front, as one page."""
 
 from __future__ import annotations
 
@@ -13,7 +13,12 @@ from .options import REPORTS, Json, PluginFile, Quiet
 
 
 def explore(
-    store: Annotated[Path, typer.Argument(metavar="F.db", help="Database of `sweep --store`.")],
+    store: Annotated[
+        str,
+        typer.Argument(
+            metavar="RUN|F.db", help="Run of sweep or pareto (id, last), or a sweep's database."
+        ),
+    ],
     study: Annotated[
         int | None,
         typer.Option("--study", metavar="N", help="Which of its studies; default: the newest."),
@@ -30,7 +35,7 @@ def explore(
     quiet: Quiet = False,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> None:
-    """Write a kept sweep as one HTML page to look through, offline."""
+    """Write a kept sweep or a front as one offline HTML page."""
     from . import verbs
 
     found = verbs.explore(store, out=out, study=study, rows=rows, plugins=plugin or [])

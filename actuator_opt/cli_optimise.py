@@ -9,8 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import streams
-from .cli_shared import check_targets, command_line, read_actuator, say_files, write_report
-from .errors import ActuatorError, ExitCode
+from .cli_shared import (
+    check_targets,
+    command_line,
+    keep_record,
+    read_actuator,
+    say_files,
+    write_report,
+)
+from .errors import ExitCode
 from .options import (
     REPORTS,
     Algorithm,
@@ -113,12 +120,8 @@ def recorded(
     """Keep a record of the run; where that fails, one line says so."""
     from .verbs import record
 
-    try:
-        record(result, actuator=actuator, command=command, date=date, extra_tables=tables)
-    except ActuatorError as error:
-        fault = error.diagnostics[0]
-        remedy = "set ACTUATOR_OPT_RUNS to another folder, or give --no-record"
-        streams.err(f"the run is not recorded: {replace(fault, remedy=remedy)}")
+    how: dict[str, Any] = {"command": command, "date": date, "extra_tables": tables}
+    keep_record(lambda: record(result, actuator=actuator, **how))
 
 
 def _scenario(file: str | None, actuator: Actuator) -> Trial | None:

@@ -3,15 +3,31 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from . import streams
-from .cli_shared import check_targets, command_line, read_actuator, say_files
+from .cli_shared import check_targets, command_line, keep_record, read_actuator, say_files
 from .errors import ExitCode
-from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Report, Seed, Set
+from .options import (
+    REPORTS,
+    Date,
+    DesignFile,
+    Json,
+    NoRecord,
+    Out,
+    PluginFile,
+    Quiet,
+    Report,
+    Seed,
+    Set,
+)
 from .store import require_apart
+
+if TYPE_CHECKING:
+    from .optimisation.pareto_result import ParetoFront
+    from .verbs import Actuator
 
 
 def pareto(
@@ -38,6 +54,7 @@ def pareto(
     out: Out = REPORTS,
     date: Date = None,
     seed: Seed = 0,
+    no_record: NoRecord = False,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -67,7 +84,20 @@ def pareto(
 
         streams.out(front_text(found, **streams.style()), end="")
         say_files(files)
+    if not no_record:
+        recorded(found, actuator, command_line(), date)
+    raise typer.Exit(outcome_of(found))
+
+
+def recorded(found: ParetoFront, actuator: Actuator, command: str, date: str | None) -> None:
+    """Keep a record of the front; where that fails, one line says so."""
+    from .verbs import record_front
+
+    keep_record(lambda: record_front(found, actuator=actuator, command=command, date=date))
+
+
+def outcome_of(found: ParetoFront) -> ExitCode:
+    """The exit status of a front."""
     if found.status == "unsolved":
-        raise typer.Exit(ExitCode.SOLVER_FAILED)
-    if not found.points:
-        raise typer.Exit(ExitCode.MISSED)
+        return ExitCode.SOLVER_FAILED
+    return ExitCode.MET if found.points else ExitCode.MISSED

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from . import store, streams
+from . import cli_pareto, store, streams
 from .cli_optimise import outcome_of, recorded
 from .cli_shared import check_targets, say_files
 from .errors import ExitCode
@@ -31,6 +31,7 @@ def rerun(
 ) -> None:
     """Run the command of a report again, from the input it carries."""
     from . import verbs
+    from .optimisation.pareto_result import ParetoFront
     from .optimisation.result import Optimisation
 
     check_targets(out, None)
@@ -44,6 +45,10 @@ def rerun(
         code = outcome_of(subject)
         if not no_record:
             recorded(subject, found.actuator, found.command, found.date, list(found.tables))
+    elif isinstance(subject, ParetoFront):
+        code = cli_pareto.outcome_of(subject)
+        if not no_record:
+            cli_pareto.recorded(subject, found.actuator, found.command, found.date)
     else:
         code = ExitCode.MET if subject.met else ExitCode.MISSED
     if as_json:
@@ -58,22 +63,29 @@ def rerun(
 
 def _written(found: Rerun, out: Path) -> list[dict[str, Any]]:
     from . import verbs
+    from .optimisation.pareto_result import ParetoFront
 
-    files = verbs.report(
-        found.subject, folder=out, actuator=found.actuator, command=found.command,
-        date=found.date, extra_tables=found.tables,
-    )  # fmt: skip
+    how: dict[str, Any] = {"actuator": found.actuator, "command": found.command}
+    how |= {"folder": out, "date": found.date}
+    if isinstance(found.subject, ParetoFront):
+        files = verbs.write_front(found.subject, **how) if found.subject.points else []
+    else:
+        files = verbs.report(found.subject, extra_tables=found.tables, **how)
     return [file.to_dict() for file in files]
 
 
 def _tell(found: Rerun) -> None:
     """The tables of the command, then whether they are those of the report."""
+    from .optimisation.pareto_result import ParetoFront
     from .optimisation.result import Optimisation
+    from .reporting.pareto_rows import front_text
     from .reporting.terminal import evaluation_text, optimisation_text
 
     style = streams.style()
     if isinstance(found.subject, Optimisation):
         streams.out(optimisation_text(found.subject, **style), end="")
+    elif isinstance(found.subject, ParetoFront):
+        streams.out(front_text(found.subject, **style), end="")
     else:
         streams.out(evaluation_text(found.subject, **style), end="")
     streams.err(f"{found.command}\n{found.sentence}")

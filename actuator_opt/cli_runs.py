@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from . import run_store, store, streams
-from .errors import Diagnostic, UsageError
+from .errors import Diagnostic, ExitCode, UsageError
 from .options import Json, Quiet
 
-if TYPE_CHECKING:
-    from .verbs import Restored
-
 app = typer.Typer(
-    help="Recorded runs: list, show, delete. Each optimise leaves one.", no_args_is_help=True
+    help="Recorded runs: list, show, delete. Each optimise, pareto and sweep leaves one.",
+    no_args_is_help=True,
 )
 RunName = Annotated[
     str,
@@ -83,7 +81,9 @@ def show_run(
     elif not quiet:
         from .reporting.runs_text import run_text
 
-        streams.out(run_text(found.id, found.head, found.body, **streams.style()), end="")
+        with verbs.sound(found):
+            told = run_text(found.id, found.head, found.body, **streams.style())
+        streams.out(told, end="")
         for path in paths:
             streams.err(f"wrote {path}")
 
@@ -122,13 +122,26 @@ def _say_deleted(found: list[str], *, as_json: bool, quiet: bool) -> None:
             streams.err("nothing to delete")
 
 
-def restored(name: str, sets: list[str] | None, plugins: list[Path] | None) -> Restored:
-    """A recorded run to report; what differs from then is told in a line."""
+def reported(
+    name: str, sets: list[str] | None, plugins: list[Path] | None, out: Path, date: str | None
+) -> tuple[list[dict[str, Any]], ExitCode]:
+    """Report a recorded run: its files and the exit status; what differs from then is told."""
     from . import verbs
+    from .cli_optimise import outcome_of
+    from .cli_pareto import outcome_of as outcome_of_front
+    from .optimisation.pareto_result import ParetoFront
 
     if sets:
         raise UsageError(Diagnostic("--set: a run is reported as it was", "name a design instead"))
     found = verbs.restore(name, plugins=plugins or [])
     for doubt in found.doubts:
         streams.err(doubt)
-    return found
+    with streams.watching():
+        files = [x.to_dict() for x in verbs.report_run(found, folder=out, date=date)]
+    if found.run.head["kind"] == "sweep":
+        return files, ExitCode.MET if found.run.head["met"] else ExitCode.MISSED
+    if isinstance(found.result, ParetoFront):
+        if not files:
+            streams.err(found.result.sentence)
+        return files, outcome_of_front(found.result)
+    return files, outcome_of(found.optimisation)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 from . import streams
-from .errors import Diagnostic, ExitCode, UsageError
+from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
 
 if TYPE_CHECKING:
     from .evaluation import Evaluation
@@ -105,6 +106,16 @@ def write_report(
         extra_tables=tables,
     )  # fmt: skip
     return [file.to_dict() for file in files]
+
+
+def keep_record(make: Callable[[], object]) -> None:
+    """Record a run; where that fails, one line says so and nothing else is lost."""
+    try:
+        make()
+    except ActuatorError as error:
+        remedy = "set ACTUATOR_OPT_RUNS to another folder, or give --no-record"
+        fault = replace(error.diagnostics[0], remedy=remedy)
+        streams.err(f"the run is not recorded: {fault}")
 
 
 def _check_date(date: str | None) -> None:

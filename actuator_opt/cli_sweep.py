@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from . import streams
-from .cli_shared import check_targets, read_actuator, say_files
+from .cli_shared import check_targets, command_line, keep_record, read_actuator, say_files
 from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
-from .options import REPORTS, DesignFile, Json, PluginFile, Quiet, Seed, Set
+from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Seed, Set
 
 if TYPE_CHECKING:
     from .variants import Swept
@@ -96,6 +96,7 @@ def sweep(
     sets: Set = None,
     plugin: PluginFile = None,
     seed: Seed = 0,
+    no_record: NoRecord = False,
     as_json: Json = False,
     quiet: Quiet = False,
     out: Folder = REPORTS,
@@ -109,6 +110,8 @@ def sweep(
     if figures:
         check_targets(out, None)
     actuator = read_actuator(design, sets, plugin)
+    asked: dict[str, Any] = {"store": store, "csv": csv, "parquet": parquet, "keep": keep}
+    asked |= {"figures": figures or [], "show": show or []}
     with _kept_rows(store, quiet), nullcontext() if quiet else streams.watching():
         found = verbs.sweep(
             actuator,
@@ -116,20 +119,18 @@ def sweep(
             method=method,  # type: ignore[arg-type]
             n=count,
             seed=seed,
-            store=store,
-            csv=csv,
-            parquet=parquet,
-            keep=keep,
             reduce=reduce is not None,
             workers=workers,
             scheduler=scheduler,
             engine=engine,  # type: ignore[arg-type]
             yes=yes,
-            figures=figures or [],
-            show=show or [],
+            **asked,
         )
     if found.study.engine != engine and not quiet:
         streams.err("JAX is missing (pip install 'actuator-opt[gpu]'): NumPy did its work")
+    if not no_record:
+        asked["command"] = command_line()
+        keep_record(lambda: verbs.record_sweep(found, actuator=actuator, **asked))
     files, fault = _drawn(found, figures or [], show or [], out)
     if as_json:
         _tell_json(found, files, fault)

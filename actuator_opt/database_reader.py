@@ -79,6 +79,20 @@ class Reader:
             self._texts(number),
         )
 
+    def number(self, hashed: str) -> int:
+        """The number of the study of a hash.
+
+        Raises
+        ------
+        InputError
+            none has it
+        """
+        row = self.connection.execute("SELECT id FROM studies WHERE hash = ?", (hashed,)).fetchone()
+        if row is None:
+            message = "holds no such sweep: it was made anew, or materials or metrics have changed"
+            raise refused(self.path, message, "run the sweep again with --store")
+        return int(row[0])
+
     def _texts(self, number: int) -> dict[str, tuple[str, ...]]:
         tables = {row[0] for row in self.connection.execute("SELECT name FROM sqlite_master")}
         if "texts" not in tables:

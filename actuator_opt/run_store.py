@@ -27,7 +27,8 @@ _ID = re.compile(r"[0-9]{8}-[0-9]{6}-[0-9a-f]{6}")
 _BEGINNING = re.compile(r"[0-9]{4,8}(-[0-9]{0,6}(-[0-9a-f]{0,6})?)?")
 _MOST = 200_000_000
 """Bytes of a record, at most: a choice far above what a run leaves."""
-_HEAD = 100_000
+_HEAD = 4_000_000
+"""Bytes of its first line, at most: twice what a command line may be."""
 
 
 @dataclass(frozen=True, slots=True)

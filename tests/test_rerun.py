@@ -227,12 +227,13 @@ def test_the_parser_knows_every_option_of_the_commands():
     """Whatever changes a result in the terminal can be repeated; a new option is seen here."""
     known = {word for action in repeating.parser()._actions for word in action.option_strings}
     idle = {
-        "--out", "--json", "--quiet", "-q", "--report", "--write", "--no-record", "--help", "-h"
+        "--out", "--json", "--quiet", "-q", "--report", "--write", "--no-record", "--help", "-h",
+        "--csv",
     }  # fmt: skip
     import typer
 
     commands = typer.main.get_command(cli.app).commands
-    for verb in repeating.OPTIMISED + repeating.EVALUATED:
+    for verb in repeating.OPTIMISED + repeating.EVALUATED + repeating.FRONTS:
         words = {word for one in commands[verb].params for word in one.opts if word[0] == "-"}
         assert words - idle <= known, verb
     assert options.NoRecord is not None

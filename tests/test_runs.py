@@ -16,6 +16,7 @@ from cli_runner import BENCH, KNEE, command, run, surroundings
 import actuator_opt as ao
 from actuator_opt import run_store
 from actuator_opt.optimisation import recorded
+from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.optimisation.run import optimise as solver_entry
 from actuator_opt.reporting.convergence_figure import convergence_figure
 from actuator_opt.reporting.ink import Ink
@@ -130,7 +131,8 @@ def test_own_metrics_come_back_from_their_file_only_unchanged(folder, design, tm
 def test_an_optimisation_goes_through_json_and_back():
     """Every field is the same after the way through text, infinite numbers too."""
     found = ao.optimise(ao.read(SMALL), standard_sizes=True)
-    back = recorded.from_plain(json.loads(json.dumps(recorded.to_plain(found), allow_nan=False)))
+    text = json.dumps(recorded.to_plain(found), allow_nan=False)
+    back = recorded.from_plain(Optimisation, json.loads(text))
     for name in found.__dataclass_fields__:
         if name not in ("evaluation", "start", "rounding"):
             assert getattr(back, name) == getattr(found, name), name
@@ -138,7 +140,7 @@ def test_an_optimisation_goes_through_json_and_back():
     worse = ao.Run("x", Path("x"), {}, {})
     assert worse.to_dict() == {"id": "x", "path": "x"}
     odd = recorded.to_plain(found.__class__(**_fields(found) | {"objective_value": inf}))
-    assert recorded.from_plain(json.loads(json.dumps(odd))).objective_value == inf
+    assert recorded.from_plain(Optimisation, json.loads(json.dumps(odd))).objective_value == inf
 
 
 def _fields(found):
@@ -294,9 +296,13 @@ def test_damaged_newer_and_foreign_records(folder, design, tmp_path):
     cases = {
         "is no record of a run": ["", "[]\n{}", "{}", "\x00\x01", head],
         "in a newer form": [text.replace('"record":1', '"record":2', 1)],
-        "damaged": [head + "\n{}", text.replace('"state"', '"State"')],
+        "damaged": [
+            text.replace('"kind":"optimise"', '"kind":"sweep"'),
+            head + "\n{}",
+            text.replace('"state"', '"State"'),
+        ],
         "does not fit this version": [text.replace('"samples"', '"Samples"')],
-        "no such report": [text.replace('"kind":"optimise"', '"kind":"sweep"')],
+        "no such report": [text.replace('"kind":"optimise"', '"kind":"simulate"')],
     }
     for words, texts in cases.items():
         for changed in texts:

@@ -1,4 +1,4 @@
-"""An optimisation as plain data that gives it back: what a run record keeps of it.
+"""An optimisation or a front as plain data that gives it back: what a run record keeps of it.
 
 Designs are kept as trees of SI numbers, which build the very same design again; evaluations are
 kept as their designs and evaluated again. The rest is dataclasses, by their own annotations.
@@ -11,7 +11,7 @@ import types
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
-from typing import Any, Union, get_args, get_origin, get_type_hints
+from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -22,13 +22,15 @@ from ..errors import InputError
 from ..evaluation import Evaluation, evaluate, prepare
 from ..evaluation.plugin import Plugin
 from ..quantities import METRICS
+from .pareto_result import ParetoFront
 from .result import Optimisation
 
+Found = TypeVar("Found", Optimisation, ParetoFront)
 _DESIGN, _EVALUATION, _FRACTION, _NUMBER = "$design", "$evaluation", "$fraction", "$number"
 
 
-def to_plain(found: Optimisation) -> dict[str, Any]:
-    """An optimisation as data for JSON: its `designs`, and the `result` that refers to them."""
+def to_plain(found: Optimisation | ParetoFront) -> dict[str, Any]:
+    """A result as data for JSON: its `designs`, and the `result` that refers to them."""
     designs: list[dict[str, Any]] = []
 
     def place(design: Design) -> int:
@@ -60,11 +62,14 @@ def to_plain(found: Optimisation) -> dict[str, Any]:
     return {"result": plain(found), "designs": designs}
 
 
-def from_plain(data: Mapping[str, Any], plugins: tuple[Plugin, ...] = ()) -> Optimisation:
-    """The optimisation that `to_plain` made the data of.
+def from_plain(
+    kind: type[Found], data: Mapping[str, Any], plugins: tuple[Plugin, ...] = ()
+) -> Found:
+    """The result that `to_plain` made the data of.
 
     Parameters
     ----------
+    kind : what it is
     data : as it came from JSON
     plugins : the user's own metrics, if the design asks for some
 
@@ -101,10 +106,10 @@ def from_plain(data: Mapping[str, Any], plugins: tuple[Plugin, ...] = ()) -> Opt
         return {key: special(below) for key, below in value.items()}
 
     try:
-        found = _typed(Optimisation, special(data["result"]))
+        found = _typed(kind, special(data["result"]))
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
         raise InputError(f"does not fit this version ({type(error).__name__}: {error})") from None
-    assert isinstance(found, Optimisation)
+    assert isinstance(found, kind)
     return found
 
 

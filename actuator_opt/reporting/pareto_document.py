@@ -26,9 +26,11 @@ def write_front_sheet(
     origin : of the page
     folder, stem : where to
     """
+    page = front_page(found, origin)
     files = writer.write_page(
-        front_page(found, origin), origin, title=found.subject.name, folder=folder, stem=stem
-    )
+        page, origin, title=found.subject.name, folder=folder, stem=stem,
+        result=rows.front_outcome(found),
+    )  # fmt: skip
     pictures = images(front_figure(found), f"{stem}_figure")
     writer.write_all(folder, pictures)
     return files + [

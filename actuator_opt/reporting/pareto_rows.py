@@ -6,7 +6,7 @@ import csv
 import hashlib
 import io
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..design import quantity_of
 from ..optimisation.pareto_result import ParetoFront
@@ -71,6 +71,16 @@ def write_csv(found: ParetoFront, path: Path) -> ReportFile:
     written = stream.getvalue()
     write_text(path, written)
     return ReportFile(path, hashlib.sha256(written.encode()).hexdigest(), 1)
+
+
+def front_outcome(found: ParetoFront) -> dict[str, Any]:
+    """The numbers that say whether a front repeats (SI): the objectives of every design."""
+    values = {
+        f"{one.metric} of design {k}": point.metrics[one.metric]
+        for k, point in enumerate(found.points, 1)
+        for one in found.objectives
+    }
+    return {"status": found.status, "metrics": values}
 
 
 def shown(found: ParetoFront, most: int = SHOWN) -> list[int]:

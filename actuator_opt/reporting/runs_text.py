@@ -6,12 +6,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from ..quantities import INPUTS, of_metric
+from . import runs_asked
+from .blocks import short
 from .console import Column, Console
 from .text import DASH, number, pretty
 
 MET = 1e-6
 """Largest miss of a limit that counts as met (contract)."""
 _MOST_STEPS = 8
+_COMMAND = 600
+"""Letters of a command that are told."""
 _SHOWN = (("value", 5), ("lower", 4), ("upper", 4))
 """Columns of the variables, with the digits of each."""
 
@@ -48,7 +52,7 @@ def runs_table(
                 str(head.get("version", "")),
             ]
         )
-        paint = "green" if found == "met" else "yellow"
+        paint = "green" if head.get("met") else "yellow"
         styles.append(["bold", "dim", "", paint, "", "dim", "dim"])
     return "\n".join(console.table(columns, cells, styles)) + "\n"
 
@@ -56,13 +60,20 @@ def runs_table(
 def outcome(head: Mapping[str, Any]) -> str:
     """How a run ended, in a word or two."""
     status = str(head.get("status", DASH))
+    if head.get("kind") == "sweep" and "requested" in head:
+        count = head["feasible"]
+        return status if count is None else f"{count} feasible"
+    if status == "front":
+        return f"{head['points']} designs"
     if status == "optimal":
         return "met" if head.get("met") else "requirement missed"
     return status.replace("_", " ")
 
 
 def objective(head: Mapping[str, Any]) -> str:
-    """What was minimised or maximised, in its display unit."""
+    """What was minimised or maximised, in its display unit; of a front the objectives."""
+    if "objectives" in head:
+        return ", ".join(f"{one['metric']} {one['sense']}" for one in head["objectives"])
     found = head.get("objective") or {}
     value = found.get("value")
     if value is None:
@@ -91,14 +102,15 @@ def run_text(
     versions = ", ".join(f"{key} {value}" for key, value in body["versions"].items())
     facts = [
         ("design", f"{head['name']} ({given['name']}, hash {head['spec_hash']})"),
-        ("command", head["command"] or "from a script"),
+        ("command", short(head["command"], _COMMAND) or "from a script"),
         ("started", head["started"]),
         ("seed", str(head["seed"])),
         ("versions", versions),
         *(("set", f"{path} = {value}") for path, value in given["set"]),
         *(("plugin", one["file"] or "a function of a script") for one in given["plugins"]),
+        *_asked(head, body),
         ("outcome", pretty(str(head.get("outcome") or outcome(head)))),
-        ("objective", objective(head)),
+        *([] if "objectives" in head else [("objective", objective(head))]),
     ]
     lines = [console.heading(f"run {name}")]
     inner = Console(colour, unicode, max(width - 11, 24))
@@ -109,8 +121,19 @@ def run_text(
     variables = body.get("state", {}).get("result", {}).get("variables", [])
     if variables:
         lines += ["", *_variables(variables, console)]
+    if head["kind"] == "sweep" and "plan" in body:
+        lines += runs_asked.sweep_lines(head, body, console)
+    if "objectives" in head:
+        lines += runs_asked.front_lines(head, body, console)
     lines += trace_lines(head, body.get("trace", ()), console)
     return "\n".join(lines) + "\n"
+
+
+def _asked(head: Mapping[str, Any], body: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """What a sweep varied, what a front traded."""
+    if head["kind"] == "sweep" and "plan" in body:
+        return runs_asked.sweep_facts(body)
+    return runs_asked.front_facts(head) if "objectives" in head else []
 
 
 def _variables(rows: Sequence[Mapping[str, Any]], console: Console) -> list[str]:

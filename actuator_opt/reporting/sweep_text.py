@@ -21,7 +21,7 @@ def sweep_text(
     rate = swept.computed / swept.seconds if swept.seconds > 0 else 0.0
     lines = [
         console.heading(f"{study.design.name}: {swept.requested} variants"),
-        f"{_counts(swept)} ({swept.seconds:.1f} s, {rate:.0f}/s)",
+        f"{counts(swept)} ({swept.seconds:.1f} s, {rate:.0f}/s)",
     ]
     if swept.best:
         lines += ["", *_table(console, swept)]
@@ -35,7 +35,7 @@ def sweep_text(
     return "\n".join(lines)
 
 
-def _counts(swept: Swept) -> str:
+def counts(swept: Swept) -> str:
     """How many were computed, failed, are feasible; of the best alone, how many looked at."""
     if swept.feasible is None:
         looked = swept.computed - swept.screened
@@ -71,7 +71,7 @@ def _table(console: Console, swept: Swept) -> list[str]:
     ]
     rows = []
     for place, best in enumerate(swept.best, start=1):
-        values = study.values(best.number)
+        values = swept.values(best)
         rows.append(
             [
                 str(place),

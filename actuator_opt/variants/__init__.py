@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from .axes import Axis, read_axis
 from .plan import Plan, plan
-from .run import Best, Swept, sweep
+from .run import Best, Swept, sweep, swept_again
 
-__all__ = ["Axis", "Best", "Plan", "Swept", "plan", "read_axis", "sweep"]
+__all__ = ["Axis", "Best", "Plan", "Swept", "plan", "read_axis", "sweep", "swept_again"]

@@ -105,9 +105,9 @@ class Study:
     def chunk(self, first: int, count: int, some: Array | None = None) -> Chunk:
         """Rows of some points in a row, or of those of them that are numbered in `some`."""
         points = self.plan.points(first, count)
-        return self._evaluated(first, points if some is None else points.some(some))
+        return self.evaluated(first, points if some is None else points.some(some))
 
-    def _evaluated(self, first: int, points: Points, keep: int | None = None) -> Chunk:
+    def evaluated(self, first: int, points: Points, keep: int | None = None) -> Chunk:
         """Rows of points; where `keep` is given, only so many of the best must stand as designs."""
         n = len(points.variant)
         rows = np.full((n, len(self.columns)), np.nan)
@@ -144,7 +144,7 @@ class Study:
             some = order[start : start + LOOKED]
             if len(best) == keep and scores[some[0]] > roomy(best[-1]):
                 break
-            part = self._evaluated(first, points.some(some), keep)
+            part = self.evaluated(first, points.some(some), keep)
             parts.append(replace(part, places=first + some))
             best = sorted([*best, *part.objective[part.feasible].tolist()])[:keep]
         return self._joined(first, parts, len(scores), keep)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from ..database import Rows
 from ..database_reader import Kept, Reader, reading
-from ..design import read_design
+from ..design import Design, read_design
 from ..errors import Diagnostic, InputError
 from ..evaluation import Subject
 from ..evaluation.limits import Limit
@@ -55,6 +56,15 @@ class Explored:
     """Objective, to be minimised."""
     most: int
     """Rows beyond which a study is thinned."""
+    origin: str = "Study"
+    """What the rows are of, in words."""
+    shown: tuple[str, ...] = ()
+    """Metrics shown at first, across and up, where not the usual."""
+
+    @property
+    def kind(self) -> str:
+        """What it is called."""
+        return "designs" if self.shown else "sweep"
 
     @property
     def failed(self) -> int:
@@ -68,14 +78,18 @@ class Explored:
 
 
 def explored(
-    path: Path, *, study: int | None = None, most: int = 5000, plugins: tuple[Plugin, ...] = ()
+    path: Path,
+    *,
+    study: int | str | None = None,
+    most: int = 5000,
+    plugins: tuple[Plugin, ...] = (),
 ) -> Explored:
     """Read a sweep back, at most so many rows of it.
 
     Parameters
     ----------
     path : database of sweeps
-    study : its number; default: the newest
+    study : its number, or its hash; default: the newest
     most : rows; of more, every n-th by their keys, and the best feasible ones
     plugins : the user's metrics and constraints, as in the sweep
 
@@ -85,7 +99,7 @@ def explored(
         no such file or study, rows of other models, of other materials or own metrics
     """
     with reading(path, VERSION) as reader:
-        kept = reader.study(study)
+        kept = reader.study(reader.number(study) if isinstance(study, str) else study)
         good = kept.rows - sum(kept.failures.values())
         if not good:
             reason = next(iter(kept.failures))
@@ -110,6 +124,50 @@ def explored(
         groups,
         bare.judged(0, Rows(numbers, {}), 0).objective,
         most,
+        origin=f"Study {kept.number}",
+    )
+
+
+def explored_designs(
+    design: Design,
+    points: Sequence[Mapping[str, float]],
+    *,
+    plugins: tuple[Plugin, ...] = (),
+    origin: str,
+    shown: tuple[str, ...] = (),
+) -> Explored:
+    """Designs that differ in numbers, as if a sweep had kept them.
+
+    Parameters
+    ----------
+    design : the one they are made of; nothing in it is left to an optimiser
+    points : of each the numbers that are its own, by PATH (SI)
+    plugins : the user's metrics and constraints
+    origin, shown : as `Explored`
+    """
+    paths = sorted(points[0])
+    values = np.array([[point[path] for point in points] for path in paths])
+    axes = tuple(
+        Axis(path, np.array([row.min(), row.max()]), range=True, count=2)
+        for path, row in zip(paths, values, strict=True)
+    )
+    study = Study(design, Plan(axes, "grid", 0), plugins)
+    variant = np.zeros(len(points), dtype=np.int64)
+    numbers = study.evaluated(0, Points(variant, values)).rows.numbers
+    limits, margins, groups = _evaluated(study, variant, numbers)
+    return Explored(
+        Kept(0, study.hash, design.name, study.text, study.columns, len(points), {}, {}),
+        study,
+        ({},),
+        variant,
+        numbers,
+        limits,
+        margins,
+        groups,
+        study.judged(0, Rows(numbers, {}), 0).objective,
+        len(points),
+        origin,
+        shown,
     )
 
 

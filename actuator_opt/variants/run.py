@@ -19,7 +19,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import progress
-from ..database import Database, Rows, opened
+from ..database import Database, Rows, opened, refused
+from ..database_reader import reading
 from ..numeric import Array
 from ..version import VERSION
 from .chunk import Chunk, Study
@@ -98,6 +99,15 @@ class Swept:
             name: None if np.isnan(values[name]) else values[name] for name in self.study.metrics
         }
 
+    def values(self, best: Best) -> dict[str, float | str]:
+        """The varied values of one of the best designs, by PATH (SI), which its row begins with."""
+        study = self.study
+        if study.plan.named:
+            return study.values(best.number)
+        paths = [axis.path for axis in study.plan.numeric]
+        found = {paths[k]: float(x) for k, x in zip(study.order, best.row, strict=False)}
+        return {path: found[path] for path in paths}
+
     def limit(self, keep: int) -> float:
         """Objective that one more of the best must be below."""
         return self.best[-1].objective if len(self.best) >= keep else np.inf
@@ -115,7 +125,7 @@ class Swept:
             "screened": self.screened,
             "engine": self.study.engine,
             "best": [
-                {"variables": self.study.values(best.number), "metrics": self.metrics(best)}
+                {"variables": self.values(best), "metrics": self.metrics(best)}
                 for best in self.best
             ],
             "failures": self.failures,
@@ -223,6 +233,43 @@ def _explain(found: Swept) -> None:
     found.missed = {}
     for first in dict.fromkeys(np.linspace(0, count - 1, LOOKS).astype(int).tolist()):
         found.count_missed(found.study.chunk(first, part))
+
+
+def swept_again(
+    study: Study,
+    store: Path,
+    *,
+    keep: int = 10,
+    each: Callable[[Chunk], None] | None = None,
+    watch: Sequence[str] = (),
+) -> Swept:
+    """A sweep out of its database, in which every row must stand: nothing is computed or written.
+
+    Parameters as `sweep`.
+
+    Raises
+    ------
+    InputError
+        no such file, one of other models, or one that lacks the sweep or a row of it
+    """
+    began = time.perf_counter()
+    found = Swept(study, study.plan.count, sample=Sample(tuple(watch)))
+    with reading(store, VERSION) as reader:
+        number = reader.number(study.hash)
+        base = Database(reader.connection, number, len(study.columns))
+        size = _chunk_size(study)
+        for first in range(0, study.plan.count, size):
+            half = _half(base, study, first, size)
+            if len(half.missing):
+                message = f"study {number} lacks rows of this sweep"
+                raise refused(store, message, "run the sweep again with --store")
+            chunk = _whole(study, half, None)
+            found.add(chunk, keep)
+            if each is not None:
+                each(chunk)
+            progress.tell("reading designs", min(first + size, found.requested) / found.requested)
+    found.seconds = time.perf_counter() - began
+    return found
 
 
 def _computed(

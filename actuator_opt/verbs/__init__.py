@@ -9,19 +9,8 @@ from .exports import export
 from .fronts import pareto, write_front, write_front_csv
 from .installation import Installation, doctor
 from .optimum import evaluate, optimise, sensitivity
-from .recorded_runs import (
-    Restored,
-    Run,
-    delete_run,
-    draw_run,
-    prune_runs,
-    read_run,
-    record,
-    record_run,
-    report_run,
-    restore,
-    runs,
-)
+from .recorded_runs import Run, delete_run, prune_runs, read_run, record_run, runs, sound
+from .recording import record, record_front, record_sweep
 from .records import (
     Calibrated,
     bending,
@@ -34,6 +23,7 @@ from .records import (
 )
 from .repeating import Rerun, rerun
 from .reports import date_from_environment, report, save
+from .restoring import Restored, draw_run, report_run, restore
 from .seals import seal, with_contact, write_seal
 from .simulations import (
     Compared,
@@ -86,7 +76,9 @@ __all__ = [
     "read_run",
     "read_scenario",
     "record",
+    "record_front",
     "record_run",
+    "record_sweep",
     "report",
     "report_run",
     "rerun",
@@ -97,6 +89,7 @@ __all__ = [
     "sensitivity",
     "servo_sensitivities",
     "simulate",
+    "sound",
     "sweep",
     "uncertainty",
     "verify_dynamics",

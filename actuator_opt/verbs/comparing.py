@@ -13,8 +13,9 @@ from ..evaluation import Evaluation, comparison
 from ..evaluation.comparison import Comparison
 from .actuator import Actuator, Plugins, read
 from .optimum import evaluate
-from .recorded_runs import Restored, Run, restore
+from .recorded_runs import Run
 from .reports import file_name
+from .restoring import Restored, restore
 
 if TYPE_CHECKING:
     from ..optimisation.result import Optimisation

@@ -14,14 +14,17 @@ from ..errors import Diagnostic, InputError
 from ..evaluation import Evaluation
 from ..version import VERSION
 from .actuator import Actuator, Plugins, plugins_of, read_as
+from .fronts import pareto
 from .optimum import evaluate, optimise
 from .recorded_runs import differing
 
 if TYPE_CHECKING:
+    from ..optimisation.pareto_result import ParetoFront
     from ..optimisation.result import Optimisation
     from ..reporting import ExtraTable
 
 OPTIMISED, EVALUATED = ("optimise", "optimize", "sensitivity"), ("evaluate", "report")
+FRONTS = ("pareto",)
 """Commands that can be run again."""
 _VALUES = ("--algorithm", "--verify-dynamics", "--date")
 _FLAGS = ("--whole-plies", "--standard-sizes", "--certify")
@@ -39,7 +42,7 @@ class Rerun:
     command: str
     version: str
     date: str | None
-    subject: Evaluation | Optimisation
+    subject: Evaluation | Optimisation | ParetoFront
     actuator: Actuator
     tables: tuple[ExtraTable, ...]
     repeats: bool | None
@@ -103,7 +106,8 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
     if isinstance(then, dict):
         found = _differences(then, subject)
     else:  # an older report: the hash of what it shows says as much where it is the same
-        found = {} if inside.run.get("spec_hash") == _hash(subject) else None
+        same = inside.run.get("spec_hash", "") == _hash(subject)
+        found = {} if same else None
     return Rerun(
         file=path,
         command=run["command"],
@@ -146,6 +150,9 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--plugin", action="append", default=[])
     made.add_argument("--starts", type=int, default=6)
     made.add_argument("--seed", type=int, default=0)
+    made.add_argument("--objective", action="append", default=[])
+    made.add_argument("-n", type=int, default=50)
+    made.add_argument("--checks", type=int, default=3)
     made.add_argument("--yield", type=float, dest="yield_target")
     for name in _VALUES:
         made.add_argument(name)
@@ -164,7 +171,7 @@ def parsed(command: str) -> tuple[str, argparse.Namespace]:
         message = "was made by a script and says no command"
         raise InputError(Diagnostic(message, "run the script"))
     verb = words[1]
-    if words[0] != "actuator-opt" or verb not in OPTIMISED + EVALUATED:
+    if words[0] != "actuator-opt" or verb not in OPTIMISED + EVALUATED + FRONTS:
         message = f"was made by {' '.join(words[:2])}, whose input is more than a design"
         raise InputError(Diagnostic(message, f"run it by hand: {command}"))
     return verb, parser().parse_args(words[2:])
@@ -178,10 +185,13 @@ def _pair(text: str) -> tuple[str, str]:
 
 def _again(
     verb: str, asked: argparse.Namespace, actuator: Actuator
-) -> tuple[Evaluation | Optimisation, Sequence[ExtraTable]]:
+) -> tuple[Evaluation | Optimisation | ParetoFront, Sequence[ExtraTable]]:
     """The result of the command, and the further tables of its report."""
     if verb in EVALUATED:
         return evaluate(actuator), []
+    if verb in FRONTS:
+        how = {"n": asked.n, "seed": asked.seed, "checks": asked.checks}
+        return pareto(actuator, asked.objective, **how), []
     if verb == "sensitivity":
         return optimise(actuator, seed=asked.seed), []
     found = optimise(
@@ -203,12 +213,14 @@ def _again(
 
 
 def _differences(
-    then: Mapping[str, Any], subject: Evaluation | Optimisation
+    then: Mapping[str, Any], subject: Evaluation | Optimisation | ParetoFront
 ) -> dict[str, tuple[Any, Any]]:
     """What is not the same now: status, variables by PATH, metrics by name."""
+    from ..optimisation.pareto_result import ParetoFront
+    from ..reporting.pareto_rows import front_outcome
     from ..reporting.writer import outcome
 
-    now = outcome(subject)
+    now = front_outcome(subject) if isinstance(subject, ParetoFront) else outcome(subject)
     found: dict[str, tuple[Any, Any]] = {}
     if then.get("status") != now.get("status"):
         found["status"] = (then.get("status"), now.get("status"))
@@ -219,11 +231,12 @@ def _differences(
     return found
 
 
-def _hash(subject: Evaluation | Optimisation) -> str:
-    """The hash that a report of it carries."""
+def _hash(subject: Evaluation | Optimisation | ParetoFront) -> str | None:
+    """The hash that a report of it carries; None where that is of the input alone."""
+    from ..optimisation.pareto_result import ParetoFront
     from ..reporting.page import parts_of
 
-    return parts_of(subject)[0].spec_hash
+    return None if isinstance(subject, ParetoFront) else parts_of(subject)[0].spec_hash
 
 
 def _sentence(found: Mapping[str, tuple[Any, Any]] | None, version: str) -> str:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..variants import Swept
     from ..variants.chunk import Chunk, Study
     from ..variants.engine import Engine
-    from ..variants.plan import Method
+    from ..variants.plan import Method, Plan
 
 LARGE = 1_000_000
 """Points from which a sweep that evaluates them all in full must be meant."""
@@ -76,7 +76,6 @@ def sweep(
     """
     from ..variants import plan, read_axis
     from ..variants import sweep as run
-    from ..variants.chunk import Study
     from ..variants.engine import usable_engine
 
     engine = usable_engine(engine, reduced=reduce)
@@ -90,15 +89,15 @@ def sweep(
     faults = unanswered(actuator, actuator.subject())
     if faults:
         raise InputError(faults)
-    free = actuator.design.model_copy(update={"variables": {}, "choices": {}})
+    base = free(actuator)
     given = [f"{k}={v}" for k, v in vary.items()] if isinstance(vary, Mapping) else list(vary)
-    axes = [read_axis(text, free) for text in given]
+    axes = [read_axis(text, base) for text in given]
     chosen = plan(axes, method=method, count=n, seed=seed)
     if chosen.count > LARGE and not reduce and not yes:
         message = f"{chosen.count:,} points would all be evaluated in full".replace(",", " ")
         remedy = "add --yes, or keep the best alone with --reduce best:K"
         raise UsageError(Diagnostic(message, remedy))
-    study = Study(free, chosen, actuator.plugins, full=not reduce, more=tuple(show), engine=engine)
+    study = study_of(actuator, chosen, full=not reduce, show=show, engine=engine)
     if actuator.plugins and scheduler is not None:
         message = "own metrics cannot travel to other machines"
         raise UsageError(Diagnostic(message, "leave out --scheduler or --plugin"))
@@ -109,7 +108,7 @@ def sweep(
         "scheduler": scheduler,
         "watch": _watched(study, figures, show),
     }
-    with _writing(study, csv, parquet) as each:
+    with writing(study, csv, parquet) as each:
         found = run(study, each=each, **how)
     if figures and out is not None:
         draw_sweep(found, figures, show=show, out=out)
@@ -117,7 +116,7 @@ def sweep(
 
 
 @contextmanager
-def _writing(
+def writing(
     study: Study, csv: str | Path | None, parquet: str | Path | None
 ) -> Iterator[Callable[[Chunk], None]]:
     """What writes a chunk into every file asked for, all in place once the last is complete."""
@@ -148,6 +147,20 @@ def _require_apart(*files: str | Path | None) -> None:
         if places.count(place) > 1:
             message = f"{place.name}: one file for two of --store, --csv and --parquet"
             raise UsageError(Diagnostic(message, "name another file"))
+
+
+def free(actuator: Actuator) -> Design:
+    """Its design, in which nothing is left to an optimiser."""
+    return actuator.design.model_copy(update={"variables": {}, "choices": {}})
+
+
+def study_of(
+    actuator: Actuator, plan: Plan, *, full: bool, show: Sequence[str], engine: Engine = "numpy"
+) -> Study:
+    """What a sweep evaluates: the design, its points and the metrics wanted of them."""
+    from ..variants.chunk import Study
+
+    return Study(free(actuator), plan, actuator.plugins, full=full, more=tuple(show), engine=engine)
 
 
 def _watched(study: Study, figures: Sequence[str], show: Sequence[str]) -> tuple[str, ...]:

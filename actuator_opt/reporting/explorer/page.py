@@ -50,7 +50,7 @@ def page(explored: Explored, *, design: str, plugins: Sequence[str] = ()) -> str
     style = _text("page.css")
     script = "".join(_text(f"{name}.js") for name in SCRIPTS)
     parts = {
-        "TITLE": html.escape(f"{explored.study.design.name}: sweep"),
+        "TITLE": html.escape(f"{explored.study.design.name}: {explored.kind}"),
         "STYLE": style,
         "STYLE_HASH": _hash(style),
         "SCRIPT": script,

@@ -162,10 +162,15 @@ def _start(explored: Explored, columns: list[dict[str, Any]]) -> dict[str, Any]:
     numbers = [column.name for column in study.columns[: len(study.order)]]
     goal = next((name for name in study.goal.weights if name in place), "least_margin")
     asked = [metric for metric in study.design.requirements if metric in place]
-    shown = [k for k in (*varied[: AXES - 3], goal, *asked) if "value" not in columns[place[k]]]
-    axes = sorted({place[name] for name in dict.fromkeys(shown[: AXES - 1])} | {margin})
+    wanted = explored.shown
+    first = (*varied[: AXES - max(3, len(wanted))], *wanted, goal, *asked)
+    shown = [k for k in first if "value" not in columns[place[k]]]
+    last = [] if wanted else [margin]  # of a front it is zero all along
+    axes = sorted({*(place[name] for name in dict.fromkeys(shown[: AXES - len(last)])), *last})
     moved = next((k for k in numbers if "value" not in columns[place[k]]), varied[0])
     across = next((k for k in asked if k != goal and "value" not in columns[place[k]]), moved)
+    if wanted:
+        across, goal, moved = (*wanted, moved)[:3]
     return {
         "x": place[across],
         "y": place[goal],
@@ -180,7 +185,7 @@ def _summary(explored: Explored) -> str:
     kept = explored.kept
     good, shown = kept.rows - explored.failed, len(explored.numbers)
     feasible = int((explored.numbers[:, -1] == 1.0).sum())
-    words = f"Study {kept.number}, {good} design{'s' * (good != 1)} with an answer"
+    words = f"{explored.origin}, {good} design{'s' * (good != 1)} with an answer"
     if explored.thinned:
         words += (
             f"; {shown} of them are shown: one in {-(-good // explored.most)}, spread evenly, "

@@ -1,0 +1,119 @@
+"""A recorded sweep: where its rows lie, and its figures and CSV out of them."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import Diagnostic, InputError
+from .actuator import Actuator
+from .recorded_runs import Run
+from .reports import file_name
+from .sweeping import LARGE, draw_sweep, study_of, writing
+
+if TYPE_CHECKING:
+    from ..reporting import ReportFile
+    from ..variants.chunk import Study
+    from ..variants.plan import Plan
+
+
+@dataclass(frozen=True, slots=True)
+class KeptSweep:
+    """A sweep by its record: what was evaluated, and the run that tells where its rows lie."""
+
+    run: Run
+    study: Study
+
+
+def kept_sweep(run: Run, actuator: Actuator) -> KeptSweep:
+    """The sweep of a record, none of its rows read yet."""
+    asked = run.body["asked"]
+    study = study_of(actuator, _plan(run), full=not asked["reduce"], show=asked["show"])
+    return KeptSweep(run, study)
+
+
+def _plan(run: Run) -> Plan:
+    import numpy as np
+
+    from ..variants.axes import Axis
+    from ..variants.plan import Plan
+
+    told: dict[str, Any] = run.body["plan"]
+    axes = [
+        Axis(
+            one["path"],
+            None if one["values"] is None else np.array(one["values"], dtype=float),
+            tuple(one["texts"]),
+            one["range"],
+            one["steps"],
+        )
+        for one in told["axes"]
+    ]
+    return Plan(tuple(axes), told["method"], told["count"], run.head["seed"])
+
+
+def store_of(run: Run) -> tuple[Path, str]:
+    """The database of a sweep's rows, and the hash of its study there.
+
+    Raises
+    ------
+    InputError : it kept none, or the file is no longer where it was
+    """
+    if run.head.get("kind") != "sweep":
+        message = f"is a run of {run.head.get('kind')}, which keeps no rows"
+        raise InputError(Diagnostic(message, "name a run of sweep or pareto", str(run.path)))
+    kept = run.body["asked"]["store"]
+    if kept is None:
+        message = f"run {run.id} is of a sweep without --store: its rows were not kept"
+        remedy = "see its best with runs show, or run it again with --store F.db"
+        raise InputError(Diagnostic(message, remedy, str(run.path)))
+    path = Path(kept["path"])
+    if not path.exists():
+        message = f"is no longer there; run {run.id} kept its rows in it"
+        remedy = "put it back, or name the file where it is now: actuator-opt explore F.db"
+        raise InputError(Diagnostic(message, remedy, str(path)))
+    return path, kept["study"]
+
+
+def report_sweep(kept: KeptSweep, *, folder: str | Path = "reports") -> list[ReportFile]:
+    """Write the figures and tables of a recorded sweep again, from the rows in its store.
+
+    The figures are those that the sweep drew, else parallel axes where a design is feasible; the
+    CSV (``NAME-sweep.csv``) is left out of a sweep of over a million points that wrote none; a
+    Parquet file comes where the sweep wrote one.
+
+    Raises
+    ------
+    InputError : its store is gone, holds other rows or lacks some, or the folder cannot be written
+    """
+    from ..reporting import ReportFile
+    from ..reporting.sweep_figures import watched
+    from ..store import require_folder
+    from ..variants import swept_again
+
+    target, asked, study = Path(folder), kept.run.body["asked"], kept.study
+    path, _ = store_of(kept.run)
+    require_folder(target)
+    figures, show = asked["figures"], asked["show"]
+    how: dict[str, Any] = {"keep": asked["keep"], "watch": watched(study, figures, show)}
+    stem = Path(file_name(study.design, None)).stem
+    csv = parquet = None
+    if study.plan.count <= LARGE or asked["csv"] is not None:
+        csv = target / f"{stem}-sweep.csv"
+    if asked["parquet"] is not None:
+        parquet = target / f"{stem}-sweep.parquet"
+    target.mkdir(parents=True, exist_ok=True)
+    with writing(study, csv, parquet) as each:
+        found = swept_again(study, path, each=each, **how)
+    files = [file for file in (csv, parquet) if file is not None]
+    kinds = figures or (["parallel"] if found.feasible else [])
+    if kinds:
+        files += draw_sweep(found, kinds, show=show, out=target, stem=stem)
+    return [ReportFile(file, _sha256(file), 1) for file in files]
+
+
+def _sha256(file: Path) -> str:
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()

@@ -1,0 +1,192 @@
+"""A recorded run as the result it was, and its report, nothing solved again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import Diagnostic, InputError
+from ..version import VERSION
+from .actuator import Actuator, Plugins, plugins_of, read_as
+from .fronts import write_front, write_front_csv
+from .kept_sweeps import KeptSweep, kept_sweep, report_sweep
+from .recorded_runs import Run, differing, read_run, sha256, sound
+from .reports import file_name, report
+
+if TYPE_CHECKING:
+    from ..evaluation import Evaluation
+    from ..evaluation.plugin import Plugin
+    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.result import Optimisation
+    from ..reporting import ReportFile
+
+
+@dataclass(frozen=True, slots=True)
+class Restored:
+    """A result out of its record, and where today's models say otherwise than then."""
+
+    run: Run
+    result: Optimisation | ParetoFront | KeptSweep
+    actuator: Actuator
+    doubts: tuple[str, ...] = ()
+
+    @property
+    def optimisation(self) -> Optimisation:
+        """The result of `optimise`; raises `InputError` where it is another command's."""
+        from ..optimisation.result import Optimisation
+
+        if not isinstance(self.result, Optimisation):
+            message = f"is a run of {self.run.head['kind']}, which has no best design of its own"
+            raise InputError(Diagnostic(message, "name a run of optimise", str(self.run.path)))
+        return self.result
+
+
+def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
+    """The result of a recorded run, nothing solved again.
+
+    Designs are those of the record to the last digit; their evaluations come from the models as
+    they are now. `doubts` says where these differ from what was recorded. Of a sweep it is where
+    the rows lie.
+
+    Parameters
+    ----------
+    of : the run, or what `read_run` takes
+    plugins : its own metrics; default: the files it was made with
+
+    Raises
+    ------
+    InputError : a run of another command, a damaged record, plugins that are missing or changed
+    """
+    found = of if isinstance(of, Run) else read_run(of)
+    kind = found.head.get("kind")
+    if kind not in ("optimise", "pareto", "sweep"):
+        message = f"is a run of {kind}, which has no such report"
+        raise InputError(Diagnostic(message, "name a run that runs list shows", str(found.path)))
+    try:
+        with sound(found):
+            given = found.body["input"]
+            own = plugins_of(plugins) or plugins_of(own_files(found))
+            sets = [(path, value) for path, value in given["set"]]
+            actuator = read_as(given["text"], given["name"], set=sets, plugins=own)
+            if kind == "sweep":
+                return Restored(found, kept_sweep(found, actuator), actuator)
+            result, shown = _solved(found, own)
+            return Restored(found, result, actuator, tuple(_doubts(found, shown)))
+    except InputError as error:
+        faults = [replace(x, file=x.file or str(found.path)) for x in error.diagnostics]
+        raise InputError(faults) from None
+
+
+def _solved(found: Run, own: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
+    """An optimisation or a front, and the evaluation that its record tells."""
+    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.recorded import from_plain
+    from ..optimisation.result import Optimisation
+
+    if found.head["kind"] == "pareto":
+        front = from_plain(ParetoFront, found.body["state"], own)
+        return front, front.evaluation
+    best = from_plain(Optimisation, found.body["state"], own)
+    return best, best.best_evaluation
+
+
+def own_files(found: Run) -> list[str]:
+    """The plugin files of a run, which must be what they were: they are run.
+
+    Raises
+    ------
+    InputError : one has changed, is not there, or was a function of a script
+    """
+    files: Sequence[Mapping[str, str]] = found.body["input"]["plugins"]
+    for one in files:
+        now = sha256(one["file"]) if one["file"] else ""
+        if now and now == one["sha256"]:
+            continue
+        name = one["file"] or "a function of a script"
+        why = "has changed since" if now else "is not there"
+        message = f"its own metrics came from {name}, which {why}"
+        remedy = "name the file with --plugin"
+        raise InputError(Diagnostic(message, remedy, str(found.path)))
+    return [one["file"] for one in files]
+
+
+def _doubts(found: Run, now: Evaluation) -> list[str]:
+    """What to know where today's models do not repeat what was recorded."""
+    then = found.body["result"]["metrics"]
+    before = {name: row["value"] for name, row in then.items()}
+    changed = differing(before, {name: row.value for name, row in now.metrics.items()})
+    version = str(found.head.get("version", ""))
+    if not changed:
+        return []
+    names = ", ".join(changed[:3]) + (f" and {len(changed) - 3} more" if len(changed) > 3 else "")
+    made = f"actuator-opt {version}" if version != VERSION else "other material data or plugins"
+    return [
+        f"run {found.id} was made by {made}; today's models (actuator-opt {VERSION}) give other "
+        f"values of {names}, which the report shows"
+    ]
+
+
+def report_run(
+    of: Restored | Run | str | Path,
+    *,
+    folder: str | Path = "reports",
+    date: str | None = None,
+    plugins: Plugins = (),
+) -> list[ReportFile]:
+    """Write the report of a recorded run: the bytes that its command wrote.
+
+    Of a front that is its page, its figure and its CSV (``NAME_pareto.csv``); there are none where
+    no front was found. Of a sweep it is what `report_sweep` writes.
+
+    Parameters
+    ----------
+    of : what `restore` takes, or gives
+    folder : where to
+    date : default: that of the run
+    plugins : as `restore`
+    """
+    from ..optimisation.result import Optimisation
+    from ..reporting import ExtraTable
+
+    found = of if isinstance(of, Restored) else restore(of, plugins=plugins)
+    result, body = found.result, found.run.body
+    if isinstance(result, KeptSweep):
+        return report_sweep(result, folder=folder)
+    how: dict[str, Any] = {
+        "folder": folder,
+        "actuator": found.actuator,
+        "command": found.run.head["command"],
+        "date": date or body["date"],
+    }
+    if isinstance(result, Optimisation):
+        tables = [ExtraTable(**table) for table in body["tables"]]
+        return report(result, extra_tables=tables, **how)
+    if not result.points:
+        return []
+    stem = Path(file_name(result.subject, found.actuator.source)).stem
+    pages = write_front(result, **how)
+    return [*pages, write_front_csv(result, Path(folder) / f"{stem}_pareto.csv")]
+
+
+def draw_run(of: Run, folder: str | Path) -> list[Path]:
+    """Write how the search of a run went: ID-convergence.png and .svg.
+
+    Raises
+    ------
+    InputError : a run of another command than optimise
+    """
+    from ..reporting.convergence_figure import convergence_figure
+    from ..reporting.image import write_ink
+
+    if of.head.get("kind") != "optimise":
+        message = f"is a run of {of.head.get('kind')}, whose search has no convergence to draw"
+        remedy = f"draw it with: actuator-opt report {of.id}"
+        raise InputError(Diagnostic(message, remedy, str(of.path)))
+    metric = str((of.head.get("objective") or {}).get("metric", ""))
+    result = of.body.get("result", {})
+    title = f"{of.head['name']}: search, {result.get('algorithm', '')}, seed {of.head['seed']}"
+    count = int(result.get("evaluations", 0))
+    ink = convergence_figure(of.body.get("trace", ()), metric, count, title)
+    return write_ink(ink, Path(folder), f"{of.id}-convergence")
