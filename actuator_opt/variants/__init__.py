@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from .axes import Axis, read_axis
 from .plan import Plan, plan
-from .run import Best, Swept, sweep, swept_again
+from .run import sweep, swept_again
+from .swept import Best, Swept
 
 __all__ = ["Axis", "Best", "Plan", "Swept", "plan", "read_axis", "sweep", "swept_again"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import heapq
 import os
 import signal
 import sys
@@ -10,23 +9,24 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
-from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from .. import progress
-from ..database import Database, Rows, opened, refused
+from ..database import Database, opened, refused
 from ..database_reader import reading
 from ..numeric import Array
 from ..version import VERSION
 from .chunk import Chunk, Study
 from .cluster import on_cluster
 from .designs import KEPT
+from .kept import Half, half, whole
 from .sample import Sample
+from .swept import Swept
 
 CHUNK = 4096
 """Points of a chunk: one transaction, one message between processes."""
@@ -54,116 +54,6 @@ class Task(NamedTuple):
     """Objective that a design must be below, where the best alone are asked for."""
     keep: int = 0
     """How many of the best, then."""
-
-
-@dataclass(frozen=True, order=True)
-class Best:
-    """One of the best designs: its objective (to be minimised), its point, its row."""
-
-    objective: float
-    number: int
-    row: tuple[float, ...] = field(compare=False)
-
-    @property
-    def margin(self) -> float:
-        """The least margin of all limits."""
-        return self.row[-3]
-
-
-@dataclass
-class Swept:
-    """What a sweep came to."""
-
-    study: Study
-    requested: int
-    computed: int = 0
-    reused: int = 0
-    failed: int = 0
-    feasible: int | None = 0
-    """None where the best alone are asked for: then most are never evaluated."""
-    screened: int = 0
-    """Variants that closed expressions or better ones of their chunk rule out, where so."""
-    best: list[Best] = field(default_factory=list)
-    failures: dict[str, int] = field(default_factory=dict)
-    """How often each reason made a design fail."""
-    missed: dict[str, int] = field(default_factory=dict)
-    """How often each limit was the one missed most."""
-    seconds: float = 0.0
-    sample: Sample = field(default_factory=Sample)
-    """Rows to draw."""
-
-    def metrics(self, best: Best) -> dict[str, float | None]:
-        """The metrics of one of the best designs (SI); None where there is none."""
-        values = dict(zip([c.name for c in self.study.columns], best.row, strict=True))
-        return {
-            name: None if np.isnan(values[name]) else values[name] for name in self.study.metrics
-        }
-
-    def values(self, best: Best) -> dict[str, float | str]:
-        """The varied values of one of the best designs, by PATH (SI), which its row begins with."""
-        study = self.study
-        if study.plan.named:
-            return study.values(best.number)
-        paths = [axis.path for axis in study.plan.numeric]
-        found = {paths[k]: float(x) for k, x in zip(study.order, best.row, strict=False)}
-        return {path: found[path] for path in paths}
-
-    def limit(self, keep: int) -> float:
-        """Objective that one more of the best must be below."""
-        return self.best[-1].objective if len(self.best) >= keep else np.inf
-
-    def to_dict(self) -> dict[str, Any]:
-        """The JSON form (CONTRACT): counts, and the best designs in SI."""
-        return {
-            "name": self.study.design.name,
-            "version": VERSION,
-            "requested": self.requested,
-            "computed": self.computed,
-            "reused": self.reused,
-            "failed": self.failed,
-            "feasible": self.feasible,
-            "screened": self.screened,
-            "engine": self.study.engine,
-            "best": [
-                {"variables": self.values(best), "metrics": self.metrics(best)}
-                for best in self.best
-            ],
-            "failures": self.failures,
-            "missed": self.missed,
-            "seconds": self.seconds,
-        }
-
-    def count_missed(self, chunk: Chunk) -> None:
-        """Count the limits that the designs of a chunk miss most."""
-        worst = chunk.rows.numbers[~chunk.feasible, -2]
-        for number, times in zip(
-            *np.unique(worst[np.isfinite(worst)], return_counts=True), strict=True
-        ):
-            name = self.study.limits[int(number)]
-            self.missed[name] = self.missed.get(name, 0) + int(times)
-
-    def add(self, chunk: Chunk, keep: int) -> None:
-        """Count a chunk."""
-        self.computed += chunk.computed
-        self.reused += max(len(chunk.rows.numbers) - chunk.computed, 0)
-        self.screened += 0 if chunk.places is None else chunk.computed - len(chunk.places)
-        if chunk.places is None:
-            self.sample.add(self.study, chunk)
-        self.failed += len(chunk.rows.failures)
-        for reason in chunk.rows.failures.values():
-            self.failures[reason] = self.failures.get(reason, 0) + 1
-        good = np.flatnonzero(chunk.feasible)
-        self.count_missed(chunk)
-        if self.feasible is not None:
-            self.feasible += len(good)
-        if keep and len(good):
-            numbers = chunk.numbers
-            order = good[np.argsort(chunk.objective[good], kind="stable")[:keep]]
-            found = [
-                Best(float(chunk.objective[k]), int(numbers[k]), tuple(chunk.rows.numbers[k]))
-                for k in order
-            ]
-            self.best = heapq.nsmallest(keep, [*self.best, *found])
 
 
 def sweep(
@@ -259,11 +149,11 @@ def swept_again(
         base = Database(reader.connection, number, len(study.columns))
         size = _chunk_size(study)
         for first in range(0, study.plan.count, size):
-            half = _half(base, study, first, size)
-            if len(half.missing):
+            one = half(base, study, first, size)
+            if len(one.missing):
                 message = f"study {number} lacks rows of this sweep"
                 raise refused(store, message, "run the sweep again with --store")
-            chunk = _whole(study, half, None)
+            chunk = whole(study, one, None)
             found.add(chunk, keep)
             if each is not None:
                 each(chunk)
@@ -342,55 +232,21 @@ def _stored(
         version=VERSION,
         texts=[(axis.path, text) for axis in study.plan.named for text in axis.texts],
     ) as base:
-        halves: deque[_Half] = deque()
+        halves: deque[Half] = deque()
 
         def tasks() -> Iterator[Task]:
             for first in starts:
-                half = _half(base, study, first, starts.step)
-                halves.append(half)
-                if len(half.missing):
-                    every = len(half.missing) == len(half.keys)
-                    yield Task(first, starts.step, None if every else half.missing)
+                one = half(base, study, first, starts.step)
+                halves.append(one)
+                if len(one.missing):
+                    every = len(one.missing) == len(one.keys)
+                    yield Task(first, starts.step, None if every else one.missing)
 
         for fresh in computed(tasks()):
             while not len(halves[0].missing):
-                yield _whole(study, halves.popleft(), None)
-            half = halves.popleft()
-            base.put([half.keys[k] for k in half.missing], fresh.rows)
-            yield _whole(study, half, fresh)
-        for half in halves:
-            yield _whole(study, half, None)
-
-
-class _Half(NamedTuple):
-    """Rows of a chunk that stand, and the numbers of those that are missing."""
-
-    first: int
-    keys: list[bytes]
-    rows: Rows
-    missing: Array
-
-
-def _half(base: Database, study: Study, first: int, count: int) -> _Half:
-    keys = study.keys(first, count)
-    points = study.plan.points(first, count)
-    numbers = np.full((len(keys), len(study.columns)), np.nan)
-    numbers[:, : len(points.numbers)] = points.numbers[study.order].T
-    failures, known = {}, base.known(keys)
-    for k, (blob, failure) in known.items():
-        if failure is not None:
-            failures[k] = failure
-        elif blob is not None:
-            numbers[k] = base.numbers(blob)
-    missing = np.array([k for k in range(len(keys)) if k not in known], dtype=np.intp)
-    return _Half(first, keys, Rows(numbers, failures), missing)
-
-
-def _whole(study: Study, half: _Half, fresh: Chunk | None) -> Chunk:
-    """A chunk of kept and of new rows."""
-    rows = half.rows
-    if fresh is not None:
-        rows.numbers[half.missing] = fresh.rows.numbers
-        added = {int(half.missing[k]): why for k, why in fresh.rows.failures.items()}
-        rows = Rows(rows.numbers, rows.failures | added)
-    return study.judged(half.first, rows, len(half.missing))
+                yield whole(study, halves.popleft(), None)
+            one = halves.popleft()
+            base.put([one.keys[k] for k in one.missing], fresh.rows)
+            yield whole(study, one, fresh)
+        for one in halves:
+            yield whole(study, one, None)

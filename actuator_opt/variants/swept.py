@@ -1,0 +1,123 @@
+"""What a sweep came to."""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..version import VERSION
+from .chunk import Chunk, Study
+from .sample import Sample
+
+
+@dataclass(frozen=True, order=True)
+class Best:
+    """One of the best designs: its objective (to be minimised), its point, its row."""
+
+    objective: float
+    number: int
+    row: tuple[float, ...] = field(compare=False)
+
+    @property
+    def margin(self) -> float:
+        """The least margin of all limits."""
+        return self.row[-3]
+
+
+@dataclass
+class Swept:
+    """What a sweep came to."""
+
+    study: Study
+    requested: int
+    computed: int = 0
+    reused: int = 0
+    failed: int = 0
+    feasible: int | None = 0
+    """None where the best alone are asked for: then most are never evaluated."""
+    screened: int = 0
+    """Variants that closed expressions or better ones of their chunk rule out, where so."""
+    best: list[Best] = field(default_factory=list)
+    failures: dict[str, int] = field(default_factory=dict)
+    """How often each reason made a design fail."""
+    missed: dict[str, int] = field(default_factory=dict)
+    """How often each limit was the one missed most."""
+    seconds: float = 0.0
+    sample: Sample = field(default_factory=Sample)
+    """Rows to draw."""
+
+    def metrics(self, best: Best) -> dict[str, float | None]:
+        """The metrics of one of the best designs (SI); None where there is none."""
+        values = dict(zip([c.name for c in self.study.columns], best.row, strict=True))
+        return {
+            name: None if np.isnan(values[name]) else values[name] for name in self.study.metrics
+        }
+
+    def values(self, best: Best) -> dict[str, float | str]:
+        """The varied values of one of the best designs, by PATH (SI), which its row begins with."""
+        study = self.study
+        if study.plan.named:
+            return study.values(best.number)
+        paths = [axis.path for axis in study.plan.numeric]
+        found = {paths[k]: float(x) for k, x in zip(study.order, best.row, strict=False)}
+        return {path: found[path] for path in paths}
+
+    def limit(self, keep: int) -> float:
+        """Objective that one more of the best must be below."""
+        return self.best[-1].objective if len(self.best) >= keep else np.inf
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON form (CONTRACT): counts, and the best designs in SI."""
+        return {
+            "name": self.study.design.name,
+            "version": VERSION,
+            "requested": self.requested,
+            "computed": self.computed,
+            "reused": self.reused,
+            "failed": self.failed,
+            "feasible": self.feasible,
+            "screened": self.screened,
+            "engine": self.study.engine,
+            "best": [
+                {"variables": self.values(best), "metrics": self.metrics(best)}
+                for best in self.best
+            ],
+            "failures": self.failures,
+            "missed": self.missed,
+            "seconds": self.seconds,
+        }
+
+    def count_missed(self, chunk: Chunk) -> None:
+        """Count the limits that the designs of a chunk miss most."""
+        worst = chunk.rows.numbers[~chunk.feasible, -2]
+        for number, times in zip(
+            *np.unique(worst[np.isfinite(worst)], return_counts=True), strict=True
+        ):
+            name = self.study.limits[int(number)]
+            self.missed[name] = self.missed.get(name, 0) + int(times)
+
+    def add(self, chunk: Chunk, keep: int) -> None:
+        """Count a chunk."""
+        self.computed += chunk.computed
+        self.reused += max(len(chunk.rows.numbers) - chunk.computed, 0)
+        self.screened += 0 if chunk.places is None else chunk.computed - len(chunk.places)
+        if chunk.places is None:
+            self.sample.add(self.study, chunk)
+        self.failed += len(chunk.rows.failures)
+        for reason in chunk.rows.failures.values():
+            self.failures[reason] = self.failures.get(reason, 0) + 1
+        good = np.flatnonzero(chunk.feasible)
+        self.count_missed(chunk)
+        if self.feasible is not None:
+            self.feasible += len(good)
+        if keep and len(good):
+            numbers = chunk.numbers
+            order = good[np.argsort(chunk.objective[good], kind="stable")[:keep]]
+            found = [
+                Best(float(chunk.objective[k]), int(numbers[k]), tuple(chunk.rows.numbers[k]))
+                for k in order
+            ]
+            self.best = heapq.nsmallest(keep, [*self.best, *found])
