@@ -146,7 +146,7 @@ def _saved(
     if outcome == ExitCode.MET or result.status == "interrupted":
         verbs.save(result.best, write, source=actuator.source)
         return [{"path": write}], ""
-    told = result.rounding or result
+    told = result if result.robust is not None else result.rounding or result
     why = "; ".join(part for part in (told.sentence, told.remedy) if part)
     return [], f"{write}: not written, there is no design to save: {why}"
 

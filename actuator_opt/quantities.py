@@ -311,6 +311,7 @@ METRICS = _table("""
  geometry_piston_core | -      | length      | mm   | | | wall left under the piston groove
  geometry_head_groove | -      | length      | mm   | | | wall left beside the grooves of the head
  geometry_head_wall   | -      | length      | mm   | | | wall left over the rod seal groove
+ geometry_skirts      | -      | length      | mm   | | | barrel left between the skirts of both ends
  geometry_dead_point  | -      | length      | mm   | | | actuator length left to the dead points of the linkage
  geometry_joint_angle | -      | ratio       | %    | | | stroke left beyond the joint angle of a load case
 """)

@@ -23,6 +23,12 @@ SAMPLES: dict = {
         {"hardness": hardness, "pressure": pressure, "table": TABLE}
         for hardness, pressure in ((77.0, 90e5), (77.0, 180e5), (60.0, 50e5), (95.0, 50e5))
     ],
+    # both known; beyond the end of the seal, of the ring, of both
+    "extrusion.backed_gap_limit": [
+        {"pressure": pressure, "seal_limit": 1.2e-4, "seal_end": seal_end, "ring_limit": 0.8e-4,
+         "ring_end": 300e5} for pressure, seal_end in (
+            (150e5, 200e5), (250e5, 200e5), (350e5, 400e5), (450e5, 400e5))
+    ],
     "extrusion.extrusion_pressure_end": [
         {"hardness": hardness, "table": TABLE} for hardness in (60.0, 77.0, 95.0)
     ],

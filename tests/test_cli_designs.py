@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from cli_runner import BENCH, bench, block, evaluated, refused, run
 
+import actuator_opt as ao
 from actuator_opt.models.seals import LAWS
 
 ONE_CASE = "load_cases:\n  - name: a\n    direction: push\n    force: 1 kN\n"
@@ -279,13 +280,45 @@ def test_absurd_values(old, new, path):
     assert plain.err.startswith(f"<stdin>:{faults[0]['line']}:")
 
 
+HEAD_GAP = ("clearance: 30 um\n\ncaps", "clearance: {} mm\n\ncaps")
+PISTON_GAP = ("clearance: 30 um\n\nhead", "clearance: {} mm\n\nhead")
+
+
+@pytest.mark.parametrize(
+    ("change", "below", "beyond", "path", "remedy"),
+    [
+        (("length: 22 mm", "length: {} mm"), 68.4, 69.1, "retention.length", "at most 69 mm"),
+        (PISTON_GAP, 1.49, 1.5, "piston.clearance", "less than 1.495 mm"),
+        (HEAD_GAP, 1.49, 1.5, "head.clearance", "less than 1.495 mm"),
+    ],
+)
+def test_parts_that_leave_no_room(change, below, beyond, path, remedy):
+    """Skirts of half the barrel, 138 mm, meet; a gland is 1.78 mm less 16 % deep: 1.495 mm."""
+    old, new = change
+    evaluated(bench((old, new.format(below))))
+    (fault,) = refused(bench((old, new.format(beyond))), command="check")
+    assert fault["path"] == path
+    assert fault["line"]
+    assert remedy in fault["remedy"]
+
+
+def test_the_optimiser_keeps_skirts_apart():
+    """The heaviest skirts end a least wall of 1 mm before they meet: (138 - 1)/2 mm each."""
+    free = "variables:\n  retention.length:\n    lower: 5 mm\n    upper: 100 mm\n"
+    mild = [("pressure: 210 bar", "pressure: 120 bar"), ("force: 4 kN", "force: 2 kN")]
+    heavy = [("minimise: mass", "maximise: mass"), (block("variables"), free)]
+    text = bench(*mild, *heavy, *without("requirements"))
+    found = ao.optimise(ao.read(text), prices=False, starts=1)
+    assert found.best.retention.length == pytest.approx(68.5e-3, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     "changes",
     [
         [("stroke: 110 mm", "stroke: 10 m"), ("outer_diameter: 11.5 mm", "outer_diameter: 3 mm"),
          ("inner_diameter: 7 mm", "inner_diameter: 0"), ("diameter: 10 mm", "diameter: 3 mm"),
          ("pitch: 1.25 mm", "pitch: 0.5 mm")],
-        [("stroke: 110 mm", "stroke: 1 mm")],
+        [("stroke: 110 mm", "stroke: 1 mm"), ("length: 22 mm", "length: 14 mm")],
         [("bore: 22 mm", "bore: 1000 mm"), *without("variables")],
         [("inner_diameter: 7 mm", "inner_diameter: 11.499 mm")],
         [("pressure: 210 bar", "pressure: 1500 bar")],

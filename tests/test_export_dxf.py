@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import io
 import math
+import os
+import subprocess
+import sys
 from itertools import combinations, pairwise
 
 import pytest
@@ -225,6 +228,18 @@ def test_same_design_same_bytes():
     evaluation = ao.evaluate(bench())
     assert dxf(evaluation, program="p") == dxf(evaluation, program="p")
     assert ezdxf.options.write_fixed_meta_data_for_testing == before
+
+
+def test_same_bytes_in_another_process(tmp_path):
+    """Not even the order of sets, which differs from process to process, is in the file."""
+    file, found = tmp_path / "d.yaml", set()
+    file.write_text(bench(), encoding="utf-8")
+    code = "import sys, actuator_opt as ao; ao.export(sys.argv[1], formats='dxf', folder='.')"
+    for number in "12345":
+        seeded = os.environ | {"PYTHONHASHSEED": number}
+        subprocess.run([sys.executable, "-c", code, file], cwd=tmp_path, env=seeded, check=True)
+        found.add((tmp_path / "d.dxf").read_bytes())
+    assert len(found) == 1
 
 
 @given(

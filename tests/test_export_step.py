@@ -132,6 +132,7 @@ def test_a_rod_of_layers_with_fittings():
 FREE_WALL = "  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n"
 FREE_LAYER = "  barrel.layup[1].thickness:\n    lower: 0.5 mm\n    upper: 4 mm\n"
 STEEL = "barrel:\n  layup:\n    - material: steel_e355\n      thickness: 3 mm\n"
+LINKAGE = "linkage:\n  base_radius: 202.4 mm\n  crank_radius: 151.8 mm\n\nload:\n"
 VARIANTS = {
     "default caps": ((block("caps"), ""),),
     "no clevis": ((block("clevis"), ""), ("cap_clevis", "cap_flange")),
@@ -141,6 +142,7 @@ VARIANTS = {
     "plunger": (("seals:\n  piston:\n", "seals:\n  piston:\n    count: 0\n"),),
     "two rings": (("seals:\n  piston:\n", "seals:\n  piston:\n    count: 2\n"),),
     "longer barrel": (("barrel:\n  layup", "barrel:\n  length: 180 mm\n  layup"),),
+    "linkage": (("load:\n", LINKAGE), ("    force: 4 kN", "    joint_torque: 200 N*m")),
     "film": (("    friction_coefficient: 0.10\n  rod:", "    friction: film\n  rod:"),),
 }
 

@@ -17,6 +17,9 @@ from actuator_opt.exporting.xlsx import xlsx
 openpyxl = pytest.importorskip("openpyxl")
 
 
+VERDICTS = {"met": "yes", "missed": "no", "not_checked": "-"}
+
+
 def opened(evaluation):
     """The workbook of an evaluation, read back."""
     return openpyxl.load_workbook(io.BytesIO(xlsx(evaluation, program="test")))
@@ -37,15 +40,32 @@ def test_formulas_give_the_evaluations_margins(path):
     for title, rows in (("Requirements", evaluation.requirements), ("Checks", checks)):
         for at, row in enumerate(rows, 5):
             assert book[title][f"A{at}"].value == row.name
-            met = row.met if title == "Requirements" else row.status == "met"
+            status = ("missed", "met")[row.met] if title == "Requirements" else row.status
             margin = computed.value(title, f"G{at}")
             if row.margin is None:
                 assert margin == ""
             else:
                 assert margin == pytest.approx(row.margin, rel=1e-9, abs=1e-12), row.name
-            assert computed.value(title, f"H{at}") == ("yes" if met else "no"), row.name
+            assert computed.value(title, f"H{at}") == VERDICTS[status], row.name
     if evaluation.requirements:
         assert computed.value("Requirements", "B2") == ("yes" if evaluation.met else "no")
+    missed = any(row.status == "missed" for row in checks)
+    assert computed.value("Checks", "B2") == ("no" if missed else "yes")
+
+
+def test_sheets_are_readable_on_paper():
+    """One page wide, every word of the tables within its column, a font that is named."""
+    book = opened(ao.evaluate(SHIPPED[0]))
+    for sheet in book:
+        assert sheet.sheet_properties.pageSetUpPr.fitToPage
+        assert sheet.page_setup.fitToHeight == 0
+        assert {cell.font.name for row in sheet.iter_rows() for cell in row} == {"Calibri"}
+    for title in ("Requirements", "Checks", "Variables", "Metrics"):
+        sheet = book[title]
+        for cell in (one for row in sheet.iter_rows(min_row=5) for one in row):
+            if cell.data_type == "s":
+                width = sheet.column_dimensions[cell.column_letter].width
+                assert len(cell.value) < width, f"{title} {cell.coordinate}"
 
 
 def test_a_changed_limit_changes_margin_and_verdict():

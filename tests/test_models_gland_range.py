@@ -359,3 +359,16 @@ def test_every_standard_gland_passes_its_own_check(section):
     assert not housings.gland_deviations(
         row, squeeze_min=loose, squeeze_max=tight, width=row.width, fill=0.8, stretch=0.0
     )
+
+
+def test_a_back_up_ring_counts_alone_where_the_seal_is_not_known():
+    """Both known: the larger; past one end: the other alone; past both: the farther one."""
+    known = {"seal_limit": 0.127, "seal_end": 207.0, "ring_limit": 0.076, "ring_end": 345.0}
+    found = extrusion.backed_gap_limit(pressure=np.array([100.0, 207, 208, 345, 346]), **known)
+    assert found.tolist() == [0.127, 0.127, 0.076, 0.076, 0.076]
+    farther = known | {"ring_end": 100.0}
+    found = extrusion.backed_gap_limit(pressure=np.array([99.0, 101, 300]), **farther)
+    assert found.tolist() == [0.127, 0.127, 0.127]
+    better = known | {"ring_limit": 0.2}
+    found = extrusion.backed_gap_limit(pressure=np.array([100.0, 208, 400]), **better)
+    assert found.tolist() == [0.2, 0.2, 0.2]

@@ -16,11 +16,12 @@ SPREAD = 0.2
 """Deviation of the rod's diameter, mm."""
 
 
-def one_wish(upper="17 mm"):
+def one_wish(upper="17 mm", sizes=""):
     """A knee that only asks for the lightest rod; nothing but its diameter scatters or moves."""
     start = case.PLAIN.index("variables:\n")
     end = case.PLAIN.index("waivers:")
-    variable = f"variables:\n  rod.outer_diameter:\n    lower: 12 mm\n    upper: {upper}\n\n"
+    variable = f"variables:\n  rod.outer_diameter:\n    lower: 12 mm\n    upper: {upper}\n"
+    variable += f"    sizes: [{sizes}]\n\n" if sizes else "\n"
     text = case.PLAIN[:start] + variable + case.PLAIN[end:]
     text = text.replace("  thickness: 5 mm", "  thickness: 8 mm")  # plates far from their limit
     entry = {"distribution": "normal", "deviation": f"{SPREAD} mm"}
@@ -32,6 +33,21 @@ def one_wish(upper="17 mm"):
 def thick_rod(design):
     """A limit that the lightest rod stands at: 15 mm."""
     return design["rod.outer_diameter"] / 15e-3 - 1
+
+
+PLUGIN = """import actuator_opt as ao
+
+
+@ao.constraint("thick_rod", label="rod beyond 15 mm")
+def thick_rod(design):
+    return design["rod.outer_diameter"] / 15e-3 - 1
+"""
+
+
+def plain_mass(sizes):
+    """Mass of the smallest of the sizes, without any reserve."""
+    actuator = ao.read(one_wish(sizes=sizes), plugins=[thick_rod])
+    return ao.optimise(actuator, prices=False, seed=1, starts=1).best_objective
 
 
 def optimum(target, **more):
@@ -80,6 +96,81 @@ def test_no_room_for_the_reserve_is_infeasible_in_words():
     assert "thick_rod" in found.robust.sentence
     assert found.infeasibility is not None
     assert not found.robust.reached
+
+
+def test_the_yield_is_that_of_the_size_to_build():
+    """Sizes of 15 mm and a bit: the first one 2.39 deviations beyond 15 mm or more is taken."""
+    found = optimum(0.99, sizes="15 mm, 15.2 mm, 15.6 mm, 16 mm")
+    assert found.best.rod.outer_diameter == pytest.approx(15.6e-3, rel=1e-12)
+    made = found.robust
+    assert made.reached
+    assert made.lower <= norm.cdf(0.6 / SPREAD) <= made.upper
+    assert made.nominal_rate == pytest.approx(0.5, abs=0.03)
+
+
+def test_no_size_with_enough_yield_saves_nothing(tmp_path):
+    """The largest size holds in norm.cdf(1.5) of the draws: missed, told, and nothing saved."""
+    sizes = "15 mm, 15.2 mm, 15.3 mm"
+    found = optimum(0.99, sizes=sizes)
+    assert found.rounding is not None
+    assert not found.rounding.met
+    assert found.robust.sentence.startswith("no design of standard sizes was found that keeps")
+    assert found.robust.nominal_objective == pytest.approx(plain_mass(sizes), rel=1e-9)
+    file, plugin, saved = tmp_path / "d.yaml", tmp_path / "p.py", tmp_path / "saved.yaml"
+    file.write_text(one_wish(sizes=sizes), encoding="utf-8")
+    plugin.write_text(PLUGIN, encoding="utf-8")
+    more = ("--plugin", plugin, "--yield", "0.99", "--write", saved, "--no-record")
+    result = run("optimise", file, *more, "--out", tmp_path / "r")
+    assert result.code == 1
+    assert not saved.exists()
+    assert "not written" in result.err
+    assert "without reserves for the yield" in result.out
+
+
+def test_choices_are_those_of_the_plain_optimum_and_said_so():
+    """The lighter of two rods is kept, told in words and in the record of the choices."""
+    text = one_wish() + "\nchoices:\n  rod.material: [steel_42crmo4, ti_6al4v]\n"
+    plain = ao.optimise(ao.read(text, plugins=[thick_rod]), prices=False, starts=1)
+    found = ao.optimise(
+        ao.read(text, plugins=[thick_rod]), yield_target=0.9, prices=False, starts=1
+    )
+    assert found.choices.best == plain.choices.best
+    assert found.best.rod.material == found.choices.best["rod.material"].split()[0]
+    assert found.choices.sentence.endswith("without the reserves of the yield")
+    assert "the choices are those of the optimum without reserves" in found.robust.sentence
+    assert found.robust.reached
+
+
+@pytest.mark.parametrize(("rod", "drawn"), [("steel_42crmo4", False), ("ti_6al4v", True)])
+def test_scatter_of_a_material_that_is_not_chosen_waits(rod, drawn):
+    """What only another choice reads does not scatter, and is no fault."""
+    path = "materials.ti_6al4v.density"
+    entry = f"uncertainty:\n  {path}:\n    distribution: normal\n    cv: 2 %\n"
+    text = one_wish().replace("uncertainty:\n", entry)
+    text += "\nchoices:\n  rod.material: [steel_42crmo4, ti_6al4v]\n"
+    actuator = ao.read(text, plugins=[thick_rod], set=[("rod.material", rod)])
+    found = ao.uncertainty(actuator, count=20, rows=0)
+    assert (path in [one.path for one in found.inputs]) == drawn
+
+
+def test_the_certificate_speaks_of_limits_without_reserves():
+    """The bound holds for what meets the limits themselves: below both optima, and said so."""
+    text = ao.read(one_wish(), plugins=[thick_rod])
+    found = ao.optimise(text, yield_target=0.9, prices=False, starts=1, certify=True)
+    assert found.certificate is not None
+    if found.certificate.lower_bound is not None:
+        assert found.certificate.lower_bound <= found.robust.nominal_objective * (1 + 1e-6)
+        assert "without the reserves of the yield" in found.certificate.sentence
+
+
+def test_reserves_refused_are_those_of_the_yield():
+    """What is said to be lacking is the whole reserve, not a part of it that was tried."""
+    found = optimum(0.99, upper="15.1 mm")
+    aimed = 1 - robust.AIM * 0.01
+    whole = SPREAD * norm.ppf(aimed) / 15
+    assert found.robust.reserves["thick_rod"] == pytest.approx(whole, rel=0.1)
+    (joint,) = [one for one in found.infeasibility.joint if one["requirement"] == "thick_rod"]
+    assert joint["relaxation"] == pytest.approx(whole - 0.1 / 15, rel=0.2)
 
 
 def test_what_does_not_settle_is_said(monkeypatch):

@@ -115,8 +115,11 @@ def misfit(shape: str, entry: Stated, value: float, quantity: Quantity) -> tuple
     if low <= 0 and shape in ("lognormal", "loguniform"):
         return f"a {shape} distribution needs values above 0", "use another distribution"
     if low < quantity.lower or high > quantity.upper:
+        remedy = (
+            "less scatter" if shape == "lognormal" else "less scatter, or a lognormal distribution"
+        )
         return (
             f"draws from {text(low)} to {text(high)} leave the valid range ({quantity.label})",
-            f"stay within {quantity.range_text()}: less scatter, or a lognormal distribution",
+            f"stay within {quantity.range_text()}: {remedy}",
         )
     return "", ""

@@ -76,6 +76,24 @@ def barrel_length(view: View) -> Iterator[Fault]:
         )
 
 
+def skirts(view: View) -> Iterator[Fault]:
+    """The skirts of both ends do not meet on the barrel."""
+    if view.text("retention", "type") not in ("bond", "thread"):
+        return
+    overlap, length = view.number("retention", "length"), view.number("barrel", "length")
+    parts = [("cylinder", "stroke"), ("piston", "length"), ("head", "length")]
+    known = [one for one in (view.number(*part) for part in parts) if one is not None]
+    if length is None and len(known) == len(parts):
+        length = sum(known)
+    if overlap is not None and length is not None and 2 * overlap > length * (1 + 1e-9):
+        yield Fault(
+            ("retention", "length"),
+            f"{length_text(overlap)}: the skirts of both ends overlap on the barrel, which is "
+            f"{length_text(length)} long",
+            f"write at most {length_text(length / 2)}",
+        )
+
+
 def supply(view: View) -> Iterator[Fault]:
     """Supply above return, proof not below working pressure."""
     pressure, back = view.number("supply", "pressure"), view.number("supply", "return_pressure")
@@ -202,6 +220,7 @@ def _case_force(loc: Loc, case: dict[str, Any], *, linked: bool) -> Iterator[Fau
 CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     rod,
     barrel_length,
+    skirts,
     supply,
     environment,
     retention,

@@ -190,6 +190,24 @@ def grooves(view: View) -> Iterator[Fault]:
             )
 
 
+def clearances(view: View) -> Iterator[Fault]:
+    """The gap behind a ring is less deep than its groove: else nothing holds the ring."""
+    for seal, part in (("piston", "piston"), ("rod", "head")):
+        gap = view.number(part, "clearance")
+        found = [(depth, loc) for loc, depth, _ in _grooves(view, seal)]
+        if gap is None or not found:
+            continue
+        depth, loc = min(found)
+        if gap >= depth:
+            ring = ".".join(str(key) for key in loc[:-1])
+            yield Fault(
+                (part, "clearance"),
+                f"{length_text(gap)}: no groove is left, that of {ring} is {length_text(depth)} "
+                "deep from the other part",
+                f"write less than {length_text(depth)}, e.g. 0.03 mm",
+            )
+
+
 def squeeze(view: View) -> Iterator[Fault]:
     """The nominal squeeze of an O-ring lies where its law holds; that of the others is not none."""
     for loc in elements(view):
@@ -296,7 +314,7 @@ def films(view: View) -> Iterator[Fault]:
                 )
 
 
-CHECKS = (fields, widths, grooves, squeeze, shapes, *profile_faults.CHECKS, films)
+CHECKS = (fields, widths, grooves, clearances, squeeze, shapes, *profile_faults.CHECKS, films)
 
 
 def _numbers(block: object) -> dict[str, float]:

@@ -45,6 +45,7 @@ class Geometry:
     head_clearance: Array
     plate: Array
     plate_radius: Array
+    has_skirts: bool
     skirt_length: Array
     skirt_wall: Array
     barrel_length: Array
@@ -104,6 +105,7 @@ def derive(v: Values, design: Design) -> Geometry:
         head_clearance=v["head.clearance"],
         plate=plate,
         plate_radius=plate_radius,
+        has_skirts=retention is not None and retention.type != "tie_rods",
         skirt_length=skirt_length,
         skirt_wall=skirt_wall,
         barrel_length=barrel_length,
@@ -124,14 +126,20 @@ def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
     piston_length, piston_count, piston_depth = taken(g.piston_grooves)
     head_length, head_count, head_depth = taken(g.rod_grooves)
     bore = {"geometry_rod_bore": g.rod_inner_diameter} if g.rod_thicknesses else {}
-    return bore | {
-        "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,
-        "geometry_rod_wall": (g.rod_diameter - g.rod_inner_diameter) / 2,
-        "geometry_piston_groove": (g.piston_length - piston_length) / (piston_count + 1),
-        "geometry_piston_core": g.inner_radius - piston_depth - thread_radius,
-        "geometry_head_groove": (g.head_length - head_length) / (head_count + 1),
-        "geometry_head_wall": g.inner_radius - g.rod_diameter / 2 - head_depth,
-    }
+    between = g.barrel_length - 2 * g.skirt_length
+    skirts = {"geometry_skirts": between} if g.has_skirts else {}
+    return (
+        bore
+        | skirts
+        | {
+            "geometry_rod_in_bore": g.inner_radius - g.rod_diameter / 2,
+            "geometry_rod_wall": (g.rod_diameter - g.rod_inner_diameter) / 2,
+            "geometry_piston_groove": (g.piston_length - piston_length) / (piston_count + 1),
+            "geometry_piston_core": g.inner_radius - piston_depth - thread_radius,
+            "geometry_head_groove": (g.head_length - head_length) / (head_count + 1),
+            "geometry_head_wall": g.inner_radius - g.rod_diameter / 2 - head_depth,
+        }
+    )
 
 
 def makeable(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from ..design.housings import extrusion_tables
@@ -113,18 +114,31 @@ def volume_ratio(v: Values, design: Design, stock: Stock, ring: Ring, temperatur
 def _extrusion(v: Values, stock: Stock, ring: Ring, gap: Array) -> Array:
     """Largest gap that the seal or its back-up ring bears at supply pressure, over the gap."""
     pressure, element = v["supply.pressure"], ring.element
-    own = stock.material(element.compound).properties.get("extrusion_gap_max")
-    if own is None:
-        allowed = extrusion.extrusion_gap_limit(
-            hardness=v[f"materials.{element.compound}.hardness"],
-            pressure=pressure,
-            table=extrusion_tables()[EXTRUSION_TABLE].rows,
-        )
+    if stock.material(element.compound).properties.get("extrusion_gap_max") is None:
+        hardness = v[f"materials.{element.compound}.hardness"]
+        table = extrusion_tables()[EXTRUSION_TABLE].rows
+        allowed = extrusion.extrusion_gap_limit(hardness=hardness, pressure=pressure, table=table)
+        end = extrusion.extrusion_pressure_end(hardness=hardness, table=table)
     else:
         allowed = _stated(stock, element.compound, pressure)
+        end = _stated_end(stock.material(element.compound))
     if element.back_up_material is not None:
-        allowed = maximum(allowed, _stated(stock, element.back_up_material, pressure))
+        allowed = extrusion.backed_gap_limit(
+            pressure=pressure,
+            seal_limit=allowed,
+            seal_end=end,
+            ring_limit=_stated(stock, element.back_up_material, pressure),
+            ring_end=_stated_end(stock.material(element.back_up_material)),
+        )
     return allowed / gap
+
+
+def _stated_end(material: Material) -> float:
+    """Highest pressure to which a material states its gap; 0 where it states none."""
+    limit = material.properties.get("extrusion_gap_max")
+    if limit is None:
+        return 0.0
+    return limit.arguments[-1] if limit.points else math.inf
 
 
 def _stated(stock: Stock, name: str, pressure: Array) -> Array:
@@ -141,13 +155,12 @@ def _stated(stock: Stock, name: str, pressure: Array) -> Array:
 
 def extrusion_end(ring: Ring, materials: Mapping[str, Material]) -> float:
     """Highest pressure at which a limit of the gap is known for a ring."""
-    ends = []
-    for name in (ring.element.compound, ring.element.back_up_material):
-        limit = None if name is None else materials[name].properties.get("extrusion_gap_max")
-        if limit is not None and limit.points:
-            ends.append(limit.arguments[-1])
-    if not ends:
-        hardness = materials[ring.element.compound].numbers["hardness"]
+    compound, back_up = materials[ring.element.compound], ring.element.back_up_material
+    ends = [0.0 if back_up is None else _stated_end(materials[back_up])]
+    if "extrusion_gap_max" in compound.properties:
+        ends.append(_stated_end(compound))
+    else:
         table = extrusion_tables()[EXTRUSION_TABLE].rows
+        hardness = compound.numbers["hardness"]
         ends.append(float(extrusion.extrusion_pressure_end(hardness=hardness, table=table)))
     return max(ends)

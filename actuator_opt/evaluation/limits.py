@@ -53,6 +53,7 @@ GEOMETRY: tuple[str, ...] = (
     "geometry_piston_core",
     "geometry_head_groove",
     "geometry_head_wall",
+    "geometry_skirts",
 )
 ENDS = ("retracted", "extended")
 OWN_PLACE = "position of the case"

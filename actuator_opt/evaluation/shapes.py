@@ -175,11 +175,10 @@ def _changed(geometry: Geometry, change: _Change) -> Geometry:
     values: dict[str, Any] = {}
     for field in fields(Geometry):
         value = getattr(geometry, field.name)
-        values[field.name] = (
-            tuple(_changed_one(one, change) for one in value)
-            if isinstance(value, tuple)
-            else change(value)
-        )
+        if isinstance(value, tuple):
+            values[field.name] = tuple(_changed_one(one, change) for one in value)
+        else:
+            values[field.name] = value if isinstance(value, bool) else change(value)
     return Geometry(**values)
 
 

@@ -190,6 +190,15 @@ def _repeatable(ezdxf: Any) -> Iterator[None]:
         ezdxf.options.write_fixed_meta_data_for_testing = before
 
 
+def _ordered_classes(document: Any) -> None:
+    """Register the classes in the order of their names.
+
+    ezdxf takes them from a set, whose order differs from process to process.
+    """
+    for name in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(name)
+
+
 def _skirts(outlines: Sequence[Outline], start: float) -> list[tuple[float, float]]:
     """The skirt of the cap end, if there is one."""
     caps = [profile for one in outlines if one.part == "caps" for profile in _profiles(one)]
@@ -232,6 +241,7 @@ def dxf(evaluation: Evaluation, *, program: str, date: str | None = None) -> byt
         made = ", ".join(part for part in (program, date) if part)
         corner = (first, lowest - 1.5 * paper.row)
         _words(space, evaluation, outlines, paper, corner, made)
+        _ordered_classes(document)
         text = io.StringIO()
         document.write(text)
     return text.getvalue().encode(document.output_encoding, "backslashreplace")

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import math
+import textwrap
 import zipfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -40,6 +41,12 @@ _LIMITS = (
     "governing case",
     "remark",
 )
+_FONT = {"name": "Calibri", "size": 11}
+"""Of every cell; a style without a name would be drawn in a font of the program's own."""
+_LINE = 15.0
+"""Height of a line of text, points."""
+_WIDEST = 110.0
+"""Most letters a column is made wide for."""
 _FIRST = 5
 """Row of the first requirement or check."""
 
@@ -79,13 +86,21 @@ def _format(value: float | None) -> str:
 
 
 class _Sheet:
-    """A sheet that is filled row by row; texts stay texts, whatever they begin with."""
+    """A sheet that is filled row by row; texts stay texts, whatever they begin with.
+
+    Columns are as wide as asked, and wider where texts below the head are.
+    """
 
     def __init__(self, book: Any, title: str, widths: Sequence[float]) -> None:
         self._styles = library("openpyxl.styles")
         self.sheet = book.create_sheet(title)
-        for column, width in zip("ABCDEFGHIJK", widths, strict=False):
+        self.headed = False
+        self.widths = dict(zip("ABCDEFGHIJK", widths, strict=False))
+        for column, width in self.widths.items():
             self.sheet.column_dimensions[column].width = width
+        self.sheet.page_setup.orientation, self.sheet.page_setup.paperSize = "landscape", 9  # A4
+        self.sheet.page_setup.fitToHeight = 0  # as many pages as it takes, one of them wide
+        self.sheet.sheet_properties.pageSetUpPr.fitToPage = True
 
     def put(self, place: str, value: float | str | None, *, bold: bool = False) -> Any:
         cell = self.sheet[place]
@@ -93,25 +108,32 @@ class _Sheet:
             cell.value = plain(value)
             cell.data_type = "s"
             cell.quotePrefix = value[:1] in tuple("=+-@")
+            if self.headed:
+                column = self.sheet.column_dimensions[cell.column_letter]
+                column.width = max(column.width, min(len(cell.value) + 1.0, _WIDEST))
         elif value is not None:
             cell.value = value
             cell.number_format = _format(value)
         if bold:
-            cell.font = self._styles.Font(bold=True)
+            cell.font = self._styles.Font(bold=True, **_FONT)
         return cell
 
     def formula(self, place: str, text: str, form: str = "General", *, bold: bool = False) -> None:
         cell = self.sheet[place]
         cell.value, cell.number_format = f"={text}", form
         if bold:
-            cell.font = self._styles.Font(bold=True)
+            cell.font = self._styles.Font(bold=True, **_FONT)
 
     def head(self, row: int, names: Iterable[str]) -> None:
-        styles = self._styles
+        styles, lines = self._styles, 1
         for column, name in zip("ABCDEFGHIJK", names, strict=False):
             cell = self.put(f"{column}{row}", name, bold=True)
             cell.alignment = styles.Alignment(wrap_text=True, vertical="top")
             cell.fill = styles.PatternFill("solid", fgColor="E3E8EC")
+            lines = max(lines, len(textwrap.wrap(name, max(int(0.8 * self.widths[column]), 1))))
+        self.sheet.row_dimensions[row].height = _LINE * lines
+        self.headed = True
+        self.sheet.print_title_rows = f"{row}:{row}"
         self.sheet.freeze_panes = f"B{row + 1}"
 
     def colour(self, cells: str, word: str, colour: str) -> None:
@@ -143,8 +165,10 @@ def _limit_row(sheet: _Sheet, at: int, evaluation: Evaluation, row: Requirement 
     for column, text in zip("ABCD", texts, strict=True):
         sheet.put(f"{column}{at}", text)
     limit = sheet.put(f"E{at}", scale.of(row.limit))
-    limit.font = library("openpyxl.styles").Font(color="0B4F83")
-    sheet.put(f"F{at}", ("unlimited" if met else "none") if value is None else value)
+    limit.font = library("openpyxl.styles").Font(color="0B4F83", **_FONT)
+    unjudged = isinstance(row, Check) and row.status == "not_checked"
+    none = "unlimited" if met else "not checked" if unjudged else "none"
+    sheet.put(f"F{at}", none if value is None or unjudged else value)
     sign = f'IF(C{at}="min",1,-1)'
     sheet.formula(
         f"G{at}",
@@ -153,7 +177,8 @@ def _limit_row(sheet: _Sheet, at: int, evaluation: Evaluation, row: Requirement 
     )
     sheet.formula(
         f"H{at}",
-        f'IF(ISNUMBER(G{at}),IF(G{at}>=-{TOLERANCE},"yes","no"),IF(F{at}="unlimited","yes","no"))',
+        f'IF(ISNUMBER(G{at}),IF(G{at}>=-{TOLERANCE},"yes","no"),IF(F{at}="unlimited","yes",'
+        f'IF(F{at}="not checked","-","no")))',
     )
     sheet.put(f"I{at}", scale.factor).number_format = "General"
     sheet.put(f"J{at}", _case(row))
@@ -165,7 +190,7 @@ def _limits(
 ) -> None:
     """A sheet of limits: what is asked, what comes out, the margin and the verdict, live."""
     one = "requirement" if title == "Requirements" else "check"
-    widths = (30, 34, 7, 9, 12, 12, 16, 7, 12, 24, 60)
+    widths = (25, 20, 7, 9, 14, 14, 24, 7, 12, 16, 16)
     sheet = _Sheet(book, title, widths)
     last = _FIRST + len(rows) - 1
     sheet.put("A1", f"{evaluation.name}: {title.lower()}", bold=True)
@@ -183,7 +208,7 @@ def _limits(
 
 def _variables(book: Any, evaluation: Evaluation) -> None:
     """What the optimiser may move, within its bounds."""
-    sheet = _Sheet(book, "Variables", (36, 34, 9, 12, 12, 12, 14))
+    sheet = _Sheet(book, "Variables", (20, 20, 9, 12, 12, 12, 14))
     sheet.put("A1", f"{evaluation.name}: variables", bold=True)
     design = evaluation.design
     names = [f"{name} [unit of its row]" for name in ("lower bound", "value", "upper bound")]
@@ -235,7 +260,7 @@ def _mass(book: Any, evaluation: Evaluation) -> None:
 
 
 def _metrics(book: Any, evaluation: Evaluation) -> None:
-    sheet = _Sheet(book, "Metrics", (30, 44, 14, 10, 20, 60))
+    sheet = _Sheet(book, "Metrics", (20, 20, 14, 10, 18, 20))
     sheet.put("A1", f"{evaluation.name}: metrics", bold=True)
     names = ("metric", "quantity", "value [unit of its row]", "unit", "governing case")
     sheet.head(3, (*names, "why there is none"))
@@ -260,7 +285,8 @@ def _about(book: Any, evaluation: Evaluation, program: str, date: str | None) ->
     ]
     for at, (name, words) in enumerate(rows, 1):
         sheet.put(f"A{at}", name, bold=True)
-        sheet.put(f"B{at}", words)
+        cell = sheet.put(f"B{at}", words)
+        cell.alignment = library("openpyxl.styles").Alignment(wrap_text=True, vertical="top")
 
 
 def _packed(book: Any) -> bytes:

@@ -10,12 +10,15 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TypeAlias
 
-from ..numeric import Array, minimum, namespace, real, where
+from ..numeric import Array, maximum, minimum, namespace, real, where
 
 Points: TypeAlias = Sequence[tuple[Array, Array]]
 """Points of pressure [Pa] and gap [m], pressure rising."""
 Table: TypeAlias = Sequence[tuple[Array, Points]]
 """Rows of hardness [Shore A] and its points, hardness rising."""
+
+ROUNDING = 1e-9
+"""Relative excess of a pressure that is no excess."""
 
 
 def gap_limit(*, pressure: Array, points: Points) -> Array:
@@ -34,7 +37,7 @@ def gap_limit(*, pressure: Array, points: Points) -> Array:
     -----
     Valid: up to the last point; below the first the held value is on the safe side.
 
-    With a back-up ring the larger one counts of its own limit and that of the seal alone.
+    What counts of a seal and its back-up ring says `backed_gap_limit`.
 
     References
     ----------
@@ -120,6 +123,48 @@ def extrusion_pressure_end(*, hardness: Array, table: Table) -> Array:
         result = where(inside, minimum(end, next_end) + 0 * hardness, result)
     last, end = ends[-1]
     return where(real(hardness) >= real(last), end + 0 * hardness, result)
+
+
+def backed_gap_limit(
+    *, pressure: Array, seal_limit: Array, seal_end: Array, ring_limit: Array, ring_end: Array
+) -> Array:
+    """Largest gap with a back-up ring: the larger limit of those that cover the pressure.
+
+    A back-up ring bridges the gap for the seal, so that the seal's own limit is no bound while the
+    ring bears more, nor the ring's while the seal needs none. Beyond the pressure to which a limit
+    was stated it is held, not known, and tells nothing of a gap that may be larger: the other one
+    counts alone, and beyond both the one stated to the higher pressure.
+
+    Parameters
+    ----------
+    pressure : difference across the seal [Pa]
+    seal_limit, ring_limit : radial gaps that the seal alone and the back-up ring bear [m]
+    seal_end, ring_end : pressures up to which they are stated [Pa]
+
+    Returns
+    -------
+    radial gap [m]; it steps down where the larger of two limits ends
+
+    Notes
+    -----
+    Valid: where p is at most the larger of the two ends.
+
+    References
+    ----------
+    [SealAndDesignExtrusion] clearances up to each pressure without a back-up ring; [derived] a
+    limit beyond its last pressure is no statement
+
+    Examples
+    --------
+    >>> known = {"seal_limit": 0.127, "seal_end": 206.8, "ring_limit": 0.076, "ring_end": 345.0}
+    >>> [backed_gap_limit(pressure=p, **known) for p in (200.0, 210.0, 400.0)]
+    [0.127, 0.076, 0.076]
+    """
+    larger = maximum(seal_limit, ring_limit)
+    farther = where(real(ring_end) > real(seal_end), ring_limit, seal_limit)
+    ends = minimum(real(seal_end), real(ring_end))
+    found = where(real(pressure) > ends * (1 + ROUNDING), farther, larger)
+    return found + 0 * pressure
 
 
 def _log_gap(pressure: Array, points: Points) -> Array:

@@ -52,6 +52,10 @@ _SHORT = {
 }
 
 
+_SHORT_OF = ("missed", "infeasible")
+"""States in which an optimum has not the yield asked for."""
+
+
 def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisation | None]:
     """The evaluation to show and, if there is one, the optimisation it came from.
 
@@ -86,6 +90,7 @@ def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
     total = len(evaluation.requirements)
     failed = sum(check.status == "missed" for check in evaluation.checks)
     rounding = None if optimisation is None else optimisation.rounding
+    robust = None if optimisation is None else optimisation.robust
     none_made = rounding.name if rounding is not None and rounding.design is None else ""
     of = "continuous: " if none_made else f"{rounding.name}: " if rounding else ""
     if optimisation is not None and optimisation.infeasibility is not None:
@@ -96,6 +101,8 @@ def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
         state, words = "missed", f"NO DESIGN OF {none_made.upper()}"
     elif missed:
         state, words = "missed", "REQUIREMENTS MISSED"
+    elif robust is not None and not robust.reached:
+        state, words = "missed", "YIELD MISSED"
     elif failed:
         state, words = "checks", "REQUIREMENTS MET, CHECKS MISSED"
     else:
@@ -108,7 +115,8 @@ def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
         "state": state,
         "text": words,
         "lines": [
-            f"{of}{total - missed} of {total} requirements met",
+            f"{of}{total - missed} of {total} requirements met"
+            + (", without reserves for the yield" if robust and state in _SHORT_OF else ""),
             f"checks: {counts['met']} met · {counts['missed']} missed"
             f" · {counts['not_checked']} not checked",
         ],

@@ -79,16 +79,18 @@ def inputs(subject: Subject) -> tuple[Input, ...]:
     InputError
         an entry of ``uncertainty`` on what no model reads, or that leaves the valid range
     """
-    read = _read(subject)
+    read = read_by_models(subject)
     found = {one.path: one for one in (*_library(subject), *_practice(subject))}
     found |= {one.path: one for one in _measured(subject)}
     kept = {path: one for path, one in found.items() if path in read}
     for path, entry in subject.design.uncertainty.items():
+        if path not in read and subject.design.choices:
+            continue  # another choice reads it
         kept[path] = _stated(subject, path, entry.model_dump(), path in read)
     return tuple(one for _, one in sorted(kept.items()) if one.distribution.shape != "fixed")
 
 
-def _read(subject: Subject) -> set[str]:
+def read_by_models(subject: Subject) -> set[str]:
     """PATHs that the models read, the factor on a modulus by hardness among them."""
     factors = {f"materials.{name}.{_FACTOR}": np.ones(2) for name in _compounds(subject)}
     values = subject.values(factors)

@@ -8,7 +8,7 @@ fails. An independent sample tells what the last design does.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
@@ -18,12 +18,12 @@ import numpy.typing as npt
 from ..design.model import Design
 from ..errors import Diagnostic, UsageError
 from ..evaluation import Subject, prepare
-from ..optimisation.result import Optimisation
+from ..optimisation.result import Certificate, Optimisation
 from ..optimisation.robustness import Robust, Round
 from ..progress import whole
 from ..quantities import of_metric
 from .estimate import Rate
-from .inputs import inputs
+from .inputs import inputs, read_by_models
 from .model import TOLERANCE, Model
 from .study import draw
 
@@ -35,10 +35,13 @@ LEAST, MOST = 0.5, 0.9999
 """Probabilities that may be asked for."""
 ROUNDS = 12
 """Most optima on the way."""
-REFUSALS = 2
-"""How often reserves that no design keeps are halved towards the last that one kept."""
+REFUSALS = 3
+"""How often reserves that no design keeps are asked anew, as the nearest design needs them."""
 STILL = 2e-3
 """Relative change of the objective that counts as rest."""
+FAR = 1.0
+"""Margin of the draw that counts beyond which a limit needs no reserve: it is far from active, and
+one that is measured there, of a life say, may ask for more than any other design has."""
 AIM, ROOM = 0.85, 0.15
 """Share of the failures allowed that is aimed at, and how far from it is near enough: what is
 asked for then lies outside the bounds of the last sample."""
@@ -65,7 +68,7 @@ class _Seen:
             drawn = np.where(np.isnan(self.margins[row]), -np.inf, self.margins[row])
             low = float(np.quantile(drawn, level, method="inverted_cdf"))
             reserve = float(self.nominal[row]) - low
-            if np.isfinite(self.nominal[row]) and reserve > 0:
+            if np.isfinite(self.nominal[row]) and reserve > 0 and low <= FAR:
                 found[self.model.limits[row].name] = reserve
         return found
 
@@ -89,7 +92,7 @@ def robust(subject: Subject, target: float, search: Search, *, seed: int = 0) ->
     plain = search(subject, False)
     if plain.status.startswith("interrupted"):
         return plain
-    if not plain.evaluation.met:
+    if not _solved(plain):
         return search(subject, True)
     fixed = _without_choices(subject, plain)
     way = _Way(fixed, target, search, seed, plain)
@@ -105,10 +108,14 @@ def require(target: float) -> None:
 
 
 def _without_choices(subject: Subject, plain: Optimisation) -> Subject:
-    """The subject with the choices that its plain optimum made."""
+    """The subject with the choices that its plain optimum made, and what scatters with them."""
     if not subject.design.choices:
         return subject
     design = plain.design.model_copy(update={"choices": {}})
+    found = _prepared(design, subject)
+    read = read_by_models(found)
+    kept = {path: entry for path, entry in design.uncertainty.items() if path in read}
+    design = design.model_copy(update={"uncertainty": kept})
     return replace(_prepared(design, subject), reserves=subject.reserves)
 
 
@@ -162,6 +169,7 @@ class _Way:
         self.converged, self.refusals = False, 0
         self.refused: dict[str, float] = {}
         self.stopped: Optimisation | None = None
+        self.level = _Level(AIM * self.allowed)
 
     def _see(self, design: Design, covered: Held | None) -> _Seen:
         subject = _prepared(design, self.subject)
@@ -173,7 +181,7 @@ class _Way:
 
     def walk(self) -> None:
         """Optimise with the reserves of the design before, until nothing changes any more."""
-        level = _Level(AIM * self.allowed)
+        level = self.level
         self.converged = self.seen.rate >= 1 - level.aim
         asked = self.reserves if self.converged else self.seen.reserves(level.value)
         while not self.converged and len(self.rounds) <= ROUNDS:
@@ -187,7 +195,7 @@ class _Way:
                 if self.refusals == REFUSALS:
                     return
                 self.refusals += 1
-                asked = _between(self.reserves, asked)
+                asked = self._nearer(self._see(found.best, self.covered), level.value)
                 continue
             self.refused = {}
             seen = self._see(found.best, self.covered)
@@ -198,6 +206,18 @@ class _Way:
             self.converged = still and level.near(1 - seen.rate)
             level.follow(1 - seen.rate)
             asked = seen.reserves(level.value)
+
+    def _nearer(self, near: _Seen, level: float) -> dict[str, float]:
+        """Reserves of the design that misses those asked for by least.
+
+        Where enough of its draws hold all the same, one limit fails more and others less than
+        the level: what it has is then enough.
+        """
+        asked = near.reserves(level)
+        if near.rate < self.target:
+            return asked
+        margins = dict(zip(self.names, near.nominal.tolist(), strict=True))
+        return {name: max(min(kept, margins[name]), 0.0) for name, kept in asked.items()}
 
     def _keep(self, found: Optimisation, seen: _Seen, reserves: dict[str, float]) -> None:
         """Remember the best design: enough yield before little of the objective."""
@@ -213,11 +233,12 @@ class _Way:
 
     def result(self) -> Optimisation:
         """The last design with prices, held against an independent sample."""
-        reserves = self.refused or self.reserves
-        found = self.search(replace(self.subject, reserves=reserves), True)
+        found, reserves, seen = self._last()
+        if self.plain.choices is not None:
+            words = f"{self.plain.choices.sentence}; all of it without the reserves of the yield"
+            found = replace(found, choices=replace(self.plain.choices, sentence=words))
         count = round(float(np.clip(200 / self.allowed, 10_000, 400_000)))
-        model = self._see(found.best, self.covered).model
-        rate = _covered_rate(model, self.covered, count, self.seed)
+        rate = _covered_rate(seen.model, self.covered, count, self.seed)
         made = Robust(
             target=self.target,
             rate=rate.value,
@@ -232,7 +253,40 @@ class _Way:
             left_out=self.left_out,
             sentence="",
         )
-        return replace(found, robust=replace(made, sentence=self._words(made, found)))
+        made = replace(made, sentence=self._words(made, found))
+        if found.certificate is not None:
+            found = replace(found, certificate=self._proven(found.certificate))
+        if made.reached and not self.refused:
+            return replace(found, robust=made)
+        sentence = f"{_none(found)} meets every requirement with the reserves of the yield"
+        if not self.refused:
+            sentence = f"the yield found is below the {_percent(self.target)} asked for"
+        remedy = f"{found.remedy or 'relax a requirement'}, or ask for a lower yield"
+        return replace(found, robust=made, sentence=sentence, remedy=remedy)
+
+    def _last(self) -> tuple[Optimisation, dict[str, float], _Seen]:
+        """The design to show with its reserves: the best kept, else the nearest there is."""
+        if self.seen.rate >= self.target:
+            self.refused = {}
+        reserves = self.refused or self.reserves
+        found = self.search(replace(self.subject, reserves=reserves), True)
+        seen = self._see(found.best, self.covered)
+        if self.refused and seen.rate >= self.target:
+            enough = self._nearer(seen, self.level.value)
+            again = self.search(replace(self.subject, reserves=enough), True)
+            if _solved(again):
+                self.refused = {}
+                return again, enough, self._see(again.best, self.covered)
+        return found, reserves, seen
+
+    def _proven(self, certificate: Certificate) -> Certificate:
+        """A certificate with what it does not speak of."""
+        if certificate.lower_bound is None:
+            return certificate
+        words = "that bound is of the limits themselves, without the reserves of the yield"
+        if self.plain.choices is not None:
+            words += ", and of the choices made"
+        return replace(certificate, sentence=f"{certificate.sentence}; {words}")
 
     def _wanting(self) -> str:
         """Limits whose reserve is furthest beyond what the last design with reserves has."""
@@ -252,11 +306,13 @@ class _Way:
             f"{_percent(made.nominal_rate)} hold"
         )
         rest = ""
+        if self.plain.choices is not None:
+            rest = "; the choices are those of the optimum without reserves: try others by --set"
         if made.left_out:
-            rest = f"; not covered: {', '.join(made.left_out)}, missed anyway"
+            rest += f"; not covered: {', '.join(made.left_out)}, missed anyway"
         if self.refused:
             return (
-                f"no design was found that keeps the reserves with which all limits hold with "
+                f"{_none(found)} keeps the reserves with which all limits hold with "
                 f"{_percent(self.target)}: {self._wanting()}. At the design shown they hold "
                 f"in {shown} of {made.samples} independent draws; without reserves "
                 f"{quantity.label} is {before}, and {_percent(made.nominal_rate)} hold{rest}"
@@ -274,17 +330,18 @@ class _Way:
         )
 
 
+def _none(found: Optimisation) -> str:
+    """What was looked for and not found."""
+    sizes = "" if found.rounding is None else f" of {found.rounding.name}"
+    return f"no design{sizes} was found that"
+
+
 def _solved(found: Optimisation) -> bool:
-    """Whether an optimum keeps all its limits with their reserves."""
+    """Whether an optimum keeps all its limits with their reserves, in the sizes asked for."""
     infeasible = found.status == "infeasible" or found.status.startswith("limit_inf")
     usable = found.status != "undefined" and not found.status.startswith("interrupted")
-    return not infeasible and usable and found.evaluation.met
-
-
-def _between(first: Mapping[str, float], second: Mapping[str, float]) -> dict[str, float]:
-    """Reserves half way."""
-    names = {*first, *second}
-    return {name: (first.get(name, 0.0) + second.get(name, 0.0)) / 2 for name in sorted(names)}
+    made = found.rounding is None or found.rounding.met
+    return not infeasible and usable and made and found.evaluation.met
 
 
 def _covered_rate(model: Model, covered: Held, count: int, seed: int) -> Rate:

@@ -48,6 +48,8 @@ def compare(
         raise UsageError(Diagnostic(message, "name two or more"))
     if len(designs) > MOST:
         raise UsageError(Diagnostic(f"{len(designs)} designs are too many", f"name up to {MOST}"))
+    if sum(one == "-" for one in designs if isinstance(one, str)) > 1:
+        raise UsageError(Diagnostic("standard input holds one design", "name - once"))
     found: list[tuple[Evaluation, str]] = []
     faults: list[Diagnostic] = []
     for one in designs:
