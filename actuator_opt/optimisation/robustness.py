@@ -47,8 +47,8 @@ class Robust:
 
     @property
     def reached(self) -> bool:
-        """Whether the sample does not speak against the probability asked for."""
-        return self.upper >= self.target
+        """Whether as many of the independent sample hold as were asked for."""
+        return self.rate >= self.target
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON form (SI)."""
