@@ -7,7 +7,8 @@ import sys
 
 import pytest
 
-from actuator_opt import progress, streams
+from actuator_opt import progress
+from actuator_opt.cli import streams
 
 
 class Terminal(io.StringIO):

@@ -12,7 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import actuator_opt as ao
-from actuator_opt import cli, options
+from actuator_opt import cli
+from actuator_opt.cli import options
 from actuator_opt.errors import InputError
 from actuator_opt.reporting import embed
 from actuator_opt.verbs import repeating

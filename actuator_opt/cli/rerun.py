@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from . import cli_pareto, store, streams
-from .cli_optimise import outcome_of, recorded
-from .cli_shared import check_targets, say_files
-from .errors import ExitCode
+from .. import store
+from ..errors import ExitCode
+from . import pareto, streams
+from .optimise import outcome_of, recorded
 from .options import Json, NoRecord, PluginFile, Quiet
+from .shared import check_targets, say_files
 
 if TYPE_CHECKING:
-    from .verbs import Rerun
+    from ..verbs import Rerun
 
 
 def rerun(
@@ -30,9 +31,9 @@ def rerun(
     quiet: Quiet = False,
 ) -> None:
     """Run the command of a report again, from the input it carries."""
-    from . import verbs
-    from .optimisation.pareto_result import ParetoFront
-    from .optimisation.result import Optimisation
+    from .. import verbs
+    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.result import Optimisation
 
     check_targets(out, None)
     if out is not None:
@@ -46,9 +47,9 @@ def rerun(
         if not no_record:
             recorded(subject, found.actuator, found.command, found.date, list(found.tables))
     elif isinstance(subject, ParetoFront):
-        code = cli_pareto.outcome_of(subject)
+        code = pareto.outcome_of(subject)
         if not no_record:
-            cli_pareto.recorded(subject, found.actuator, found.command, found.date)
+            pareto.recorded(subject, found.actuator, found.command, found.date)
     else:
         code = ExitCode.MET if subject.met else ExitCode.MISSED
     if as_json:
@@ -62,8 +63,8 @@ def rerun(
 
 
 def _written(found: Rerun, out: Path) -> list[dict[str, Any]]:
-    from . import verbs
-    from .optimisation.pareto_result import ParetoFront
+    from .. import verbs
+    from ..optimisation.pareto_result import ParetoFront
 
     how: dict[str, Any] = {"actuator": found.actuator, "command": found.command}
     how |= {"folder": out, "date": found.date}
@@ -76,10 +77,10 @@ def _written(found: Rerun, out: Path) -> list[dict[str, Any]]:
 
 def _tell(found: Rerun) -> None:
     """The tables of the command, then whether they are those of the report."""
-    from .optimisation.pareto_result import ParetoFront
-    from .optimisation.result import Optimisation
-    from .reporting.pareto_rows import front_text
-    from .reporting.terminal import evaluation_text, optimisation_text
+    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.result import Optimisation
+    from ..reporting.pareto_rows import front_text
+    from ..reporting.terminal import evaluation_text, optimisation_text
 
     style = streams.style()
     if isinstance(found.subject, Optimisation):

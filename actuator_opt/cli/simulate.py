@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..errors import Diagnostic, ExitCode, UsageError
+from ..store import require_apart
 from . import streams
-from .cli_shared import assignments, check_targets, command_line, named_columns, say_files
-from .errors import Diagnostic, ExitCode, UsageError
 from .options import REPORTS, Date, Json, Out, Quiet, Report, Set
-from .store import require_apart
+from .shared import assignments, check_targets, command_line, named_columns, say_files
 
 if TYPE_CHECKING:
-    from .simulation import Simulation
-    from .simulation.methods import Method
-    from .simulation.sensitivity import Sensitivities
-    from .verbs import Compared
+    from ..simulation import Simulation
+    from ..simulation.methods import Method
+    from ..simulation.sensitivity import Sensitivities
+    from ..verbs import Compared
 
 ScenarioFile = Annotated[
     str, typer.Argument(metavar="SCENARIO", help="Scenario file, or - for stdin.")
@@ -78,7 +78,7 @@ def simulate(
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> None:
     """A scenario over time: servo, pressures, energy."""
-    from . import verbs
+    from .. import verbs
 
     check_targets(out if report else None, date, csv)
     for name, given in (("--fit", fit), ("--column", columns)):
@@ -134,16 +134,16 @@ def _as_json(
 
 def _say(found: Simulation, overlay: Compared | None, ranked: Sensitivities | None) -> None:
     """Everything on the terminal."""
-    from .reporting.simulation_text import simulation_text
+    from ..reporting.simulation_text import simulation_text
 
     style = streams.style()
     parts = [simulation_text(found, **style)]
     if overlay is not None:
-        from .reporting.measured_rows import measured_text
+        from ..reporting.measured_rows import measured_text
 
         parts.append(measured_text(overlay.overlay, overlay.fit, **style))
     if ranked is not None:
-        from .reporting.verification_text import sensitivity_text
+        from ..reporting.verification_text import sensitivity_text
 
         parts.append(sensitivity_text(ranked, **style))
     streams.out("\n".join(parts), end="")

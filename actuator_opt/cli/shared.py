@@ -10,34 +10,34 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from ..errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from . import streams
-from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
 
 if TYPE_CHECKING:
-    from .evaluation import Evaluation
-    from .optimisation.result import Optimisation
-    from .quantities import Quantity
-    from .reporting import ExtraTable
-    from .verbs import Actuator
+    from ..evaluation import Evaluation
+    from ..optimisation.result import Optimisation
+    from ..quantities import Quantity
+    from ..reporting import ExtraTable
+    from ..verbs import Actuator
 
 
 def assignments(sets: list[str] | None) -> list[tuple[str, str]]:
     """The ``--set`` of a command, each as PATH and value."""
-    from .design import split_assignment
+    from ..design import split_assignment
 
     return [split_assignment(text) for text in sets or []]
 
 
 def read_actuator(design: str, sets: list[str] | None, plugins: list[Path] | None) -> Actuator:
     """The design of a command, with its ``--set`` and ``--plugin``."""
-    from .verbs import read
+    from ..verbs import read
 
     return read(design, set=assignments(sets), plugins=plugins or [])
 
 
 def given(option: str, text: str | None, quantity: Quantity) -> float | None:
     """The SI number of an option in its quantity's unit."""
-    from .design.kinds import ValueFault, read_quantity
+    from ..design.kinds import ValueFault, read_quantity
 
     if text is None:
         return None
@@ -80,8 +80,8 @@ def command_line() -> str:
 
 def check_targets(out: Path | None, date: str | None, write: Path | None = None) -> None:
     """Refuse a date or a place to write that cannot be, before the work."""
-    from . import store
-    from .verbs import date_from_environment
+    from .. import store
+    from ..verbs import date_from_environment
 
     if write is not None:
         store.require_writable(write)
@@ -99,7 +99,7 @@ def write_report(
     tables: Sequence[ExtraTable] = (),
 ) -> list[dict[str, Any]]:
     """Write the report; its files as JSON."""
-    from .verbs import report
+    from ..verbs import report
 
     files = report(
         subject, folder=out, actuator=actuator, command=command_line(), date=date,

@@ -6,20 +6,21 @@ import sys
 
 import typer
 
-from . import run_store, streams
-from .errors import ExitCode
+from .. import run_store
+from ..errors import ExitCode
+from . import streams
 from .options import REPORTS, Json, Out, Quiet
 
 
 def doctor(out: Out = REPORTS, as_json: Json = False, quiet: Quiet = False) -> None:
     """What this installation has, lacks and may write."""
-    from . import verbs
+    from .. import verbs
 
     found = verbs.doctor(out=out, runs=run_store.folder(), terminal=_terminal())
     if as_json:
         streams.out_json(found.to_dict())
     elif not quiet:
-        from .reporting.installation_text import installation_text
+        from ..reporting.installation_text import installation_text
 
         rows = [(x.group, x.name, x.status, x.value, x.remedy) for x in found.findings]
         streams.out(installation_text(rows, **streams.style()), end="")

@@ -7,11 +7,11 @@ from typing import Annotated, Any
 
 import typer
 
+from ..errors import ExitCode
+from ..store import require_apart
 from . import streams
-from .cli_shared import check_targets, command_line, read_actuator, say_files
-from .errors import ExitCode
 from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Report, Seed, Set
-from .store import require_apart
+from .shared import check_targets, command_line, read_actuator, say_files
 
 Draws = Annotated[
     int, typer.Option("-n", "--samples", metavar="N", help="Draws of the yield, 20 to 10 million.")
@@ -60,7 +60,7 @@ def uncertainty(
     quiet: Quiet = False,
 ) -> None:
     """Yield, indices and tornado from scatter and tolerances."""
-    from . import verbs
+    from .. import verbs
 
     check_targets(out if report else None, date, csv)
     if csv is not None:
@@ -83,7 +83,7 @@ def uncertainty(
     if as_json:
         streams.out_json(found.to_dict() | ({"files": files} if files else {}))
     elif not quiet:
-        from .reporting.uncertainty_text import uncertainty_text
+        from ..reporting.uncertainty_text import uncertainty_text
 
         streams.out(uncertainty_text(found, **streams.style()), end="")
         say_files(files)

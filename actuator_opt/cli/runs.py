@@ -7,8 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from . import run_store, store, streams
-from .errors import Diagnostic, ExitCode, UsageError
+from .. import run_store, store
+from ..errors import Diagnostic, ExitCode, UsageError
+from . import streams
 from .options import Json, Quiet
 
 app = typer.Typer(
@@ -33,7 +34,7 @@ def list_runs(
     quiet: Quiet = False,
 ) -> None:
     """Recorded runs, the newest first."""
-    from . import verbs
+    from .. import verbs
 
     found, faults = verbs.runs(design=design, command=command)
     if as_json:
@@ -43,7 +44,7 @@ def list_runs(
     for fault in faults:
         streams.err(str(fault))
     if found:
-        from .reporting.runs_text import runs_table
+        from ..reporting.runs_text import runs_table
 
         streams.out(runs_table([(one.id, one.head) for one in found], **streams.style()), end="")
     elif not quiet:
@@ -69,7 +70,7 @@ def show_run(
     quiet: Quiet = False,
 ) -> None:
     """What was asked, what came out, how the search went."""
-    from . import verbs
+    from .. import verbs
 
     if out is not None:
         store.require_folder(out)
@@ -79,7 +80,7 @@ def show_run(
         files: dict[str, Any] = {"files": [{"path": str(path)} for path in paths]} if paths else {}
         streams.out_json(found.to_dict() | files)
     elif not quiet:
-        from .reporting.runs_text import run_text
+        from ..reporting.runs_text import run_text
 
         with verbs.sound(found):
             told = run_text(found.id, found.head, found.body, **streams.style())
@@ -91,7 +92,7 @@ def show_run(
 @app.command("delete")
 def delete_run(name: RunName, as_json: Json = False, quiet: Quiet = False) -> None:
     """Delete one recorded run by its id."""
-    from . import verbs
+    from .. import verbs
 
     if name == "last":
         raise UsageError(Diagnostic('"last" is not deleted', "write the id of the run"))
@@ -107,7 +108,7 @@ def prune_runs(
     quiet: Quiet = False,
 ) -> None:
     """Delete all recorded runs but the newest."""
-    from . import verbs
+    from .. import verbs
 
     _say_deleted(verbs.prune_runs(keep=keep), as_json=as_json, quiet=quiet)
 
@@ -126,10 +127,10 @@ def reported(
     name: str, sets: list[str] | None, plugins: list[Path] | None, out: Path, date: str | None
 ) -> tuple[list[dict[str, Any]], ExitCode]:
     """Report a recorded run: its files and the exit status; what differs from then is told."""
-    from . import verbs
-    from .cli_optimise import outcome_of
-    from .cli_pareto import outcome_of as outcome_of_front
-    from .optimisation.pareto_result import ParetoFront
+    from .. import verbs
+    from ..optimisation.pareto_result import ParetoFront
+    from .optimise import outcome_of
+    from .pareto import outcome_of as outcome_of_front
 
     if sets:
         raise UsageError(Diagnostic("--set: a run is reported as it was", "name a design instead"))

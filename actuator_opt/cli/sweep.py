@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from . import streams
-from .cli_shared import check_targets, command_line, keep_record, read_actuator, say_files
-from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Seed, Set
+from .shared import check_targets, command_line, keep_record, read_actuator, say_files
 
 if TYPE_CHECKING:
-    from .variants import Swept
+    from ..variants import Swept
 
 Vary = Annotated[
     list[str] | None,
@@ -102,7 +102,7 @@ def sweep(
     out: Folder = REPORTS,
 ) -> None:
     """Evaluate many variants of a design."""
-    from . import verbs
+    from .. import verbs
 
     keep = _kept(reduce)
     if show and not figures:
@@ -169,7 +169,7 @@ def _tell(
     quiet: bool,
 ) -> None:
     """Results as text, then the files, then what could not be drawn."""
-    from .reporting.sweep_text import sweep_text
+    from ..reporting.sweep_text import sweep_text
 
     streams.out(sweep_text(found, **streams.style()))
     if not quiet:
@@ -184,7 +184,7 @@ def _drawn(
     found: Swept, figures: list[str], show: list[str], out: Path
 ) -> tuple[list[dict[str, str]], ActuatorError | None]:
     """The files of figures, or the fault that is told once the sweep's results are."""
-    from . import verbs
+    from .. import verbs
 
     if not figures:
         return [], None

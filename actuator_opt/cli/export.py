@@ -7,8 +7,8 @@ from typing import Annotated
 import typer
 
 from . import streams
-from .cli_shared import check_targets, leave_by, read_actuator, say_files
 from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Seed, Set
+from .shared import check_targets, leave_by, read_actuator, say_files
 
 
 def export(
@@ -26,8 +26,8 @@ def export(
     quiet: Quiet = False,
 ) -> None:
     """Write the design for CAD (STEP, DXF) or Excel (XLSX)."""
-    from . import verbs
-    from .exporting import require_formats
+    from .. import verbs
+    from ..exporting import require_formats
 
     asked = require_formats(formats or [])
     check_targets(out, date)

@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from . import streams
-from .cli_shared import say_files
 from .options import REPORTS, Json, PluginFile, Quiet
+from .shared import say_files
 
 
 def explore(
@@ -36,7 +36,7 @@ def explore(
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> None:
     """Write a kept sweep or a front as one offline HTML page."""
-    from . import verbs
+    from .. import verbs
 
     found = verbs.explore(store, out=out, study=study, rows=rows, plugins=plugin or [])
     files = [file.to_dict() for file in found]

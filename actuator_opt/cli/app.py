@@ -9,33 +9,20 @@ from __future__ import annotations
 import sys
 from os.path import relpath
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 from typer.exceptions import TyperException
 
-from . import cli_materials, cli_runs, run_store, streams
-from .cli_compare import compare
-from .cli_doctor import doctor
-from .cli_explore import explore
-from .cli_export import export
-from .cli_optimise import optimise, sensitivity
-from .cli_pareto import pareto
-from .cli_records import calibrate, identify
-from .cli_rerun import rerun
-from .cli_seal import seal
-from .cli_shared import (
-    assignments,
-    check_targets,
-    leave_by,
-    read_actuator,
-    say_files,
-    write_report,
-)
-from .cli_simulate import simulate
-from .cli_sweep import sweep
-from .cli_uncertainty import uncertainty
-from .errors import ActuatorError, Diagnostic, ExitCode, UsageError
+from .. import run_store
+from ..errors import ActuatorError, Diagnostic, ExitCode, UsageError
+from ..version import VERSION
+from . import materials, runs, streams
+from .compare import compare
+from .doctor import doctor
+from .explore import explore
+from .export import export
+from .optimise import optimise, sensitivity
 from .options import (
     REPORTS,
     Date,
@@ -48,10 +35,21 @@ from .options import (
     Seed,
     Set,
 )
-from .version import VERSION
-
-if TYPE_CHECKING:
-    pass
+from .pareto import pareto
+from .records import calibrate, identify
+from .rerun import rerun
+from .seal import seal
+from .shared import (
+    assignments,
+    check_targets,
+    leave_by,
+    read_actuator,
+    say_files,
+    write_report,
+)
+from .simulate import simulate
+from .sweep import sweep
+from .uncertainty import uncertainty
 
 app = typer.Typer(
     name="actuator-opt",
@@ -62,8 +60,8 @@ app = typer.Typer(
     add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-app.add_typer(cli_materials.app, name="materials")
-app.add_typer(cli_runs.app, name="runs")
+app.add_typer(materials.app, name="materials")
+app.add_typer(runs.app, name="runs")
 
 
 @app.callback(invoke_without_command=True)
@@ -94,11 +92,11 @@ def init(
     quiet: Quiet = False,
 ) -> None:
     """A commented start file, of a design or a scenario."""
-    from .design import read_design
-    from .design.kinds import ValueFault
-    from .design.scenario.template import scenario_text
-    from .design.template import init_text
-    from .store import write_text
+    from ..design import read_design
+    from ..design.kinds import ValueFault
+    from ..design.scenario.template import scenario_text
+    from ..design.template import init_text
+    from ..store import write_text
 
     if scenario is not None and source is not None:
         raise UsageError(Diagnostic("--from and --scenario", "give one of them"))
@@ -137,7 +135,7 @@ def check(
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> None:
     """Name every fault of design and scenario files."""
-    from . import verbs
+    from .. import verbs
 
     pairs = assignments(sets)
     faults: list[Diagnostic] = []
@@ -168,7 +166,7 @@ def evaluate(
     quiet: Quiet = False,
 ) -> None:
     """Every metric, requirement and check of a design as it stands."""
-    from . import verbs
+    from .. import verbs
 
     if report:
         check_targets(out, date)
@@ -178,7 +176,7 @@ def evaluate(
     if as_json:
         streams.out_json(evaluation.to_dict() | ({"files": files} if files else {}))
     elif not quiet:
-        from .reporting.terminal import evaluation_text
+        from ..reporting.terminal import evaluation_text
 
         streams.out(evaluation_text(evaluation, **streams.style()), end="")
         say_files(files)
@@ -187,19 +185,16 @@ def evaluate(
 
 app.command()(optimise)
 app.command("optimize", hidden=True)(optimise)
-app.command()(seal)
-app.command()(identify)
-app.command()(calibrate)
-app.command()(simulate)
+app.command()(sensitivity)
+app.command()(uncertainty)
+app.command()(compare)
 app.command()(sweep)
 app.command()(explore)
-app.command()(sensitivity)
-app.command()(export)
-app.command()(uncertainty)
 app.command()(pareto)
-app.command()(compare)
-app.command()(rerun)
-app.command()(doctor)
+app.command()(seal)
+app.command()(simulate)
+app.command()(identify)
+app.command()(calibrate)
 
 
 @app.command()
@@ -217,11 +212,11 @@ def report(
     quiet: Quiet = False,
 ) -> None:
     """Write the report of a design as it is, or of a run."""
-    from . import verbs
+    from .. import verbs
 
     check_targets(out, date)
     if run_store.is_name(design):
-        files, code = cli_runs.reported(design, sets, plugin, out, date)
+        files, code = runs.reported(design, sets, plugin, out, date)
     else:
         actuator = read_actuator(design, sets, plugin)
         evaluation = verbs.evaluate(actuator)
@@ -234,6 +229,10 @@ def report(
     sys.exit(code)  # an Exit with the status of an interrupt would be told as one
 
 
+app.command()(rerun)
+app.command()(export)
+
+
 @app.command()
 def schema(
     scenario: Annotated[
@@ -242,16 +241,19 @@ def schema(
     as_json: Annotated[bool, typer.Option("--json", help="As always: it is JSON.")] = False,
 ) -> None:
     """Print the JSON Schema of design or scenario files."""
-    from .design.materials import load_library
-    from .design.schema import json_schema
-    from .quantities import METRICS, RESULTS
+    from ..design.materials import load_library
+    from ..design.schema import json_schema
+    from ..quantities import METRICS, RESULTS
 
     if scenario:
-        from .design.scenario import Scenario
+        from ..design.scenario import Scenario
 
         streams.out_json(json_schema(Scenario, materials=load_library(), metrics=RESULTS))
     else:
         streams.out_json(json_schema(materials=load_library(), metrics=METRICS))
+
+
+app.command()(doctor)
 
 
 def _misunderstood(error: TyperException) -> ExitCode:
@@ -280,7 +282,3 @@ def main() -> None:
     except KeyboardInterrupt:
         code = streams.faults([Diagnostic("interrupted")], ExitCode.INTERRUPTED)
     sys.exit(code)
-
-
-if __name__ == "__main__":
-    main()

@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
-from . import store, streams
-from .errors import Diagnostic, UsageError
+from .. import store
+from ..errors import Diagnostic, UsageError
+from . import streams
 from .options import Json
 
 app = typer.Typer(
@@ -28,9 +29,9 @@ def list_materials(
     as_json: Json = False,
 ) -> None:
     """Every entry with its main numbers."""
-    from .design.material import KINDS
-    from .design.material_tables import list_lines, to_dict
-    from .design.materials import load_library
+    from ..design.material import KINDS
+    from ..design.material_tables import list_lines, to_dict
+    from ..design.materials import load_library
 
     if kind is not None and kind not in KINDS:
         raise UsageError(Diagnostic(f'--kind "{kind}"', f"use one of {', '.join(KINDS)}"))
@@ -56,8 +57,8 @@ def show_material(
 
     A fluid is also shown over temperature and pressure.
     """
-    from .design.material_tables import show_lines, to_dict
-    from .design.materials import load_library
+    from ..design.material_tables import show_lines, to_dict
+    from ..design.materials import load_library
 
     material = load_library().get(name)
     if out is not None:
@@ -71,12 +72,12 @@ def show_material(
     else:
         lines = show_lines(material, ascii=not style["unicode"])
         if material.kind == "fluid":
-            from .reporting.fluid_figure import table_lines
+            from ..reporting.fluid_figure import table_lines
 
             lines += ["", *table_lines(material, **style)]
         streams.out("\n".join(lines))
     if out is not None:
-        from .reporting.fluid_figure import write_figure
+        from ..reporting.fluid_figure import write_figure
 
         for path in write_figure(material, out):
             streams.err(f"wrote {path}")
@@ -88,8 +89,8 @@ def compare_materials(
     as_json: Json = False,
 ) -> None:
     """Properties side by side, with ratios to the first."""
-    from .design.material_tables import compare_lines, to_dict
-    from .design.materials import load_library
+    from ..design.material_tables import compare_lines, to_dict
+    from ..design.materials import load_library
 
     if len(names) < 2:
         raise UsageError(Diagnostic("one material cannot be compared", "name two or more"))

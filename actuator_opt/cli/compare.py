@@ -7,9 +7,10 @@ from typing import Annotated, Any
 
 import typer
 
-from . import store, streams
-from .cli_shared import assignments
+from .. import store
+from . import streams
 from .options import Json, PluginFile, Quiet, Set
+from .shared import assignments
 
 
 def compare(
@@ -30,8 +31,8 @@ def compare(
     quiet: Quiet = False,
 ) -> None:
     """What differs between designs, and which parts decide."""
-    from . import verbs
-    from .reporting.compare_text import comparison_text
+    from .. import verbs
+    from ..reporting.compare_text import comparison_text
 
     if out is not None:
         store.require_folder(out)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..errors import ExitCode
+from ..store import require_apart
 from . import streams
-from .cli_shared import check_targets, command_line, keep_record, read_actuator, say_files
-from .errors import ExitCode
 from .options import (
     REPORTS,
     Date,
@@ -23,11 +23,11 @@ from .options import (
     Seed,
     Set,
 )
-from .store import require_apart
+from .shared import check_targets, command_line, keep_record, read_actuator, say_files
 
 if TYPE_CHECKING:
-    from .optimisation.pareto_result import ParetoFront
-    from .verbs import Actuator
+    from ..optimisation.pareto_result import ParetoFront
+    from ..verbs import Actuator
 
 
 def pareto(
@@ -59,7 +59,7 @@ def pareto(
     quiet: Quiet = False,
 ) -> None:
     """Trade two to four objectives: the Pareto front and its knee."""
-    from . import verbs
+    from .. import verbs
 
     check_targets(out if report else None, date, csv)
     if csv is not None:
@@ -80,7 +80,7 @@ def pareto(
     if as_json:
         streams.out_json(found.to_dict() | ({"files": files} if files else {}))
     elif not quiet:
-        from .reporting.pareto_rows import front_text
+        from ..reporting.pareto_rows import front_text
 
         streams.out(front_text(found, **streams.style()), end="")
         say_files(files)
@@ -91,7 +91,7 @@ def pareto(
 
 def recorded(found: ParetoFront, actuator: Actuator, command: str, date: str | None) -> None:
     """Keep a record of the front; where that fails, one line says so."""
-    from .verbs import record_front
+    from ..verbs import record_front
 
     keep_record(lambda: record_front(found, actuator=actuator, command=command, date=date))
 

@@ -7,11 +7,11 @@ from typing import Annotated
 
 import typer
 
+from ..errors import Diagnostic, ExitCode, UsageError
+from ..quantities import INPUTS
 from . import streams
-from .cli_shared import check_targets, command_line, given, read_actuator, say_files
-from .errors import Diagnostic, ExitCode, UsageError
 from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Report, Seed, Set
-from .quantities import INPUTS
+from .shared import check_targets, command_line, given, read_actuator, say_files
 
 
 def seal(
@@ -57,7 +57,7 @@ def seal(
     quiet: Quiet = False,
 ) -> None:
     """Contact, oil film, friction and leakage of one seal."""
-    from . import verbs
+    from .. import verbs
 
     if place not in ("piston", "rod"):
         raise UsageError(Diagnostic(f'--seal "{place}"', "write piston or rod"))
@@ -83,7 +83,7 @@ def seal(
     if as_json:
         streams.out_json(study.to_dict() | ({"files": shown} if shown else {}))
     elif not quiet:
-        from .reporting.seal_text import seal_text
+        from ..reporting.seal_text import seal_text
 
         streams.out(seal_text(study, **streams.style()), end="")
         say_files(([{"path": write}] if write is not None else []) + shown)

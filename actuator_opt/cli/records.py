@@ -8,8 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..errors import Diagnostic, ExitCode, UsageError
+from ..quantities import RECORDS
+from ..store import require_apart
 from . import streams
-from .cli_shared import (
+from .options import REPORTS, Date, Json, Out, PluginFile, Quiet, Report, Seed, Set
+from .shared import (
     check_targets,
     command_line,
     given,
@@ -17,14 +21,10 @@ from .cli_shared import (
     read_actuator,
     say_files,
 )
-from .errors import Diagnostic, ExitCode, UsageError
-from .options import REPORTS, Date, Json, Out, PluginFile, Quiet, Report, Seed, Set
-from .quantities import RECORDS
-from .store import require_apart
 
 if TYPE_CHECKING:
-    from .identification.specimen import Part
-    from .verbs import Actuator
+    from ..identification.specimen import Part
+    from ..verbs import Actuator
 
 RecordFile = Annotated[
     str, typer.Argument(metavar="RECORD", help="CSV file of the test record, or - for stdin.")
@@ -128,7 +128,7 @@ def identify(
     quiet: Quiet = False,
 ) -> None:
     """Friction and damping from a test record, with bounds."""
-    from . import verbs
+    from .. import verbs
 
     check_targets(out if report else None, date, csv)
     if csv is not None:
@@ -161,7 +161,7 @@ def identify(
     if as_json:
         streams.out_json(found.to_dict() | ({"files": files} if files else {}))
     elif not quiet:
-        from .reporting.identification_text import identification_text
+        from ..reporting.identification_text import identification_text
 
         streams.out(identification_text(found, **streams.style()), end="")
         say_files(files)
@@ -198,7 +198,7 @@ def calibrate(
     quiet: Quiet = False,
 ) -> None:
     """Put a record's friction into its design; say what changes."""
-    from . import verbs
+    from .. import verbs
 
     check_targets(out if report else None, date, write)
     if write is not None:
@@ -228,7 +228,7 @@ def calibrate(
     if as_json:
         streams.out_json(found.to_dict() | ({"files": files} if files else {}))
     elif not quiet:
-        from .reporting.calibration_text import calibration_text
+        from ..reporting.calibration_text import calibration_text
 
         streams.out(calibration_text(found.calibration, found.redesign, **streams.style()), end="")
         say_files(files)
@@ -247,7 +247,7 @@ def _bend(
     quiet: bool,
 ) -> None:
     """A bending test to a modulus."""
-    from . import verbs
+    from .. import verbs
 
     if part not in ("rod", "barrel"):
         raise UsageError(Diagnostic(f'--part "{part}"', "write rod or barrel"))
@@ -256,7 +256,7 @@ def _bend(
     if as_json:
         streams.out_json(found.to_dict())
     elif not quiet:
-        from .reporting.bending_text import bending_text
+        from ..reporting.bending_text import bending_text
 
         streams.out(bending_text(found, **streams.style()), end="")
 
@@ -270,7 +270,7 @@ def _only_bending(asked: Mapping[str, object]) -> None:
 
 
 def _check_bootstrap(count: int) -> None:
-    from .identification.bootstrap import FEWEST
+    from ..identification.bootstrap import FEWEST
 
     if 0 < count < FEWEST:
         message = f"--bootstrap {count}: too few to have a tail of 2.5 %"

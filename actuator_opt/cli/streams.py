@@ -13,8 +13,8 @@ from contextlib import contextmanager
 from time import monotonic
 from typing import Any, TextIO, TypedDict
 
-from .errors import Diagnostic, ExitCode, InputError
-from .progress import watched
+from ..errors import Diagnostic, ExitCode, InputError
+from ..progress import watched
 
 NARROWEST, USUAL, TERMINAL = 40, 100, 80
 """Columns: at least, where the output is no terminal, and where a terminal does not say."""

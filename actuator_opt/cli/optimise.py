@@ -8,16 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..errors import ExitCode
 from . import streams
-from .cli_shared import (
-    check_targets,
-    command_line,
-    keep_record,
-    read_actuator,
-    say_files,
-    write_report,
-)
-from .errors import ExitCode
 from .options import (
     REPORTS,
     Algorithm,
@@ -39,14 +31,22 @@ from .options import (
     Write,
     Yield,
 )
+from .shared import (
+    check_targets,
+    command_line,
+    keep_record,
+    read_actuator,
+    say_files,
+    write_report,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from .optimisation.result import Optimisation
-    from .reporting import ExtraTable
-    from .simulation.verification import Verification
-    from .verbs import Actuator, Trial
+    from ..optimisation.result import Optimisation
+    from ..reporting import ExtraTable
+    from ..simulation.verification import Verification
+    from ..verbs import Actuator, Trial
 
 
 def optimise(
@@ -72,7 +72,7 @@ def optimise(
     quiet: Quiet = False,
 ) -> None:
     """Find the best design, price its limits, write the report."""
-    from . import verbs
+    from .. import verbs
 
     reporting = report or not as_json
     check_targets(out if reporting else None, date, write)
@@ -118,7 +118,7 @@ def recorded(
     tables: list[ExtraTable],
 ) -> None:
     """Keep a record of the run; where that fails, one line says so."""
-    from .verbs import record
+    from ..verbs import record
 
     how: dict[str, Any] = {"command": command, "date": date, "extra_tables": tables}
     keep_record(lambda: record(result, actuator=actuator, **how))
@@ -126,7 +126,7 @@ def recorded(
 
 def _scenario(file: str | None, actuator: Actuator) -> Trial | None:
     """The scenario to verify the best design in, which must be one for it."""
-    from . import verbs
+    from .. import verbs
 
     if file is None:
         return None
@@ -139,7 +139,7 @@ def _saved(
     result: Optimisation, outcome: ExitCode, write: Path | None, actuator: Actuator
 ) -> tuple[list[dict[str, Any]], str]:
     """Save the best design where one is asked for: its file, or why there is none to save."""
-    from . import verbs
+    from .. import verbs
 
     if write is None:
         return [], ""
@@ -153,7 +153,7 @@ def _saved(
 
 def _timed(trial: Trial, result: Optimisation) -> Verification:
     """What the time domain says of the best design in its scenario."""
-    from . import verbs
+    from .. import verbs
 
     with streams.watching():
         return verbs.verify_dynamics(trial, result.best)
@@ -169,12 +169,12 @@ def _as_json(
 
 def _tell(result: Optimisation, timed: Verification | None) -> None:
     """Print the tables, and a remark where plies are not whole yet."""
-    from .optimisation.rounding import unrounded
-    from .reporting.terminal import optimisation_text
+    from ..optimisation.rounding import unrounded
+    from ..reporting.terminal import optimisation_text
 
     streams.out(optimisation_text(result, **streams.style()), end="")
     if timed is not None:
-        from .reporting.verification_text import verification_text
+        from ..reporting.verification_text import verification_text
 
         streams.out("\n" + verification_text(timed, **streams.style()), end="")
     if remark := unrounded(result):
@@ -185,7 +185,7 @@ def _dynamics_tables(timed: Verification | None) -> list[ExtraTable]:
     """The same as tables for its report."""
     if timed is None:
         return []
-    from .reporting.verification_rows import verification_rows
+    from ..reporting.verification_rows import verification_rows
 
     return [*verification_rows(timed)]
 
@@ -214,7 +214,7 @@ def sensitivity(
     quiet: Quiet = False,
 ) -> None:
     """What each requirement and parameter costs at the optimum."""
-    from . import verbs
+    from .. import verbs
 
     if report:
         check_targets(out, date)
@@ -229,7 +229,7 @@ def sensitivity(
         kept = {key: data[key] for key in keys if key in data}
         streams.out_json(kept | ({"files": files} if files else {}))
     elif not quiet:
-        from .reporting import infeasibility_card, prices
+        from ..reporting import infeasibility_card, prices
 
         style = streams.style()
         shown = prices.terminal(result, moving=True, **style)
