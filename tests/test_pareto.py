@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from cli_runner import KNEE, run
 
 import actuator_opt as ao
+from actuator_opt.optimisation.front.even import Gap
+from actuator_opt.reporting.pareto_rows import remarks
 
 PAIR = ("--objective", "mass:min", "--objective", "stiffness_min:max")
 
@@ -61,6 +64,23 @@ def test_a_design_between_is_the_optimum_at_its_stiffness(front):
     assert ao.optimise(held, prices=False).objective_value == pytest.approx(
         point.metrics["mass"], rel=1e-6
     )
+
+
+def test_jumps_are_told(front):
+    """A jump is named with what it can hold and left out of the ratio; a wide gap is not."""
+    gaps = [0.05] * 19
+    gaps[4], gaps[9] = 0.4, 0.2
+    jump, hole = Gap(4, 0.4, 0.01, True), Gap(9, 0.2, 0.2, False)
+    told = replace(front, gaps=tuple(gaps), wide=(jump, hole))
+    assert told.evenness == pytest.approx(4)
+    data = told.to_dict()["gaps"]
+    assert data["largest"] == 0.2
+    assert [gap["after"] for gap in data["wide"]] == [4, 9]
+    words = "\n".join(remarks(told))
+    assert "jumps between designs 5 and 6" in words
+    assert "at most 2.5 %" in words
+    assert "wide gap between designs 10 and 11" in words
+    assert "jump" not in "\n".join(remarks(front))
 
 
 def test_writes_table_csv_and_report(tmp_path):

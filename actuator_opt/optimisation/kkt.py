@@ -219,17 +219,32 @@ def slope_scale(evaluator: Evaluator, point: Point, objective_scale: float = 0.0
     return max(slope, floor, 1e-300)
 
 
+def _priced(
+    evaluator: Evaluator, point: Point, objective_scale: float
+) -> tuple[Active, Vector, Vector, float]:
+    """The active set at a point, its multipliers, those of the equalities, and the residual."""
+    jacobian = evaluator.jacobian(point)
+    active = active_set(evaluator, point)
+    equalities = jacobian[1 + evaluator.constraint_count :]
+    inequality, free = multipliers(jacobian[0], active, equalities)
+    rest = jacobian[0] - active.gradients.T @ inequality - equalities.T @ free
+    size = slope_scale(evaluator, point, objective_scale)
+    return active, inequality, free, float(np.linalg.norm(rest)) / size
+
+
+def residual(evaluator: Evaluator, point: Point) -> float:
+    """The relative norm of the gradient of the Lagrangian at a point, as `check` finds it."""
+    return _priced(evaluator, point, 0.0)[-1]
+
+
 def check(
     evaluator: Evaluator, point: Point, *, curvature: bool = False, objective_scale: float = 0.0
 ) -> Kkt:
     """Check the optimality conditions at a point."""
     problem, m = evaluator.problem, evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
-    active = active_set(evaluator, point)
+    active, inequality, free, left = _priced(evaluator, point, objective_scale)
     equalities = jacobian[1 + m :]
-    inequality, free = multipliers(jacobian[0], active, equalities)
-    rest = jacobian[0] - active.gradients.T @ inequality - equalities.T @ free
-    residual = float(np.linalg.norm(rest)) / slope_scale(evaluator, point, objective_scale)
     stacked = np.concatenate([active.gradients, equalities])
     size = np.sqrt((stacked**2).sum(axis=1, keepdims=True))
     rank = int(np.linalg.matrix_rank(stacked / np.where(size > 0, size, 1.0), tol=1e-8))
@@ -249,7 +264,7 @@ def check(
     if curvature:
         strong = active.gradients[inequality * np.sqrt((active.gradients**2).sum(axis=1)) > 0]
         found = _curvature(evaluator, point, held, free, np.concatenate([strong, equalities]))
-    return Kkt(residual, tuple(labels), len(stacked), rank, held, free, low, high, found)
+    return Kkt(left, tuple(labels), len(stacked), rank, held, free, low, high, found)
 
 
 def lagrangian_weights(constraints: Vector, equalities: Vector) -> Vector:

@@ -112,7 +112,7 @@ def follow(
     for iteration in range(ITERATIONS):
         if not alive:
             break
-        points = _points(parametric, evaluator, z[:, alive], parameters[:, alive])
+        points = points_at(parametric, evaluator, z[:, alive], parameters[:, alive])
         going = []
         for k, trial in zip(alive, points, strict=True):
             if not trial.valid:
@@ -253,24 +253,45 @@ def descend_together(
     Parameters as of `resolve_together`. None where no optimum is reached; the designs on the way
     are feasible, None where there is none or an optimum is reached.
     """
-    count = starts.shape[1]
-    found: list[Point | None] = [None] * count
-    if count == 0:
-        return found, []
+    if starts.shape[1] == 0:
+        return [], []
     state = newton.state_at(evaluator, point)
     hessian, rows = newton.convex_hessian(evaluator, state), evaluator.constraint_count
     price = _price(state.multipliers[: len(state.near.constraint)] / state.scale)
-    descents = [Descent(hessian, state.scale, rows, price) for _ in range(count)]
+    ways = [Descent(hessian, state.scale, rows, price) for _ in range(starts.shape[1])]
+    found = descend(parametric, evaluator, ways, starts, parameters)
+    last = [one.point for one in ways]
+    stopped = [
+        at if found[k] is None and at is not None and at.violation <= MET else None
+        for k, at in enumerate(last)
+    ]
+    return found, stopped
+
+
+def descend(
+    parametric: ParametricProblem,
+    evaluator: Evaluator,
+    ways: list[Descent],
+    starts: Vector,
+    parameters: Vector,
+    longest: int = LONGEST,
+) -> list[Point | None]:
+    """Optima of many problems within trusted radii, None where none is reached.
+
+    `ways` are new descents, one for each problem, of at most `longest` evaluations; the rest as
+    of `resolve_together`.
+    """
+    found: list[Point | None] = [None] * len(ways)
     space = evaluator.space
     z = np.clip(starts, space.lower[:, None], space.upper[:, None])
-    alive = list(range(count))
-    for _ in range(LONGEST):
+    alive = list(range(len(ways)))
+    for _ in range(longest):
         if not alive:
             break
-        points = _points(parametric, evaluator, z[:, alive], parameters[:, alive])
+        points = points_at(parametric, evaluator, z[:, alive], parameters[:, alive])
         going = []
         for k, trial in zip(alive, points, strict=True):
-            one = descents[k]
+            one = ways[k]
             if trial.valid and one.accepts(trial):
                 if one.length <= SETTLED and _optimal(evaluator, trial):
                     found[k] = trial
@@ -286,12 +307,7 @@ def descend_together(
             z[:, k] = np.clip(one.known.z + one.step, space.lower, space.upper)
             going.append(k)
         alive = going
-    last = [one.point for one in descents]
-    stopped = [
-        at if found[k] is None and at is not None and at.violation <= MET else None
-        for k, at in enumerate(last)
-    ]
-    return found, stopped
+    return found
 
 
 def _price(multipliers: Vector) -> float:
@@ -300,7 +316,7 @@ def _price(multipliers: Vector) -> float:
 
 
 def _optimal(evaluator: Evaluator, trial: Point) -> bool:
-    return trial.violation <= FEASIBLE and kkt.check(evaluator, trial).residual <= RESIDUAL
+    return trial.violation <= FEASIBLE and kkt.residual(evaluator, trial) <= RESIDUAL
 
 
 def restore_together(
@@ -319,7 +335,7 @@ def restore_together(
     for iteration in range(RESTORATIONS):
         if not alive:
             break
-        points = _points(parametric, evaluator, z[:, alive], parameters[:, alive])
+        points = points_at(parametric, evaluator, z[:, alive], parameters[:, alive])
         going = []
         for k, trial in zip(alive, points, strict=True):
             if trial.valid and trial.violation <= MET:
@@ -341,7 +357,7 @@ def restore_together(
     return found
 
 
-def _points(
+def points_at(
     parametric: ParametricProblem, evaluator: Evaluator, z: Vector, parameters: Vector
 ) -> list[Point]:
     """Every problem's point with its gradients, from one complex evaluation."""

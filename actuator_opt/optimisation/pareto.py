@@ -180,6 +180,7 @@ def _result(many: _Many, found: Front, seed: int, began: float) -> ParetoFront:
         evaluation=evaluation,
         passed=tuple(map(tuple, _passed(found.passed, signs))),
         gaps=tuple(found.gaps.tolist()),
+        wide=found.wide,
         checked=found.checked,
         improved=found.improved,
         failed=found.failed,

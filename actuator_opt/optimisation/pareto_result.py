@@ -10,6 +10,7 @@ from typing import Any, Literal
 from ..design import Design
 from ..evaluation import Evaluation
 from ..quantities import Quantity
+from .front.even import Gap
 from .result import Infeasibility
 
 
@@ -61,8 +62,9 @@ class ParetoFront:
     design, evaluation : of the knee, else of the first point; as stated where there is none
     passed : objectives of designs met on the way that others dominate
     gaps : normalised distances between neighbours (to the nearest of three or more objectives)
+    wide : gaps of two objectives that are more than three times the median, and why
     checked, improved : full searches at places in between, and how many found something better
-    failed : places at which no design was found
+    failed : places at which no design was found, but where one is near
     infeasibility : why there is no front
     unsolved : what became of the search for an end of the front, where that is no optimum
     """
@@ -76,6 +78,7 @@ class ParetoFront:
     evaluation: Evaluation
     passed: tuple[tuple[float, ...], ...] = ()
     gaps: tuple[float, ...] = ()
+    wide: tuple[Gap, ...] = ()
     checked: int = 0
     improved: int = 0
     failed: int = 0
@@ -93,9 +96,20 @@ class ParetoFront:
         return "unsolved" if self.unsolved else "infeasible"
 
     @property
+    def jumps(self) -> tuple[Gap, ...]:
+        """Gaps at which the front is in pieces: nothing can lie there."""
+        return tuple(gap for gap in self.wide if gap.jump)
+
+    @property
+    def steps(self) -> tuple[float, ...]:
+        """The gaps that are no jumps."""
+        over = {gap.after for gap in self.jumps}
+        return tuple(gap for k, gap in enumerate(self.gaps) if k not in over)
+
+    @property
     def evenness(self) -> float | None:
-        """The largest gap over the median one; None where there are none."""
-        return max(self.gaps) / median(self.gaps) if self.gaps else None
+        """The largest gap over the median one, jumps left out; None where there are none."""
+        return max(self.steps) / median(self.steps) if self.steps else None
 
     @property
     def sentence(self) -> str:
@@ -108,9 +122,9 @@ class ParetoFront:
         if len(self.points) == 1:
             return "the objectives do not conflict: one design is best in all of them"
         told = f"{len(self.points)} designs, none dominated; "
-        told += f"{self.checked} places searched anew: {self.improved} were merely local"
+        told += f"{self.checked} places searched anew: {self.improved} merely local"
         if self.failed:
-            told += f"; no design found at {self.failed} places"
+            told += f"; no design found at {self.failed} place" + "s" * (self.failed > 1)
         return told
 
     def to_dict(self) -> dict[str, Any]:
@@ -130,8 +144,13 @@ class ParetoFront:
                 for values in self.passed
             ],
             "gaps": None
-            if not self.gaps
-            else {"median": median(self.gaps), "largest": max(self.gaps), "ratio": self.evenness},
+            if not self.steps
+            else {
+                "median": median(self.steps),
+                "largest": max(self.steps),
+                "ratio": self.evenness,
+                "wide": [asdict(gap) for gap in self.wide],
+            },
             "checked": self.checked,
             "improved": self.improved,
             "failed": self.failed,

@@ -14,6 +14,9 @@ from .image import images
 from .origin import Origin, tile
 from .pareto_figure import front_figure
 
+FEWER = 17
+"""Designs on the page of three or more objectives, whose heads and roles take more lines."""
+
 
 def write_front_sheet(
     found: ParetoFront, origin: Origin, *, folder: Path, stem: str
@@ -74,7 +77,7 @@ def _tiles(found: ParetoFront) -> list[dict[str, Any]]:
 
 
 def _blocks(found: ParetoFront) -> list[Block]:
-    kept = rows.shown(found)
+    kept = rows.shown(found, rows.SHOWN if len(found.objectives) == 2 else FEWER)
     by_name = {one.name: one for one in rows.series(found)}
     wanted = [*(one.metric for one in found.objectives), *rows.moving(found, 5)]
     heads = [f"{name}, {by_name[name].unit}".rstrip(", ") for name in wanted]

@@ -122,6 +122,9 @@ def _knee(
     words = ", ".join(value_text(one.quantity, metrics[one.metric]) for one in wished)
     words = f"knee: {words}"
     right = axes.left + axes.width
+    if len(found.objectives) > 2:  # designs all around: above the frame
+        axes.ink.text(right, axes.top - 2.0, words, anchor="right", color=GREY)
+        return
     inside = wished[0].sense == "min"  # the ideal lies left: the right is free
     room = text_width(words, 6.5) + 4.0
     leftward = not inside if right - x > room else True

@@ -5,10 +5,12 @@ from __future__ import annotations
 import csv
 import hashlib
 import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..design import quantity_of
+from ..optimisation.front.even import Gap
 from ..optimisation.pareto_result import ParetoFront
 from ..quantities import Quantity
 from ..store import write_text
@@ -124,8 +126,9 @@ def remarks(found: ParetoFront) -> list[str]:
     if found.evenness is not None and len(found.points) > 2:
         said.append(
             f"largest gap between neighbours {text.number(found.evenness, 3)} times the median, "
-            f"in objectives over their range"
+            f"in objectives over their range" + (", jumps left out" if found.jumps else "")
         )
+    said += _wide(found)
     if found.knee is not None:
         said.append(f"knee: design {found.knee.index + 1}, where the front bends most")
     elif len(found.points) > 1:
@@ -134,6 +137,25 @@ def remarks(found: ParetoFront) -> list[str]:
         worst = max(point.kkt_residual for point in found.points)
         said.append(f"optimality conditions hold to {text.number(worst, 2)} at every design")
     return [*said, *found.warnings]
+
+
+def _wide(found: ParetoFront) -> list[str]:
+    """Which gaps are wide, and why."""
+
+    def between(gaps: Sequence[Gap]) -> str:
+        return ", ".join(f"{gap.after + 1} and {gap.after + 2}" for gap in gaps)
+
+    said, jumps = [], found.jumps
+    if jumps:
+        most = text.number(100 * max(gap.reach / gap.size for gap in jumps), 2)
+        said.append(
+            f"the front jumps between designs {between(jumps)}: by the designs at levels on both "
+            f"sides at most {most} % of such a gap can hold more of it"
+        )
+    rest = [gap for gap in found.wide if not gap.jump]
+    if rest:
+        said.append(f"wide gap between designs {between(rest)}: no design found there")
+    return said
 
 
 def front_text(

@@ -1,5 +1,7 @@
 """The front of several objectives: designs that are better in none without being worse in another.
 
-`objectives` what is wanted · `references` where along the front · `tracer` the designs there ·
+`objectives` what is wanted · `searches` runs side by side · `ends` the best of each objective ·
+`references` where along the front · `tracer` the designs there · `search` those found so far ·
+`line`, `plane` where more are wanted, of two objectives or more · `overlooked` searches anew ·
 `dominance` which of them count · `front` all together.
 """

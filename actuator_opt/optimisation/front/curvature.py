@@ -19,6 +19,9 @@ from ..problem import Vector
 FIRM = 1e-6
 """Multiplier, over the largest, above which a row is in force."""
 
+FLATTEST = 1e-10
+"""Least curvature over the largest of the whole, above rounding; else nothing is crossed."""
+
 LEAST = 1e-6
 """Least curvature over the largest multiplier."""
 
@@ -73,4 +76,6 @@ def _convex(z: Vector, along: Vector, largest: float) -> Vector:
     rest = np.eye(size) - z @ z.T
     crossed = across @ np.linalg.solve(inner, across.T)
     firm = 1.0 + float(np.linalg.norm(crossed, 2))
-    return np.asarray(z @ inner @ z.T + across @ z.T + z @ across.T + firm * rest)
+    whole = np.asarray(z @ inner @ z.T + across @ z.T + z @ across.T + firm * rest)
+    bends = np.linalg.eigvalsh(whole)
+    return whole if bends[0] > FLATTEST * bends[-1] else np.asarray(z @ inner @ z.T + rest)

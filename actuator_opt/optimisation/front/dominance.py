@@ -9,16 +9,20 @@ from ..problem import Vector
 
 Indices = npt.NDArray[np.intp]
 
+CLEARLY = 100.0
+"""Differences that count as equal which one must exceed to be better: no cycle dominates itself."""
+
 SAME = 1e-6
 """Distance in normalised objectives below which two designs are one."""
 
 
-def nondominated(values: Vector) -> npt.NDArray[np.bool_]:
+def nondominated(values: Vector, equal: float = 0.0) -> npt.NDArray[np.bool_]:
     """Which designs no other one dominates: no worse in every objective, better in one.
 
     Parameters
     ----------
     values : (objectives, designs), to be minimised; of equal designs all stay
+    equal : what still counts as no worse; better is then only what is so by `CLEARLY` times that
 
     >>> nondominated(np.array([[1.0, 2.0, 3.0], [3.0, 2.0, 2.0]]))
     array([ True,  True, False])
@@ -27,7 +31,7 @@ def nondominated(values: Vector) -> npt.NDArray[np.bool_]:
     kept = np.ones(count, dtype=bool)
     for k in range(count):
         one = values[:, k : k + 1]
-        beats = (values <= one).all(axis=0) & (values < one).any(axis=0)
+        beats = (values <= one + equal).all(axis=0) & (values < one - CLEARLY * equal).any(axis=0)
         kept[k] = not beats.any()
     return kept
 

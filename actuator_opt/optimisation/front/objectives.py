@@ -10,13 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from ...numeric import Array
 from ..descents import RESIDUAL
 from ..evaluator import Evaluator, Point
-from ..kkt import Kkt, check
+from ..kkt import residual
 from ..problem import ParametricProblem, Problem, Values, Vector
 
 LEVEL = "level of the objectives"
@@ -49,14 +50,42 @@ class Objectives:
         """Number of objectives."""
         return len(self.names)
 
+    def picked(self) -> ParametricProblem:
+        """One of the objectives by itself; the parameter is its index."""
+
+        def evaluate(points: Array, parameters: Array) -> Values:
+            found = self.evaluate(points)
+            which = np.broadcast_to(np.asarray(parameters[0], dtype=np.intp), points.shape[1:])
+            stacked = self._stacked(found, points)
+            return replace(found, objective=stacked[which, np.arange(len(which))])
+
+        return ParametricProblem(self.problem, ["objective"], np.zeros(1), evaluate)
+
     def alone(self, index: int) -> Problem:
         """One of the objectives by itself."""
+        return self.picked().at(np.array([index]))
 
-        def evaluate(points: Array) -> Values:
-            found = self.evaluate(points)
-            return replace(found, objective=self._stacked(found, points)[index])
+    def like(self, checked: Evaluator, index: int) -> Evaluator:
+        """An evaluator of one of the objectives, with gradients as those checked of `scaled`."""
+        own, m = Evaluator(self.alone(index)), len(self.problem.constraint_names)
+        rows = [
+            1 + m + index,
+            *range(1, 1 + m),
+            *range(1 + m + self.count, checked.problem.row_count),
+        ]
+        own.complex_works = checked.complex_works
+        own.difference_rows = checked.difference_rows[rows]
+        return own
 
-        return replace(self.problem, evaluate=evaluate)
+    def checked(self) -> tuple[Evaluator, tuple[str, ...]]:
+        """An evaluator of `scaled` whose gradients were checked, and what that gave to tell."""
+        problem = self.problem
+        start = (problem.lower + problem.upper) / 2 if problem.start is None else problem.start
+        size = np.abs(self.values(start[:, None])[:, 0])
+        width = np.where(np.isfinite(size) & (size > 0), size, 1.0)
+        evaluator = Evaluator(self.scaled(np.zeros(self.count), width).problem)
+        point = evaluator.point(evaluator.space.to_z(np.append(start, HIGHEST / 2)))
+        return evaluator, evaluator.check_gradients(point)
 
     def values(self, x: Vector) -> Vector:
         """Objectives (objectives, k) of points (n, k)."""
@@ -115,18 +144,33 @@ class Conditions:
     """
 
     objectives: Objectives
-    width: Vector
+
+    @cached_property
+    def _held(self) -> list[Evaluator]:
+        """Evaluators of the problems with one objective least and the others held."""
+        problem, names = self.objectives.problem, self.objectives.names
+        return [
+            Evaluator(
+                replace(
+                    problem,
+                    constraint_names=(*problem.constraint_names, *names[:k], *names[k + 1 :]),
+                    relaxable=None,
+                    groups=None,
+                )
+            )
+            for k in range(len(names))
+        ]
 
     def residual(self, point: Point) -> float:
         """The residual at a point (variables and t) whose gradients are known."""
         least = np.inf
         for index in range(self.objectives.count):
-            least = min(least, self._one(point, index).residual)
+            least = min(least, self._one(point, index))
             if least <= RESIDUAL:
                 break
         return float(least)
 
-    def _one(self, point: Point, index: int) -> Kkt:
+    def _one(self, point: Point, index: int) -> float:
         """That of the problem with one objective least and the others held."""
         assert point.jacobian is not None
         count, problem = self.objectives.count, self.objectives.problem
@@ -137,9 +181,6 @@ class Conditions:
         order = [*range(1, 1 + inner), *others, *range(front.stop, len(point.rows))]
         rows = np.concatenate([[1.0], point.rows[order]])  # a vanishing gradient is one of 1e-3
         rows[1 + inner : inner + count] = 0.0
-        names = [name for i, name in enumerate(self.objectives.names) if i != index]
-        held = replace(problem, constraint_names=(*problem.constraint_names, *names),
-                       relaxable=None, groups=None)  # fmt: skip
         jacobian = np.concatenate([-slopes[front][index][None], slopes[order]])
         at = Point(point.z[:-1], point.x[:-1], rows, point.valid, point.violation, jacobian)
-        return check(Evaluator(held), at)
+        return residual(self._held[index], at)

@@ -7,7 +7,8 @@ lattice of the plane sum = 1, as far as lines from it meet the box of ideal and 
 
 from __future__ import annotations
 
-from itertools import product
+from collections.abc import Sequence
+from itertools import permutations, product
 
 import numpy as np
 
@@ -49,16 +50,35 @@ def between(places: Vector, units: Vector, count: int) -> Vector:
     return np.concatenate(parts) if parts else np.empty(0)
 
 
-def lattice(objectives: int, steps: int) -> Vector:
-    """Levels (objectives, k) of a lattice with so many steps from the middle to an anchor's level.
+def places(objectives: int, steps: int) -> list[tuple[int, ...]]:
+    """Places of a lattice, in steps from the middle, as far as lines from it meet the unit box.
 
-    >>> lattice(3, 1).shape, lattice(3, 2).shape
-    ((3, 1), (3, 7))
+    >>> len(places(3, 1)), len(places(3, 2))
+    (7, 19)
     """
     axis = range(-steps, steps + 1)
-    whole = [
+    return [
         (*most, last)
         for most in product(axis, repeat=objectives - 1)
         if (last := -sum(most)) in axis and max(*most, last) - min(*most, last) <= steps
     ]
-    return 1.0 / objectives + np.array(whole, dtype=float).T / steps
+
+
+def around(place: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """The places next to one.
+
+    >>> around((0, 0))
+    [(-1, 1), (1, -1)]
+    """
+    found = []
+    for up, down in permutations(range(len(place)), 2):
+        near = list(place)
+        near[up] += 1
+        near[down] -= 1
+        found.append(tuple(near))
+    return sorted(found)
+
+
+def level(place: Sequence[int], steps: int) -> Vector:
+    """Levels (objectives,) at a place."""
+    return 1.0 / len(place) + np.array(place, dtype=float) / steps

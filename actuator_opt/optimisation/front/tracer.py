@@ -7,14 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .. import lockstep
+from .. import kkt, lockstep
 from ..descents import FEASIBLE
 from ..evaluator import Evaluator, Point
+from ..newton import polish
 from ..problem import Problem, Vector
 from ..solver import solve
 from .curvature import hessians as hessians_at
 from .dominance import distances
-from .objectives import HIGHEST, Objectives
+from .objectives import Objectives
 
 BETTER = 1e-7
 """Normalised level by which another design must be better to be another valley."""
@@ -27,9 +28,6 @@ ROUNDS = 4
 
 CURVED = 2
 """Times that the curvature is taken anew where full steps do not settle."""
-
-ALONE = 8
-"""Most designs of one call that are searched for by themselves where common steps fail."""
 
 
 @dataclass(frozen=True)
@@ -74,29 +72,23 @@ class Tracer:
     ----------
     objectives : what is wanted
     ideal, width : of the normalisation
-    first : variables of a design (n,) to check gradients at and to take the first Hessian from
+    checked : an evaluator with checked gradients, see `Objectives.checked`
     """
 
-    def __init__(self, objectives: Objectives, ideal: Vector, width: Vector, first: Vector) -> None:
+    def __init__(
+        self, objectives: Objectives, ideal: Vector, width: Vector, checked: Evaluator
+    ) -> None:
         self.objectives = objectives
-        self._scale(ideal, width)
+        self._checked = checked
+        self.rescale(ideal, width)
         self.scale = float(self.evaluator.space.scale[-1])
-        at = self.from_x(first, HIGHEST / 2)
-        self.warnings = self.evaluator.check_gradients(self.evaluator.point(at))
         self.exact = lockstep.applicable(self.parametric, self.evaluator)
-        self.solves = 0
-
-    def _scale(self, ideal: Vector, width: Vector) -> None:
-        self.ideal, self.width = ideal, width
-        self.parametric = self.objectives.scaled(ideal, width)
-        self.evaluator = Evaluator(self.parametric.problem)
 
     def rescale(self, ideal: Vector, width: Vector) -> None:
         """Normalise otherwise; the designs found until then are of no more use."""
-        before = self.evaluator
-        self._scale(ideal, width)
-        self.evaluator.complex_works = before.complex_works
-        self.evaluator.difference_rows = before.difference_rows
+        self.ideal, self.width = ideal, width
+        self.parametric = self.objectives.scaled(ideal, width)
+        self.evaluator = self.like(self.parametric.problem)
 
     def from_x(self, x: Vector, t: float) -> Vector:
         """Coordinates (nf,) of variables (n,) at a level t."""
@@ -109,19 +101,62 @@ class Tracer:
 
     def unit(self, x: Vector) -> Vector:
         """Normalised objectives (objectives, k) of variables (n, k)."""
-        return (self.objectives.values(x) - self.ideal[:, None]) / self.width[:, None]
+        return self.normal(self.objectives.values(x))
+
+    def normal(self, values: Vector) -> Vector:
+        """Normalised ones of objectives (objectives, k)."""
+        return np.asarray((values - self.ideal[:, None]) / self.width[:, None])
+
+    def values(self, units: Vector) -> Vector:
+        """Objectives (objectives, k) of normalised ones."""
+        return units * self.width[:, None] + self.ideal[:, None]
 
     def at(self, level: Vector, way: Vector) -> Problem:
         """The problem at some levels."""
         return self.parametric.at(np.concatenate([level, way]))
 
-    def begin(self, x: Vector, level: Vector, way: Vector) -> Design:
-        """A design with its gradients, as a start for others; nothing is known of its curvature."""
-        own = self.unit(x[:, None])[:, 0]
-        moving = way > 0
-        t = float(((own - level)[moving] / way[moving]).max())
-        z = self.from_x(x, t)
-        return self.located(Start(level, way, z, np.eye(len(z))), np.append(x, t))
+    def begun(self, x: Vector) -> list[Design]:
+        """Designs of variables (n, k) at levels of their own; nothing is known of curvature."""
+        units = self.unit(x)
+        size = self.evaluator.space.size
+        return self._at_own(
+            [
+                Start(unit, np.ones(len(unit)), self.from_x(one, 0.0), np.eye(size))
+                for one, unit in zip(x.T, units.T, strict=True)
+            ]
+        )
+
+    def placed(self, designs: Sequence[Design]) -> list[Design]:
+        """The designs at levels of their own, which every design of a front is best at."""
+        if not designs:
+            return []
+        units = self.unit(np.stack([one.point.x[:-1] for one in designs], axis=1))
+        way = np.ones(len(units))
+        starts = [
+            Start(unit, way, self.to_t(one.point.z, 0.0), one.hessian)
+            for one, unit in zip(designs, units.T, strict=True)
+        ]
+        return self._at_own(starts)
+
+    def _at_own(self, starts: Sequence[Start]) -> list[Design]:
+        """The designs where starts are, with their gradients."""
+        z = np.stack([start.z for start in starts], axis=1)
+        if not self.exact:
+            x = self.evaluator.space.to_x(z)
+            return [self.located(start, one) for start, one in zip(starts, x.T, strict=True)]
+        points = lockstep.points_at(self.parametric, self.evaluator, z, self._parameters(starts))
+        return [self._design(s, p, s.hessian) for s, p in zip(starts, points, strict=True)]
+
+    def prices(self, one: Design) -> Vector:
+        """What a lower level of each objective costs the others at a design (objectives,)."""
+        m, count = len(self.objectives.problem.constraint_names), self.objectives.count
+        jacobian = self.evaluator.jacobian(one.point)
+        active = kkt.active_set(self.evaluator, one.point)
+        equalities = jacobian[1 + self.evaluator.constraint_count :]
+        held, _ = kkt.multipliers(jacobian[0], active, equalities)
+        every = np.zeros(self.evaluator.constraint_count)
+        every[active.constraint] = held[: len(active.constraint)]
+        return every[m : m + count]
 
     def solve(self, starts: Sequence[Start], known: Sequence[Design] = ()) -> list[Design | None]:
         """The design at the levels of each start; None where none is found.
@@ -130,34 +165,30 @@ class Tracer:
         """
         if not starts:
             return []
-        self.solves += len(starts)
         found: list[Design | None] = [None] * len(starts)
         if self.exact:
             found = self._follow(starts)
             left = [k for k, one in enumerate(found) if one is None]
             if known and left:
                 self._descend(starts, found, left, known)
-        left = [k for k, one in enumerate(found) if one is None]
-        for k in left if not self.exact else left[:ALONE] if known else ():
-            found[k] = self._alone(starts[k])
-        return found
+            return found
+        return [self._alone(start) for start in starts]
 
-    def exchange(self, designs: list[Design], others: Vector) -> list[Design]:
+    def exchange(self, designs: list[Design], others: Vector, rest: Vector) -> list[Design]:
         """The designs, with every one replaced that another one's variables are better for.
 
         Parameters
         ----------
         designs : as found
         others : variables (n, k) of more designs that meet every requirement
+        rest : normalised objectives of these (objectives, k)
         """
         lost: set[int] = set()
-        for _ in range(ROUNDS):
+        for _ in range(ROUNDS if designs else 0):
             x = np.concatenate(
                 [np.stack([d.point.x[:-1] for d in designs], axis=1), others], axis=1
             )
-            units = np.concatenate(
-                [np.stack([d.unit for d in designs], axis=1), self.unit(others)], axis=1
-            )
+            units = np.concatenate([np.stack([d.unit for d in designs], axis=1), rest], axis=1)
             better = []
             for k, one in enumerate(designs):
                 if k in lost:
@@ -198,7 +229,6 @@ class Tracer:
 
     def _descended(self, starts: Sequence[Start]) -> list[Design | None]:
         """The designs that feasible starts lead down to."""
-        self.solves += len(starts)
         if not self.exact:
             return [self._alone(start) for start in starts]
         return self._follow(starts)
@@ -240,18 +270,25 @@ class Tracer:
         left: list[int],
         known: Sequence[Design],
     ) -> None:
-        """Go down from the known design that is best at the levels."""
+        """Go down from the known design that is best at the levels, within trusted radii."""
         units = np.stack([one.unit for one in known], axis=1)
-        begun = []
+        begun, ways = [], []
         for k in left:
             moving = starts[k].way > 0
-            level, way = starts[k].level[moving, None], starts[k].way[moving, None]
-            t = ((units[moving] - level) / way).max(axis=0)
-            best = int(np.argmin(t))
-            z = self.to_t(known[best].point.z, float(t[best]))
-            begun.append(replace(starts[k], z=z, hessian=known[best].hessian))
-        for k, one in zip(left, self._follow(begun), strict=True):
-            found[k] = one
+            level, slope = starts[k].level[moving, None], starts[k].way[moving, None]
+            t = ((units[moving] - level) / slope).max(axis=0)
+            best = known[int(np.argmin(t))]
+            begun.append(self.to_t(best.point.z, float(t.min())))
+            ways.append(
+                lockstep.Descent(best.hessian, self.scale, self.evaluator.constraint_count, 1.0)
+            )
+        chosen = [starts[k] for k in left]
+        points = lockstep.descend(
+            self.parametric, self.evaluator, ways, np.stack(begun, axis=1), self._parameters(chosen)
+        )
+        for k, point, way in zip(left, points, ways, strict=True):
+            if point is not None:
+                found[k] = self._design(starts[k], point, way.hessian)
 
     def _alone(self, start: Start) -> Design | None:
         """One design by itself, by the sturdiest means."""
@@ -262,9 +299,16 @@ class Tracer:
             return None
         return self.located(start, best.x)
 
+    def polished(self, one: Design) -> Design:
+        """The design after exact Newton steps."""
+        own = self.like(self.at(one.level, one.way))
+        point = polish(own, own.point(one.point.z))
+        own.jacobian(point)
+        return self._design(Start(one.level, one.way, point.z, one.hessian), point, one.hessian)
+
     def located(self, start: Start, x: Vector) -> Design:
         """The design at variables with t (n + 1,), with its gradients."""
-        own = self._like(self.at(start.level, start.way))
+        own = self.like(self.at(start.level, start.way))
         point = own.point(own.space.to_z(x))
         own.jacobian(point)
         return self._design(start, point, start.hessian)
@@ -275,9 +319,9 @@ class Tracer:
         unit = start.level + start.way * point.objective - rows
         return Design(start.level, start.way, point, unit, hessian)
 
-    def _like(self, problem: Problem) -> Evaluator:
-        """An evaluator of a problem whose gradients are taken as those of the whole front."""
+    def like(self, problem: Problem) -> Evaluator:
+        """An evaluator of a problem whose gradients are taken as those checked."""
         own = Evaluator(problem)
-        own.complex_works = self.evaluator.complex_works
-        own.difference_rows = self.evaluator.difference_rows
+        own.complex_works = self._checked.complex_works
+        own.difference_rows = self._checked.difference_rows
         return own

@@ -1,0 +1,139 @@
+"""The designs of a front that are handed out: evenly spread, wide gaps closed or explained.
+
+Between two designs a front in one piece is at most as long as its levels there allow. Where levels
+close to each other lead to designs far apart the front jumps: nothing can lie between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...progress import tell
+from ..descents import RESIDUAL
+from ..problem import Vector
+from . import dominance, references
+from .line import between
+from .search import Search
+
+WIDEST = 3.0
+"""Largest gap between neighbours, over the median one."""
+
+MOST_ROUNDS = 6
+"""Most times that designs are put into wide gaps."""
+
+PIECES = 8
+"""Most pieces that a gap is split into at a time."""
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A wide gap between neighbours of a front, in objectives over their range.
+
+    Parameters
+    ----------
+    after : index of the design before it
+    size : distance of its two designs
+    reach : the most that the front may measure between them, by the levels tried
+    jump : whether that is no more than a median gap: the front is in pieces here
+    """
+
+    after: int
+    size: float
+    reach: float
+    jump: bool
+
+
+def chosen(search: Search, count: int) -> dominance.Indices:
+    """So many designs, farthest apart, along the first objective; all are optimal."""
+    kept = np.array([k for k in search.chosen() if search.residual(k) <= RESIDUAL], dtype=np.intp)
+    units = search.units[:, kept]
+    order = np.lexsort(units[::-1])
+    kept, units = kept[order], units[:, order]
+    if len(kept) <= count:
+        return kept
+    firm = [*np.argmin(units, axis=1).tolist(), *np.argmax(units, axis=1).tolist()]
+    if len(units) == 2:
+        jumps = [gap.after for gap in wide(search, kept) if gap.jump]
+        firm += [k + side for k in jumps for side in (0, 1)]
+    first = np.array(list(dict.fromkeys(firm))[:count], dtype=np.intp)
+    return kept[dominance.thinned(units, first, count)]
+
+
+def wide(search: Search, kept: dominance.Indices) -> list[Gap]:
+    """The wide gaps between designs of two objectives, in their order."""
+    units = search.units[:, kept]
+    sizes = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
+    reaches = np.array([float(_pieces(search, *two).sum()) for two in _pairs(kept)])
+    middle = float(np.median(np.minimum(sizes, reaches))) if len(sizes) else 0.0
+    return [
+        Gap(k, float(sizes[k]), float(reaches[k]), bool(reaches[k] <= middle))
+        for k in np.flatnonzero(sizes > WIDEST * middle).tolist()
+    ]
+
+
+def close(search: Search, count: int) -> None:
+    """Put designs of two objectives into wide gaps until there are none but jumps."""
+    for number in range(MOST_ROUNDS):
+        kept = chosen(search, count)
+        open_ = [gap for gap in wide(search, kept) if not gap.jump]
+        if not open_:
+            return
+        tell("closing gaps of the front", number / MOST_ROUNDS)
+        places = []
+        for gap in open_:
+            among = _among(search, kept[gap.after], kept[gap.after + 1])
+            levels = np.array([search.designs[k].level[0] for k in among])
+            more = references.between(levels, search.units[:, among], PIECES - 1)
+            places += more.tolist()
+        if not search.solve(between(search, places)):
+            return
+
+
+def middles(search: Search, count: int) -> list[int]:
+    """A design at the middle level of each wide gap, the widest first."""
+    kept, found = chosen(search, count), []
+    for gap in sorted(wide(search, kept), key=lambda one: -one.size):
+        among = _among(search, kept[gap.after], kept[gap.after + 1])
+        levels = [search.designs[k].level[0] for k in among]
+        middle = (levels[0] + levels[-1]) / 2
+        found.append(int(among[int(np.argmin(np.abs(np.subtract(levels, middle))))]))
+    return found
+
+
+def lost(search: Search, kept: dominance.Indices) -> int:
+    """Levels at which no design was found and that none is near: in a gap that is no jump."""
+    units = search.units[:, kept]
+    if len(units) > 2:
+        widest = dominance.nearest(units).max(initial=0.0)
+        plane = search.plane[:, kept]
+        levels = [level - level.mean() for level in search.lost]
+        return sum(bool(dominance.distances(plane, one).min() > widest) for one in levels)
+    ranges = [
+        sorted(search.designs[kept[gap.after + side]].level[0] for side in (0, 1))
+        for gap in wide(search, kept)
+        if not gap.jump
+    ]
+    return sum(any(low < a[0] < high for low, high in ranges) for a in search.lost)
+
+
+def _pairs(kept: dominance.Indices) -> Iterator[tuple[int, int]]:
+    return zip(kept[:-1].tolist(), kept[1:].tolist(), strict=True)
+
+
+def _among(search: Search, left: int, right: int) -> dominance.Indices:
+    """The designs at levels from those of one to those of another, in their order."""
+    levels = np.array([one.level[0] for one in search.designs])
+    low, high = sorted((levels[left], levels[right]))
+    order = np.argsort(levels, kind="stable")
+    within = (levels[order] >= low) & (levels[order] <= high)
+    return np.asarray(order[within], dtype=np.intp)
+
+
+def _pieces(search: Search, left: int, right: int) -> Vector:
+    """The most that the front may measure between neighbouring levels from one to another."""
+    among = _among(search, left, right)
+    levels = np.array([search.designs[k].level[0] for k in among])
+    return references.lengths(levels, search.units[:, among])
