@@ -97,7 +97,14 @@ TEXTS = {
     ),
     "short": written(
         shaken="    frequency: 900 Hz\n",
-        change=(("stroke: 110 mm", "stroke: 1.5 mm"), ("mass: 20 kg", "mass: 0.05 kg")),
+        change=(
+            ("stroke: 110 mm", "stroke: 1.5 mm"),
+            ("mass: 20 kg", "mass: 0.05 kg"),
+            (
+                "material: epoxy_structural\n  length: 20 mm",
+                "material: epoxy_structural\n  length: 8 mm",
+            ),
+        ),
     ),
     "damped": written(
         shaken="    frequency: 0.5 Hz\n",
