@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import actuator_opt as ao
-from actuator_opt.reporting.compare_figure import comparison_figure
+from actuator_opt.reporting.compare_figure import comparison_figure, comparison_ucurves
 from actuator_opt.reporting.compare_text import comparison_text, sentences
 
 SMALL = BENCH.replace("  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n", "")
@@ -110,6 +110,7 @@ def test_any_pair_of_shipped_designs(shipped):
             assert max(map(len, text.splitlines())) <= width, (a.name, b.name)
         assert comparison_text(found, unicode=False).isascii()
         _require_clear(comparison_figure(found))
+        _require_clear(comparison_ucurves(found))
 
 
 def _require_clear(ink):
@@ -136,6 +137,21 @@ def test_long_names_are_whole_in_the_figure(shipped):
     said = " ".join(mark["text"] for mark in ink.marks if "text" in mark)
     assert said.count(long) == 6
     assert "oil in chamber A" in said
+
+
+def test_stiffness_over_the_stroke_of_designs(shipped):
+    """The least stiffness and what is required of whom stand with the curves; six at most."""
+    path = DESIGNS / "knee.yaml"
+    stiffer = ao.evaluate(ao.read(path, set={"requirements.stiffness_min.min": "11 kN/mm"}))
+    others = [one for name, one in shipped.items() if name != "knee"]
+    found = ao.compare(shipped["knee"], stiffer, *others[:5])
+    ink = comparison_ucurves(found)
+    _require_clear(ink)
+    said = [mark["text"] for mark in ink.marks if "text" in mark]
+    least = stiffer.metrics["stiffness_min"].value / 1e6
+    assert f"B: least {least:.4g} kN/mm" in said
+    assert any(one.startswith("required") and one.endswith("11 kN/mm of B") for one in said)
+    assert sum(": least " in one for one in said) == 6
 
 
 def test_many_designs_at_once(shipped):
@@ -183,6 +199,7 @@ def test_runs_are_compared_as_they_were(tmp_path, monkeypatch):
     assert {row["path"] for row in data["differences"]} >= {"cylinder.bore"}
     assert data["designs"][1]["origin"].startswith("run ")
     assert sorted(one.name for one in (tmp_path / "out").iterdir()) == [
+        "comparison-stiffness.png", "comparison-stiffness.svg",
         "comparison.png", "comparison.svg",
     ]  # fmt: skip
     assert run("compare", design, "last", "--set", "load.mass=3 kg").code == 2

@@ -19,7 +19,7 @@ from actuator_opt.reporting.ink import Ink
 from actuator_opt.reporting.sweep_contour import contour_figure
 from actuator_opt.reporting.sweep_figures import sweep_figures
 from actuator_opt.reporting.sweep_marks import Drawn
-from actuator_opt.reporting.sweep_ucurves import STYLES, _differences
+from actuator_opt.reporting.ucurves import STYLES, differences_drawn
 from actuator_opt.variants import sample
 from actuator_opt.variants.field import field
 from actuator_opt.variants.sample import Pool, better, front
@@ -289,7 +289,7 @@ def test_differences_of_curves_are_read_off_their_own_axis():
     """A tenth stiffer everywhere stands at 10 %, as far as both curves go; the first at 0."""
     ink = Ink(180.0, 200.0)
     curves = [([0.0, 10.0, 30.0], [4.0, 2.0, 3.0]), ([0.0, 20.0, 40.0], [4.4, 2.75, 5.0])]
-    _differences(ink, 20.0, (0.0, 40.0), curves)
+    differences_drawn(ink, 20.0, (0.0, 40.0), curves, "design 1")
     ticks = {m["text"]: m["at"][1] for m in ink.marks if m.get("anchor") == "right"}
     first, second = (m["path"][0] for m in ink.marks if m.get("pen") == STYLES[0]["pen"])
     assert {y for _, y in first} == {ticks["0"]}

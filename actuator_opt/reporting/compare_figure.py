@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from ..evaluation.comparison import Comparison, Question
+from ..quantities import METRICS
 from .compare_text import PART_TITLES, PART_UNITS, answer, duties, named, part_name
 from .fallback import wrap
 from .figures import AREAS, fills
 from .ink import BLACK, GREY, Ink, text_width
-from .text import number, pretty
+from .text import limit_text, number, pretty
+from .ucurves import MOST, STYLES, Required, curves_drawn, has_points
 
 _WIDTH, _RIGHT = 180.0, 20.0
 _BAR, _STEP, _LINE = 5.6, 7.6, 4.2
@@ -42,6 +44,48 @@ def comparison_figure(found: Comparison) -> Ink:
         _bars(ink, found, question, top)
         top += height
     return ink
+
+
+def comparison_ucurves(found: Comparison) -> Ink | None:
+    """Stiffness over the stroke of the first `MOST` designs; None where none has any."""
+    some = list(zip(found.labels, found.origins, found.evaluations, strict=True))[:MOST]
+    if not any(has_points(one.curve) for _, _, one in some):
+        return None
+    ink = Ink(_WIDTH, 400.0)
+    ink.text(4.0, 4.0, "Stiffness over the stroke", size=9.0, bold=True)
+    top = _TOP + 1.0
+    for (label, origin, one), style in zip(some, STYLES, strict=False):
+        ink.line((4.0, top), (9.0, top), **style)
+        ink.text(10.5, top, label, size=7.5, bold=True)
+        for line in wrap(named(one, origin), _WIDTH - 18.0, 7.0):
+            ink.text(15.5, top, line, size=7.0)
+            top += _LINE
+    labels = []
+    for label, _, one in some:
+        metric = one.metrics["stiffness_min"]
+        value = "" if metric.value is None else f": least {number(metric.value / 1e6, 4)} kN/mm"
+        labels.append(label + value)
+    curves = [one.curve for _, _, one in some]
+    ink.height = curves_drawn(ink, top + 7.0, curves, labels, _required(found), "A")
+    return ink
+
+
+def _required(found: Comparison) -> list[Required]:
+    """The stiffness asked for, and of which designs where not of all alike."""
+    asked: dict[float, list[str]] = {}
+    for _, sense, rows in found.limits():
+        for label, row in zip(found.labels, rows, strict=True):
+            if row is not None and row.metric == "stiffness_min" and sense == "min":
+                asked.setdefault(row.limit, []).append(label)
+    every = len(found.labels)
+    return [
+        Required(
+            value,
+            f"required {limit_text(METRICS['stiffness_min'], 'min', value)}"
+            + (f" of {', '.join(who)}" if len(who) < every else ""),
+        )
+        for value, who in asked.items()
+    ]
 
 
 def _height(found: Comparison, question: Question) -> float:

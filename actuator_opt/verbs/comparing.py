@@ -116,8 +116,16 @@ def comparison_json(found: Comparison) -> dict[str, Any]:
 
 
 def draw_comparison(found: Comparison, folder: str | Path = "reports") -> list[Path]:
-    """Write comparison.png and comparison.svg: mass, compliance and friction part by part."""
-    from ..reporting.compare_figure import comparison_figure
+    """Write PNG and SVG of a comparison.
+
+    ``comparison``: mass, compliance and friction part by part; ``comparison-stiffness``: the
+    stiffness over the stroke of the first six designs, where any has it.
+    """
+    from ..reporting.compare_figure import comparison_figure, comparison_ucurves
     from ..reporting.image import write_ink
 
-    return write_ink(comparison_figure(found), Path(folder), "comparison")
+    paths = write_ink(comparison_figure(found), Path(folder), "comparison")
+    curves = comparison_ucurves(found)
+    if curves is not None:
+        paths += write_ink(curves, Path(folder), "comparison-stiffness")
+    return paths
