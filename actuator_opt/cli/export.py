@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from . import streams
-from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Seed, Set
+from .options import REPORTS, DesignFile, Json, PluginFile, Quiet, Seed, Set
 from .shared import check_targets, leave_by, read_actuator, say_files
 
 
@@ -18,8 +19,17 @@ def export(
         typer.Option("--format", metavar="step|dxf|xlsx", help="File to write. Repeatable."),
     ] = None,
     sets: Set = None,
-    out: Out = REPORTS,
-    date: Date = None,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Folder of the files.")
+    ] = REPORTS,
+    date: Annotated[
+        str | None,
+        typer.Option(
+            "--date",
+            metavar="YYYY-MM-DD",
+            help="Date to write into the files; default: none, or that of SOURCE_DATE_EPOCH.",
+        ),
+    ] = None,
     seed: Seed = 0,
     plugin: PluginFile = None,
     as_json: Json = False,

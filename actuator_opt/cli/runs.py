@@ -13,7 +13,7 @@ from . import streams
 from .options import Json, Quiet
 
 app = typer.Typer(
-    help="Recorded runs: list, show, delete. Each optimise, pareto and sweep leaves one.",
+    help="Recorded runs: list, show, delete, prune. Each optimise, pareto and sweep leaves one.",
     no_args_is_help=True,
 )
 RunName = Annotated[

@@ -154,7 +154,7 @@ class Drawn:
         """The best designs; raises `InputError` where none is feasible."""
         if not self.swept.best:
             message = f"no feasible design among {self.swept.requested} variants"
-            raise InputError(Diagnostic(message, "widen what varies, or draw a contour"))
+            raise InputError(Diagnostic(message, "widen what varies, or draw a contour of a grid"))
         return self.swept.best
 
     def feasible(self, most: int) -> tuple[Rows, list[str]]:

@@ -50,7 +50,9 @@ def _nothing(swept: Swept) -> str:
         return "None of them has a finite answer."
     name, times = missed[0]
     whom = "them" if swept.feasible is not None else f"{sum(swept.missed.values())} looked at"
-    words = f"None meets every requirement and check; {name} is missed most, by {times} of {whom}"
+    words = (
+        f"None meets every requirement and check; {name} is missed furthest in {times} of {whom}"
+    )
     return f"{words}. Widen what varies, or see why with `optimise`."
 
 
