@@ -43,7 +43,7 @@ def list_runs(
         return
     for fault in faults:
         streams.err(str(fault))
-    if found:
+    if found and not quiet:
         from ..reporting.runs_text import runs_table
 
         streams.out(runs_table([(one.id, one.head) for one in found], **streams.style()), end="")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..errors import ActuatorError, Diagnostic, ExitCode, UsageError
+from ..errors import ActuatorError, Diagnostic, ExitCode, InputError, UsageError
 from . import streams
 from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Seed, Set
 from .shared import check_targets, command_line, keep_record, read_actuator, say_files
@@ -171,8 +171,8 @@ def _tell(
     """Results as text, then the files, then what could not be drawn."""
     from ..reporting.sweep_text import sweep_text
 
-    streams.out(sweep_text(found, **streams.style()))
     if not quiet:
+        streams.out(sweep_text(found, **streams.style()))
         for path in filter(None, tables):
             streams.err(f"wrote {path}")
         say_files(files)
@@ -183,16 +183,19 @@ def _tell(
 def _drawn(
     found: Swept, figures: list[str], show: list[str], out: Path
 ) -> tuple[list[dict[str, str]], ActuatorError | None]:
-    """The files of figures, or the fault that is told once the sweep's results are."""
+    """The files of figures, and the faults of the others, told once the sweep's results are."""
     from .. import verbs
 
-    if not figures:
-        return [], None
-    try:
-        paths = verbs.draw_sweep(found, figures, show=show, out=out)
-    except ActuatorError as error:
-        return [], error
-    return [{"path": str(path)} for path in paths], None
+    files: list[dict[str, str]] = []
+    faults: dict[str, Diagnostic] = {}
+    for figure in dict.fromkeys(figures):
+        try:
+            paths = verbs.draw_sweep(found, [figure], show=show, out=out)
+        except ActuatorError as error:
+            faults |= {str(one): one for one in error.diagnostics}
+        else:
+            files += [{"path": str(path)} for path in paths]
+    return files, InputError(list(faults.values())) if faults else None
 
 
 def _kept(reduce: str | None) -> int:

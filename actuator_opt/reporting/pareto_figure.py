@@ -21,6 +21,9 @@ def front_figure(found: ParetoFront) -> Ink:
     for k, other in enumerate(others):
         box = (16.0 + k * wide, 12.0, wide - 18.0, HEIGHT - 24.0)
         _panel(ink, box, found, (first, 0), (other, k + 1))
+    if any(mark.get("fill") == PALE for mark in ink.marks):
+        words = "grey: designs passed on the way, which others better"
+        ink.text(WIDTH - 2.0, HEIGHT - 1.6, words, size=6.0, anchor="right", color=GREY)
     return ink
 
 
@@ -62,7 +65,8 @@ def _values(found: ParetoFront, wish: Wish) -> list[float]:
 
 
 def _label(wish: Wish) -> str:
-    return f"{wish.metric.replace('_', ' ')} ({'least' if wish.sense == 'min' else 'most'} wanted)"
+    better = "less" if wish.sense == "min" else "more"
+    return f"{wish.metric.replace('_', ' ')} ({better} is better)"
 
 
 def _range(values: list[float], wish: Wish, found: ParetoFront) -> tuple[float, float]:

@@ -48,7 +48,7 @@ def document(found: Uncertainty, origin: Origin) -> dict[str, Any]:
 def verdict(found: Uncertainty) -> dict[str, Any]:
     """Whether the design as it stands meets its requirements, and how many do."""
     met = sum(one.margin is not None and one.margin >= -1e-6 for one in found.required)
-    state, words = ("met", "REQUIREMENTS MET") if found.met else ("missed", "REQUIREMENTS MISSED")
+    state, words = ("met", "MET AS IT STANDS") if found.met else ("missed", "MISSED AS IT STANDS")
     lines = [
         f"as it stands: {met} of {len(found.required)} requirements met",
         f"yield {rows.percent(found.rate.value)}",
@@ -75,9 +75,9 @@ def _tiles(found: Uncertainty) -> list[dict[str, Any]]:
         tiles.append(tile(short(worst.name.replace("_", " "), 28), margin, note))
         ranked = found.of_output(worst.name)[0]
         if ranked and ranked[0].total is not None:
-            share = f"{100 * ranked[0].total:.0f} %"
+            share = f"{100 * ranked[0].total:.0f} % of its variance"
             name = short(ranked[0].path.rpartition(".")[2].replace("_", " "), 28)
-            tiles.append(tile("scatters most by", share, name))
+            tiles.append(tile("what scatters it most", share, name))
     return tiles
 
 

@@ -315,7 +315,9 @@ class _Way:
                 f"{_none(found)} keeps the reserves with which all limits hold with "
                 f"{_percent(self.target)}: {self._wanting()}. At the design shown they hold "
                 f"in {shown} of {made.samples} independent draws; without reserves "
-                f"{quantity.label} is {before}, and {_percent(made.nominal_rate)} hold{rest}"
+                f"{quantity.label} is {before}, and {_percent(made.nominal_rate)} hold{rest}. What "
+                "would be enough is told for these reserves, which grow with what a limit allows: "
+                "ask again with it"
             )
         if not made.reached:
             return (

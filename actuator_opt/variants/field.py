@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import Diagnostic, UsageError
+from ..evaluation.build import TOLERANCE
 from ..evaluation.many import margins_of
 from ..numeric import Array
 from .chunk import Study
@@ -216,6 +217,7 @@ def field(study: Study) -> Field:
         failed[k, list(one.rows.failures)] = True
     mesh = np.stack([part.ravel() for part in np.meshgrid(xs, ys, indexing="ij")])
     margins = margins_at(study, mesh).reshape(-1, len(xs), len(ys))
+    margins[(margins < 0) & (margins >= -TOLERANCE)] = 0.0  # met, as in every verdict
     margins[:, failed] = np.nan
     failed |= _cut_away(study, margins)
     rows = np.stack([one.rows.numbers for one in chunks])

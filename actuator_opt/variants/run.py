@@ -119,9 +119,12 @@ def _chunk_size(study: Study) -> int:
 
 def _explain(found: Swept) -> None:
     """Count what some designs miss, where none is feasible and few were evaluated."""
-    count, part = found.study.plan.count, max(CHUNK // LOOKS, 1)
+    count, part = found.study.plan.count, CHUNK // LOOKS
     found.missed = {}
-    for first in dict.fromkeys(np.linspace(0, count - 1, LOOKS).astype(int).tolist()):
+    if count <= CHUNK:
+        found.count_missed(found.study.chunk(0, count))
+        return
+    for first in np.linspace(0, count - part, LOOKS).astype(int).tolist():  # at least `part` apart
         found.count_missed(found.study.chunk(first, part))
 
 

@@ -301,6 +301,7 @@ def main() -> None:
     given = parser.parse_args()
     study = compute(quick=given.quick)
     show(width_rows(study))
+    print("g per mm: mean slope from the row above.\n")
     show(change_rows(study))
     print(*lead(study), binds(study), sep="\n")
     if given.out is not None:

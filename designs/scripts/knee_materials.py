@@ -5,13 +5,13 @@ each limit costs there, what a thin laminate would have promised, and how the ma
 gap and the stiffness asked for, are computed too. knee_materials.typ makes the report of them: a
 table, a figure and a discussion of what decides.
 
-    python designs/scripts/knee_materials.py            # prints the masses
-    python designs/scripts/knee_materials.py reports    # and writes the report there
+    python designs/scripts/knee_materials.py                  # prints the masses
+    python designs/scripts/knee_materials.py --out reports    # and writes the report there
 """
 
 from __future__ import annotations
 
-import sys
+import argparse
 from functools import cache
 from math import ceil, floor, inf
 from pathlib import Path
@@ -459,11 +459,14 @@ def table(study: Data) -> str:
 
 
 def main() -> None:
-    """Print the masses; write the report into the folder named on the command line."""
+    """Print the masses; with ``--out`` write the report."""
+    parser = argparse.ArgumentParser(description="what a wall of each material costs in grams")
+    parser.add_argument("--out", type=Path, help="folder to write knee_materials.pdf into")
+    folder = parser.parse_args().out
     study = compute()
     print(table(study))
-    if sys.argv[1:]:
-        print(write(study, Path(sys.argv[1])), "sheets")
+    if folder is not None:
+        print(write(study, folder), "sheets")
 
 
 if __name__ == "__main__":

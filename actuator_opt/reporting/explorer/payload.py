@@ -82,7 +82,8 @@ def _columns(explored: Explored) -> list[dict[str, Any]]:
         quantity = quantity_of(column.name, study.design)
         shown = quantity.to_display(numbers[:, k])
         found.append(_column(column.name, column.name, quantity.unit, np.asarray(shown)))
-    margin = _column("least_margin", "least margin of all", "%", 100 * numbers[:, -3])
+    percent = np.round(100 * numbers[:, -3], 9) + 0.0  # no rounding of zero on the axis
+    margin = _column("least_margin", "least margin of all", "%", percent)
     found.append(margin | {"better": MORE_IS_BETTER})
     for k, name in enumerate(study.metrics, count):
         quantity = study.quantity(name)
