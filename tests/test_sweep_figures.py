@@ -97,6 +97,21 @@ def test_the_hatched_side_is_the_missed_one(swept):
         assert (inside == missed)[inner].all(), swept.study.limits[one.number]
 
 
+def test_what_is_just_met_is_not_hatched():
+    """Nodes that meet a limit to rounding count as met, as in every verdict."""
+    vary = ["retention.length=18.6..21 mm:5", "caps.thickness=5.6..6.4 mm:5"]
+    near = ao.evaluate(ao.read(KNEE, set=NEAR))
+    limit = near.metrics["seal_squeeze"].value * (1 + 1e-12)
+    changes = NEAR | {"requirements.seal_squeeze.min": str(limit)}
+    swept = ao.sweep(ao.read(KNEE, set=changes), vary)
+    grid = field(swept.study)
+    number = swept.study.limits.index("seal_squeeze")
+    assert (grid.margins[number] > 0).all()
+    assert number not in {one.number for one in grid.boundaries()}
+    assert grid.room[number] > 0
+    assert not grid.room[swept.study.limits.index("stiffness_min")]
+
+
 def test_a_limit_that_varies_has_its_boundary_too(knee):
     """Where the limit is an axis, the line is the metric itself."""
     vary = ["requirements.stiffness_min.min=8..12 kN/mm:5", "cylinder.bore=20.6..22 mm:5"]

@@ -51,7 +51,8 @@ class Field:
 
     `rows` are those of the sweep, (nodes, nodes, columns), NaN where a design failed; `margins`
     are (limits, nodes, nodes), NaN where there is none; `failed` are nodes without a design, for a
-    reason of its own or a wall of less than nothing. `thinned` says that the sweep had more nodes.
+    reason of its own or a wall of less than nothing. Margins of limits that some nodes just meet
+    have `room`, (limits,): what still counts as met. `thinned`: the sweep had more nodes.
     """
 
     study: Study
@@ -60,6 +61,7 @@ class Field:
     rows: Array
     margins: Array
     failed: Array
+    room: Array
     thinned: bool
 
     def metric(self, name: str) -> Array:
@@ -144,7 +146,7 @@ class Field:
                 break
             t[at] = (a - f * (b - a) / np.where(g == f, 1.0, g - f))[at]
             points = low[at] + t[at, None] * (high - low)[at]
-            value = margins_at(self.study, points.T)[number]
+            value = margins_at(self.study, points.T)[number] + self.room[number]
             value = np.clip(np.where(np.isnan(value), -FAR, value), -FAR, FAR)
             same = (value < 0) == (g[at] < 0)
             f[at] = np.where(same, f[at] / 2, g[at])
@@ -217,9 +219,11 @@ def field(study: Study) -> Field:
         failed[k, list(one.rows.failures)] = True
     mesh = np.stack([part.ravel() for part in np.meshgrid(xs, ys, indexing="ij")])
     margins = margins_at(study, mesh).reshape(-1, len(xs), len(ys))
-    margins[(margins < 0) & (margins >= -TOLERANCE)] = 0.0  # met, as in every verdict
+    just = np.abs(margins) <= TOLERANCE  # met, as in every verdict
+    room = np.where(just.any(axis=(1, 2)), TOLERANCE, 0.0)
+    margins += room[:, None, None]
     margins[:, failed] = np.nan
     failed |= _cut_away(study, margins)
     rows = np.stack([one.rows.numbers for one in chunks])
     thinned = any(len(one) > FINEST for one in values)
-    return Field(study, xs, ys, rows, margins, failed, thinned)
+    return Field(study, xs, ys, rows, margins, failed, room, thinned)
