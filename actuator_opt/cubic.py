@@ -53,8 +53,11 @@ def cubic_roots(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> 
 
 
 def _outer_root(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> np.ndarray:
-    """A real root of each cubic: the one beyond its inflection, on the side where it lies."""
-    x = square * (-1 / 3)
+    """A real root of each cubic: the one beyond its inflection, on the side where it lies.
+
+    At a triple root slope and value are rounding alone: no step passes the inflection.
+    """
+    x = inflection = square * (-1 / 3)
     value, rise = _value(x, square, slope, constant)
     distance, falls = np.cbrt(np.abs(value)), np.sqrt(np.maximum(-rise, 0.0))
     distance = np.where(falls > 0, BEYOND * np.maximum(distance, falls), distance)
@@ -66,6 +69,7 @@ def _outer_root(square: np.ndarray, slope: np.ndarray, constant: np.ndarray) -> 
         value, rise = _value(x, square, slope, constant)
         with np.errstate(all="ignore"):
             following = x - value / rise / SHY
+        following = np.where(side * (following - inflection) > 0, inflection, following)
         going &= side * (following - x) > 0
         if not going.any():
             break

@@ -152,6 +152,19 @@ def test_cubics_are_zero_at_their_roots(rows):
     assert (found.imag.sum(axis=-1) == 0).all()
 
 
+@pytest.mark.parametrize("apart", [0.0, 1e-12, 1e-8, 1e-4])
+def test_roots_of_a_cubic_all_but_in_one_place(apart):
+    """Where its slope is rounding alone the roots still make the coefficients."""
+    random = np.random.default_rng(0)
+    near = 1 + apart * random.normal(size=(3, 50_000))
+    x, y, z = near * 10 ** random.uniform(-3, 3, 50_000)
+    square, slope, constant = -(x + y + z), x * y + y * z + z * x, -x * y * z
+    x, y, z = np.moveaxis(polynomial.roots((constant, slope, square, np.ones(50_000))), -1, 0)
+    np.testing.assert_allclose(-(x + y + z), square, rtol=1e-14)
+    np.testing.assert_allclose(x * y + y * z + z * x, slope, rtol=1e-14)
+    np.testing.assert_allclose(-x * y * z, constant, rtol=1e-14)
+
+
 @pytest.mark.parametrize("root", [-3.0, 0.0, 1e-5, 7e6])
 def test_multiple_roots_of_a_cubic(root):
     """Three roots in one place, and two beside another, as far as their rounding allows."""

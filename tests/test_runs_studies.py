@@ -104,6 +104,24 @@ def test_a_sweep_is_recorded_without_its_rows(folder, design, tmp_path):
     assert run("runs", "list", "--command", "sweep", "--json").json["runs"][0]["met"] is True
 
 
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [
+        ("requirements.burst_factor.min=2..3:2", "2 to 3, 2 steps"),
+        ("requirements.stiffness_min.min=1,2 kN/mm", "1 kN/mm, 2 kN/mm"),
+        ("materials.al_7075_t6.youngs_modulus=70,72 GPa", "70 GPa, 72 GPa"),
+        ("load_cases[0].speed=0.1,0.2 m/s", "0.1 m/s, 0.2 m/s"),
+    ],
+)
+def test_every_number_that_varied_is_shown(folder, design, vary, words):
+    """Of the design, of a limit and of a material, in the unit people read."""
+    done = run("sweep", design, "--vary", vary, "--json")
+    assert done.code in (0, 1), done.out
+    shown = run("runs", "show", "last")
+    assert (shown.code, shown.err) == (0, "")
+    assert words in shown.out
+
+
 def test_the_record_of_a_large_sweep_stays_small(folder, design, monkeypatch):
     """Whatever is kept or fails: a few best designs and the commonest reasons."""
     small = swept(design, "--reduce", "best:1")
@@ -311,6 +329,24 @@ def test_own_metrics_travel_with_the_record(folder, design, tmp_path, monkeypatc
     for verb in ("report", "explore"):
         assert "has changed since" in told(verb, "last", "--out", tmp_path / "c")
     assert run("explore", "last", "--plugin", plugin, "--out", tmp_path / "c").code == 0
+
+
+def test_a_sweep_by_an_own_metric(folder, design, tmp_path):
+    """As objective and as requirement, whatever varies: numbers, texts, temperatures set apart."""
+    plugin = tmp_path / "own.py"
+    plugin.write_text(OWN)
+    text = SMALL.replace("minimise: mass", "minimise: slenderness")
+    design.write_text(
+        text.replace("requirements:\n", "requirements:\n  slenderness:\n    max: 9\n")
+    )
+    more = ["--vary", "fluid.temperature=20,95 degC", "--figure", "ucurves", "--out", tmp_path]
+    found = swept(design, "--plugin", plugin, "--store", tmp_path / "rows.db", *more)
+    assert found["failed"] == 0
+    best = found["best"][0]
+    stroke = ao.read(design, plugins=[plugin]).design.cylinder.stroke
+    slender = stroke / best["variables"]["cylinder.bore"]
+    assert best["metrics"]["slenderness"] == pytest.approx(slender, rel=1e-12)
+    assert run("runs", "show", "last").code == run("report", "last", "--out", tmp_path).code == 0
 
 
 @pytest.mark.parametrize("kind", ["file", "device"])

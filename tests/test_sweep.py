@@ -17,8 +17,9 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
+from actuator_opt.database import Rows
 from actuator_opt.errors import InputError, UsageError
-from actuator_opt.variants import chunk, run
+from actuator_opt.variants import Swept, chunk, run
 
 KNEE = "designs/knee.yaml"
 STEEL = "designs/steel_baseline.yaml"
@@ -141,6 +142,51 @@ def screened_and_whole_agree(more: str, engine: str) -> None:
     assert [one.number for one in reduced.best] == [one.number for one in every.best]
     for one, other in zip(reduced.best, every.best, strict=True):
         assert one.objective == other.objective
+
+
+def aimed(tmp_path, objective):
+    """The knee with room at every limit and another objective."""
+    file = tmp_path / "aimed.yaml"
+    text = Path(KNEE).read_text(encoding="utf-8")
+    assert text.count("minimise: mass") == 1
+    file.write_text(text.replace("minimise: mass", objective), encoding="utf-8")
+    return ao.read(file, set=NEAR)
+
+
+@pytest.mark.parametrize(
+    "objective", ["minimise: bearing_factor", "maximise: bearing_pressure", "maximise: push_force"]
+)
+def test_a_screen_promises_the_objective_of_the_rows(objective, tmp_path, monkeypatch):
+    """Also where rows tell the worst of places and cases by another sense than the objective's."""
+    monkeypatch.setattr(run, "REDUCED", 256)
+    monkeypatch.setattr(chunk, "WORTH", 100)
+    design = aimed(tmp_path, objective)
+    vary = [*WAYS, "rod.outer_diameter=10.8..11.2 mm", "piston.length=9..12 mm"]
+    how = {"method": "lhs", "n": 2000, "seed": 4, "keep": 7}
+    every = ao.sweep(design, vary, **how)
+    reduced = ao.sweep(design, vary, reduce=True, **how)
+    assert every.feasible > 100
+    assert [one.number for one in reduced.best] == [one.number for one in every.best]
+
+
+def test_an_objective_without_a_value_is_refused(tmp_path):
+    """A sweep by a metric that the design does not have would call any design the best."""
+    with pytest.raises(InputError, match="leakage cannot be an objective here"):
+        ao.sweep(aimed(tmp_path, "minimise: leakage"), WAYS, method="lhs", n=10)
+
+
+def test_designs_without_a_value_of_the_objective_are_not_the_best(knee):
+    """They are feasible, and stand behind every other, in one chunk and over chunks."""
+    swept = ao.sweep(knee, WAYS, method="sobol", n=64, seed=1)
+    study, place = swept.study, swept.study.place("mass")
+    rows = study.chunk(0, 64).rows.numbers
+    rows[np.arange(64) % 7 > 0, place] = np.nan
+    found = Swept(study, 64)
+    for first in range(0, 64, 16):
+        found.add(study.judged(first, Rows(rows[first : first + 16], {}), 16), 5)
+    assert found.feasible == swept.feasible > 10
+    masses = rows[rows[:, -1] == 1, place]
+    assert [one.objective for one in found.best] == np.sort(masses[~np.isnan(masses)])[:5].tolist()
 
 
 def test_processes_do_not_change_anything(monkeypatch, tmp_path):

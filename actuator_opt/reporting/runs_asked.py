@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..quantities import INPUTS, of_metric
+from ..quantities import INPUTS, MATERIAL_PROPERTIES, METRICS, Quantity, of_metric
 from .console import Column, Console
 from .text import DASH
 
@@ -38,7 +38,7 @@ def _values(axis: Mapping[str, Any]) -> str:
     if axis["values"] is None:
         told = [*axis["texts"]]
     else:
-        told = [INPUTS[axis["quantity"]].text(value, 6) for value in axis["values"]]
+        told = [_quantity(axis).text(value, 6) for value in axis["values"]]
     if axis["range"]:
         steps = "" if axis["steps"] is None else f", {axis['steps']} steps"
         return f"{told[0]} to {told[1]}{steps}"
@@ -62,7 +62,7 @@ def sweep_lines(head: Mapping[str, Any], body: Mapping[str, Any], console: Conso
     if not best:
         return []
     goal = [name for name in [head["objective"]["metric"]] if name in best[0]["metrics"]]
-    axes = {axis["path"]: axis["quantity"] for axis in body["plan"]["axes"]}
+    axes = {axis["path"]: axis for axis in body["plan"]["axes"]}
     columns = [
         Column("", "right"),
         *(Column(path, "right", flexible=True) for path in axes),
@@ -70,14 +70,21 @@ def sweep_lines(head: Mapping[str, Any], body: Mapping[str, Any], console: Conso
     ]
     cells = []
     for place, one in enumerate(best, 1):
-        values = [_shown(one["variables"][path], name) for path, name in axes.items()]
+        values = [_shown(one["variables"][path], axis) for path, axis in axes.items()]
         metrics = [of_metric(name).text(one["metrics"][name], 5) for name in goal]
         cells.append([str(place), *values, *metrics])
     return ["", *console.table(columns, cells)]
 
 
-def _shown(value: Any, quantity: str | None) -> str:
-    return str(value) if quantity is None else INPUTS[quantity].text(value, 5)
+def _shown(value: Any, axis: Mapping[str, Any]) -> str:
+    return str(value) if axis["values"] is None else _quantity(axis).text(value, 5)
+
+
+def _quantity(axis: Mapping[str, Any]) -> Quantity:
+    """What the numbers of an axis are: of the design, of a limit or of a material."""
+    tables = {"requirements": METRICS, "materials": MATERIAL_PROPERTIES}
+    known = tables.get(axis["path"].partition(".")[0], INPUTS)
+    return known.get(axis["quantity"]) or of_metric(axis["quantity"])
 
 
 def front_lines(head: Mapping[str, Any], body: Mapping[str, Any], console: Console) -> list[str]:

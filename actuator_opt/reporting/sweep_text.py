@@ -45,6 +45,8 @@ def counts(swept: Swept) -> str:
 
 
 def _nothing(swept: Swept) -> str:
+    if swept.feasible:
+        return f"None of the {swept.feasible} feasible ones has a value of the objective."
     missed = sorted(swept.missed.items(), key=lambda one: (-one[1], one[0]))
     if not missed:
         return "None of them has a finite answer."

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from ..design import with_values
 from ..errors import Diagnostic, InputError
-from ..evaluation import evaluate, prepare
+from ..evaluation import evaluate
 from .fallback import wrap
 from .ink import Ink
 from .sweep_marks import Drawn, heading, value_words
@@ -24,9 +23,8 @@ def ucurves_figure(drawn: Drawn) -> Ink:
     """
     curves, labels = [], []
     for k, best in enumerate(drawn.bests()[:MOST]):
-        values = drawn.study.values(best.number)
-        design = with_values(drawn.study.design, dict(values))
-        curves.append(evaluate(prepare(design, plugins=drawn.study.plugins)).curve)
+        design = drawn.study.designs.made(drawn.study.values(best.number))
+        curves.append(evaluate(design).curve)
         said = value_words(drawn.goal, float(drawn.goals(drawn.best(k))[0]))
         labels.append(f"{k + 1}: {said}")
     if not any(map(has_points, curves)):

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -13,8 +15,10 @@ from ..design.materials import load_library
 from ..design.paths import canonical, get
 from ..errors import Diagnostic, InputError, UsageError
 from ..numeric import Array
+from ..quantities import Quantity
 from ..suggest import shown
 
+Metrics: TypeAlias = Mapping[str, Quantity] | None
 _RANGE = re.compile(r"(?P<first>.+?)\.\.(?P<last>.+?)(?::(?P<count>[^:]*))?")
 FORM = 'write PATH=A..B:N or PATH=a,b,c, e.g. --vary cylinder.bore="18..40 mm:12"'
 MOST_LISTED = 10_000
@@ -54,10 +58,11 @@ class Axis:
         return np.linspace(self.values[0], self.values[1], self.count or 2)
 
 
-def read_axis(text: str, design: Design) -> Axis:
+def read_axis(text: str, design: Design, metrics: Metrics = None) -> Axis:
     """An axis as a person writes it: ``PATH=A..B:N`` or ``PATH=a,b,c``.
 
-    Numbers without a unit take that of the last one; where it has none, they are SI.
+    Numbers without a unit take that of the last one; where it has none, they are SI. `metrics` are
+    those that the design may name, where some are the user's own.
 
     Raises
     ------
@@ -73,10 +78,10 @@ def read_axis(text: str, design: Design) -> Axis:
     found = _RANGE.fullmatch(given.strip())
     if found is None:
         parts = [part.strip() for part in given.split(",")]
-        return _listed(path, parts, design)
+        return _listed(path, parts, design, metrics)
     first, last, count = found["first"].strip(), found["last"].strip(), found["count"]
     steps = _steps(text, count)
-    ends = [_number(path, end, design) for end in _with_unit([first, last])]
+    ends = [_number(path, end, design, metrics) for end in _with_unit([first, last])]
     if ends[0] == ends[1]:
         raise UsageError(Diagnostic(f"--vary {shown(text)}: both ends are equal", FORM))
     return Axis(path, np.array(ends), range=True, count=steps)
@@ -101,19 +106,21 @@ def _with_unit(texts: list[str]) -> list[str]:
     return [f"{one} {unit}" if unit and _bare(one) is not None else one for one in texts]
 
 
-def _number(path: str, text: str, design: Design) -> float:
+def _number(path: str, text: str, design: Design, metrics: Metrics) -> float:
     """One value as the design holds it; every value is checked where it will stand."""
-    value = get(_at(design, path, text), path)
+    value = get(_at(design, path, text, metrics), path)
     if not isinstance(value, (int, float)) or isinstance(value, bool):
         message = f"{path}: {shown(text)} is no number, so it has no range"
         raise InputError(Diagnostic(message, "list its values: PATH=a,b,c"))
     return float(value)
 
 
-def _at(design: Design, path: str, text: str) -> Design:
+def _at(design: Design, path: str, text: str, metrics: Metrics) -> Design:
     number = _bare(text)
     value = text if number is None else number
-    return with_values(design, {path: value}, materials=load_library(), contradictions=False)
+    return with_values(
+        design, {path: value}, materials=load_library(), metrics=metrics, contradictions=False
+    )
 
 
 def _bare(text: str) -> float | None:
@@ -125,14 +132,14 @@ def _bare(text: str) -> float | None:
     return None if unit else number
 
 
-def _listed(path: str, parts: list[str], design: Design) -> Axis:
+def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> Axis:
     if not all(parts) or len(set(parts)) < len(parts):
         what = "an empty value" if not all(parts) else "a value twice"
         raise UsageError(Diagnostic(f"--vary {path}: {what}", FORM))
     if len(parts) > MOST_LISTED:
         raise UsageError(Diagnostic(f"--vary {path}: {len(parts)} values", "write a range"))
     parts = _with_unit(parts)
-    found = [get(_at(design, path, part), path) for part in parts]
+    found = [get(_at(design, path, part, metrics), path) for part in parts]
     if all(isinstance(one, (int, float)) and not isinstance(one, bool) for one in found):
         return Axis(path, np.array([float(one) for one in found if one is not None]), tuple(parts))
     return Axis(path, None, tuple(parts))

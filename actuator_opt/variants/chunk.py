@@ -12,11 +12,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..database import Column, Rows
-from ..design import Design, with_values
+from ..design import Design
 from ..design.paths import quantity_of
 from ..design.writer import to_yaml
 from ..errors import InputError
-from ..evaluation.build import spec_hash
+from ..evaluation.build import SENSES, spec_hash
 from ..evaluation.many import Many, evaluate_many, limits_of
 from ..evaluation.plugin import Plugin
 from ..numeric import Array
@@ -52,6 +52,12 @@ class Chunk:
     objective: Array
     feasible: Array
     places: Array | None = None
+
+    @property
+    def ranked(self) -> Array:
+        """Whether each row may be among the best: feasible, and with a value of the objective."""
+        found: Array = self.feasible & ~np.isnan(self.objective)
+        return found
 
     @property
     def numbers(self) -> Array:
@@ -146,7 +152,7 @@ class Study:
                 break
             part = self.evaluated(first, points.some(some), keep)
             parts.append(replace(part, places=first + some))
-            best = sorted([*best, *part.objective[part.feasible].tolist()])[:keep]
+            best = sorted([*best, *part.objective[part.ranked].tolist()])[:keep]
         return self._joined(first, parts, len(scores), keep)
 
     def _scores(self, points: Points, limit: float) -> Array:
@@ -179,11 +185,12 @@ class Study:
     def _screen(self, variant: int, fixed: Mapping[str, float]) -> Scores | None:
         """The screen of designs that differ in numbers alone, where they are enough to be worth it.
 
-        None for the user's own metrics, which are no expressions.
+        None for the user's own metrics, which are no expressions, and where the rows' worst of the
+        objective is another than that of a search, by which it promises.
         """
         axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
         alike = self.plan.count / self.plan.variants / self.designs.apart_count
-        if not axes or self.plugins or alike < WORTH:
+        if not axes or self.plugins or alike < WORTH or not self._worst_alike():
             return None
         key = (variant, *fixed.values())
         if key not in self._screens:
@@ -193,10 +200,15 @@ class Study:
             values: dict[str, float | str] = {**self.plan.texts(variant), **fixed}
             ends = np.array([[min(axis.numbers()), max(axis.numbers())] for axis in axes])
             with contextlib.suppress(InputError):
-                design = with_values(self.design, values) if values else self.design
+                design = self.designs.changed(values)
                 found = screen(design, [axis.path for axis in axes], ends, self.engine)
             self._screens[key] = found
         return self._screens[key]
+
+    def _worst_alike(self) -> bool:
+        """Whether rows have the worst of places and cases in the sense of the objective."""
+        largest = self.goal.sign > 0
+        return all((SENSES.get(name) != "min") == largest for name in self.goal.weights)
 
     def _contradictions(self, chunk: Chunk, points: Points, most: int | None) -> dict[int, str]:
         """What the design's file would refuse among feasible rows; models look at less.
@@ -210,7 +222,7 @@ class Study:
             if most is not None and tried - len(found) >= most:
                 break
             try:
-                with_values(self.design, self._at(points, k))
+                self.designs.changed(self._at(points, k))
             except InputError as error:
                 found[k] = first_fault(error)
         return found
@@ -242,7 +254,7 @@ class Study:
     @property
     def text(self) -> str:
         """The design as a file."""
-        return to_yaml(self.design)
+        return to_yaml(self.design, metrics=self._quantities)
 
     def values(self, number: int) -> dict[str, float | str]:
         """The varied values of a point, by PATH (SI)."""

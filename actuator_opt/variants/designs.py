@@ -16,6 +16,7 @@ from ..evaluation.allow import extremes
 from ..evaluation.many import Many, evaluate_many
 from ..evaluation.plugin import Plugin
 from ..numeric import Array
+from ..quantities import METRICS
 from .axes import Axis
 from .plan import Plan, Points
 
@@ -54,10 +55,16 @@ class Designs:
     def __getstate__(self) -> dict[str, object]:
         return self.__dict__ | {"_subjects": {}}
 
+    def changed(self, values: Mapping[str, float | str]) -> Design:
+        """The design with other values; raises `InputError`."""
+        if not values:
+            return self.design
+        own = METRICS | {plugin.name: plugin.quantity for plugin in self.plugins}
+        return with_values(self.design, dict(values), metrics=own)
+
     def made(self, values: Mapping[str, float | str]) -> Subject:
-        """The design with other values, prepared; raises `InputError`."""
-        design = with_values(self.design, dict(values)) if values else self.design
-        return prepare(design, plugins=self.plugins)
+        """As `changed`, prepared."""
+        return prepare(self.changed(values), plugins=self.plugins)
 
     def _is_temperature(self, axis: Axis) -> bool:
         return quantity_of(axis.path, self.design).dimension == "temperature"

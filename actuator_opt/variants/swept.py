@@ -113,9 +113,10 @@ class Swept:
         self.count_missed(chunk)
         if self.feasible is not None:
             self.feasible += len(good)
-        if keep and len(good):
+        ranked = np.flatnonzero(chunk.ranked)
+        if keep and len(ranked):
             numbers = chunk.numbers
-            order = good[np.argsort(chunk.objective[good], kind="stable")[:keep]]
+            order = ranked[np.argsort(chunk.objective[ranked], kind="stable")[:keep]]
             found = [
                 Best(float(chunk.objective[k]), int(numbers[k]), tuple(chunk.rows.numbers[k]))
                 for k in order

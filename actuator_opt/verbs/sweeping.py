@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..design import Design
 from ..errors import Diagnostic, InputError, UsageError
+from ..evaluation import Subject, compute
 from .actuator import Actuator, Plugins, as_actuator, unanswered
 from .reports import file_name
 
@@ -72,7 +73,8 @@ def sweep(
         nothing to vary, a form that is not one, a size that must be confirmed, or a figure that
         does not fit the sweep
     InputError
-        a PATH or value that is none, or a store that cannot be used
+        a PATH or value that is none, an objective that the design has no value of, or a store that
+        cannot be used
     """
     from ..variants import plan, read_axis
     from ..variants import sweep as run
@@ -86,12 +88,14 @@ def sweep(
         message = "--reduce keeps the best alone"
         raise UsageError(Diagnostic(message, "leave out --store, --csv and --parquet"))
     actuator = as_actuator(design, plugins)
-    faults = unanswered(actuator, actuator.subject())
+    subject = actuator.subject()
+    faults = unanswered(actuator, subject)
     if faults:
         raise InputError(faults)
+    _require_objective(subject)
     base = free(actuator)
     given = [f"{k}={v}" for k, v in vary.items()] if isinstance(vary, Mapping) else list(vary)
-    axes = [read_axis(text, base) for text in given]
+    axes = [read_axis(text, base, subject.quantities) for text in given]
     chosen = plan(axes, method=method, count=n, seed=seed)
     if chosen.count > LARGE and not reduce and not yes:
         message = f"{chosen.count:,} points would all be evaluated in full".replace(",", " ")
@@ -135,6 +139,13 @@ def writing(
                 table.add(chunk)
 
         yield each
+
+
+def _require_objective(subject: Subject) -> None:
+    """Refuse an objective that the design has no value of; raises `InputError`."""
+    from ..optimisation.actuator import goal_of
+
+    goal_of(subject).value(compute(subject, subject.values()).computed, subject.cases)
 
 
 def _require_apart(*files: str | Path | None) -> None:

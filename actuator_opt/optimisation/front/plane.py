@@ -169,6 +169,7 @@ def _renormalised(search: Search) -> bool:
 def _fill_holes(search: Search, count: int) -> None:
     """Levels between neighbours that lie farthest apart, until there are enough designs."""
     tried: set[tuple[int, int]] = set()
+    seen: list[Design] = []  # kept, for an id is that of another design once its own is gone
     for number in range(ROUNDS):
         chosen = search.chosen()
         missing = int(np.ceil(SURPLUS * count)) - len(chosen)
@@ -176,6 +177,7 @@ def _fill_holes(search: Search, count: int) -> None:
             return
         tell("filling holes of the front", number / ROUNDS)
         designs = [search.designs[k] for k in chosen]
+        seen += designs
         pairs = [pair for pair in _apart(search, chosen) if _key(designs, pair) not in tried]
         pairs = pairs[: max(min(missing, len(chosen) // 3), 1)]
         if not pairs:
