@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterable, Iterator, Sequence
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
@@ -26,6 +27,12 @@ BUSY = 60.0
 
 ASKED = 500
 """Keys of one question; SQLite takes at least 999 parameters."""
+
+OURS = frozenset({"meta", "studies", "rows"})
+"""Tables by which a database of ours is known."""
+
+PAUSE = 0.01
+"""Seconds between two tries to open a file that another process is opening."""
 
 _PUT = "INSERT OR IGNORE INTO rows (study, key, numbers, failure) VALUES (?, ?, ?, ?)"
 _TABLES = """
@@ -61,8 +68,8 @@ class Rows(NamedTuple):
 class Database:
     """An open database, of one study: a design, what varies and the version of the models."""
 
-    def __init__(self, connection: sqlite3.Connection, study: int, width: int) -> None:
-        self.connection, self.study, self.width = connection, study, width
+    def __init__(self, connection: sqlite3.Connection, study: int, width: int, path: Path) -> None:
+        self.connection, self.study, self.width, self.path = connection, study, width, path
 
     def known(self, keys: Sequence[bytes]) -> dict[int, tuple[bytes | None, str | None]]:
         """Rows that stand already, by the number of their key."""
@@ -92,8 +99,16 @@ class Database:
         with self.connection:
             self.connection.executemany(_PUT, records)
 
-    def numbers(self, blob: bytes) -> Array:
-        """The numbers of a row."""
+    def numbers(self, blob: object) -> Array:
+        """The numbers of a row.
+
+        Raises
+        ------
+        InputError
+            there are not as many as its study has columns
+        """
+        if not isinstance(blob, bytes) or len(blob) != 8 * self.width:
+            raise damaged(self.path)
         found: Array = np.frombuffer(blob, dtype="<f8")
         return found
 
@@ -126,9 +141,9 @@ def opened(
         the file is no such database, of another version, or cannot be written
     """
     with _diagnosed(path):
-        connection = sqlite3.connect(path, timeout=BUSY)
+        connection = sqlite3.connect(path.absolute(), timeout=BUSY)  # ":memory:" is a file, too
         try:
-            _require_ours(connection, path, version)
+            _patiently(lambda: _require_ours(connection, path, version))
             told = json.dumps([list(column) for column in columns])
             with connection:
                 connection.execute(
@@ -142,15 +157,27 @@ def opened(
             with connection:
                 put = "INSERT OR IGNORE INTO texts VALUES (?, ?, ?)"
                 connection.executemany(put, [(number, *one) for one in texts])
-            yield Database(connection, number, len(columns))
+            yield Database(connection, number, len(columns), path)
         finally:
             connection.close()
+
+
+def _patiently(act: Callable[[], None]) -> None:
+    """Do what SQLite refuses while another process opens the file: it waits for rows alone."""
+    end = time.monotonic() + BUSY
+    while True:
+        try:
+            return act()
+        except sqlite3.OperationalError as error:
+            if "locked" not in str(error) or time.monotonic() > end:
+                raise
+        time.sleep(PAUSE)
 
 
 def _require_ours(connection: sqlite3.Connection, path: Path, version: str) -> None:
     """Make the tables of a new file; refuse what is not ours."""
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
-    if tables and "meta" not in tables:
+    if tables and not tables >= OURS:
         raise refused(path, "is another program's database", "name another file")
     connection.execute("PRAGMA journal_mode = WAL")
     connection.execute("PRAGMA synchronous = NORMAL")
@@ -158,6 +185,7 @@ def _require_ours(connection: sqlite3.Connection, path: Path, version: str) -> N
         "PRAGMA cache_size = -65536"
     )  # KiB: the index of keys, which come in no order
     with connection:
+        connection.execute("BEGIN IMMEDIATE")  # all tables or none
         for statement in _TABLES.split(";"):
             connection.execute(statement)
         put = "INSERT OR IGNORE INTO meta VALUES (?, ?)"
@@ -179,6 +207,11 @@ def require_version(connection: sqlite3.Connection, path: Path, version: str, re
 def refused(path: Path, message: str, remedy: str) -> InputError:
     """What is wrong with a database, in one line."""
     return InputError(Diagnostic(message, remedy, str(path)))
+
+
+def damaged(path: Path) -> InputError:
+    """A row that is none, in one line."""
+    return refused(path, "holds a damaged row", "run its sweep anew, with another --store")
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 import numpy as np
 
-from .database import BUSY, Column, refused, require_version
+from .database import BUSY, OURS, Column, damaged, refused, require_version
 from .errors import Diagnostic, InputError
 from .numeric import Array
 from .store import read_bytes
@@ -73,7 +73,7 @@ class Reader:
             hashed,
             name,
             design,
-            tuple(Column(*column) for column in json.loads(columns)),
+            self._columns(columns),
             rows,
             dict(sorted(reasons.items(), key=lambda one: (-one[1], one[0]))),
             self._texts(number),
@@ -92,6 +92,14 @@ class Reader:
             message = "holds no such sweep: it was made anew, or materials or metrics have changed"
             raise refused(self.path, message, "run the sweep again with --store")
         return int(row[0])
+
+    def _columns(self, text: str) -> tuple[Column, ...]:
+        told = json.loads(text)
+        if not isinstance(told, list) or not all(
+            isinstance(one, list) and len(one) == len(Column._fields) for one in told
+        ):
+            raise refused(self.path, "names no columns of its rows", "run the sweep again")
+        return tuple(Column(*one) for one in told)
 
     def _texts(self, number: int) -> dict[str, tuple[str, ...]]:
         tables = {row[0] for row in self.connection.execute("SELECT name FROM sqlite_master")}
@@ -112,9 +120,9 @@ class Reader:
         cursor = self.connection.execute(select, (study.number,))
         width = len(study.columns)
         while some := cursor.fetchmany(SOME):
-            data = b"".join(numbers for _, numbers in some)
-            if len(data) != 8 * width * len(some):
-                raise refused(self.path, "holds a damaged row", "run its sweep anew")
+            if any(not isinstance(row, bytes) or len(row) != 8 * width for _, row in some):
+                raise damaged(self.path)
+            data = b"".join(row for _, row in some)
             yield [key for key, _ in some], np.frombuffer(data, dtype="<f8").reshape(-1, width)
 
 
@@ -160,5 +168,5 @@ def _connected(path: Path) -> sqlite3.Connection:
 
 def _require_tables(connection: sqlite3.Connection, path: Path) -> None:
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
-    if not {"meta", "studies", "rows"} <= tables:
+    if not tables >= OURS:
         raise refused(path, "is no database of sweeps", "name the file of `sweep --store`")

@@ -25,6 +25,12 @@ def test_sweep_tells_the_best(tmp_path):
     assert f"wrote {file}" in done.err
 
 
+def test_a_quiet_sweep_prints_nothing():
+    """As the help says."""
+    done = run("sweep", KNEE, *SETS, *BORES, "--quiet")
+    assert (done.code, done.out, done.err) == (0, "", "")
+
+
 def test_sweep_json_is_the_contract():
     """The keys of the contract; SI."""
     done = run("sweep", KNEE, *SETS, *BORES, "--json")
@@ -56,7 +62,8 @@ def test_no_feasible_variant_is_exit_1():
         ),
         ([*BORES, "--reduce", "best:3", "--engine", "abacus"], "use numpy or jax", 2),
         ([*BORES, "--engine", "jax"], "add --reduce best:K", 2),
-        ([*BORES, "--workers", "0"], "give 1 or more", 2),
+        ([*BORES, "--workers", "0"], "give 1 to 1024", 2),
+        ([*BORES, "--workers", "100000"], "give 1 to 1024", 2),
         ([*BORES, "--csv", "/nowhere/x.csv"], "cannot write", 3),
         ([*BORES, "--csv", "-"], "standard output carries the results", 2),
         ([*BORES, "--parquet", "-"], "standard output carries the results", 2),

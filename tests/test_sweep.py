@@ -10,6 +10,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -17,7 +18,7 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
-from actuator_opt.database import Rows
+from actuator_opt.database import Column, Rows, opened
 from actuator_opt.errors import InputError, UsageError
 from actuator_opt.variants import Swept, chunk, run
 
@@ -297,6 +298,9 @@ def test_a_store_that_cannot_be_used_is_said_in_one_line(tmp_path):
     foreign = tmp_path / "foreign.db"
     with sqlite3.connect(foreign) as connection:
         connection.execute("CREATE TABLE birds (name TEXT)")
+    browser = tmp_path / "browser.db"
+    with sqlite3.connect(browser) as connection:
+        connection.execute("CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT)")
     old = tmp_path / "old.db"
     ao.sweep(STEEL, vary, store=old)
     with sqlite3.connect(old) as connection:
@@ -304,6 +308,7 @@ def test_a_store_that_cannot_be_used_is_said_in_one_line(tmp_path):
     for path, words in (
         (text, "is no database of sweeps"),
         (foreign, "another program's"),
+        (browser, "another program's"),
         (old, "holds rows of the models 0.1"),
         (tmp_path / "no" / "where.db", "name a file in a folder that is there"),
         (tmp_path, "cannot be written"),
@@ -313,6 +318,72 @@ def test_a_store_that_cannot_be_used_is_said_in_one_line(tmp_path):
             ao.sweep(STEEL, vary, store=path)
         assert len(caught.value.diagnostics) == 1
         assert before is None or path.read_bytes() == before
+
+
+@pytest.mark.parametrize("row", ["x'00'", "'text'", "NULL"])
+def test_a_damaged_row_is_said_in_one_line(row, tmp_path):
+    """Whoever reads it: no NaN and no traceback."""
+    store, vary = tmp_path / "s.db", ["cylinder.bore=18..26 mm:3"]
+    ao.sweep(STEEL, vary, store=store)
+    with sqlite3.connect(store) as connection:
+        connection.execute(f"UPDATE rows SET numbers = {row} WHERE id = 2")
+    for read in (
+        lambda: ao.sweep(STEEL, vary, store=store),
+        lambda: ao.explore(store, out=tmp_path),
+    ):
+        with pytest.raises(InputError, match="holds a damaged row"):
+            read()
+
+
+@pytest.mark.parametrize("columns", ["5", "[1, 2]", "[[]]"])
+def test_columns_that_are_none_are_said_in_one_line(columns, tmp_path):
+    """A damaged study is no traceback."""
+    store = tmp_path / "s.db"
+    ao.sweep(STEEL, ["cylinder.bore=18..26 mm:3"], store=store)
+    with sqlite3.connect(store) as connection:
+        connection.execute("UPDATE studies SET columns = ?", (columns,))
+    with pytest.raises(InputError, match="names no columns"):
+        ao.explore(store, out=tmp_path)
+
+
+@pytest.mark.parametrize("kind", ["csv", "store", "parquet"])
+def test_the_design_is_not_written_over(kind, tmp_path):
+    """A slip in the name of a table costs no design."""
+    design = tmp_path / "d.yaml"
+    text = Path(STEEL).read_bytes()
+    design.write_bytes(text)
+    with pytest.raises(InputError, match="would be written over what is read"):
+        ao.sweep(design, ["cylinder.bore=18..26 mm:3"], **{kind: design})
+    assert design.read_bytes() == text
+
+
+def test_a_store_called_memory_is_a_file(tmp_path, monkeypatch):
+    """What SQLite would keep nowhere is kept."""
+    design = Path(STEEL).resolve()
+    monkeypatch.chdir(tmp_path)
+    ao.sweep(design, ["cylinder.bore=18..26 mm:3"], store=":memory:")
+    assert (tmp_path / ":memory:").is_file()
+
+
+def test_a_long_axis_takes_no_memory():
+    """Its values are found from their numbers, bit for bit those of all of them at once."""
+    from actuator_opt.variants.axes import Axis
+    from actuator_opt.variants.plan import plan
+
+    axis = Axis("p", np.array([0.018, 0.040]), range=True, count=977)
+    assert (axis.numbers() == np.linspace(0.018, 0.040, 977)).all()
+    long = Axis("p", np.array([0.018, 0.040]), range=True, count=10**11)
+    points = plan([long], method="grid", count=None).points(10**11 - 3, 8)
+    assert points.numbers[0, -1] == 0.040
+    assert points.numbers.shape == (1, 3)
+
+
+def test_what_none_meets_is_counted_once(tmp_path):
+    """Of few variants none is looked at twice."""
+    few = ao.sweep(STEEL, ["cylinder.bore=18..20 mm:7"], reduce=True)
+    assert sum(few.missed.values()) == 7
+    many = ao.sweep(STEEL, ["cylinder.bore=18..20 mm:300"], reduce=True)
+    assert sum(many.missed.values()) == 300
 
 
 LIMITED = """
@@ -360,6 +431,35 @@ def test_metrics_of_the_best_are_numbers_or_none(knee):
     assert np.isfinite(list(told["best"][0]["variables"].values())).all()
 
 
+@pytest.mark.parametrize(
+    "vary",
+    [
+        "barrel.layup[1].angle=85,0,88 deg",
+        "load_cases[stance].position=10 %,50 %,90 %",
+        "load_cases[stance].position=10 mm,50 %,90 mm",
+        "load_cases[stance].position=10..90 mm:3",
+        "load_cases[stance].speed=0.1,0,0.2 m/s",
+    ],
+)
+def test_a_value_that_makes_another_design_between_the_ends_is_seen(vary):
+    """At no angle and at no speed other models hold: the row is still its design's evaluation."""
+    study = ao.sweep(KNEE, [vary]).study
+    rows = study.chunk(0, 3).rows.numbers
+    for number in range(3):
+        alone = ao.evaluate(ao.read(KNEE, set=study.values(number)))
+        for name in study.metrics:
+            found, value = rows[number, study.place(name)], alone.metrics[name].value
+            assert found == pytest.approx(np.nan if value is None else value, rel=1e-8, nan_ok=True)
+
+
+def test_a_contradiction_between_the_ends_of_a_list_is_no_best(knee):
+    """What the design's file would refuse is not feasible, wherever in the list it stands."""
+    best = ao.sweep(knee, ["barrel.layup[0].thickness=1,3,1.1 mm"]).best
+    found = [one.row[0] for one in best]
+    for value in found:
+        knee.changed({"barrel.layup[0].thickness": value})
+
+
 def test_temperatures_that_leave_strengths_alone_move_together(tmp_path):
     """Within the environment's temperatures oil varies as an array; beyond, designs stand apart."""
     from actuator_opt.variants.chunk import Study
@@ -387,3 +487,36 @@ def test_a_path_that_no_model_reads_is_refused():
     with pytest.raises(InputError, match=r"tait_modulus: no model reads this number"):
         ao.sweep(KNEE, [law])
     assert ao.sweep(KNEE, [law, "rod.material=steel_42crmo4,ti_6al4v"]).computed == 6
+
+
+def test_a_margin_far_off_has_a_place_on_the_page(tmp_path):
+    """A design beyond all sense, of margins beyond single precision: no warning, a page."""
+    store = tmp_path / "s.db"
+    vary = ["cylinder.bore=19..26 mm:9", "rod.outer_diameter=12..20 mm:9"]
+    ao.sweep(KNEE, vary, store=store, workers=1)
+    assert ao.explore(store, out=tmp_path)
+
+
+def _open_at(path: Path, moment: float) -> str:
+    """Open a database as soon as a moment has come; what went wrong."""
+    while time.time() < moment:
+        pass
+    try:
+        with opened(
+            path, study="s", name="n", design="d", columns=[Column("x", "1")], version="0"
+        ) as base:
+            base.put([os.urandom(8)], Rows(np.ones((1, 1)), {}))
+    except InputError as error:
+        return str(error)
+    return ""
+
+
+def test_processes_may_begin_a_database_together(tmp_path):
+    """Four at once, sixty times: none is told that the file is locked, each row stands."""
+    with ProcessPoolExecutor(4) as pool:
+        for number in range(60):
+            path = tmp_path / f"{number}.db"
+            moments = [time.time() + 0.01] * 4
+            assert list(pool.map(_open_at, [path] * 4, moments)) == [""] * 4
+            with sqlite3.connect(path) as connection:
+                assert connection.execute("SELECT count(*) FROM rows").fetchone() == (4,)

@@ -105,6 +105,10 @@ def test_axes_as_written():
         ("cylinder.bore=20 mm..20 mm:3", "both ends are equal"),
         ("cylinder.bore=20 mm,,30 mm", "an empty value"),
         ("cylinder.bore=20 mm,20 mm", "a value twice"),
+        ("cylinder.bore=20 mm,2 cm", "a value twice"),
+        ("load_cases[stance].position=10 %..90 %:3", "not of the kind that the design has"),
+        ("name=one,two", "which no model reads"),
+        ("objective.minimise=mass,seal_gap", "which no model reads"),
         ("cylinder.bohr=1..2:3", "no such PATH"),
         ("cylinder.bore=1 bar..2 bar:3", "bar is a pressure"),
         ("cylinder.bore=20..9000 mm:3", "9000 mm"),
@@ -131,6 +135,7 @@ def test_what_is_no_axis_is_said_in_one_line(text, words):
         ([numbers("p", 0, 1)], "sobol", 0, "-n 0"),
         ([numbers("p", 0, 1)], "sobol", 2**31, "1 to 1073741824"),
         ([numbers("p", 0, 1, 3), numbers("p", 0, 1, 3)], "grid", None, "given twice"),
+        ([numbers("p", 0, 1, 10**12 + 1)], "grid", None, "1 000 000 000 001 points"),
     ],
 )
 def test_what_is_no_sweep_is_said_in_one_line(axes, method, count, words):

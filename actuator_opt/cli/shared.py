@@ -53,7 +53,7 @@ def leave_by(evaluation: Evaluation) -> None:
         raise typer.Exit(ExitCode.MISSED)
 
 
-_TARGETS = ("--out", "--write", "--csv")
+_TARGETS = ("--out", "--write", "--csv", "--parquet")
 """Options that say where to write."""
 
 

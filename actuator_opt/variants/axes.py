@@ -24,6 +24,9 @@ FORM = 'write PATH=A..B:N or PATH=a,b,c, e.g. --vary cylinder.bore="18..40 mm:12
 MOST_LISTED = 10_000
 """Most values of a list."""
 
+SAID = frozenset({"name", "notes", "reproduces", "waivers", "objective"})
+"""Blocks of a design that change no metric and no limit of it."""
+
 
 @dataclass(frozen=True)
 class Axis:
@@ -55,7 +58,24 @@ class Axis:
         assert self.values is not None
         if not self.range:
             return self.values
-        return np.linspace(self.values[0], self.values[1], self.count or 2)
+        return self.at(np.arange(self.count or 2))
+
+    def at(self, places: Array) -> Array:
+        """The values of some numbers of a full factorial: those of `numbers`, never all of them."""
+        assert self.values is not None
+        if not self.range:
+            found: Array = self.values[places]
+            return found
+        low, high = self.values
+        last = (self.count or 2) - 1
+        between: Array = low + places * ((high - low) / last)
+        return np.where(places == last, high, between)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the greatest of its numbers."""
+        assert self.values is not None
+        return float(self.values.min()), float(self.values.max())
 
 
 def read_axis(text: str, design: Design, metrics: Metrics = None) -> Axis:
@@ -75,6 +95,9 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> Axis:
     if not sign or not path.strip() or not given.strip():
         raise UsageError(Diagnostic(f"--vary {shown(text)}: no values", FORM))
     path = canonical(path.strip(), design)
+    if path.partition(".")[0] in SAID:
+        message = "says something about the design, which no model reads"
+        raise InputError(Diagnostic(message, "vary a dimension, a material or a limit", path=path))
     found = _RANGE.fullmatch(given.strip())
     if found is None:
         parts = [part.strip() for part in given.split(",")]
@@ -108,11 +131,27 @@ def _with_unit(texts: list[str]) -> list[str]:
 
 def _number(path: str, text: str, design: Design, metrics: Metrics) -> float:
     """One value as the design holds it; every value is checked where it will stand."""
-    value = get(_at(design, path, text, metrics), path)
+    value = _value(path, text, design, metrics)
     if not isinstance(value, (int, float)) or isinstance(value, bool):
         message = f"{path}: {shown(text)} is no number, so it has no range"
         raise InputError(Diagnostic(message, "list its values: PATH=a,b,c"))
+    if not _plain(path, text, value, design, metrics):
+        message = f"{shown(text)} is not of the kind that the design has there, so it has no range"
+        remedy = "list the values: PATH=a,b,c, or give one such value with --set first"
+        raise InputError(Diagnostic(message, remedy, path=path))
     return float(value)
+
+
+def _plain(path: str, text: str, value: float, design: Design, metrics: Metrics) -> bool:
+    """Whether a number says all of a value: 50 % of a stroke is not 0.5 m."""
+    said = _at(design, path, text, metrics)
+    return said == _at(design, path, repr(float(value)), metrics)
+
+
+def _value(
+    path: str, text: str, design: Design, metrics: Metrics
+) -> float | int | str | bool | None:
+    return get(_at(design, path, text, metrics), path)
 
 
 def _at(design: Design, path: str, text: str, metrics: Metrics) -> Design:
@@ -133,13 +172,19 @@ def _bare(text: str) -> float | None:
 
 
 def _listed(path: str, parts: list[str], design: Design, metrics: Metrics) -> Axis:
-    if not all(parts) or len(set(parts)) < len(parts):
-        what = "an empty value" if not all(parts) else "a value twice"
-        raise UsageError(Diagnostic(f"--vary {path}: {what}", FORM))
+    if not all(parts):
+        raise UsageError(Diagnostic(f"--vary {path}: an empty value", FORM))
     if len(parts) > MOST_LISTED:
         raise UsageError(Diagnostic(f"--vary {path}: {len(parts)} values", "write a range"))
     parts = _with_unit(parts)
-    found = [get(_at(design, path, part, metrics), path) for part in parts]
-    if all(isinstance(one, (int, float)) and not isinstance(one, bool) for one in found):
+    found = [_value(path, part, design, metrics) for part in dict.fromkeys(parts)]
+    if len(set(found)) < len(parts):  # 20 mm and 2 cm, too
+        raise UsageError(Diagnostic(f"--vary {path}: a value twice", FORM))
+    if all(
+        isinstance(one, (int, float))
+        and not isinstance(one, bool)
+        and _plain(path, part, one, design, metrics)
+        for one, part in zip(found, parts, strict=True)
+    ):
         return Axis(path, np.array([float(one) for one in found if one is not None]), tuple(parts))
     return Axis(path, None, tuple(parts))

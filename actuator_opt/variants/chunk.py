@@ -198,7 +198,7 @@ class Study:
                 self._screens.pop(next(iter(self._screens)))
             found: Scores | None = None
             values: dict[str, float | str] = {**self.plan.texts(variant), **fixed}
-            ends = np.array([[min(axis.numbers()), max(axis.numbers())] for axis in axes])
+            ends = np.array([axis.ends for axis in axes])
             with contextlib.suppress(InputError):
                 design = self.designs.changed(values)
                 found = screen(design, [axis.path for axis in axes], ends, self.engine)

@@ -29,6 +29,9 @@ AT_ONCE = 4096
 TRIED = (0.0, 1.0, 0.5, 0.25, 0.75)
 """Shares of a range that are tried until two make a design."""
 
+LISTED = 32
+"""Most values of a list that are tried, an even choice of more."""
+
 AGREE = 1e-9
 """Relative difference up to which a number that varies counts as the same as one that is set."""
 
@@ -75,10 +78,10 @@ class Designs:
         Strengths are prepared for these two, which rise with each temperature: they are the same
         everywhere where they are at both ends of what varies.
         """
-        warm = {a.path: a.numbers() for a in self.plan.numeric if self._is_temperature(a)}
+        warm = {a.path: a.ends for a in self.plan.numeric if self._is_temperature(a)}
         found = []
-        for pick in (np.min, np.max) if warm else ():
-            ends = {path: float(pick(values)) for path, values in warm.items()}
+        for end in (0, 1) if warm else ():
+            ends = {path: both[end] for path, both in warm.items()}
             try:
                 subject = self.made({**self.plan.texts(0), **ends})
             except InputError:
@@ -96,7 +99,7 @@ class Designs:
         return found
 
     def _moves(self, axis: Axis) -> bool:
-        """Whether a number may be moved as an array: two values as if the design had them.
+        """Whether a number may be moved as an array: its `_telling` values as if set in the design.
 
         Raises
         ------
@@ -107,19 +110,20 @@ class Designs:
         if self._is_temperature(axis) and not self._same_extremes():
             return False
         texts = self.plan.texts(0)
-        low, high = axis.values[[0, -1]]
         alone: dict[float, Many] = {}
-        for share in TRIED:
-            value = float(low + share * (high - low))
+        for value, needed in _telling(axis):
+            if len(alone) >= 2 and not needed:
+                continue
             try:
                 alone[value] = evaluate_many(self.made({**texts, axis.path: value}), {}, 1)
             except InputError:
                 self.contradicts = True
-            if len(alone) == 2:
-                break
         if not alone:
             return False
-        base = self.made({**texts, axis.path: next(iter(alone))})
+        try:
+            base = self.made(texts)  # as its rows are evaluated; "worst" there heeds no position
+        except InputError:
+            base = self.made({**texts, axis.path: next(iter(alone))})
         together = evaluate_many(base, {axis.path: np.array(list(alone))}, len(alone))
         moves = all(
             np.isclose(values[k], one.metrics[name][0], rtol=AGREE, atol=0.0, equal_nan=True)
@@ -174,6 +178,28 @@ class Designs:
             except InputError as error:
                 self._subjects[key] = first_fault(error)
         return self._subjects[key]
+
+
+def _telling(axis: Axis) -> Iterator[tuple[float, bool]]:
+    """Values to try in a design, and whether each must be tried or two in all are enough.
+
+    All of a short list, and zero wherever it is taken, must: a design may be another there (no
+    speed, no angle), whatever it is on either side.
+    """
+    assert axis.values is not None
+    low, high = axis.values[[0, -1]]
+    if axis.listed:
+        step = -(-len(axis.values) // LISTED)
+        chosen = [*axis.values[::step].tolist(), float(high)]
+        yield from ((value, True) for value in dict.fromkeys(chosen))
+        if 0.0 in axis.values and 0.0 not in chosen:
+            yield 0.0, True
+    elif low * high < 0 and axis.count:
+        near = round(low / (low - high) * (axis.count - 1))
+        if float(axis.at(np.array(near))) == 0.0:
+            yield 0.0, True
+    for share in TRIED:
+        yield float(low + share * (high - low)), False
 
 
 def first_fault(error: InputError) -> str:

@@ -30,7 +30,7 @@ def half(base: Database, study: Study, first: int, count: int) -> Half:
     for k, (blob, failure) in known.items():
         if failure is not None:
             failures[k] = failure
-        elif blob is not None:
+        else:
             numbers[k] = base.numbers(blob)
     missing = np.array([k for k in range(len(keys)) if k not in known], dtype=np.intp)
     return Half(first, keys, Rows(numbers, failures), missing)

@@ -24,6 +24,9 @@ METHODS = get_args(Method)
 MOST = 2**30
 """Most points of the sampled methods: those of a Sobol sequence of 30 bits."""
 
+MOST_GRID = 10**12
+"""Most points of a grid (a choice: some days of work, where the best alone are kept)."""
+
 BITS = 30
 """Of a coordinate of a Sobol point."""
 
@@ -92,7 +95,7 @@ class Plan:
             if axis.values is None:
                 variant = variant * axis.size + place.astype(np.int64)
             else:
-                numbers[row] = axis.numbers()[place.astype(np.int64)] if axis.listed else place
+                numbers[row] = axis.at(place.astype(np.int64)) if axis.listed else place
                 row += 1
         return Points(variant, numbers)
 
@@ -101,7 +104,7 @@ class Plan:
         sizes = tuple(axis.size for axis in self.axes)
         places = np.unravel_index(index, sizes)
         return [
-            place if axis.listed else axis.numbers()[place]
+            place if axis.listed else axis.at(place)
             for axis, place in zip(self.axes, places, strict=True)
         ]
 
@@ -149,7 +152,11 @@ def plan(axes: Sequence[Axis], *, method: Method, count: int | None, seed: int =
             if axis.range and axis.count is None:
                 message = f"--vary {axis.path}: the range has no steps"
                 raise UsageError(Diagnostic(message, "write A..B:N, or --method sobol -n N"))
-        return Plan(tuple(axes), method, math.prod(axis.size for axis in axes), seed)
+        points = math.prod(axis.size for axis in axes)
+        if points > MOST_GRID:
+            message = f"{points:,} points".replace(",", " ")
+            raise UsageError(Diagnostic(message, "take fewer steps, or --method sobol -n N"))
+        return Plan(tuple(axes), method, points, seed)
     if count is None or not 1 <= count <= MOST:
         message = f"--method {method}: no number of points" if count is None else f"-n {count}"
         raise UsageError(Diagnostic(message, f"add -n N, 1 to {MOST}"))

@@ -121,10 +121,9 @@ def _explain(found: Swept) -> None:
     """Count what some designs miss, where none is feasible and few were evaluated."""
     count, part = found.study.plan.count, CHUNK // LOOKS
     found.missed = {}
-    if count <= CHUNK:
-        found.count_missed(found.study.chunk(0, count))
-        return
-    for first in np.linspace(0, count - part, LOOKS).astype(int).tolist():  # at least `part` apart
+    every = range(0, count, part)
+    spread = np.linspace(0, count - part, LOOKS).astype(int).tolist()
+    for first in spread if len(every) > LOOKS else every:  # none is looked at twice
         found.count_missed(found.study.chunk(first, part))
 
 
@@ -149,7 +148,7 @@ def swept_again(
     found = Swept(study, study.plan.count, sample=Sample(tuple(watch)))
     with reading(store, VERSION) as reader:
         number = reader.number(study.hash)
-        base = Database(reader.connection, number, len(study.columns))
+        base = Database(reader.connection, number, len(study.columns), store)
         size = _chunk_size(study)
         for first in range(0, study.plan.count, size):
             one = half(base, study, first, size)
@@ -174,6 +173,7 @@ def _computed(
         return
     rest = iter(tasks)
     count = workers or (1 if "jax" in sys.modules else os.cpu_count() or 1)  # its threads bar forks
+    count = min(count, chunks)  # each is started at once, whether it has work or not
     if workers is None or count == 1:
         yield from _here(study, chunks, rest, patient=count == 1)
     first = next(rest, None)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ..design import Design
 from ..errors import Diagnostic, InputError, UsageError
 from ..evaluation import Subject, compute
+from ..store import require_apart
 from .actuator import Actuator, Plugins, as_actuator, unanswered
 from .reports import file_name
 
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 
 LARGE = 1_000_000
 """Points from which a sweep that evaluates them all in full must be meant."""
+
+MOST_WORKERS = 1024
+"""Most processes of one machine (a choice: more are a slip, and may bring it down)."""
 
 
 def sweep(
@@ -81,13 +85,16 @@ def sweep(
     from ..variants.engine import usable_engine
 
     engine = usable_engine(engine, reduced=reduce)
-    if workers is not None and workers < 1:
-        raise UsageError(Diagnostic(f"--workers {workers}", "give 1 or more"))
+    if workers is not None and not 1 <= workers <= MOST_WORKERS:
+        raise UsageError(Diagnostic(f"--workers {workers}", f"give 1 to {MOST_WORKERS}"))
     _require_apart(store, csv, parquet)
     if reduce and any(file is not None for file in (store, csv, parquet)):
         message = "--reduce keeps the best alone"
         raise UsageError(Diagnostic(message, "leave out --store, --csv and --parquet"))
     actuator = as_actuator(design, plugins)
+    for file in (store, csv, parquet):
+        if file is not None:
+            require_apart(Path(file), *_read_from(actuator))
     subject = actuator.subject()
     faults = unanswered(actuator, subject)
     if faults:
@@ -158,6 +165,12 @@ def _require_apart(*files: str | Path | None) -> None:
         if places.count(place) > 1:
             message = f"{place.name}: one file for two of --store, --csv and --parquet"
             raise UsageError(Diagnostic(message, "name another file"))
+
+
+def _read_from(actuator: Actuator) -> list[str]:
+    """The files that a design and its own metrics were read from."""
+    design = [] if actuator.source is None else [actuator.source.file]
+    return [*design, *(plugin.file for plugin in actuator.plugins if plugin.file)]
 
 
 def free(actuator: Actuator) -> Design:

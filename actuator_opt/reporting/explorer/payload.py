@@ -28,6 +28,9 @@ AXES = 8
 TOLD = 3
 """Most reasons of failed designs that are told."""
 
+MOST = 1e30
+"""Margin told of what is further off, which single precision holds."""
+
 MM = 1000.0
 _WORDS = {"bore": "bore ⌀", "rod": "rod ⌀", "closed_length": "closed length"}
 
@@ -141,7 +144,7 @@ def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
                 "name": limit.name,
                 "text": f"{_label(limit, quantity, study.plugins)} {words}",
                 "plain": bound == 0.0,
-                "margin": _base64(np.where(margin == np.inf, 1e30, margin), "<f4"),
+                "margin": _base64(np.clip(margin, -MOST, MOST), "<f4"),
             }
         )
     return found, f"{held} further checks are met by every design here." if held else ""
