@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,6 +24,9 @@ from .plan import Plan, Points
 KEPT = 64
 """Prepared designs that a process keeps."""
 
+VARIANTS = 8
+"""Most combinations of texts in which a number is tried."""
+
 AT_ONCE = 4096
 """Most designs of one call of the models: more would take memory, not less time."""
 
@@ -36,12 +40,19 @@ AGREE = 1e-9
 """Relative difference up to which a number that varies counts as the same as one that is set."""
 
 
+class _Moved(NamedTuple):
+    """Whether a number may be moved as an array, and whether any model reads it."""
+
+    moves: bool
+    read: bool
+
+
 @dataclass
 class Designs:
     """The designs of a plan, prepared where needed.
 
     `apart` are numbers that a design must be made anew for: temperatures of strengths, say. A
-    number that no model reads is refused, where no text makes other designs: `InputError`.
+    number that no model reads in any of few combinations of texts is refused: `InputError`.
     """
 
     design: Design
@@ -99,17 +110,28 @@ class Designs:
         return found
 
     def _moves(self, axis: Axis) -> bool:
-        """Whether a number may be moved as an array: its `_telling` values as if set in the design.
+        """Whether a number may be moved as an array in some of the designs that texts make.
 
         Raises
         ------
         InputError
             no model reads it, and it makes no other design
         """
-        assert axis.values is not None
         if self._is_temperature(axis) and not self._same_extremes():
             return False
-        texts = self.plan.texts(0)
+        count = self.plan.variants
+        tried = np.unique(np.linspace(0, count - 1, min(count, VARIANTS)).astype(int))
+        found = [self._moves_in(axis, self.plan.texts(int(variant))) for variant in tried]
+        moves = all(one.moves for one in found)
+        if moves and len(tried) == count and not any(one.read for one in found):
+            remedy = "vary another, or check that the part it belongs to is used"
+            raise InputError(
+                Diagnostic("no model reads this number of this design", remedy, path=axis.path)
+            )
+        return moves
+
+    def _moves_in(self, axis: Axis, texts: Mapping[str, str]) -> _Moved:
+        """Whether the `_telling` values of a number as an array are those set in the design."""
         alone: dict[float, Many] = {}
         for value, needed in _telling(axis):
             if len(alone) >= 2 and not needed:
@@ -119,7 +141,7 @@ class Designs:
             except InputError:
                 self.contradicts = True
         if not alone:
-            return False
+            return _Moved(False, True)
         try:
             base = self.made(texts)  # as its rows are evaluated; "worst" there heeds no position
         except InputError:
@@ -130,12 +152,7 @@ class Designs:
             for name, values in together.metrics.items()
             for k, one in enumerate(alone.values())
         )
-        if moves and axis.path not in together.read and not self.plan.named:
-            remedy = "vary another, or check that the part it belongs to is used"
-            raise InputError(
-                Diagnostic("no model reads this number of this design", remedy, path=axis.path)
-            )
-        return moves
+        return _Moved(moves, axis.path in together.read)
 
     def alike(self, points: Points) -> Iterator[tuple[Array, int, dict[str, float]]]:
         """Numbers of points of one prepared design, its combination of texts, what is set apart."""
