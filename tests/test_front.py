@@ -300,7 +300,7 @@ def test_infeasible_is_told():
 
     result = front(objectives([0], [1], evaluate, constraints=("g",)), Settings(5))
     assert not isinstance(result, Front)
-    assert result.violation == pytest.approx(1)
+    assert result.solution.violation == pytest.approx(1)
 
 
 def test_nondominated_against_the_definition():

@@ -133,3 +133,11 @@ def test_infeasible_design():
     assert data["points"] == []
     assert data["knee"] is None
     assert data["infeasibility"]["joint"]
+
+
+def test_an_end_that_is_not_found_is_named():
+    """The objective whose best is no optimum, and what became of its search."""
+    asked = ["--objective", "mass:min", "--objective", "burst_factor:max"]
+    result = run("pareto", KNEE, *asked, "-n", "5", "--checks", "0")
+    assert result.code == 4
+    assert "not found, burst_factor:max: every requirement is met" in " ".join(result.out.split())

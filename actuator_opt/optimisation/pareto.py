@@ -18,10 +18,10 @@ from ..quantities import Quantity
 from ..suggest import remedy
 from .actuator import ActuatorProblem, Fault, Goal, build, governing, idle_metrics
 from .descents import FEASIBLE
+from .front.ends import NoEnd
 from .front.front import Front, Settings, front
 from .front.objectives import Objectives
 from .infeasibility_card import explained
-from .outcome import Solution
 from .pareto_result import FrontPoint, Knee, ParetoFront, Wish
 from .problem import Values, Vector
 from .rounding import design_at
@@ -107,7 +107,7 @@ def pareto(
         Objectives(names, many.actuator.problem, many.evaluate),
         Settings(count=count, seed=seed, checks=checks),
     )
-    if isinstance(found, Solution):
+    if isinstance(found, NoEnd):
         return _without(many, found, began)
     return _result(many, found, seed, began)
 
@@ -200,9 +200,14 @@ def _held(many: _Many) -> list[str]:
     return [f"choices are held as the design states them: {', '.join(choices)}"] if choices else []
 
 
-def _without(many: _Many, solution: Solution, began: float) -> ParetoFront:
+def _said(wish: Wish) -> str:
+    return f"{wish.metric}:{wish.sense}"
+
+
+def _without(many: _Many, found: NoEnd, began: float) -> ParetoFront:
     """No front: nothing is feasible, or an end of it was not found."""
     subject = many.subject
+    solution = found.solution
     feasible = solution.violation <= FEASIBLE
     why = None if feasible else explained(many.actuator, solution)[0]
     return ParetoFront(
@@ -214,6 +219,8 @@ def _without(many: _Many, solution: Solution, began: float) -> ParetoFront:
         design=subject.design,
         evaluation=evaluate(subject),
         infeasibility=why,
-        unsolved=solution.outcome.sentence if feasible else "",
+        unsolved=f"{_said(many.wished[found.objective])}: {solution.outcome.sentence}"
+        if feasible
+        else "",
         seconds=time.perf_counter() - began,
     )

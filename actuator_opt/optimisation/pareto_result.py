@@ -66,7 +66,7 @@ class ParetoFront:
     checked, improved : full searches at places in between, and how many found something better
     failed : places at which no design was found, but where one is near
     infeasibility : why there is no front
-    unsolved : what became of the search for an end of the front, where that is no optimum
+    unsolved : the objective whose best was not found, and what became of the search
     """
 
     subject: Design
@@ -115,7 +115,7 @@ class ParetoFront:
     def sentence(self) -> str:
         """What came out, in words."""
         if self.unsolved:
-            return f"no front: the best of one objective alone was not found: {self.unsolved}"
+            return f"no front: the best of one objective alone was not found, {self.unsolved}"
         if self.infeasibility is not None or not self.points:
             why = "" if self.infeasibility is None else f" {self.infeasibility.sentence}"
             return f"no front: no design meets every requirement.{why}"

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -53,7 +54,14 @@ class Ends:
     others: Vector
 
 
-def ends(objectives: Objectives, checked: Evaluator, effort: Effort) -> Ends | Solution:
+class NoEnd(NamedTuple):
+    """The search for the best of one objective that ended on no optimum, and its number."""
+
+    objective: int
+    solution: Solution
+
+
+def ends(objectives: Objectives, checked: Evaluator, effort: Effort) -> Ends | NoEnd:
     """The best of each objective; the search for it where that ends on no optimum."""
     optima = [[] for _ in range(objectives.count)] if not checked.exact else _together(
         objectives, checked, effort
@@ -72,7 +80,7 @@ def ends(objectives: Objectives, checked: Evaluator, effort: Effort) -> Ends | S
             starts=effort.starts, samples=effort.samples, seed=effort.seed, more_starts=known,
         )  # fmt: skip
         if alone.violation > FEASIBLE or alone.kkt is None or alone.kkt.residual > RESIDUAL:
-            return alone
+            return NoEnd(index, alone)
         best.append(alone.x)
         known += [one.x for one in alone.optima if one.violation <= FEASIBLE]
     return Ends(np.stack(best, axis=1), np.stack(known, axis=1))

@@ -13,10 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...progress import tell
-from ..outcome import Solution
 from ..problem import Vector
 from . import dominance, even
-from .ends import Effort, ends, normalised
+from .ends import Effort, NoEnd, ends, normalised
 from .line import fill_line
 from .objectives import Conditions, Objectives
 from .overlooked import OVERLOOKED, better
@@ -83,13 +82,13 @@ class Front:
         return np.asarray(np.sqrt((np.diff(self.units, axis=1) ** 2).sum(axis=0)))
 
 
-def front(objectives: Objectives, settings: Settings) -> Front | Solution:
+def front(objectives: Objectives, settings: Settings) -> Front | NoEnd:
     """The front of some objectives; the search for an anchor where that ends on no optimum."""
     effort = Effort(settings.starts, settings.samples, settings.seed)
     tell("searching for the ends of the front")
     checked, warnings = objectives.checked()
     found = ends(objectives, checked, effort)
-    if isinstance(found, Solution):
+    if isinstance(found, NoEnd):
         return found
     tracer, x = normalised(objectives, checked, found)
     if x.shape[1] == 1:
