@@ -168,6 +168,14 @@ def test_a_screen_promises_the_objective_of_the_rows(objective, tmp_path, monkey
     reduced = ao.sweep(design, vary, reduce=True, **how)
     assert every.feasible > 100
     assert [one.number for one in reduced.best] == [one.number for one in every.best]
+    told = {
+        "minimise: bearing_factor": ["by the least bearing_factor", "goes by the largest"],
+        "maximise: bearing_pressure": ["by the largest bearing_pressure", "goes by the least"],
+        "maximise: push_force": [],
+    }[objective]
+    said = " ".join(every.to_dict()["remarks"])
+    assert all(one in said for one in told)
+    assert bool(said) == bool(told)
 
 
 def test_an_objective_without_a_value_is_refused(tmp_path):

@@ -27,6 +27,7 @@ def sweep_text(
         lines += ["", *_table(console, swept)]
     else:
         lines += ["", console.wrap(_nothing(swept))]
+    lines += [console.wrap(said) for said in study.remarks if swept.best]
     reasons = sorted(swept.failures.items(), key=lambda one: (-one[1], one[0]))
     for reason, times in reasons[:FAILURES]:
         lines.append(console.wrap(f"failed: {times} times {reason}"))

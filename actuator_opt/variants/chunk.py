@@ -190,7 +190,7 @@ class Study:
         """
         axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
         alike = self.plan.count / self.plan.variants / self.designs.apart_count
-        if not axes or self.plugins or alike < WORTH or not self._worst_alike():
+        if not axes or self.plugins or alike < WORTH or self.remarks:
             return None
         key = (variant, *fixed.values())
         if key not in self._screens:
@@ -205,10 +205,16 @@ class Study:
             self._screens[key] = found
         return self._screens[key]
 
-    def _worst_alike(self) -> bool:
-        """Whether rows have the worst of places and cases in the sense of the objective."""
-        largest = self.goal.sign > 0
-        return all((SENSES.get(name) != "min") == largest for name in self.goal.weights)
+    @property
+    def remarks(self) -> list[str]:
+        """What to know of the order of the best: where rows do not show what `optimise` goes by."""
+        told = ("least", "largest") if self.goal.sign > 0 else ("largest", "least")
+        return [
+            f"ranked by the {told[0]} {name} of all cases and places, as rows show it; `optimise` "
+            f"goes by the {told[1]}"
+            for name in self.goal.weights
+            if (SENSES.get(name) != "min") != (self.goal.sign > 0)
+        ]
 
     def _contradictions(self, chunk: Chunk, points: Points, most: int | None) -> dict[int, str]:
         """What the design's file would refuse among feasible rows; models look at less.

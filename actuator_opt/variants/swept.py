@@ -87,6 +87,7 @@ class Swept:
             ],
             "failures": self.failures,
             "missed": self.missed,
+            "remarks": self.study.remarks,
             "seconds": self.seconds,
         }
 
