@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -71,19 +71,29 @@ class Database:
     def __init__(self, connection: sqlite3.Connection, study: int, width: int, path: Path) -> None:
         self.connection, self.study, self.width, self.path = connection, study, width, path
 
+    def missing(self, keys: Sequence[bytes]) -> list[int]:
+        """Numbers of the keys whose rows do not stand yet."""
+        known = self._known(keys, "key")
+        return [number for number, key in enumerate(keys) if key not in known]
+
     def known(self, keys: Sequence[bytes]) -> dict[int, tuple[bytes | None, str | None]]:
         """Rows that stand already, by the number of their key."""
+        kept = self._known(keys, "key, numbers, failure")
+        return {number: kept[key] for number, key in enumerate(keys) if key in kept}
+
+    def _known(self, keys: Sequence[bytes], columns: str) -> dict[bytes, Any]:
+        """Columns, beside the first, of the rows that stand, by their key."""
         some = "SELECT 1 FROM rows WHERE study = ? LIMIT 1"
         if self.connection.execute(some, (self.study,)).fetchone() is None:
             return {}
-        kept: dict[bytes, tuple[bytes | None, str | None]] = {}
+        kept: dict[bytes, Any] = {}
         for first in range(0, len(keys), ASKED):
             part = keys[first : first + ASKED]
             marks = ",".join("?" * len(part))
-            select = f"SELECT key, numbers, failure FROM rows WHERE study = ? AND key IN ({marks})"
+            select = f"SELECT {columns} FROM rows WHERE study = ? AND key IN ({marks})"
             for key, *row in self.connection.execute(select, (self.study, *part)):
                 kept[key] = tuple(row)
-        return {number: kept[key] for number, key in enumerate(keys) if key in kept}
+        return kept
 
     def put(self, keys: Sequence[bytes], rows: Rows) -> None:
         """Keep a chunk, all of it or nothing; what stands already stays."""

@@ -64,7 +64,12 @@ class Designs:
     _subjects: dict[tuple[object, ...], Subject | str] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
-        self.apart = tuple(axis.path for axis in self.plan.numeric if not self._moves(axis))
+        same = self._same_extremes()
+        self.apart = tuple(
+            axis.path
+            for axis in self.plan.numeric
+            if (self._is_temperature(axis) and not same) or not self._moves(axis)
+        )
 
     def __getstate__(self) -> dict[str, object]:
         return self.__dict__ | {"_subjects": {}}
@@ -117,8 +122,6 @@ class Designs:
         InputError
             no model reads it, and it makes no other design
         """
-        if self._is_temperature(axis) and not self._same_extremes():
-            return False
         count = self.plan.variants
         tried = np.unique(np.linspace(0, count - 1, min(count, VARIANTS)).astype(int))
         found = [self._moves_in(axis, self.plan.texts(int(variant))) for variant in tried]

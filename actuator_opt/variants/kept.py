@@ -1,4 +1,4 @@
-"""Chunks of a sweep of which the database has some rows."""
+"""Chunks of a sweep as its database has them."""
 
 from __future__ import annotations
 
@@ -8,20 +8,27 @@ import numpy as np
 
 from ..database import Database, Rows
 from ..numeric import Array
-from .chunk import Chunk, Study
+from .chunk import Study
 
 
-class Half(NamedTuple):
-    """Rows of a chunk that stand, and the numbers of those that are missing."""
+class Lacking(NamedTuple):
+    """What the database lacks of a chunk: keys, and their numbers; None where it lacks all."""
 
     first: int
     keys: list[bytes]
-    rows: Rows
-    missing: Array
+    some: Array | None
 
 
-def half(base: Database, study: Study, first: int, count: int) -> Half:
-    """Rows of a chunk that the database has."""
+def lacking(base: Database, study: Study, first: int, count: int) -> Lacking:
+    """The keys of a chunk whose rows do not stand."""
+    keys = study.keys(first, count)
+    missing = base.missing(keys)
+    some = None if len(missing) == len(keys) else np.array(missing, dtype=np.intp)
+    return Lacking(first, [keys[k] for k in missing], some)
+
+
+def kept(base: Database, study: Study, first: int, count: int) -> tuple[Rows, int]:
+    """Rows of a chunk that stand, NaN where they do not, and how many those are."""
     keys = study.keys(first, count)
     points = study.plan.points(first, count)
     numbers = np.full((len(keys), len(study.columns)), np.nan)
@@ -32,15 +39,4 @@ def half(base: Database, study: Study, first: int, count: int) -> Half:
             failures[k] = failure
         else:
             numbers[k] = base.numbers(blob)
-    missing = np.array([k for k in range(len(keys)) if k not in known], dtype=np.intp)
-    return Half(first, keys, Rows(numbers, failures), missing)
-
-
-def whole(study: Study, one: Half, fresh: Chunk | None) -> Chunk:
-    """A chunk of the rows that stand and of new ones."""
-    rows = one.rows
-    if fresh is not None:
-        rows.numbers[one.missing] = fresh.rows.numbers
-        added = {int(one.missing[k]): why for k, why in fresh.rows.failures.items()}
-        rows = Rows(rows.numbers, rows.failures | added)
-    return study.judged(one.first, rows, len(one.missing))
+    return Rows(numbers, failures), len(keys) - len(known)

@@ -24,7 +24,7 @@ from ..version import VERSION
 from .chunk import Chunk, Study
 from .cluster import on_cluster
 from .designs import KEPT
-from .kept import Half, half, whole
+from .kept import Lacking, kept, lacking
 from .sample import Sample
 from .swept import Swept
 
@@ -151,11 +151,11 @@ def swept_again(
         base = Database(reader.connection, number, len(study.columns), store)
         size = _chunk_size(study)
         for first in range(0, study.plan.count, size):
-            one = half(base, study, first, size)
-            if len(one.missing):
+            rows, missing = kept(base, study, first, size)
+            if missing:
                 message = f"study {number} lacks rows of this sweep"
                 raise refused(store, message, "run the sweep again with --store")
-            chunk = whole(study, one, None)
+            chunk = study.judged(first, rows, 0)
             found.add(chunk, keep)
             if each is not None:
                 each(chunk)
@@ -235,21 +235,24 @@ def _stored(
         version=VERSION,
         texts=[(axis.path, text) for axis in study.plan.named for text in axis.texts],
     ) as base:
-        halves: deque[Half] = deque()
+        asked: deque[Lacking] = deque()  # of keys alone: rows that stand are read in turn
 
         def tasks() -> Iterator[Task]:
             for first in starts:
-                one = half(base, study, first, starts.step)
-                halves.append(one)
-                if len(one.missing):
-                    every = len(one.missing) == len(one.keys)
-                    yield Task(first, starts.step, None if every else one.missing)
+                one = lacking(base, study, first, starts.step)
+                asked.append(one)
+                if one.keys:
+                    yield Task(first, starts.step, one.some)
+
+        def standing(one: Lacking) -> Chunk:
+            rows, _ = kept(base, study, one.first, starts.step)
+            return study.judged(one.first, rows, len(one.keys))
 
         for fresh in computed(tasks()):
-            while not len(halves[0].missing):
-                yield whole(study, halves.popleft(), None)
-            one = halves.popleft()
-            base.put([one.keys[k] for k in one.missing], fresh.rows)
-            yield whole(study, one, fresh)
-        for one in halves:
-            yield whole(study, one, None)
+            while not asked[0].keys:
+                yield standing(asked.popleft())
+            one = asked.popleft()
+            base.put(one.keys, fresh.rows)
+            yield fresh if one.some is None else standing(one)
+        for one in asked:
+            yield standing(one)
