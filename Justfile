@@ -12,6 +12,10 @@ test *ARGS:
 lint:
     .venv/bin/ruff check . && .venv/bin/ruff format --check . && .venv/bin/mypy && .venv/bin/lint-imports
 
+# changed inputs by the thousand: just fuzz --count 5000 --seed 2
+fuzz *ARGS:
+    .venv/bin/python tests/fuzz.py {{ARGS}}
+
 # timings against the budgets
 bench:
     .venv/bin/python -m pytest benchmarks --benchmark-enable --benchmark-only

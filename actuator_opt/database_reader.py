@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import sqlite3
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,7 +14,16 @@ from urllib.parse import quote
 
 import numpy as np
 
-from .database import BUSY, OURS, Column, damaged, refused, require_version
+from .database import (
+    BUSY,
+    OURS,
+    Column,
+    Seals,
+    damaged,
+    refused,
+    require_version,
+    study_checksum,
+)
 from .errors import Diagnostic, InputError
 from .numeric import Array
 from .store import read_bytes
@@ -22,6 +33,8 @@ MAGIC = b"SQLite format 3\0"
 
 SOME = 4096
 """Rows read at once."""
+
+_SELECT = "SELECT key, numbers, failure, checksum FROM rows WHERE study = ?"
 
 
 class Kept(NamedTuple):
@@ -33,6 +46,7 @@ class Kept(NamedTuple):
     design: str
     columns: tuple[Column, ...]
     rows: int
+    """Whole or damaged."""
     failures: dict[str, int]
     """How often each reason made a design fail."""
     texts: dict[str, tuple[str, ...]]
@@ -52,7 +66,7 @@ class Reader:
         InputError
             no such study, or one without rows
         """
-        select = "SELECT id, hash, name, design, columns FROM studies ORDER BY id"
+        select = "SELECT id, hash, name, design, columns, checksum FROM studies ORDER BY id"
         every = self.connection.execute(select).fetchall()
         if not every:
             raise refused(self.path, "holds no study", "run `sweep --store` on it first")
@@ -60,24 +74,25 @@ class Reader:
         if not found:
             have = ", ".join(f"{one[0]} ({one[2]})" for one in every[-8:])
             raise refused(self.path, f"has no study {number}", f"--study is one of {have}")
-        number, hashed, name, design, columns = found[-1]
-        count = "SELECT count(*) FROM rows WHERE study = ?"
+        number, hashed, name, design, columns, checksum = found[-1]
+        if checksum != study_checksum(hashed, name, design, columns):
+            message = f"study {number} is damaged"
+            raise refused(self.path, message, "run its sweep again with --store")
+        told = self._columns(columns)
+        count = "SELECT count(*) FROM rows NOT INDEXED WHERE study = ?"  # an index may lack some
         rows = self.connection.execute(count, (number,)).fetchone()[0]
         if not rows:
             raise refused(self.path, f"study {number} has no rows yet", "let its sweep run first")
-        count = "SELECT failure, count(*) FROM rows WHERE study = ? GROUP BY failure"
-        reasons = dict(self.connection.execute(count, (number,)))
-        reasons.pop(None, None)
-        return Kept(
-            number,
-            hashed,
-            name,
-            design,
-            self._columns(columns),
-            rows,
-            dict(sorted(reasons.items(), key=lambda one: (-one[1], one[0]))),
-            self._texts(number),
+        failures = self._failures(number, Seals(hashed, len(told)))
+        return Kept(number, hashed, name, design, told, rows, failures, self._texts(number))
+
+    def _failures(self, number: int, seals: Seals) -> dict[str, int]:
+        """How often each reason made a design fail, the commonest first, by rows that are whole."""
+        select = f"{_SELECT} AND failure IS NOT NULL"
+        reasons = Counter(
+            row[2] for row in self.connection.execute(select, (number,)) if seals.fits(*row)
         )
+        return dict(sorted(reasons.items(), key=lambda one: (-one[1], one[0])))
 
     def number(self, hashed: str) -> int:
         """The number of the study of a hash.
@@ -94,7 +109,10 @@ class Reader:
         return int(row[0])
 
     def _columns(self, text: str) -> tuple[Column, ...]:
-        told = json.loads(text)
+        try:
+            told = json.loads(text)
+        except (TypeError, ValueError, RecursionError):
+            told = None
         if not isinstance(told, list) or not all(
             isinstance(one, list) and len(one) == len(Column._fields) for one in told
         ):
@@ -114,16 +132,18 @@ class Reader:
     def rows(self, study: Kept) -> Iterator[tuple[list[bytes], Array]]:
         """Keys and numbers of the rows that did not fail, some at once, by their key.
 
-        A key is a hash, so that every n-th row is an even sample of the study.
+        A key is a hash, so that every n-th row is an even sample of the study. Damaged rows are
+        left out.
         """
-        select = "SELECT key, numbers FROM rows WHERE study = ? AND failure IS NULL ORDER BY key"
+        select = f"{_SELECT} AND failure IS NULL ORDER BY key"
         cursor = self.connection.execute(select, (study.number,))
         width = len(study.columns)
-        while some := cursor.fetchmany(SOME):
-            if any(not isinstance(row, bytes) or len(row) != 8 * width for _, row in some):
-                raise damaged(self.path)
-            data = b"".join(row for _, row in some)
-            yield [key for key, _ in some], np.frombuffer(data, dtype="<f8").reshape(-1, width)
+        seals = Seals(study.hash, width)
+        while every := cursor.fetchmany(SOME):
+            some = [row for row in every if seals.fits(*row)]
+            data = b"".join(row[1] for row in some)
+            if some:
+                yield [row[0] for row in some], np.frombuffer(data, dtype="<f8").reshape(-1, width)
 
 
 @contextmanager
@@ -146,14 +166,18 @@ def reading(path: Path, version: str) -> Iterator[Reader]:
             yield Reader(connection, path)
         finally:
             connection.close()
-    except (sqlite3.DatabaseError, json.JSONDecodeError) as error:
+    except UnicodeDecodeError:  # of the message in which SQLite says what is malformed
+        raise damaged(path) from None
+    except sqlite3.DatabaseError as error:
+        if "malformed" in str(error) or "UTF-8" in str(error):
+            raise damaged(path) from None
         remedy = "name the file of `sweep --store`, whole"
         raise InputError(Diagnostic(f"cannot be read: {error}", remedy, str(path))) from None
 
 
 def _connected(path: Path) -> sqlite3.Connection:
     """A connection that only reads; where no lock can be kept beside the file, it stands still."""
-    name = f"file:{quote(str(path.resolve()))}?mode=ro"
+    name = f"file:{quote(os.fsencode(path.resolve()))}?mode=ro"
     connection = sqlite3.connect(name, uri=True, timeout=BUSY)
     try:
         connection.execute("SELECT count(*) FROM sqlite_master").fetchone()

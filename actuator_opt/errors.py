@@ -1,7 +1,8 @@
 """What can go wrong, said in one line each: where, what, what to do.
 
-Every failure a user can cause leaves the program as an `InputError` (exit 3) or an
-`Unsolvable` (exit 4); both carry `Diagnostic` records, which the terminal prints as plain lines
+Every failure a user can cause leaves the program as a `UsageError` (exit 2), an `InputError`
+(exit 3) or an `Unsolvable` (exit 4); any other exception is a fault of the program (exit 70). They
+carry `Diagnostic` records, which the terminal prints as plain lines
 and ``--json`` prints as objects.
 """
 
@@ -25,7 +26,21 @@ class ExitCode(IntEnum):
     USAGE = 2
     BAD_INPUT = 3
     SOLVER_FAILED = 4
+    FAULT = 70
+    """EX_SOFTWARE of sysexits.h: an error of the program itself."""
     INTERRUPTED = 130
+
+
+EXIT_CODES = {
+    ExitCode.MET: "requirements met",
+    ExitCode.MISSED: "a requirement missed or infeasible",
+    ExitCode.USAGE: "usage",
+    ExitCode.BAD_INPUT: "bad input, or a file that cannot be written",
+    ExitCode.SOLVER_FAILED: "solver failed",
+    ExitCode.FAULT: "a fault of the program (`--debug` shows its traceback)",
+    ExitCode.INTERRUPTED: "interrupted",
+}
+"""Exit codes as help and README tell them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +74,8 @@ class Diagnostic:
         file = None if self.file is None else shown(self.file, _LONGEST)
         place = ":".join(str(p) for p in (file, self.line, self.column) if p is not None)
         head = ": ".join(p for p in (place, self.path or "", self.message) if p)
-        lines = [f"{head}; {self.remedy}" if self.remedy else head]
+        first = f"{head}; {self.remedy}" if self.remedy else head
+        lines = [first.replace("\r", "\\r").replace("\n", "\\n")]
         if self.source is not None and self.column is not None:
             lines.append(f"    {self.source}")
             lines.append("    " + " " * (self.column - 1) + "^")

@@ -1,7 +1,9 @@
 """Records of runs: one file each in a folder of the person's own, written whole or not at all.
 
 A record is a file of two lines of JSON: a short head, by which records are listed, and the rest.
-Nothing here knows what a run is; nothing is ever deleted unless asked.
+Each line ends with the checksum of what stands before it, so that damage is noticed. It is no
+signature: whoever writes a record can write its checksum. Nothing here knows what a run is;
+nothing is ever deleted unless asked.
 """
 
 from __future__ import annotations
@@ -16,12 +18,13 @@ from pathlib import Path
 from typing import Any
 
 from .errors import Diagnostic, InputError
+from .store import private_part, read_json
 from .suggest import shown
 
 FOLDER, SWITCH = "ACTUATOR_OPT_RUNS", "ACTUATOR_OPT_NO_RECORD"
 """Environment variables: where records go, and that none are made (any text but "0")."""
-FORMAT = 1
-"""Of the files; a newer one is refused by name."""
+FORMAT = 2
+"""Of the files; a newer one is refused by name. Files of format 1 have no checksums."""
 SUFFIX = ".run"
 _ID = re.compile(r"[0-9]{8}-[0-9]{6}-[0-9a-f]{6}")
 _BEGINNING = re.compile(r"[0-9]{4,8}(-[0-9]{0,6}(-[0-9a-f]{0,6})?)?")
@@ -29,6 +32,8 @@ _MOST = 200_000_000
 """Bytes of a record, at most: a choice far above what a run leaves."""
 _HEAD = 4_000_000
 """Bytes of its first line, at most: twice what a command line may be."""
+_SEAL = "blake2b"
+"""Key of a line's checksum, the last of its object."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,11 +50,22 @@ class Entry:
 
 
 def folder() -> Path | None:
-    """Where records go: ACTUATOR_OPT_RUNS, else the person's data folder; None: switched off."""
+    """Where records go: ACTUATOR_OPT_RUNS, else the person's data folder; None: switched off.
+
+    Raises
+    ------
+    InputError : it names a home folder that nobody has
+    """
     if os.environ.get(SWITCH, "") not in ("", "0"):
         return None
     stated = os.environ.get(FOLDER, "")
-    return Path(stated).expanduser() if stated else _data() / "actuator-opt" / "runs"
+    try:
+        return Path(stated).expanduser() if stated else _data() / "actuator-opt" / "runs"
+    except RuntimeError:  # nobody of that name, or a person without a home
+        message = f"{FOLDER}: {shown(stated) or 'unset'}, and no home folder is known for it"
+        raise InputError(
+            Diagnostic(message, f"set {FOLDER} to a folder by its full path")
+        ) from None
 
 
 def _data() -> Path:
@@ -78,24 +94,23 @@ def write(place: Path, started: str, head: Mapping[str, Any], body: Mapping[str,
     ------
     InputError : it cannot be written; nothing is left
     """
-    import json
+    from .plain_json import encoded
 
-    text = "".join(
-        json.dumps(part, ensure_ascii=True, allow_nan=False, separators=(",", ":")) + "\n"
-        for part in ({"record": FORMAT} | dict(head), body)
-    )
-    aside = place / f".{_random(8)}.part"
+    lines = [
+        encoded(part, separators=(",", ":")) for part in ({"record": FORMAT} | dict(head), body)
+    ]
     try:
-        place.mkdir(parents=True, exist_ok=True)
-        aside.write_text(text, encoding="ascii")
-        while True:
-            path = place / f"{started}-{_random(3)}{SUFFIX}"
-            with contextlib.suppress(FileExistsError):
-                _claim(aside, path)
-                return path
+        place.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with private_part(place) as (file, part):
+            with open(file.fileno(), "wb", closefd=False) as stream:
+                stream.writelines(_sealed(line.encode("ascii")) + b"\n" for line in lines)
+            file.close()
+            while True:
+                path = place / f"{started}-{_random(3)}{SUFFIX}"
+                with contextlib.suppress(FileExistsError):
+                    _claim(part, path)
+                    return path
     except OSError as error:
-        with contextlib.suppress(OSError):
-            aside.unlink(missing_ok=True)
         reason = f"cannot write: {error.strerror or type(error).__name__}"
         raise InputError(Diagnostic(reason, "", str(place))) from None
 
@@ -105,18 +120,16 @@ def _random(size: int) -> str:
     return os.urandom(size).hex()
 
 
-def _claim(aside: Path, path: Path) -> None:
+def _claim(part: Path, path: Path) -> None:
     """Give a written file its name; FileExistsError where another has it."""
     try:
-        os.link(aside, path)
+        os.link(part, path)
     except FileExistsError:
         raise
     except OSError:  # a file system without links
         if path.exists():
             raise FileExistsError(path) from None
-        aside.replace(path)
-        return
-    aside.unlink()
+        part.replace(path)
 
 
 def entries(place: Path) -> tuple[list[Entry], list[Diagnostic]]:
@@ -136,7 +149,7 @@ def entries(place: Path) -> tuple[list[Entry], list[Diagnostic]]:
         try:
             with path.open("rb") as stream:
                 line, written = stream.readline(_HEAD), os.fstat(stream.fileno()).st_mtime_ns
-            entry = Entry(path, _parsed(line, path))
+            entry = Entry(path, _parsed(line, path)[0])
         except FileNotFoundError:  # deleted meanwhile
             continue
         except OSError as error:
@@ -155,18 +168,41 @@ def is_record(path: Path) -> bool:
     return path.suffix == SUFFIX and _ID.fullmatch(path.stem) is not None
 
 
-def _parsed(line: bytes, path: Path) -> dict[str, Any]:
-    """A line of a record as an object."""
-    import json
+def _parsed(line: bytes, path: Path, *, sealed: bool = False) -> tuple[dict[str, Any], bool]:
+    """A line of a record as an object, and whether a checksum vouches for it.
 
+    Raises
+    ------
+    InputError : it is none, its checksum is another, or it is `sealed` no longer
+    """
+    line = line.rstrip()
     try:
-        data = json.loads(line)
-    except (ValueError, RecursionError):
+        data = read_json(line)
+    except ValueError:
         data = None
-    if not isinstance(data, dict):
-        remedy = "delete the file; the run itself is to be repeated"
-        raise InputError(Diagnostic("is no record of a run, or a damaged one", remedy, str(path)))
-    return data
+    if isinstance(data, dict):
+        if data.pop(_SEAL, None) is None:
+            whole, sealed = not sealed and data.get("record") != FORMAT, False
+        else:
+            whole, sealed = line == _sealed(_bare(line)), True
+        if whole:
+            return data, sealed
+    remedy = "delete the file; the run itself is to be repeated"
+    raise InputError(Diagnostic("is no record of a run, or a damaged one", remedy, str(path)))
+
+
+def _sealed(line: bytes) -> bytes:
+    """A line of JSON with its checksum as the last key of the object."""
+    import hashlib
+
+    found = hashlib.blake2b(line, digest_size=16).hexdigest()
+    comma = "" if line == b"{}" else ","
+    return line[:-1] + f'{comma}"{_SEAL}":"{found}"}}'.encode()
+
+
+def _bare(line: bytes) -> bytes:
+    """A line as it was before its checksum."""
+    return line.rpartition(f'"{_SEAL}":'.encode())[0].removesuffix(b",") + b"}"
 
 
 def is_name(text: str) -> bool:
@@ -223,18 +259,18 @@ def read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
     data = read_bytes(path, most=_MOST, kinds=(SUFFIX,), what="record")
     lines = data.splitlines()
-    head = _parsed(lines[0] if lines else b"", path)
+    head, sealed = _parsed(lines[0] if lines else b"", path)
     known = head.get("record")
     if isinstance(known, int) and known > FORMAT:
         version = shown(str(head.get("version", "")))
         message = f"was written by actuator-opt {version}, in a newer form"
         raise InputError(Diagnostic(message, "install that version, or a later one", str(path)))
-    body = _parsed(lines[1] if len(lines) > 1 else b"", path)
+    body, _ = _parsed(lines[1] if len(lines) > 1 else b"", path, sealed=sealed)
     return head, body
 
 
-def delete(path: Path) -> None:
-    """Delete a record.
+def delete(path: Path) -> bool:
+    """Delete a record; False where it is gone already.
 
     Raises
     ------
@@ -242,6 +278,9 @@ def delete(path: Path) -> None:
     """
     try:
         path.unlink()
+        return True
+    except FileNotFoundError:
+        return False
     except OSError as error:
         reason = f"cannot be deleted: {error.strerror or type(error).__name__}"
         raise InputError(Diagnostic(reason, "", str(path))) from None

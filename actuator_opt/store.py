@@ -8,6 +8,8 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping
+from io import FileIO
+from math import isfinite
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
@@ -15,6 +17,17 @@ from .errors import Diagnostic, InputError
 from .suggest import closest
 
 _PACKAGE = Path(__file__).resolve().parent
+_CREATE = (
+    os.O_WRONLY
+    | os.O_CREAT
+    | os.O_EXCL
+    | getattr(os, "O_NOFOLLOW", 0)  # neither is known everywhere
+    | getattr(os, "O_BINARY", 0)
+)
+_PRIVATE = 0o600
+"""Permissions of what is the user's own."""
+DIGITS = 19
+"""Letters of a whole number in JSON, at most: counts, seeds and times have fewer."""
 
 
 def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
@@ -62,7 +75,7 @@ def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: s
     """
     path, name = Path(source), str(source)
     if name == "-":
-        return sys.stdin.buffer.read(most)
+        return _given(most)
     try:
         with path.open("rb") as stream:
             return stream.read(most)
@@ -75,6 +88,18 @@ def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: s
         raise InputError(Diagnostic(f"cannot be read: {reason}", "", name)) from None
 
 
+def _given(most: int) -> bytes:
+    """The first `most` bytes of standard input; raises `InputError`."""
+    stream: TextIO | None = sys.stdin
+    if stream is None:  # closed by the shell
+        raise InputError(Diagnostic("standard input is closed", "name a file", "-"))
+    try:
+        return stream.buffer.read(most)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(Diagnostic(f"standard input cannot be read: {reason}", "", "-")) from None
+
+
 def _near(path: Path, kinds: tuple[str, ...]) -> str:
     try:
         names = [one.name for one in path.parent.iterdir() if one.suffix in kinds]
@@ -84,6 +109,34 @@ def _near(path: Path, kinds: tuple[str, ...]) -> str:
     return f"did you mean {path.parent / match}?" if match else "check the path"
 
 
+def read_json(text: bytes | str) -> object:
+    """The JSON of a stranger: finite numbers alone, whole ones of at most `DIGITS` digits.
+
+    Raises
+    ------
+    ValueError : it is none, or nested without end
+    """
+    import json
+
+    try:
+        return json.loads(text, parse_int=_whole, parse_float=_finite, parse_constant=_finite)
+    except RecursionError:
+        raise ValueError("nested too deeply") from None
+
+
+def _whole(text: str) -> int:
+    if len(text) > DIGITS:
+        raise ValueError("too many digits")
+    return int(text)
+
+
+def _finite(text: str) -> float:
+    found = float(text)
+    if not isfinite(found):
+        raise ValueError("no finite number")
+    return found
+
+
 def require_writable(path: Path) -> None:
     """Refuse a file that cannot be written, before the work that would fill it.
 
@@ -91,7 +144,15 @@ def require_writable(path: Path) -> None:
     ------
     InputError : a folder stands there, its own folder is missing, or permission is; or it is "-"
     """
-    folder = path.parent
+    with writing(path):
+        reason = _unwritable_file(path)
+    if reason:
+        raise InputError(Diagnostic(reason, "choose another file or folder", str(path)))
+
+
+def _unwritable_file(path: Path) -> str:
+    """Why a file cannot be written; "" where it can. Raises `OSError`."""
+    folder, reason = path.parent, ""
     if str(path) == "-":
         reason = "is standard output, which carries the results"
     elif path.is_dir():
@@ -102,9 +163,7 @@ def require_writable(path: Path) -> None:
         reason = "its folder does not exist"
     elif not os.access(path if path.exists() else folder, os.W_OK):
         reason = "no permission to write"
-    else:
-        return
-    raise InputError(Diagnostic(reason, "choose another file or folder", str(path)))
+    return reason
 
 
 def require_folder(folder: Path) -> None:
@@ -115,8 +174,8 @@ def require_folder(folder: Path) -> None:
     InputError : a file stands in the way, or permission is missing
     """
     place = folder
-    while not place.exists() and place != place.parent:
-        place = place.parent
+    with writing(folder, "choose a folder with --out"):
+        place = _nearest(folder)
     if not place.is_dir():
         reason = f"{place} is a file" if place != folder else "is a file"
     elif not os.access(place, os.W_OK):
@@ -124,6 +183,13 @@ def require_folder(folder: Path) -> None:
     else:
         return
     raise InputError(Diagnostic(reason, "choose a folder with --out", str(folder)))
+
+
+def _nearest(folder: Path) -> Path:
+    """The folder, or the nearest one above it that is there; raises `OSError`."""
+    while not folder.exists() and folder != folder.parent:
+        folder = folder.parent
+    return folder
 
 
 def require_apart(target: Path, *sources: str) -> None:
@@ -158,42 +224,76 @@ def aside(path: Path) -> Iterator[TextIO]:
     ------
     InputError : it cannot be written; nothing partial is left
     """
-    with _part(path) as part, part.open("w", encoding="utf-8") as stream:
+    with _part(path) as part, open(part, "w", encoding="utf-8", closefd=False) as stream:
         yield stream
 
 
 @contextlib.contextmanager
 def aside_bytes(path: Path) -> Iterator[BinaryIO]:
     """As `aside`, of bytes."""
-    with _part(path) as part, part.open("wb") as stream:
+    with _part(path) as part, open(part, "wb", closefd=False) as stream:
         yield stream
 
 
 @contextlib.contextmanager
-def _part(path: Path) -> Iterator[Path]:
-    """Where to write a file aside; it is renamed once that is done, and gone if it is not."""
+def _part(path: Path) -> Iterator[int]:
+    """Descriptor of a file aside; it is renamed once that is written, and gone if it is not."""
     path = path.resolve() if path.is_symlink() else path
     if path.exists() and not path.is_file():
         message = "is a folder" if path.is_dir() else "is no regular file"
         raise InputError(Diagnostic(message, "choose another file or folder", str(path)))
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with writing(path):
-            yield part
-            part.replace(path)
-    finally:  # nothing is left of it once it is in place
-        with contextlib.suppress(OSError):
-            part.unlink(missing_ok=True)
+    with writing(path), private_part(path.parent) as (file, part):
+        yield file.fileno()
+        _publish(file)
+        part.replace(path)
 
 
 @contextlib.contextmanager
-def writing(path: Path) -> Iterator[None]:
+def private_part(folder: Path) -> Iterator[tuple[FileIO, Path]]:
+    """A new file in a folder, open for writing; it is gone afterwards unless it was renamed.
+
+    Nobody but the user can read it, nobody can guess its name, and it is never a file or a link
+    that stands there already: in a shared folder, others can neither read nor divert what is
+    written.
+
+    Raises
+    ------
+    OSError : it cannot be made
+    """
+    part = folder / f".{os.urandom(16).hex()}.part"
+    file = FileIO(os.open(part, _CREATE, _PRIVATE), "w")
+    try:
+        yield file, part
+    finally:
+        with contextlib.suppress(OSError):
+            file.close()
+            part.unlink(missing_ok=True)
+
+
+def make_private(path: Path) -> None:
+    """Make an empty file that is the user's own, where there is none; a link stays one."""
+    with contextlib.suppress(OSError):  # whoever opens it says what is wrong
+        os.close(os.open(os.path.realpath(path), _CREATE, _PRIVATE))
+
+
+def _publish(file: FileIO) -> None:
+    """Give a file the permissions that new files of this process have (its umask); close it."""
+    mask = os.umask(0o077)
+    os.umask(mask)
+    if sys.platform != "win32":
+        with contextlib.suppress(OSError):  # a file system without permissions
+            os.fchmod(file.fileno(), 0o666 & ~mask)
+    file.close()
+
+
+@contextlib.contextmanager
+def writing(path: Path, remedy: str = "choose another file or folder") -> Iterator[None]:
     """Say in one line why a file cannot be written; raises `InputError`."""
     try:
         yield
     except OSError as error:
         reason = f"cannot write: {error.strerror or type(error).__name__}"
-        raise InputError(Diagnostic(reason, "choose another file or folder", str(path))) from None
+        raise InputError(Diagnostic(reason, remedy, str(path))) from None
 
 
 def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the report") -> None:
@@ -209,22 +309,22 @@ def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the r
     ------
     InputError : the folder cannot be written, or a folder stands in a file's way
     """
-    parts: list[tuple[Path, Path]] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, content in contents.items():
-            path = folder / f".{name}.{os.getpid()}.part"
-            parts.append((path, folder / name))
-            path.write_bytes(content)
-        for _, target in parts:
-            if target.is_dir():
-                raise IsADirectoryError(errno.EISDIR, "a folder stands in the way", str(target))
-        for path, target in parts:
-            path.replace(target)
+        with contextlib.ExitStack() as stack:
+            parts: list[tuple[Path, Path]] = []
+            for name, content in contents.items():
+                file, part = stack.enter_context(private_part(folder))
+                parts.append((part, folder / name))
+                with open(file.fileno(), "wb", closefd=False) as stream:
+                    stream.write(content)
+                _publish(file)
+            for _, target in parts:
+                if target.is_dir():
+                    raise IsADirectoryError(errno.EISDIR, "a folder stands in the way", str(target))
+            for part, target in parts:
+                part.replace(target)
     except OSError as error:
-        for path, _ in parts:
-            with contextlib.suppress(OSError):
-                path.unlink(missing_ok=True)
         reason = f"cannot write {what}: {error.strerror or type(error).__name__}"
         fault = Diagnostic(reason, "choose a folder with --out", file=str(folder))
         raise InputError(fault) from None
@@ -235,9 +335,10 @@ def unwritable(folder: Path) -> str:
 
     A folder that is missing is judged by the nearest one above it that is there.
     """
-    place = folder.absolute()
-    while not place.exists() and place != place.parent:
-        place = place.parent
+    try:
+        place = _nearest(folder.absolute())
+    except OSError as error:
+        return error.strerror or type(error).__name__
     if not place.is_dir():
         return f"{place} is a file"
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 
@@ -38,6 +39,26 @@ def remedy(word: str, names: Iterable[str], limit: int = 12) -> str:
         return ""
     more = ", …" if len(candidates) > limit else ""
     return f"use one of {', '.join(candidates[:limit])}{more}"
+
+
+CONTROLS = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff"
+"""Characters, as in a regular expression, that move a terminal's cursor or turn text round."""
+_CONTROL = rf"\r(?!\n)|(?!\r)[{CONTROLS}]"
+
+
+def escaped(text: str, own: str = "") -> str:
+    r"""Text that a terminal only prints: control characters spelt out, but for tabs and new lines.
+
+    Parameters
+    ----------
+    text : whatever is to be printed
+    own : sequences that stay as they are, as a regular expression without groups
+
+    >>> print(escaped("\x1b[2J\u202e" "a\tb"))
+    \x1b[2J\u202ea	b
+    """
+    pattern = f"({own})|{_CONTROL}" if own else f"(?!)()|{_CONTROL}"
+    return re.sub(pattern, lambda m: m[1] or m[0].encode("unicode_escape").decode("ascii"), text)
 
 
 def shown(text: object, limit: int = 60) -> str:

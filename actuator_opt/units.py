@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from decimal import Decimal
 
 _NUMBER = re.compile(
     r"\s*(?P<number>[+-]?(?:\d+(?:[\d_]*\d)?\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*?)\s*$"
@@ -186,6 +187,9 @@ _OFFSETS = {"degC": 273.15, "°C": 273.15, "degF": 459.67 * 5 / 9, "°F": 459.67
 
 _INVERSES = {float(f"1e-{n}"): float(f"1e{n}") for n in range(1, 16)}
 
+_DECIMAL_DIGITS = 12
+"""Scales of at most as many characters are decimal by definition (1e-2, 0.0254, 101325)."""
+
 _SYNONYMS = (("**", "^"), ("²", "^2"), ("³", "^3"), ("·", "*"), ("⋅", "*"), ("⁻¹", "^-1"))
 
 
@@ -211,6 +215,13 @@ class Unit:
         """SI value of a value in this unit."""
         inverse = _INVERSES.get(self.scale)  # 18 mm is 18/1000, not 18·0.001: exact to the last bit
         return (value * self.scale if inverse is None else value / inverse) + self.offset
+
+    def text_to_si(self, number: str) -> float:
+        """SI value of a number as it is written: 1.1 cm and 11 mm are the same to the last bit."""
+        digits = repr(self.scale)
+        if len(digits) > _DECIMAL_DIGITS:
+            return self.to_si(float(number))
+        return float(Decimal(number) * Decimal(digits)) + self.offset
 
     def from_si(self, value: float) -> float:
         """A value in this unit of an SI value."""
@@ -263,11 +274,16 @@ def _article(dimension: str) -> str:
 
 def split(text: str) -> tuple[float, str]:
     """Split ``"12.5 mm"`` into 12.5 and ``"mm"``; raises `UnitError` on anything else."""
+    number, name = _split(text)
+    return float(number), name
+
+
+def _split(text: str) -> tuple[str, str]:
     match = _NUMBER.match(text)
     if match is None:
         raise UnitError(f'"{text}" is not a number with a unit', 'write e.g. "12 mm"')
-    number = float(match["number"].replace("_", ""))
-    if not math.isfinite(number):
+    number = match["number"].replace("_", "")
+    if not math.isfinite(float(number)):
         raise UnitError(f'"{text}" is not a finite number', "write a finite value")
     return number, match["unit"]
 
@@ -279,11 +295,23 @@ def parse(text: str, dimension: str) -> float:
 
     >>> parse("210 bar", "pressure")
     21000000.0
+    >>> parse("1.1 cm", "length") == parse("11 mm", "length")
+    True
     """
-    number, name = split(text)
+    number, name = _split(text)
     if name:
-        return unit(name, dimension).to_si(number)
-    if dimension in ("ratio", "count") or (number == 0 and dimension != "temperature"):
-        return number
+        return unit(name, dimension).text_to_si(number)
+    if dimension in ("ratio", "count") or (float(number) == 0 and dimension != "temperature"):
+        return float(number)
     example = next(iter(_SCALES[dimension]))
     raise UnitError(f'"{text}": unit missing', f'write e.g. "{text.strip()} {example}"')
+
+
+def whole(text: str) -> int | None:
+    """A whole number as a person writes it, at most 15 digits; None for anything else.
+
+    >>> whole(" 12 "), whole("-1"), whole("9" * 5000)
+    (12, None, None)
+    """
+    digits = text.strip()
+    return int(digits) if digits.isdecimal() and len(digits) <= 15 else None

@@ -192,9 +192,9 @@ def test_fifty_combinations_of_standard_sizes(benchmark):
     """
     text = KNEE.read_text("utf-8").replace("max: 290 N", "max: 400 N")
     text = text.replace("    upper: 4 mm", "    upper: 8 mm") + CHOICES
-    found = benchmark.pedantic(
-        lambda: ao.optimise(ao.read(text), standard_sizes=True, prices=False), rounds=1
-    )
+    for path in ("cylinder.bore", "rod.outer_diameter"):
+        text = text.replace(f"  {path}:\n    lower", f"  {path}:\n    sizes: iso_3320\n    lower")
+    found = benchmark.pedantic(lambda: ao.optimise(ao.read(text), prices=False), rounds=1)
     assert found.rounding.met
     assert len(found.choices.combinations) == 50
 

@@ -153,6 +153,13 @@ objective:
 """A design of our own with room in every requirement: shipped ones change with their numbers."""
 
 
+PLIES = (
+    ("      thickness: 1.2 mm\n", "      thickness: 1.2 mm\n      ply_thickness: 0.2 mm\n"),
+    ("      thickness: 1.6 mm\n", "      thickness: 1.6 mm\n      ply_thickness: 0.2 mm\n"),
+)
+"""Changes that make both layers of fibres of the bench design of whole plies."""
+
+
 @dataclass(frozen=True)
 class Result:
     """What a command left behind."""

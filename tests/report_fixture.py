@@ -793,6 +793,14 @@ def build_infeasible() -> Optimisation:
                     "needed_text": "1.6 mm",
                 },
             ),
+            cures=(
+                cure("dimension", "caps.thickness", 5e-3, 6e-3, ("5 mm", "6 mm")),
+                cure("choice", "seals.rod.compound", "nbr_90", "nbr_70"),
+                cure(
+                    "safety factor", "requirements.retention_factor.min", 1.5, 1.2, ("1.5", "1.2")
+                ),
+            ),
+            untried=("caps.material",),
             total=0.154,
             sentence="nothing fits: the smallest change of 2 limits together is"
             " requirements.friction_running.max 250 N -> 281 N (+12.4 %);"
@@ -809,6 +817,7 @@ def relaxed(metric, sense, limit, needed, texts, origin="requirement"):
         "requirement": metric,
         "parameter": f"requirements.{metric}.{sense}",
         "origin": origin,
+        "safety_factor": metric.endswith("_factor"),
         "metric": metric,
         "sense": sense,
         "limit": limit,
@@ -817,6 +826,20 @@ def relaxed(metric, sense, limit, needed, texts, origin="requirement"):
         "change": change,
         "limit_text": texts[0],
         "needed_text": texts[1],
+    }
+
+
+def cure(kind, parameter, now, needed, texts=()):
+    """What alone is enough, in an infeasibility card."""
+    return {
+        "kind": kind,
+        "parameter": parameter,
+        "advised": kind != "safety factor",
+        "now": now,
+        "needed": needed,
+        "change": needed / now - 1 if texts else None,
+        "limit_text": (texts or (now, needed))[0],
+        "needed_text": (texts or (now, needed))[1],
     }
 
 

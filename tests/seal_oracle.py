@@ -46,14 +46,21 @@ def lame(pressure, inner, outer, modulus, poisson):
 
 
 def o_ring(squeeze, section, modulus, pressure):
-    """Line load, width, peak and the load of the Hertz part of the default law."""
+    """Line load, width and peak of the default law; the load as the integral of its profile.
+
+    Hertz's width belongs to a rigid plane on a cylinder of diameter W and modulus E/0.75.
+    """
     if squeeze <= 0:
         return 0.0, 0.0, 0.0
-    rest = 4 / 3 * modulus * section * (1.25 * squeeze**1.5 + 50 * squeeze**6)
-    held = 0.72 + 0.08 * min(max((squeeze - 0.15) / 0.05, 0.0), 1.0)
-    bare = section * (2 * squeeze + 0.13)
-    wide = bare + section * 0.32 * (1 - exp(-2.1 * pressure / modulus))
-    return rest + held * pressure * section, wide, 4 * rest / (pi * bare) + pressure
+    rest = modulus * section * (0.307 * squeeze + 2.294 * squeeze**2)
+    hertz = 2 * sqrt(4 * rest * (section / 2) / (pi * modulus / 0.75))
+    bare = hertz * (1 - 0.652 * squeeze**2)
+    gained = (0.307 + 0.549 * squeeze) / (1 + 0.618 * modulus / pressure) if pressure else 0.0
+    wide = sqrt(bare**2 + gained * section**2)
+    excess = 4 * rest / (pi * bare)
+    place = (1 - np.cos(np.linspace(0, pi, 4001))) / 2
+    profile = pressure * (1 - place**10) + 2 * excess * np.sqrt(place * (1 - place))
+    return wide * np.trapezoid(profile, place), wide, excess + pressure
 
 
 # --- sliding rings -------------------------------------------------------------------------------
@@ -80,7 +87,7 @@ def step_ring(ring, squeeze, pressure):
     foot_load, _, _ = o_ring(squeeze, ring["section"], ring["energiser"], pressure)
     if squeeze <= 0:
         return 0.0, 0.0
-    foot = ring["section"] * (2 * squeeze + 0.13)
+    foot = o_ring(squeeze, ring["section"], ring["energiser"], 0.0)[1]
     back = ring["width"] - foot - ring["section"] * (1 - squeeze) / 2
     load = max(foot_load + pressure * (max(back, 0.0) - ring["relief"]), 0.0)
     if load == 0:

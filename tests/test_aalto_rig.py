@@ -145,17 +145,21 @@ def test_air_makes_large_swings_softer() -> None:
 
 @pytest.mark.parametrize(("place", "side"), [(0.005, "a"), (0.215, "b")])
 def test_only_the_load_of_10_hz_empties_a_chamber_at_its_end(place, side) -> None:
-    """By closed form the minimum is line less swing; below the vacuum it stays at the vacuum."""
+    """By closed form the minimum is line less swing; below the vacuum it stays at the vacuum.
+
+    Viscous friction damps what rings on from the start, a share f/f_n of the swing.
+    """
     k, line = (0, 20.5 * BAR) if side == "a" else (1, 42 * BAR)
     for hz, force in FORCES.items():
         wanted = line - swings(place, force)[k]
-        low = late(run("closed_ports", hz, place, BARE), hz)[f"pressure_{side}"]
+        damped = BARE | {"friction.viscous": "2000 N*s/m"}
+        low = late(run("closed_ports", hz, place, damped), hz)[f"pressure_{side}"]
         if hz == 10:
             assert wanted < VACUUM
             assert VACUUM <= low.min() < VACUUM + 0.05 * BAR
             assert np.mean(low < VACUUM + 0.1 * BAR) > 0.03
         else:
-            assert low.min() == pytest.approx(wanted, abs=0.02 * line)
+            assert low.min() == pytest.approx(wanted, abs=0.005 * line)
             assert low.min() > BAR
 
 

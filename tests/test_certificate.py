@@ -130,11 +130,11 @@ def test_no_design_lies_below_the_bound(some):
 
 
 GAPS = {
-    "steel": (("steel_baseline", ("piston.material", "al_7075_t6")), 0.002),
-    "knee": (("knee",), 0.05),
+    "steel": (("steel_baseline", ("piston.material", "al_7075_t6")), 0.004),
+    "knee": (("knee",), 0.16),
     "knee of 90 mm, sized by stiffness": (
         ("knee", ("cylinder.stroke", "90 mm"), ("requirements.stiffness_min.min", "12e6")),
-        0.05,
+        0.12,
     ),
     "knee sized by growth": (
         ("knee", ("requirements.seal_gap.max", "33e-6"), ("requirements.stiffness_min.min", "6e6")),
@@ -142,7 +142,11 @@ GAPS = {
     ),
     "knee sized by strength": (CASES["knee sized by strength"], 0.13),
 }
-"""Designs with the gap that the proof leaves at most."""
+"""Designs with the gap that the proof leaves at most.
+
+The knee as shipped runs at 248 N of friction: its limit of 290 N is slack and no longer sizes the
+bore, so that the bound of knee and 90 mm rests on looser limits.
+"""
 
 
 @pytest.mark.parametrize("name", GAPS)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import json
 import math
@@ -450,15 +451,20 @@ def test_write_keeps_the_block_and_repeats_the_optimum(tmp_path):
 
 def test_the_winner_is_rounded_to_whole_plies():
     """With --whole-plies the chosen combination is rounded; the record is that of the choices."""
-    text = BENCH.replace(LAYER, LAYER + "      ply_thickness: 0.2 mm\n")
-    result = optimum(listed(SEALS, text), whole_plies=True)
+
+    def laid(text):
+        return functools.reduce(
+            lambda changed, pair: changed.replace(*pair), cli_runner.PLIES, text
+        )
+
+    result = optimum(listed(SEALS, laid(BENCH)), whole_plies=True)
     assert result.rounding is not None
     assert result.rounding.met
     assert result.best.seals.rod.compound == result.choices.best["seals.rod.compound"]
     plies = result.best.barrel.layup[1].thickness / 0.2e-3
     assert plies == pytest.approx(round(plies), abs=1e-9)
     with pytest.raises(InputError, match="nothing to round"):
-        optimum(listed(SEALS, FIXED), whole_plies=True)
+        optimum(listed(SEALS, laid(FIXED)), whole_plies=True)
 
 
 def test_the_schema_offers_every_list():

@@ -13,7 +13,9 @@ LINES = (
     "lines:\n  - chamber: a\n    length: 0.5 m\n    inner_diameter: 6 mm\n"
     "    outer_diameter: 8 mm\n    material: steel_e235\n"
 )
-THREAD = "  thread:\n    diameter: 26 mm\n    pitch: 1.5 mm\n"
+THREAD = "  thread:\n    diameter: 6 mm\n    pitch: 1 mm\n"
+SCREWED = "  thread:\n    pitch: 1.5 mm\n"
+SCREWED_ON = "barrel:\n  layup:\n    - material: steel_e355\n      thickness: 3 mm\n\n"
 
 
 def without(*names):
@@ -104,9 +106,10 @@ def test_isotropic_barrel():
         [("  thread:\n    diameter: 10 mm\n    pitch: 1.25 mm\n", "")],
         [("  port_diameter: 6 mm\n", "")],
         [("  end_stop: internal\n", "  mount_stiffness: 100 kN/mm\n")],
-        [("  material: epoxy_structural\n", THREAD), ("type: bond", "type: thread")],
-        [("  material: epoxy_structural\n", "  material: steel_bolt_10_9\n"
-          + THREAD.replace("26", "6")), ("type: bond", "type: tie_rods")],
+        [(block("barrel"), SCREWED_ON), *without("variables"),
+         ("  material: epoxy_structural\n", SCREWED), ("type: bond", "type: thread")],
+        [("  material: epoxy_structural\n", "  material: steel_bolt_10_9\n" + THREAD),
+         ("type: bond", "type: tie_rods")],
         [("    compound: nbr_90\n", "    compound: nbr_90\n    count: 0\n")],
         [("objective:\n  minimise: mass", "materials:\n  t700_epoxy:\n    density: 1600 kg/m^3")],
         [("  length: 14 mm\n", "  length: 14 mm\n  bearing: guide_ptfe_bronze\n")],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -263,7 +264,11 @@ def test_a_load_that_no_pressure_holds_is_named(short):
 
 
 def test_a_run_that_ends_says_where_the_actuator_was(tmp_path):
-    """10 kN m turn the joint to its dead point: time, place and cause in one line, exit 4."""
+    """10 kN m turn the joint to its dead point: time, place and cause in one line, exit 4.
+
+    Pin to pin it is 192 mm long at its stop, |250 - 60| mm at the dead point: 2 mm behind it. Which
+    of its bounces on the stop gets there turns on 0.01 % of the torque.
+    """
     text = (DESIGNS / "servo_knee.yaml").read_text(encoding="utf-8")
     design = tmp_path / "linked.yaml"
     linkage = (
@@ -276,7 +281,8 @@ def test_a_run_that_ends_says_where_the_actuator_was(tmp_path):
                     "    - {shape: constant, value: 10 kN*m}\n")  # fmt: skip
     result = run("simulate", str(file))
     assert result.code == 4
-    assert result.err.startswith("at 0.17")
+    place = re.match(r"at 0\.1\d+ s: .*position of the piston (-[\d.]+) mm, speed", result.err)
+    assert -2.0 < float(place[1]) < -1.95
     assert "pressure in chamber B -1.0" in result.err
     assert "the joint comes to its dead point" in result.err
 

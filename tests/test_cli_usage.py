@@ -154,6 +154,45 @@ def test_check_of_several_files(tmp_path):
     assert len(run("check", "nope.yaml", "/", "--json").errors) == 2
 
 
+@pytest.mark.parametrize(
+    ("name", "file", "title"),
+    [
+        ("arm", "arm.yaml", "arm"),
+        ("arm.yaml", "arm.yaml", "arm"),
+        ("left knee: α", "left_knee_α.yaml", "left knee: α"),
+        ("legs/left", "legs/left.yaml", "left"),
+        ("7.5 kN", "7.5_kN.yaml", "7.5 kN"),
+        ("?!", "actuator.yaml", "?!"),
+    ],
+)
+def test_init_writes_the_file_that_its_name_promises(name, file, title, tmp_path, monkeypatch):
+    """NAME.yaml is written and named in one line; `check` takes it, nothing overwrites it."""
+    (tmp_path / "legs").mkdir()
+    monkeypatch.chdir(tmp_path)
+    result = run("init", name)
+    assert (result.code, result.out, result.err) == (0, "", f"wrote {file}\n")
+    written = (tmp_path / file).read_bytes()
+    assert run("check", file).code == 0
+    assert run("evaluate", file, "--json").json["name"] == title
+    again = run("init", name)
+    assert (again.code, again.out) == (2, "")
+    assert file in again.err
+    assert (tmp_path / file).read_bytes() == written
+    (tmp_path / file).unlink()
+    (tmp_path / file).symlink_to(tmp_path / "elsewhere.yaml")
+    assert run("init", name).code == 2
+    assert not (tmp_path / "elsewhere.yaml").exists()
+    assert run("init", name, "--out", "-").out.encode() == written
+
+
+@pytest.mark.parametrize("name", [".", "..", ".yaml", "/", "legs/"])
+def test_init_refuses_a_name_without_a_file(name):
+    """A folder alone names no file: exit 2, one line."""
+    result = run("init", name)
+    assert (result.code, result.out) == (2, "")
+    assert len(result.err.splitlines()) == 1
+
+
 def test_init_makes_a_good_start(tmp_path):
     """The start file passes check, evaluates, is a schema's example; no file is overwritten."""
     file = tmp_path / "start.yaml"
@@ -167,7 +206,7 @@ def test_init_makes_a_good_start(tmp_path):
     assert run("init").out == init_text()
     assert run("init", "--json").json == {"text": init_text()}
     assert run("init", "--out", tmp_path / "no" / "x.yaml").code == 3
-    other = run("init", "copy", "--from", file)
+    other = run("init", "copy", "--from", file, "--out", "-")
     assert other.out.replace("name: copy", 'name: "left knee: α"') in (
         file.read_text(encoding="utf-8"),
         file.read_text(encoding="utf-8").replace("name: 'left", 'name: "left').replace("α'", 'α"'),

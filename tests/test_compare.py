@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from dataclasses import replace
 
 import pytest
@@ -242,3 +243,118 @@ def test_an_unknown_value_is_said(base):
     other = ao.evaluate(base.changed({"caps.thickness": 0.005}))
     found = ao.compare(other, replace(evaluation, metrics=lost))
     assert "cannot be said; stiffness of B is not known: no stroke" in sentences(found)[1]
+
+
+@pytest.fixture(scope="module")
+def optima(base):
+    """Two optima: as given, and with another cap."""
+    other = base.changed({"caps.thickness": 0.012})
+    return [ao.optimise(one, prices=False, starts=1) for one in (base, other)]
+
+
+NOT_KNOWN = "known to be"
+
+
+def test_optima_and_evaluated_designs_are_told_apart(base, optima):
+    """In words, in JSON and on the figures: which design is an optimum, and how to make it one."""
+    assert [one.status for one in optima] == ["optimal", "optimal"]
+    found = ao.compare(base, optima[0])
+    data = ao.comparison_json(found)
+    assert [one["state"] for one in data["designs"]] == ["evaluated", "optimum"]
+    assert [one["status"] for one in data["designs"]] == [None, "optimal"]
+    (line,) = [note for note in data["notes"] if NOT_KNOWN in note]
+    assert line.startswith("A is not known to be an optimum: ")
+    assert line.endswith("; --optimise optimises each design first")
+    words = " ".join(comparison_text(found).split())
+    assert "A test bench (small.yaml), evaluated, not optimised, requirements" in words.replace(
+        found.origins[0], "small.yaml"
+    )
+    assert "B test bench, optimum, requirements met" in words
+    for ink in (comparison_figure(found), comparison_ucurves(found)):
+        drawn = " ".join(mark["text"] for mark in ink.marks if "text" in mark)
+        assert "A is not known to be an optimum" in drawn
+        assert "evaluated, not optimised" in drawn
+        _require_clear(ink)
+    both = ao.compare(*optima)
+    assert not any(NOT_KNOWN in note for note in ao.comparison_json(both)["notes"])
+    assert "known" not in str([mark.get("text") for mark in comparison_figure(both).marks])
+
+
+def test_a_search_without_an_optimum_is_none(optima):
+    """An optimisation that met nothing, or was stopped, is no optimum, whatever it is called."""
+    missed = replace(optima[1], status="limit_infeasible")
+    found = ao.compare(optima[0], missed)
+    assert [one.word for one in found.states] == ["optimum", "evaluated"]
+    assert "no optimum (search: limit infeasible)" in comparison_text(found)
+    (line,) = [note for note in ao.comparison_json(found)["notes"] if NOT_KNOWN in note]
+    assert "--optimise" not in line  # it was
+
+
+def test_a_saved_optimum_is_one_until_it_changes(base, optima, tmp_path):
+    """The file says so by the hash of its design: with another bore or limit it is none."""
+    file = ao.save(optima[0], tmp_path / "best.yaml", source=base.source)
+    text = file.read_text(encoding="utf-8")
+    assert text.startswith(
+        "# Written by actuator-opt optimise: an optimum as long as its spec hash is "
+    )
+    assert ao.read(file).design == optima[0].best
+
+    def state(path, **how):
+        return ao.compare(path, optima[1], **how).states[0].word
+
+    assert state(file) == "optimum"
+    assert state(file, set={"requirements.burst_factor.min": 3.1}) == "evaluated"
+    edited = tmp_path / "edited.yaml"
+    edited.write_text(re.sub(r"  bore: \S+ mm", "  bore: 22.5 mm", text), encoding="utf-8")
+    assert state(edited) == "evaluated"
+    again = ao.save(optima[0], tmp_path / "again.yaml", source=ao.read(file).source)
+    assert again.read_text(encoding="utf-8") == text  # one stamp, not two
+    plain = ao.save(optima[0].best, tmp_path / "plain.yaml", source=base.source)
+    assert state(plain) == "evaluated"
+    first = optima[0].evaluation
+    own = replace(first, metrics={**first.metrics, "own": first.metrics["mass"]})
+    file = ao.save(replace(optima[0], evaluation=own), tmp_path / "own.yaml", source=base.source)
+    assert "spec hash" not in file.read_text(encoding="utf-8")
+
+
+def test_compare_optimises_first(tmp_path, monkeypatch):
+    """`--optimise`: each file's optimum, as `optimise` finds it; without variables it stays."""
+    monkeypatch.setenv("ACTUATOR_OPT_RUNS", str(tmp_path / "runs"))
+    one, other, fixed = (tmp_path / f"{name}.yaml" for name in ("one", "other", "fixed"))
+    one.write_text(SMALL, encoding="utf-8")
+    other.write_text(SMALL.replace("name: test bench", "name: other"), encoding="utf-8")
+    before, rest = SMALL.split("\nvariables:\n")
+    after = rest[rest.index("\n\n") :]
+    fixed.write_text(f"{before}\n{after}", encoding="utf-8")
+    limits = ["--set", "requirements.burst_factor.min=3.5"]
+    alone = ao.optimise(ao.read(one, set={"requirements.burst_factor.min": 3.5}), prices=False)
+    found = run("compare", str(one), str(fixed), "--optimise", *limits, "--json")
+    assert found.code == 0
+    designs = found.json["designs"]
+    assert [(d["state"], d["status"]) for d in designs] == [
+        ("optimum", "optimal"),
+        ("evaluated", None),
+    ]
+    assert found.json["metrics"]["mass"]["values"][0] == pytest.approx(
+        alone.objective_value, rel=1e-12
+    )
+    (line,) = [note for note in found.json["notes"] if NOT_KNOWN in note]
+    assert line.startswith("B is not known to be an optimum")
+    assert "--optimise" not in line  # it has no variables
+
+
+def test_values_of_other_senses_are_not_compared(base):
+    """Where one design limits what another maximises, the two values are not alike."""
+    most = base.changed({"requirements.end_stop_pressure.max": 4e7, "caps.thickness": 0.009})
+    least = base.changed({"requirements.end_stop_pressure.min": 1e5})
+    found = ao.compare(most, least)
+    first, second = (e.metrics["end_stop_pressure"] for e in found.evaluations)
+    assert (first.sense, second.sense) == ("max", "min")
+    assert "end_stop_pressure: the smallest value of B and the largest of A govern" in " ".join(
+        ao.comparison_json(found)["notes"]
+    )
+    limit = "friction_running:\n    max: 500 N"
+    assert limit in SMALL
+    rubbing = ao.compare(base, ao.read(SMALL.replace(limit, "friction_running:\n    min: 1 N")))
+    assert rubbing.questions[2].best is None
+    assert "smoother: cannot be said" in sentences(rubbing)

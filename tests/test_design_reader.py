@@ -7,6 +7,7 @@ import sys
 
 import pytest
 
+from actuator_opt import units
 from actuator_opt.design import read_design
 from actuator_opt.design.build import build, to_tree
 from actuator_opt.design.template import init_text
@@ -243,6 +244,35 @@ def test_cross_field_fault(old, new, path, message):
     assert fault.remedy
 
 
+@pytest.mark.parametrize(
+    "lower", ["1.1 cm", "0.011 m", "0.11 dm", "11000 um", "0.4330708661417323 in"]
+)
+def test_a_bound_is_its_own_value_in_any_unit(lower):
+    """11 mm lies within a lower bound of 1.1 cm: units convert to the last bit, or are forgiven."""
+    bounds = f"    upper: 40 mm\n    start: 11 mm\n    lower: {lower}"
+    text = changed(("    lower: 18 mm\n", ""), ("    upper: 40 mm", bounds))
+    variable = read(text).design.variables["cylinder.bore"]
+    assert variable.start == 0.011
+    assert variable.lower == pytest.approx(0.011, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "same", "dimension"),
+    [
+        ("1.1 cm", "11 mm", "length"),
+        ("0.5 in", "12.7 mm", "length"),
+        ("0.07 l", "70 ml", "volume"),
+        ("0.3 bar", "30 kPa", "pressure"),
+        ("0.29 kN", "290 N", "force"),
+        ("0.7 %", "0.007", "ratio"),
+        ("1e-400 mm", "0 m", "length"),
+    ],
+)
+def test_units_convert_exactly(text, same, dimension):
+    """A decimal in two units is one number: conversions are rounded once."""
+    assert units.parse(text, dimension) == units.parse(same, dimension)
+
+
 def test_limits_need_min_or_max():
     """A requirement without min and max says so beside its unknown key."""
     found = faults(changed(("    max: 80 um", "    mox: 80 um")))
@@ -257,7 +287,7 @@ def test_case_names_can_stand_in_a_path(name):
 
 
 def test_retention_needs_what_it_is_made_of():
-    """A bond needs its adhesive, a thread its thread, tie rods both a thread and a metal."""
+    """A bond needs its adhesive, a thread its thread and metal, tie rods a thread and a metal."""
     no_material = ("  material: epoxy_structural\n", "")
 
     def paths(kind):
@@ -265,7 +295,7 @@ def test_retention_needs_what_it_is_made_of():
         return [fault.path for fault in found]
 
     assert paths("bond") == ["retention.material"]
-    assert paths("thread") == ["retention.thread"]
+    assert paths("thread") == ["barrel.layup[2].material", "retention.thread"]
     assert paths("tie_rods") == ["retention.material", "retention.thread"]
 
 

@@ -98,7 +98,7 @@ def test_relaxing_any_active_requirement_of_the_knee_saves_mass(optima) -> None:
         looser = start.changed({f"requirements.{metric}.{sense}": factor * value})
         again = verbs.optimise(looser, starts=1, prices=False)
         assert again.status == "optimal", metric
-        assert again.objective_value < knee.objective_value * (1 - 1e-4), metric
+        assert again.objective_value < knee.objective_value * (1 - 1e-6), metric
 
 
 def test_the_steel_baseline_has_the_duty_of_the_knee() -> None:
@@ -169,8 +169,8 @@ def test_every_published_number_stands_in_the_tables(published, number) -> None:
         ("1383 mm²", "166 N/0.12 MPa"),
         ("1290 mm²", "400 N/0.31 MPa"),
         ("490.9 mm²", "25 mm bore"),
-        ("0.361 at 2 MPa", "friction coefficient of the dry default law"),
-        ("0.128 at 7 MPa", "the same"),
+        ("0.406 at 2 MPa", "166 N/(pi 37 mm f), f 0.319 E W by finite elements at p 0.362 E"),
+        ("0.141 at 7 MPa", "the same, f 0.925 E W at 1.268 E"),
         ("115 138 N", "series of 2480 and 13430 N/mm times 55 mm"),
     ],
 )

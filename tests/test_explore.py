@@ -17,6 +17,7 @@ from cli_runner import run
 from test_sweep import KNEE, NEAR
 
 import actuator_opt as ao
+from actuator_opt.database import Seals, study_checksum
 from actuator_opt.errors import InputError, UsageError
 from actuator_opt.evaluation.shapes import LENGTHS
 from actuator_opt.variants.explored import BEST, explored
@@ -190,11 +191,12 @@ def test_no_text_breaks_out_of_the_script(tmp_path):
 
 
 def test_columns_know_which_way_is_better(store, text):
-    """Less mass by the objective, more stiffness by its requirement; inputs neither way."""
+    """By the objective, a requirement, or a metric's worst value; inputs neither way."""
     data = data_of(text)
     ways = {one["name"]: one.get("better", 0) for one in data["columns"]}
     assert (ways["mass"], ways["stiffness_min"], ways["friction_running"]) == (-1, 1, -1)
-    assert ways["cylinder.bore"] == ways["rod.material"] == ways["closed_length"] == 0
+    assert (ways["closed_length"], ways["efficiency"]) == (-1, 1)
+    assert ways["cylinder.bore"] == ways["rod.material"] == 0
     shown = [data["columns"][data["start"][name]]["name"] for name in "xyc"]
     assert shown == ["stiffness_min", "mass", "cylinder.bore"]
 
@@ -229,6 +231,21 @@ def test_terminal_names_the_files(store, tmp_path):
     assert f"wrote {tmp_path / 'x.html'}" in done.err
 
 
+def forged(store, target, study, failure):
+    """A store changed by a stranger, who can write its checksums too."""
+    shutil.copy(store, target)
+    with sqlite3.connect(target) as base:
+        base.execute(f"UPDATE studies SET {study}")
+        about = base.execute("SELECT hash, name, design, columns FROM studies").fetchone()
+        base.execute("UPDATE studies SET checksum = ?", (study_checksum(*about),))
+        for key, numbers in base.execute("SELECT key, numbers FROM rows").fetchall():
+            kept = (None if failure else numbers, failure)
+            checksum = Seals(about[0], len(numbers) // 8).of(key, *kept)
+            put = "UPDATE rows SET numbers = ?, failure = ?, checksum = ? WHERE key = ?"
+            base.execute(put, (*kept, checksum, key))
+    base.close()
+
+
 def test_wrong_input_is_one_line(store, tmp_path):
     """No file, not a store, no study, no rows, other models: where, what, what to do."""
     other = {}
@@ -240,13 +257,19 @@ def test_wrong_input_is_one_line(store, tmp_path):
         "changed": "UPDATE studies SET hash = 'x'",
         "torn": "UPDATE rows SET numbers = x'00'",
         "columns": "UPDATE studies SET columns = '{'",
-        "failed": "UPDATE rows SET numbers = NULL, failure = 'no <b>way</b>'",
     }.items():
         other[name] = tmp_path / f"{name}.db"
         shutil.copy(store, other[name])
         with sqlite3.connect(other[name]) as base:
             base.execute(statement)
         base.close()
+    for name, study, row in (
+        ("spelt", "columns = '{'", None),
+        ("other", "hash = 'x'", None),
+        ("failed", "name = name", "no <b>way</b>"),
+    ):
+        other[name] = tmp_path / f"{name}.db"
+        forged(store, other[name], study, row)
     (tmp_path / "text.db").write_text("not a database")
     (tmp_path / "nothing.db").write_bytes(b"")
     with sqlite3.connect(tmp_path / "foreign.db") as base:
@@ -262,9 +285,11 @@ def test_wrong_input_is_one_line(store, tmp_path):
         ([str(other["none"])], "holds no study"),
         ([str(other["old"])], "holds rows of the models 0.0.1"),
         ([str(other["format"])], "has the format 9"),
-        ([str(other["changed"])], "rest on other materials"),
-        ([str(other["torn"])], "holds a damaged row"),
-        ([str(other["columns"])], "cannot be read"),
+        ([str(other["changed"])], "study 1 is damaged"),
+        ([str(other["torn"])], "its rows are damaged"),
+        ([str(other["columns"])], "study 1 is damaged"),
+        ([str(other["spelt"])], "names no columns"),
+        ([str(other["other"])], "rest on other materials"),
         ([str(other["failed"])], "every design failed"),
         ([str(store), "--study", "7"], "has no study 7"),
         ([str(store), "--out", str(store / "page")], "is a file"),
@@ -307,6 +332,8 @@ def test_own_metrics_need_their_file(tmp_path):
     data = data_of(page)
     assert data["command"][-2:] == ["--plugin", "own.py"]
     slim = next(one for one in data["limits"] if one["name"] == "slim")
+    rooms = {one["plain"]: one["reserve"] for one in data["limits"]}  # below it: no reserve
+    assert rooms == {True: 1e-6, False: 1e-3}
     np.testing.assert_allclose(unpacked(slim["margin"]), [2e-3, 0, -2e-3], atol=1e-9)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from cli_runner import KNEE, bench, run
+from full_disk import fill
 from step_reader import StepFile
 
 import actuator_opt as ao
@@ -149,13 +150,11 @@ def test_a_full_disk_leaves_no_part(design, tmp_path, monkeypatch):
     old = tmp_path / "joint.step"
     old.write_text("old", "utf-8")
 
-    def full(self, data):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(Path, "write_bytes", full)
+    opened = fill(monkeypatch)
     result = run("export", design, "--format", "step", "--out", tmp_path)
     assert result.code == 3
     assert "No space left on device" in result.err
+    assert len(opened) == 1
     assert old.read_text("utf-8") == "old"
     assert {one.name for one in tmp_path.iterdir()} == {"joint.step", "joint.yaml"}
 

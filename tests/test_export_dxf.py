@@ -214,6 +214,16 @@ def test_an_odd_number_of_tie_rods_has_none_opposite():
         assert len(outlined(document, "tie rods")) == shapes
 
 
+@pytest.mark.parametrize(("diameter", "size"), [(None, "M27 x 1"), ("26.9 mm", "M26.9 x 1")])
+def test_the_thread_of_screwed_caps_is_named(diameter, size):
+    """Not drawn, it stands in the notes: as large as the barrel, or as stated."""
+    stated = {} if diameter is None else {"retention.thread.diameter": diameter}
+    wall = {"barrel.layup[0].thickness": "2 mm", "retention.thread.pitch": "1 mm"}
+    _, document = drawn(ao.read(DESIGNS / "steel_baseline.yaml", set=wall | stated))
+    texts = [one.dxf.text for one in document.modelspace().query("TEXT")]
+    assert f"Thread of barrel and caps: {size}, 10 long." in texts
+
+
 def test_a_persons_words_stay_words():
     """Codes, letters and line breaks of a name neither break the file nor start anything."""
     name = '"%%c 5 管 \\\\U+0041 a"'

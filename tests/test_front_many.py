@@ -106,18 +106,22 @@ def searched(evaluate, bounds, names, count, **more) -> Front:
 
 
 @pytest.mark.parametrize(
-    ("shape", "objective_count", "count", "most"),
+    ("shape", "objective_count", "count", "most", "short"),
     [
-        (full_ball, 3, 60, 1.35),
-        (hollow_ball, 3, 60, 1.35),
-        (skew_ball, 3, 60, 1.35),
-        (angles, 3, 40, 1.45),
-        (plane, 3, 60, 1.6),
-        (hollow_ball, 4, 60, 1.35),
+        (full_ball, 3, 60, 1.35, 0.03),
+        (hollow_ball, 3, 60, 1.35, 0.03),
+        (skew_ball, 3, 60, 1.35, 0.03),
+        (angles, 3, 40, 1.45, 0.03),
+        (plane, 3, 60, 1.6, 0.05),
+        (hollow_ball, 4, 60, 1.35, 0.03),
     ],
 )
-def test_covers_all_of_it(shape, objective_count, count, most):
-    """The largest hole is near that of the best of the dense sample; every design is on it."""
+def test_covers_all_of_it(shape, objective_count, count, most, short):
+    """The largest hole is near that of the best of the dense sample; every design is on it.
+
+    No anchor marks the corners of the plane: they are reached within half the spacing of 60 even
+    designs, of 10 or 11 along an edge, 1/9.5/2 of the range.
+    """
     dense = weights(objective_count, 60 if objective_count == 3 else 16)
     evaluate, bounds, there = shape(objective_count, dense)
     result = searched(evaluate, bounds, NAMES[:objective_count], count, checks=1)
@@ -127,7 +131,7 @@ def test_covers_all_of_it(shape, objective_count, count, most):
     assert away(own, unit).max() <= 2.5 * np.median(dominance.nearest(unit))
     assert result.gaps.max() <= 3 * np.median(result.gaps)
     np.testing.assert_allclose(own.min(axis=1), 0, atol=0.03)
-    np.testing.assert_allclose(own.max(axis=1), 1, atol=0.03)
+    np.testing.assert_allclose(own.max(axis=1), 1, atol=short)
 
 
 def test_front_in_four_pieces():

@@ -61,8 +61,11 @@ def bootstrapped(points, *, count=200, seed=0):
 
 
 def test_bounds_hold_the_truth():
-    """95 % bounds hold the true parameters in 90 to 99 % of 200 sets of 12 uneven points."""
-    speeds, held = np.geomspace(5e-4, 0.1, 6), {}
+    """95 % bounds hold the true parameters in 90 to 99 % of 200 sets of 16 uneven points.
+
+    Eight speeds: with fewer than seven the exponent is held and bounds allow for another one.
+    """
+    speeds, held = np.geomspace(5e-4, 0.1, 8), {}
     for seed in range(200):
         rng = np.random.default_rng(seed)
         points = points_of(rng, speeds, error=2.0, uneven=2.0)

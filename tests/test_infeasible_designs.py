@@ -6,9 +6,13 @@ import math
 from dataclasses import replace
 
 import pytest
-from cli_runner import DESIGNS, KNEE, run
+from cli_runner import DESIGNS, KNEE, bench, run
 
+from actuator_opt.design.materials import load_library
+from actuator_opt.optimisation.cures import SUBSTITUTES
+from actuator_opt.optimisation.infeasibility_card import KINDS
 from actuator_opt.optimisation.run import optimise
+from actuator_opt.reporting.page import verdict
 from actuator_opt.verbs import read
 
 STEEL = DESIGNS / "steel_baseline.yaml"
@@ -31,25 +35,27 @@ def needed(card, parameter):
 
 
 @pytest.fixture(scope="module")
-def tight():
-    """Cards of the steel design with its friction limit far and only just too low."""
-    return [
-        best(STEEL, requirements__friction_running__max=limit).infeasibility
-        for limit in ("260 N", "279.7 N")
-    ]
-
-
-def test_the_friction_needed_is_the_least_there_is(tight):
-    """The limit that alone would do is the least friction of any design, wherever it was set.
-
-    Independently: friction minimised under all other requirements.
-    """
+def least():
+    """The least friction of any steel design: friction minimised under all other requirements."""
     actuator = read(STEEL)
     design = actuator.design
     others = {k: v for k, v in design.requirements.items() if k != "friction_running"}
     goal = design.objective.model_copy(update={"minimise": "friction_running"})
     changed = design.model_copy(update={"requirements": others, "objective": goal})
-    least = best_of(replace(actuator, design=changed)).objective_value
+    return best_of(replace(actuator, design=changed)).objective_value
+
+
+@pytest.fixture(scope="module")
+def tight(least):
+    """Cards of the steel design with its friction limit far and only just too low."""
+    return [
+        best(STEEL, requirements__friction_running__max=f"{least - short} N").infeasibility
+        for short in (20.0, 0.1)
+    ]
+
+
+def test_the_friction_needed_is_the_least_there_is(tight, least):
+    """The limit that alone would do is the least friction of any design, wherever it was set."""
     for card in tight:
         path = "requirements.friction_running.max"
         assert needed(card, path) == pytest.approx(least, rel=1e-6)
@@ -137,3 +143,79 @@ def test_knee_with_thick_rings():
     relaxed = sets | {row["parameter"]: row["needed_text"] for row in card["joint"]}
     subject = read(KNEE, set=relaxed).subject()
     assert optimise(subject, starts=1, prices=False).status == "optimal"
+
+
+WALL = "  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n"
+
+
+def fixed(**values):
+    """The bench design with a fixed skirt, and other values by PATH."""
+    return read(bench((WALL, "")), set=[(k.replace("__", "."), v) for k, v in values.items()])
+
+
+def solved(actuator, values=(), **options):
+    """An optimum from few starts, without prices."""
+    changed = actuator.changed(dict(values))
+    return optimise(changed.subject(), starts=2, prices=False, **options)
+
+
+@pytest.mark.parametrize(
+    ("path", "now"), [("retention.wall", "1 mm"), ("retention.length", "10 mm")]
+)
+def test_a_fixed_dimension_that_alone_is_enough_comes_first(path, now):
+    """At the value printed a design fits, at 1 % less none; safety factors come last."""
+    actuator = fixed(**{path: now})
+    result = solved(actuator)
+    card, first = result.infeasibility, result.infeasibility.cures[0]
+    assert (first["kind"], first["parameter"]) == ("dimension", path)
+    assert card.sentence.startswith(f"nothing fits: free {path} {now} -> {first['needed_text']} (")
+    ranks = [KINDS.index(cure["kind"]) for cure in card.cures]
+    assert ranks == sorted(ranks)
+    assert all(cure["advised"] is (cure["kind"] != "safety factor") for cure in card.cures)
+    assert all(row["safety_factor"] for row in card.joint), "checks are what conflicts here"
+    assert solved(actuator, {path: first["needed_text"]}).status == "optimal"
+    short = solved(actuator, {path: 0.99 * first["needed"]}, explain=False)
+    assert short.status == "infeasible"
+    if path == "retention.length":  # mean shear F/(pi d L): the factor grows with the length
+        factor = needed(card, "requirements.retention_burst_factor.min")
+        assert first["needed"] == pytest.approx(first["now"] * 4 / factor, rel=1e-3)
+    missed = next(check.name for check in result.evaluation.checks if check.status == "missed")
+    line = f"8 of 8 requirements met, but missed: {missed}"
+    assert verdict(result)["lines"][0] == line
+    assert line in str(result)
+    assert card.sentence in str(result)
+
+
+def test_dimensions_that_are_enough_together():
+    """Bond and skirt both too small: neither alone, both at once, at the values printed."""
+    actuator = fixed(retention__length="13 mm", retention__wall="1.2 mm")
+    card = solved(actuator).infeasibility
+    (both,) = [cure for cure in card.cures if cure["kind"] == "dimension"]
+    values = {part["parameter"]: part["needed_text"] for part in both["together"]}
+    assert list(values) == ["retention.length", "retention.wall"]
+    assert card.sentence.endswith("together are enough")
+    assert solved(actuator, values).status == "optimal"
+
+
+def test_a_back_up_ring_is_offered_with_all_it_needs():
+    """NBR 70 at 210 bar has too large a gap: a ring, or NBR 90, comes before a lower factor."""
+    actuator = read(bench(), set={"seals.piston.compound": "nbr_70"})
+    result = solved(actuator)
+    assert "but missed: extrusion of the seals" in verdict(result)["lines"][0]
+    ring, *others = result.infeasibility.cures
+    assert (ring["kind"], ring["parameter"]) == ("choice", "seals.piston.back_up")
+    assert (ring["now"], ring["needed"]) == ("none", "one")
+    compound = next(one for one in others if one["parameter"] == "seals.piston.compound")
+    assert compound["needed"] == "nbr_90"
+    unsafe = others[-1]
+    assert (unsafe["parameter"], unsafe["advised"]) == ("requirements.extrusion_factor.min", False)
+    for cure in (ring, compound):
+        values = {cure["parameter"]: cure["needed"], **cure.get("beside", {})}
+        assert solved(actuator, values).status == "optimal"
+
+
+def test_what_is_tried_in_place_of_materials_is_in_the_library():
+    """Every substitute exists and is of its kind."""
+    library = load_library()
+    for kind, names in SUBSTITUTES.items():
+        assert {library.kind(name) for name in names} == {kind}

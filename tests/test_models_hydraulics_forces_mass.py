@@ -17,7 +17,7 @@ def test_areas():
     assert forces.piston_area(bore=0.025) * 1e6 == pytest.approx(490.874, abs=1e-3)
     area = forces.annulus_area(bore=0.025, rod_diameter=0.012)
     assert area * 1e6 == pytest.approx(490.874 - 113.097, abs=1e-3)
-    assert forces.annulus_area(bore=0.01, rod_diameter=0.012) < 0
+    assert math.isnan(forces.annulus_area(bore=0.01, rod_diameter=0.012))
 
 
 @given(st.floats(0, 3e7), st.floats(0, 3e7), st.floats(0, 1e3))

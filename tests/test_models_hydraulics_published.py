@@ -126,7 +126,7 @@ def test_elasswad_published_pressure_loss():
 
 @pytest.mark.parametrize(("pressure", "coefficient"), [(2e6, 0.361), (7e6, 0.128)])
 def test_elasswad_friction_coefficient_is_not_identifiable(pressure, coefficient):
-    """166 N needs mu 0.361 at 2 MPa or 0.128 at 7 MPa with the dry default law.
+    """166 N needs mu 0.361 at 2 MPa or 0.128 at 7 MPa with the law `plane_strain`.
 
     One 2 mm ring each on bore 25 and rod 12, C 0.15, E 5.52 MPa, both at the full pressure.
     """

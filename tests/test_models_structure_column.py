@@ -54,13 +54,11 @@ def test_hollow_rod_is_the_difference_of_two_solid_ones():
 
 
 def test_thread_check_value():
-    """M10 x 1.5: stress area 57.99 mm^2, pitch diameter 9.026 mm (ISO 898-1 and ISO 724 tables)."""
+    """M10 x 1.5: stress area 57.99 mm^2 (ISO 898-1)."""
     area = rod.thread_stress_area(diameter=10e-3, pitch=1.5e-3)
     assert area == pytest.approx(57.99e-6, rel=1e-4)
     stress = rod.thread_stress(force=1e4, diameter=10e-3, pitch=1.5e-3)
     assert stress == pytest.approx(1e4 / area)
-    shear = rod.thread_shear_stress(force=1e4, diameter=10e-3, pitch=1.5e-3, engagement=8e-3)
-    assert shear == pytest.approx(1e4 / (0.5 * pi * 9.026e-3 * 8e-3), rel=6e-5)
 
 
 @pytest.mark.parametrize(("length", "load"), [(0.2, 98.810e3), (0.6, 18.521e3)])

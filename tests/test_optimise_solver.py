@@ -12,7 +12,7 @@ from actuator_opt.optimisation import solver
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.kkt import Curvature
 from actuator_opt.optimisation.outcome import Outcome
-from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.problem import Problem, Space, Values
 from actuator_opt.optimisation.sampling import Halton
 from actuator_opt.optimisation.solver import solve
 
@@ -44,6 +44,23 @@ def test_unconstrained_interior_optimum():
     assert found.outcome is Outcome.OPTIMUM
     assert found.kkt.active == ()
     assert found.kkt.curvature is Curvature.POSITIVE
+
+
+def test_an_optimum_at_a_bound_of_zero_is_zero():
+    """A dimension that the optimum does without reads 0, not the 1e-20 of a step's rounding."""
+
+    def evaluate(x):
+        return Values((x[0] + 0.3) ** 2 + (x[1] - 0.0123) ** 2)
+
+    found = solve(box(evaluate, low=0.0, high=0.025))
+    assert found.x[0] == 0.0
+    assert found.at_bound(0) == "lower"
+    np.testing.assert_allclose(found.x[1], 0.0123, rtol=1e-6)
+    space = Space(found.problem)
+    beside = np.array([1e-15, space.upper[1] - 1e-15])
+    assert list(space.to_x(beside[:, None])[:, 0]) == [0.0, 0.025]
+    inner = np.array([1e-9, space.upper[1] - 1e-9])  # still its own value
+    assert 0 < space.to_x(inner[:, None])[0, 0] < space.to_x(inner[:, None])[1, 0] < 0.025
 
 
 @pytest.mark.parametrize("name", ["rosen_suzuki", "hs71", "piston_lever", "thrust_bearing"])

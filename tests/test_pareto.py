@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cli_runner import KNEE, run
+from cli_runner import KNEE, bench, run
 
 import actuator_opt as ao
 from actuator_opt.optimisation.front.even import Gap
@@ -123,6 +123,16 @@ def test_refuses(given, code, words):
     assert words in done.err
     assert len(done.err.strip().splitlines()) == 1
     assert done.out == ""
+
+
+def test_sizes_a_front_does_not_keep_are_told():
+    """The bore moves freely although its file asks for a series; the remarks say so."""
+    bore = "  cylinder.bore:\n    lower: 20 mm\n"
+    actuator = ao.read(bench((bore, bore + "    sizes: iso_3320\n")))
+    found = ao.pareto(actuator, ["mass:min", "stiffness_min:max"], n=3, checks=0)
+    told = "sizes are not kept, the front is of free dimensions: cylinder.bore"
+    assert told in found.to_dict()["warnings"]
+    assert any(told in remark for remark in remarks(found))
 
 
 def test_infeasible_design():

@@ -27,12 +27,21 @@ OTHERS = (
     {"cylinder.stroke": "120 mm"},
     {"cylinder.stroke": "800 mm", "rod.outer_diameter": "28 mm"},
     {"cylinder.bore": "63 mm", "retention.thread.diameter": "73 mm"},
-    {"cylinder.bore": "32 mm", "rod.outer_diameter": "18 mm", "rod.extension": "0 mm"},
+    {
+        "cylinder.bore": "32 mm",
+        "rod.outer_diameter": "18 mm",
+        "rod.extension": "0 mm",
+        "retention.thread.diameter": "42 mm",
+    },
     {"fluid.material": "iso_vg_46", "fluid.air_content": "3 %"},
     {"ports.throttle.area": "0.02 cm^2", "lines[2].length": "5 m"},
     {"ports.reducing_valve.natural_frequency": "60 Hz"},
     {"ports.reducing_valve.conductance": "20 ml/s/bar"},
-    {"barrel.layup[0].thickness": "1.5 mm", "load.mass": "400 kg"},
+    {
+        "barrel.layup[0].thickness": "2 mm",
+        "retention.thread.diameter": "44 mm",
+        "load.mass": "400 kg",
+    },
 )
 """Designs that the tables and figures have to bear as well."""
 

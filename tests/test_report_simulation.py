@@ -39,7 +39,7 @@ from actuator_opt.reporting.blocks import column, table
 from actuator_opt.reporting.ink import Ink
 from actuator_opt.reporting.origin import Origin
 from actuator_opt.simulation.integrate import Event
-from actuator_opt.simulation.result import Flow, Second
+from actuator_opt.simulation.result import Flow, Row, Second
 
 ORIGIN = Origin(case.SOURCE, "a.yaml", "simulate a.yaml", "12ab")
 ABSURD = f"{'a' * 70} {'many words without an end ' * 8}".strip()
@@ -311,6 +311,21 @@ def test_trust_tells_the_second_integrator():
     )
     assert simulation_rows.verdict(replace(found, second=apart))["state"] == "checks"
     assert "Not compared" in simulation_rows.second_words(replace(found, second=None))
+
+
+def test_a_limit_without_reserve_is_no_green_verdict():
+    """Of a requirement met with a margin of 0 % badge and row say so."""
+    found = replace(case.simulated("step"), second=None)
+    assert simulation_rows.sound(found)
+    row = Row("overshoot", "max", 0.2, 0.2, 0.0, True)
+    for margin, state, words in (
+        (0.0, "checks", "REQUIREMENTS MET, 1 LIMIT WITHOUT RESERVE"),
+        (0.1, "met", "REQUIREMENTS MET"),
+    ):
+        shown = replace(found, requirements=(replace(row, margin=margin),))
+        badge = simulation_rows.verdict(shown)
+        assert (badge["state"], badge["text"]) == (state, words)
+        assert shown.requirements[0].state == {"checks": "no_reserve"}.get(state, state)
 
 
 def test_many_events_are_counted():

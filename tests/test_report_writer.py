@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 import report_fixture as fixture
+from full_disk import fill
 
 from actuator_opt.errors import InputError
 from actuator_opt.reporting import ExtraTable, read_attachment, write_report
@@ -114,16 +115,10 @@ def test_a_folder_that_cannot_be_written_leaves_nothing(tmp_path):
 def test_a_disk_that_fails_midway_leaves_nothing(tmp_path, monkeypatch):
     """A write error in the second file removes what was written aside, keeps the old report."""
     (tmp_path / "r.pdf").write_text("old")
-    original = Path.write_bytes
-
-    def fail(self, content):
-        if ".r.png" in self.name:
-            raise OSError(28, "No space left on device")
-        return original(self, content)
-
-    monkeypatch.setattr(Path, "write_bytes", fail)
+    opened = fill(monkeypatch, after=1)
     with pytest.raises(InputError, match="No space left"):
         write(fixture.build_evaluation(), tmp_path)
+    assert len(opened) == 2
     assert [p.name for p in tmp_path.iterdir()] == ["r.pdf"]
     assert (tmp_path / "r.pdf").read_text() == "old"
 

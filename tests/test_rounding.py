@@ -28,6 +28,7 @@ from actuator_opt.reporting.page import page
 from actuator_opt.reporting.prices import quality
 
 PLIES = Wanted(whole_plies=True)
+MATERIALS = ao.read(bench()).subject().materials
 HOOP = "      angle: 88 deg\n      thickness: 1.2 mm\n"
 AXIAL = "      angle: 25 deg\n      thickness: 1.6 mm\n"
 WALL = "  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n"
@@ -210,9 +211,9 @@ def test_choices_are_the_whole_plies_within_bounds(one, lower, room, balanced, a
     wanted = [k * step for k in range(1, 100) if lower - 1e-9 * step <= k * step <= lower + room]
     if not wanted:
         with pytest.raises(InputError, match="no whole number of"):
-            sizes_of(changed, PLIES)
+            sizes_of(changed, PLIES, MATERIALS)
         return
-    (listed,) = sizes_of(changed, PLIES).listed
+    (listed,) = sizes_of(changed, PLIES, MATERIALS).listed
     np.testing.assert_allclose(listed.rows[:, 0], wanted, rtol=1e-9)
 
 
@@ -238,7 +239,7 @@ def test_an_angle_that_may_be_straight_frees_single_plies():
     """Odd ply counts are choices only beside 0 or 90 deg, where these are allowed."""
     text = two_layers((FREE_AXIAL, FREE_AXIAL + FREE_ANGLE.replace("15 deg", "0 deg")),
                       ("rod:\n", "  allowed_angles: [0 deg, 30 deg]\nrod:\n"))  # fmt: skip
-    sizes = sizes_of(read_design(text).design, PLIES)
+    sizes = sizes_of(read_design(text).design, PLIES, MATERIALS)
     hoop, axial = sorted(sizes.listed, key=lambda one: len(one.index))
     np.testing.assert_allclose(np.diff(hoop.rows[:, 0]), 0.4e-3)
     degrees, counts = np.degrees(axial.rows[:, 1]), np.round(axial.rows[:, 0] / 0.2e-3)
@@ -364,18 +365,53 @@ def test_a_better_valley_replaces_the_continuous_optimum():
     values = actuator.evaluate(heavy[:, None])
     assert values.constraints.min() >= -1e-6
     poor = replace(best, x=heavy, objective=float(values.objective[0]))
-    rounding, solution = rounded(actuator, poor, sizes_of(subject.design, PLIES))
+    rounding, solution = rounded(actuator, poor, sizes_of(subject.design, PLIES, MATERIALS))
     assert solution.objective == pytest.approx(best.objective, rel=1e-6)
     assert rounding.cost >= 0
     assert rounding.objective_before == solution.objective
 
 
-def test_layers_no_variable_moves_are_named():
-    """A fixed layer of half a ply cannot be rounded; the rounding says so."""
-    text = two_layers((FREE_AXIAL, ""), (AXIAL + PLY, AXIAL.replace("1.6", "1.7") + PLY))
-    assert misfits(read_design(text).design) == ("barrel.layup[2].thickness",)
-    (note,) = optimum(text).rounding.notes
-    assert note.startswith("barrel.layup[2].thickness is no variable")
+NO_PLY = bench()
+ONE_PLY = bench((HOOP, HOOP + PLY))
+HALF = two_layers((FREE_AXIAL, ""), (AXIAL + PLY, AXIAL.replace("1.6", "1.7") + PLY))
+
+
+@pytest.mark.parametrize("words", [["whole_plies"], ["standard_sizes"],
+                                   ["whole_plies", "standard_sizes"]])  # fmt: skip
+@pytest.mark.parametrize(("text", "said"), [
+    (NO_PLY, {"barrel.layup[1].thickness": "ply_thickness", "barrel.layup[2].thickness": "ply_t"}),
+    (ONE_PLY, {"barrel.layup[2].thickness": "states no ply_thickness"}),
+    (HALF, {"barrel.layup[2].thickness": "no whole number of pairs of plies of 0.2 mm"}),
+])  # fmt: skip
+def test_layers_whose_plies_cannot_be_whole_are_refused(text, said, words):
+    """However whole plies are asked: by layer, with its line and a remedy; metal has no plies."""
+    with pytest.raises(InputError) as refusal:
+        ao.optimise(ao.read(text), starts=1, **dict.fromkeys(words, True))
+    faults = {fault.path: fault for fault in refusal.value.diagnostics}
+    assert set(faults) == set(said)
+    for path, fault in faults.items():
+        assert said[path] in fault.message
+        assert fault.line
+        assert fault.remedy
+
+
+def test_a_bore_of_standard_size_alone_is_no_design_to_build():
+    """Sizes of the file leave layers free: the design is not called one to build, and says why."""
+    block = BORE + "    sizes: iso_3320\n"
+    loose = ao.optimise(ao.read(two_layers((BORE, block))), starts=1, prices=False)
+    path = "barrel.layup[1].thickness"
+    assert loose.rounding.met
+    assert path in misfits(loose.best)
+    assert path in loose.rounding.unmade
+    assert "not one to build yet" in loose.shown
+    assert any(path in note for note in loose.rounding.notes)
+    fibres = ao.optimise(ao.read(bench((BORE, block))), starts=1, prices=False)
+    assert fibres.rounding.unmade == (path, "barrel.layup[2].thickness")
+    assert "the one to build" not in fibres.shown
+    whole = ao.optimise(ao.read(two_layers((BORE, block))), starts=1, prices=False,
+                        whole_plies=True)  # fmt: skip
+    assert whole.rounding.unmade == ()
+    assert "the one to build" in whole.shown
 
 
 def asked(text, *words, code=0):
@@ -436,7 +472,7 @@ def test_terminal(tmp_path):
 @pytest.mark.parametrize(
     ("text", "path", "words"),
     [
-        (bench(), "variables", "nothing to round"),
+        (two_layers((FREE_HOOP + FREE_AXIAL, "")), "variables", "nothing to round"),
         (two_layers((PLY, PLY.replace("0.2", "3"))), "barrel.layup[1].thickness",
          "no whole number of pairs of plies of 3 mm lies between 0.5 mm and 4 mm"),
         (with_angle(("lower: 15 deg\n    upper: 60", "lower: 22 deg\n    upper: 40")),
@@ -479,7 +515,9 @@ def test_plies_too_coarse_for_the_requirements(tmp_path):
     assert "no design of whole plies" in rounding["outcome"]
     assert rounding["remedy"]
     assert not file.exists()
-    assert f"not written, there is no design to save: {rounding['outcome']}" in result.err
+    (fault,) = data["errors"]
+    assert f"not written, there is no design to save: {rounding['outcome']}" in fault["message"]
+    assert result.err == ""
     assert data["shown"]["design"] == "continuous"
     assert rounding["outcome"] in data["shown"]["sentence"]
     shown = run("optimise", "-", "--whole-plies", "--out", tmp_path, stdin=text.encode())

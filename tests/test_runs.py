@@ -11,7 +11,7 @@ from math import inf
 from pathlib import Path
 
 import pytest
-from cli_runner import BENCH, KNEE, command, run, surroundings
+from cli_runner import KNEE, PLIES, bench, command, run, surroundings
 
 import actuator_opt as ao
 from actuator_opt import run_store
@@ -21,7 +21,8 @@ from actuator_opt.optimisation.run import optimise as solver_entry
 from actuator_opt.reporting.convergence_figure import convergence_figure
 from actuator_opt.reporting.ink import Ink
 
-SMALL = BENCH.replace("  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n", "")
+WALL = "  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n"
+SMALL = bench((WALL, ""), *PLIES)
 
 
 @pytest.fixture
@@ -108,8 +109,8 @@ def test_infeasible_and_chosen_designs_are_reported_again(folder, tmp_path):
         assert files(tmp_path / name / "a") == files(tmp_path / name / "b")
 
 
-def test_own_metrics_come_back_from_their_file_only_unchanged(folder, design, tmp_path):
-    """A changed or missing plugin is no silent change of the report."""
+def test_own_metrics_come_back_where_their_file_is_named(folder, design, tmp_path):
+    """A record by itself runs no program; a changed plugin is no silent change of the report."""
     plugin = tmp_path / "own.py"
     text = (
         "import actuator_opt as ao\n@ao.metric('slenderness')\n"
@@ -117,14 +118,17 @@ def test_own_metrics_come_back_from_their_file_only_unchanged(folder, design, tm
     )
     plugin.write_text(text)
     optimised(design, "--plugin", plugin, "--report", "--out", tmp_path / "a")
-    assert run("report", "last", "--out", tmp_path / "b").code == 0
+    refused = run("report", "last", "--out", tmp_path / "b", "--json")
+    assert refused.code == 3
+    assert refused.errors[0]["message"].startswith(f"its own metrics came from {plugin}")
+    assert refused.errors[0]["remedy"] == "name it with --plugin to run it"
+    named = run("report", "last", "--out", tmp_path / "b", "--plugin", plugin)
+    assert (named.code, named.err.count("SHA-256")) == (0, 0)
     assert files(tmp_path / "a") == files(tmp_path / "b")
     plugin.write_text(text + "\n")
-    refused = run("report", "last", "--out", tmp_path / "c", "--json")
-    assert refused.code == 3
-    assert "has changed since" in refused.errors[0]["message"]
     named = run("report", "last", "--out", tmp_path / "c", "--plugin", plugin)
     assert named.code == 0
+    assert f"was made with another {plugin} (its SHA-256 differs)" in named.err
     assert files(tmp_path / "a") == files(tmp_path / "c")
 
 
@@ -185,6 +189,18 @@ def test_names_of_runs(folder, design):
     for name in ("nothing", "", "/no/such.run", "2024"):
         assert run("runs", "show", name, "--json").code == 3, name
     assert run("report", "2024", "--json").code == 3
+
+
+def test_two_prunes_at_once(tmp_path, monkeypatch):
+    """A record that another process has deleted meanwhile is no fault, and not told as deleted."""
+    for _ in range(3):
+        run_store.write(tmp_path, "20261122-104500", {"kind": "sweep"}, {})
+    listed = run_store.entries(tmp_path)
+    newest, gone, left = listed[0]
+    monkeypatch.setattr(run_store, "entries", lambda place: listed)
+    gone.path.unlink()
+    assert ao.prune_runs(keep=1, folder=tmp_path) == [left.id]
+    assert [path.stem for path in tmp_path.iterdir()] == [newest.id]
 
 
 def test_deleting_is_asked_for(folder, design):
@@ -273,7 +289,7 @@ def test_a_name_is_never_taken_twice(tmp_path, monkeypatch):
     """Where the random part repeats, the older record stays; also without hard links."""
     for links in (True, False):
         place = tmp_path / str(links)
-        parts = iter(["a1", "aaaaaa", "b1", "aaaaaa", "bbbbbb"])
+        parts = iter(["aaaaaa", "aaaaaa", "bbbbbb"])
         monkeypatch.setattr(run_store, "_random", lambda _, parts=parts: next(parts))
         if not links:
             monkeypatch.setattr(os, "link", _no_links)
@@ -281,6 +297,13 @@ def test_a_name_is_never_taken_twice(tmp_path, monkeypatch):
             run_store.write(place, "20260101-000000", {"k": k}, {})
         heads = {path.stem[-6:]: run_store.read(path)[0]["k"] for path in place.iterdir()}
         assert heads == {"aaaaaa": 0, "bbbbbb": 1}
+
+
+def forged(path, head, body):
+    """A record of a stranger, who can write its checksums too."""
+    made = run_store.write(path.parent, "20260101-000000", head, body)
+    made.replace(path)
+    return path
 
 
 def _no_links(*_):
@@ -294,20 +317,20 @@ def test_damaged_newer_and_foreign_records(folder, design, tmp_path):
     text = path.read_text()
     head = text.splitlines()[0]
     cases = {
-        "is no record of a run": ["", "[]\n{}", "{}", "\x00\x01", head],
-        "in a newer form": [text.replace('"record":1', '"record":2', 1)],
-        "damaged": [
-            text.replace('"kind":"optimise"', '"kind":"sweep"'),
-            head + "\n{}",
-            text.replace('"state"', '"State"'),
-        ],
-        "does not fit this version": [text.replace('"samples"', '"Samples"')],
-        "no such report": [text.replace('"kind":"optimise"', '"kind":"simulate"')],
+        "is no record of a run": ["", "[]\n{}", "{}", "\x00\x01", head, head + "\n{}"],
+        "in a newer form": [('"record": 2', '"record": 3')],
+        "damaged": [('"kind": "optimise"', '"kind": "sweep"'), ('"state"', '"State"')],
+        "does not fit this version": [('"samples"', '"Samples"')],
+        "no such report": [('"kind": "optimise"', '"kind": "simulate"')],
     }
+    parts = [json.dumps(part) for part in run_store.read(path)]
+    other = tmp_path / "x.run"
     for words, texts in cases.items():
         for changed in texts:
-            other = tmp_path / "x.run"
-            other.write_text(changed)
+            if isinstance(changed, str):
+                other.write_text(changed)
+            else:
+                forged(other, *(json.loads(part.replace(*changed)) for part in parts))
             result = run("report", other, "--out", tmp_path / "out", "--json")
             assert result.code == 3, (words, changed[:80])
             assert words in result.errors[0]["message"], result.out
@@ -320,10 +343,9 @@ def test_other_models_are_not_passed_off_as_then(folder, design, tmp_path):
     """A record whose numbers today's models do not repeat says so."""
     optimised(design)
     (path,) = folder.iterdir()
-    head, body = path.read_text().splitlines()
-    data = json.loads(body)
-    data["result"]["metrics"]["mass"]["value"] *= 1.001
-    path.write_text(head.replace(ao.__version__, "0.0.1") + "\n" + json.dumps(data) + "\n")
+    head, body = run_store.read(path)
+    body["result"]["metrics"]["mass"]["value"] *= 1.001
+    forged(path, head | {"version": "0.0.1"}, body)
     told = run("report", path, "--out", tmp_path / "out").err
     assert "was made by actuator-opt 0.0.1" in told
     assert "mass" in told

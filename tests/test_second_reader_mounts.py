@@ -164,7 +164,7 @@ def test_first_ply_between_tie_rods(tied):
     """The ladder without the clamp cracks first: its liner and plies are pulled from the start."""
     paths = [OPENING * a + RELIEF for a in PATHS]
     clamped = after_yield(WALL, STRENGTHS, paths, CLAMP)
-    assert 0.9 * clamped < tied("first_ply_factor") <= clamped
+    assert 0.9 * clamped < tied("first_ply_factor") <= clamped * (1 + 1e-12)
 
 
 def test_burst_between_tie_rods(tied):

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import itertools
 import json
+from dataclasses import replace
 
 import cli_runner
 import numpy as np
 import pytest
-from cli_runner import bench, refused, run
+from cli_runner import PLIES, bench, refused, run
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from problems import pressure_vessel
@@ -23,8 +24,10 @@ from actuator_opt.errors import InputError
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.branch_and_bound import search
 from actuator_opt.optimisation.listed import Listed
+from actuator_opt.optimisation.problem import Problem, Values
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.reporting.choices_table import terminal
+from actuator_opt.reporting.whole_plies import notes as rounding_notes
 
 BORE = "  cylinder.bore:\n    lower: 20 mm\n    upper: 30 mm\n"
 THICKNESS = "  barrel.layup[1].thickness:\n    lower: 0.5 mm\n    upper: 4 mm\n"
@@ -75,7 +78,7 @@ def test_a_faulty_size_is_one_line_at_its_place(lines, message, remedy):
 def test_where_nothing_fits_the_nearest_sizes_are_named():
     """No ISO bore between 26 and 31 mm: the line names 25 and 32 mm, in check, option and file."""
     narrow = BORE.replace("20 mm", "26 mm").replace("30 mm", "31 mm")
-    free = bench((BORE, narrow), ("bore: 22 mm", "bore: 27 mm"))
+    free = bench((BORE, narrow), ("bore: 22 mm", "bore: 27 mm"), *PLIES)
     asked = free.replace(narrow, narrow + "    sizes: iso_3320\n")
     for found in (
         refused(asked, command="check"),
@@ -165,7 +168,7 @@ def test_what_is_asked_by_option():
     assert found[("cylinder.bore",)] == [(21,), (23,)]
     assert found[("rod.outer_diameter",)] == [(10,), (12,), (14,), (16,), (18,)]
     with pytest.raises(InputError, match="no variable has standard sizes"):
-        ao.optimise(ao.read(bench((BORE, ""))), standard_sizes=True)
+        ao.optimise(ao.read(bench((BORE + THICKNESS, ""), *PLIES)), standard_sizes=True)
 
 
 @settings(max_examples=30, deadline=None)
@@ -233,6 +236,59 @@ def test_pressure_vessel_of_gauges():
     assert np.min(cost[(length <= 200) & (length >= 10)]) >= found.objective * (1 - 1e-9)
 
 
+def test_gear_train():
+    """Four gears of 12 to 60 teeth for a ratio of 1/6.931: 2.7008571e-12 [Sandgren1990].
+
+    Nearly every box has the bound 0: only depth leads to a design, on any scale of the objective.
+    """
+
+    def evaluate(x, scale=1.0):
+        return Values(scale * (1 / 6.931 - x[0] * x[1] / (x[2] * x[3])) ** 2)
+
+    teeth = np.arange(12.0, 61.0)
+    listed = [Listed((k,), teeth[:, None]) for k in range(4)]
+    problem = Problem(tuple("abcd"), np.full(4, 12.0), np.full(4, 60.0), evaluate)
+    start = solve(problem, starts=2, samples=64)
+    found = search(problem, listed, start.x, most=1000)
+    pairs = np.outer(teeth, teeth)  # of either shaft: every ratio there is
+    ratios = np.unique(pairs)[:, None] / np.unique(pairs)
+    assert found.objective == pytest.approx(((1 / 6.931 - ratios) ** 2).min(), rel=1e-9)
+    assert sorted(found.x[:2]) == [16, 19]
+    assert sorted(found.x[2:]) == [43, 49]
+    short, large = (
+        search(replace(problem, evaluate=lambda x, s=s: evaluate(x, s)), listed, start.x, most=200)
+        for s in (1.0, 2.0**20)
+    )
+    assert short.objective < 1e-9
+    assert large.objective == short.objective * 2.0**20
+
+
+def test_spring_of_listed_wire():
+    """Coils counted and wire of a list: 2.658559 at 9 coils of 0.283 in [Sandgren1990]."""
+    # the list of wires from 0.2 in on; 1000 lbf, preload 300 lbf, 1.25 in of stroke, 14 in long
+    wires = [0.207, 0.225, 0.244, 0.263, 0.283, 0.307, 0.331, 0.362, 0.394, 0.4375, 0.5]
+
+    def evaluate(x):
+        coils, mean, wire = x
+        index = mean / wire
+        stress = 8 * ((4 * index - 1) / (4 * index - 4) + 0.615 / index) * 1000 * mean
+        rate = 11.5e6 * wire**4 / (8 * coils * mean**3)
+        margins = [
+            1 - stress / (np.pi * wire**3 * 189000),
+            1 - (1000 / rate + 1.05 * (coils + 2) * wire) / 14,
+            1 - mean / 3, index / 3 - 1, 1 - 300 / rate / 6, 700 / rate / 1.25 - 1,
+        ]  # fmt: skip
+        return Values(np.pi**2 / 4 * mean * wire**2 * (coils + 2), np.stack(margins))
+
+    lower, upper = np.array([1, 0.6, 0.2]), np.array([30, 3, 0.5])
+    problem = Problem(("coils", "mean", "wire"), lower, upper, evaluate, tuple("abcdef"))
+    listed = [Listed((0,), np.arange(1.0, 31)[:, None]), Listed((2,), np.array(wires)[:, None])]
+    found = search(problem, listed, solve(problem, samples=512).x)
+    assert found.complete
+    assert found.objective == pytest.approx(2.6585592, rel=1e-7)
+    assert (found.x[0], found.x[2]) == (9, 0.283)
+
+
 def test_a_design_against_enumeration():
     """Own bores and steps of the hoop layer, the skirt scanned: the lightest feasible is found.
 
@@ -269,11 +325,38 @@ def test_a_design_against_enumeration():
     assert rows["retention.wall"].sizes is None
 
 
+def test_what_allows_the_smaller_size_where_rounding_costs_much():
+    """A bore of 20 or 23 mm for 6.4 kN: a little less force, or more pressure, allows 20 mm.
+
+    With the number as printed the rounding ends there, at the mass that was told.
+    """
+    text = sized(["sizes: [20 mm, 23 mm]"], BORE, ("force: 4 kN", "force: 6.4 kN"))
+    result = ao.optimise(ao.read(text), starts=2, prices=False)
+    rounding = result.rounding
+    assert (rounding.met, result.best.cylinder.bore) == (True, 0.023)
+    assert rounding.percent > 10
+    paths = [remedy.change["parameter"] for remedy in rounding.remedies]
+    assert {"load_cases[stance].force", "supply.pressure"} <= set(paths)
+    assert not [path for path in paths if "_factor" in path]
+    for remedy in rounding.remedies:
+        assert remedy.values == {"cylinder.bore": 0.02}
+        assert remedy.objective < rounding.objective_after
+        assert abs(remedy.change["change"]) <= 0.25
+        values = {remedy.change["parameter"]: remedy.change["needed_text"]}
+        again = ao.optimise(ao.read(text).changed(values), starts=2, prices=False).rounding
+        assert again.objective_after == pytest.approx(remedy.objective, rel=1e-3)
+    pressure = next(r for r in rounding.remedies if r.change["parameter"] == "supply.pressure")
+    assert pressure.change["needed"] > 21e6
+    assert any(pressure.change["needed_text"] in line for line in rounding_notes(result))
+    told = rounding.to_dict()["remedies"]
+    assert [one["change"]["parameter"] for one in told] == paths
+
+
 def test_terminal_json_and_file(tmp_path):
     """The table names the series and the cost, JSON has both, the file saved is the made design."""
     file = tmp_path / "made.yaml"
     words = ("--starts", "1", "--standard-sizes", "--write", file)
-    data = run("optimise", "-", "--json", *words, stdin=sized([]).encode()).json
+    data = run("optimise", "-", "--json", *words, stdin=sized([], BORE, *PLIES).encode()).json
     rounding = data["rounding"]
     assert rounding["sizes"] == "standard sizes"
     bore = rounding["variables"]["cylinder.bore"]
@@ -283,7 +366,8 @@ def test_terminal_json_and_file(tmp_path):
     assert read_design(file.read_text("utf-8")).design.cylinder.bore == bore["value"]
     saved = run("evaluate", file, "--json").json
     assert saved["metrics"]["mass"]["value"] == rounding["objective"]["rounded"]
-    result = ao.optimise(ao.read(sized(["sizes: iso_3320"])), starts=1, prices=False)
+    text = sized([], BORE, *PLIES)
+    result = ao.optimise(ao.read(text), starts=1, prices=False, standard_sizes=True)
     assert result.best.cylinder.bore == bore["value"]
     assert result.rounding.objective_after == pytest.approx(rounding["objective"]["rounded"])
 

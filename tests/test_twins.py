@@ -63,6 +63,8 @@ def test_oils_of_one_bulk_modulus_are_searched_once(monkeypatch):
     """Every combination gets the same result as if each were searched, with fewer searches."""
     text = KNEE.read_text("utf-8").replace("max: 290 N", "max: 400 N")
     text = text.replace("    upper: 4 mm", "    upper: 8 mm")
+    for path in ("cylinder.bore", "rod.outer_diameter"):
+        text = text.replace(f"  {path}:\n    lower", f"  {path}:\n    sizes: iso_3320\n    lower")
     text += "choices:\n  fluid.material: [iso_vg_32, polyol_ester_46, iso_vg_46, iso_vg_68]\n"
     served = []
     holds_for = Evidence.holds_for
@@ -72,9 +74,9 @@ def test_oils_of_one_bulk_modulus_are_searched_once(monkeypatch):
         return served[-1]
 
     monkeypatch.setattr(Evidence, "holds_for", counted)
-    once = ao.optimise(ao.read(text), standard_sizes=True, prices=False)
+    once = ao.optimise(ao.read(text), prices=False)
     monkeypatch.setattr(Evidence, "holds_for", lambda *_: False)
-    each = ao.optimise(ao.read(text), standard_sizes=True, prices=False)
+    each = ao.optimise(ao.read(text), prices=False)
     assert sum(served) == 2
     assert once.rounding.objective_after == each.rounding.objective_after
     for one, other in zip(once.choices.combinations, each.choices.combinations, strict=True):

@@ -1,5 +1,11 @@
 """The terminal: read arguments, call the library, print. No physics."""
 
-from .app import app, main
+try:
+    from .app import app, main
+except KeyboardInterrupt:  # before there is a command to interrupt
+    import sys
+
+    print("interrupted", file=sys.stderr)
+    sys.exit(130)
 
 __all__ = ["app", "main"]

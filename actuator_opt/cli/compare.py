@@ -9,7 +9,7 @@ import typer
 
 from .. import store
 from . import streams
-from .options import Json, PluginFile, Quiet, Set
+from .options import Json, PluginFile, Quiet, Seed, Set
 from .shared import assignments
 
 
@@ -26,7 +26,11 @@ def compare(
             "--out", metavar="DIR", help="Draw mass, compliance and friction into this folder."
         ),
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+    optimise: Annotated[
+        bool,
+        typer.Option("--optimise", help="Optimise each design first; runs and optima stay."),
+    ] = False,
+    seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -36,7 +40,10 @@ def compare(
 
     if out is not None:
         store.require_folder(out)
-    found = verbs.compare(*designs, set=assignments(sets), plugins=plugin or [])
+    with streams.watching():
+        found = verbs.compare(
+            *designs, set=assignments(sets), plugins=plugin or [], optimise=optimise, seed=seed
+        )
     paths = [] if out is None else verbs.draw_comparison(found, out)
     if as_json:
         files: dict[str, Any] = {"files": [{"path": str(path)} for path in paths]} if paths else {}

@@ -43,4 +43,6 @@ def explore(
     if as_json:
         streams.out_json({"files": files})
     elif not quiet:
+        for remark in found[0].remarks:
+            streams.err(remark)
         say_files(files)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..errors import ExitCode
+from ..errors import Diagnostic, ExitCode
 from . import streams
 from .options import (
     REPORTS,
@@ -97,12 +97,12 @@ def optimise(
     tables = _dynamics_tables(timed)
     files = write_report(result, actuator, out, date, tables) if reporting and not stopped else []
     if as_json:
-        streams.out_json(_as_json(result, timed, files))
+        streams.out_json(_as_json(result, timed, files, unsaved))
     elif not quiet:
         _tell(result, timed)
         say_files(saved + files)
-    if unsaved:
-        streams.err(unsaved)
+    if unsaved is not None and not as_json:
+        streams.err(str(unsaved))
     if not no_record:
         recorded(result, actuator, command_line(), date, tables)
     if outcome == ExitCode.MET and timed is not None and not timed.met:
@@ -137,18 +137,19 @@ def _scenario(file: str | None, actuator: Actuator) -> Trial | None:
 
 def _saved(
     result: Optimisation, outcome: ExitCode, write: Path | None, actuator: Actuator
-) -> tuple[list[dict[str, Any]], str]:
+) -> tuple[list[dict[str, Any]], Diagnostic | None]:
     """Save the best design where one is asked for: its file, or why there is none to save."""
     from .. import verbs
 
     if write is None:
-        return [], ""
+        return [], None
     if outcome == ExitCode.MET or result.status == "interrupted":
-        verbs.save(result.best, write, source=actuator.source)
-        return [{"path": write}], ""
+        verbs.save(result, write, source=actuator.source)
+        return [{"path": write}], None
     told = result if result.robust is not None else result.rounding or result
     why = "; ".join(part for part in (told.sentence, told.remedy) if part)
-    return [], f"{write}: not written, there is no design to save: {why}"
+    message = f"not written, there is no design to save: {why}"
+    return [], Diagnostic(message, file=str(write))
 
 
 def _timed(trial: Trial, result: Optimisation) -> Verification:
@@ -160,11 +161,18 @@ def _timed(trial: Trial, result: Optimisation) -> Verification:
 
 
 def _as_json(
-    result: Optimisation, timed: Verification | None, files: list[dict[str, Any]]
+    result: Optimisation,
+    timed: Verification | None,
+    files: list[dict[str, Any]],
+    unsaved: Diagnostic | None,
 ) -> dict[str, Any]:
-    """The object of the contract, what the time domain says and the files of the report."""
+    """The object of the contract, what the time domain says, files of the report, faults."""
     more: dict[str, Any] = {} if timed is None else {"dynamics_verified": timed.to_dict()}
-    return result.to_dict() | more | ({"files": files} if files else {})
+    if files:
+        more["files"] = files
+    if unsaved is not None:
+        more["errors"] = [unsaved.to_dict()]
+    return result.to_dict() | more
 
 
 def _tell(result: Optimisation, timed: Verification | None) -> None:

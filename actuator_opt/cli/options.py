@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ..bounds import SEED, STARTS
+
 DesignFile = Annotated[str, typer.Argument(metavar="DESIGN", help="Design file, or - for stdin.")]
 Set = Annotated[
     list[str] | None,
@@ -20,7 +22,11 @@ Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for repo
 Seed = Annotated[
     int,
     typer.Option(
-        "--seed", min=0, metavar="N", help="Fixes random choices: same seed, same result."
+        "--seed",
+        min=SEED.least,
+        max=SEED.most,
+        metavar="N",
+        help="Fixes random choices: same seed, same result.",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object (SI) to stdout.")]
@@ -39,6 +45,15 @@ Date = Annotated[
         help="Date to print on the report; default: none, or that of SOURCE_DATE_EPOCH.",
     ),
 ]
+Units = Annotated[
+    str | None,
+    typer.Option(
+        "--units",
+        metavar="SI|FILE",
+        help="Units of columns whose header states none: SI (m, s, Pa, N, m/s, K), or a file with "
+        'a line "p1: bar" (YAML) or "p1,bar" (CSV) for each column.',
+    ),
+]
 Algorithm = Annotated[
     str,
     typer.Option(
@@ -48,7 +63,11 @@ Algorithm = Annotated[
 Starts = Annotated[
     int,
     typer.Option(
-        "--starts", min=1, max=1000, metavar="N", help="Local searches from different points."
+        "--starts",
+        min=STARTS.least,
+        max=STARTS.most,
+        metavar="N",
+        help="Local searches from different points.",
     ),
 ]
 Write = Annotated[
@@ -66,7 +85,7 @@ StandardSizes = Annotated[
     bool,
     typer.Option(
         "--standard-sizes",
-        help="Also find the best design of standard sizes (ISO 3320, ISO 3601) and whole plies.",
+        help="Also find the best design of ISO 3320 bore and rod, whole plies and allowed angles.",
     ),
 ]
 Certify = Annotated[

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..bounds import CHECKS
 from ..errors import ExitCode
 from ..store import require_apart
 from . import streams
@@ -42,7 +43,11 @@ def pareto(
     checks: Annotated[
         int,
         typer.Option(
-            "--checks", min=0, max=100, metavar="N", help="Full searches for what is merely local."
+            "--checks",
+            min=CHECKS.least,
+            max=CHECKS.most,
+            metavar="N",
+            help="Full searches for what is merely local.",
         ),
     ] = 3,
     csv: Annotated[

@@ -12,10 +12,11 @@ from ..errors import Diagnostic, ExitCode, UsageError
 from ..quantities import RECORDS
 from ..store import require_apart
 from . import streams
-from .options import REPORTS, Date, Json, Out, PluginFile, Quiet, Report, Seed, Set
+from .options import REPORTS, Date, Json, Out, PluginFile, Quiet, Report, Seed, Set, Units
 from .shared import (
     check_targets,
     command_line,
+    file_of_units,
     given,
     named_columns,
     read_actuator,
@@ -95,6 +96,7 @@ def identify(
     record: RecordFile,
     design: Tested,
     columns: Columns = None,
+    units: Units = None,
     cutoff: Cutoff = None,
     order: Order = None,
     uncompensated: Uncompensated = False,
@@ -132,7 +134,7 @@ def identify(
 
     check_targets(out if report else None, date, csv)
     if csv is not None:
-        require_apart(csv, record, design)
+        require_apart(csv, record, design, *file_of_units(units))
     _check_bootstrap(bootstrap)
     named = named_columns(columns)
     length = given("--span", span, RECORDS["span"])
@@ -143,10 +145,16 @@ def identify(
     if length is not None:
         others = {"--report": report or None, "--csv": csv, "--bootstrap": bootstrap or None}
         _only_bending(others | {_OPTIONS[name]: one for name, one in settings.items()})
-        _bend(record, actuator, length, part or "rod", named, as_json=as_json, quiet=quiet)
+        _bend(record, actuator, length, part or "rod", named, units, as_json=as_json, quiet=quiet)
         return
     found = verbs.identify(
-        record, design=actuator, columns=named, bootstrap=bootstrap, seed=seed, **settings
+        record,
+        design=actuator,
+        columns=named,
+        units=units,
+        bootstrap=bootstrap,
+        seed=seed,
+        **settings,
     )
     files = []
     if csv is not None:
@@ -175,6 +183,7 @@ def calibrate(
         typer.Option("--write", metavar="FILE", help="Save the design with the measured values."),
     ] = None,
     columns: Columns = None,
+    units: Units = None,
     cutoff: Cutoff = None,
     order: Order = None,
     uncompensated: Uncompensated = False,
@@ -202,7 +211,7 @@ def calibrate(
 
     check_targets(out if report else None, date, write)
     if write is not None:
-        require_apart(write, record)
+        require_apart(write, record, *file_of_units(units))
     _check_bootstrap(bootstrap)
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
     actuator = read_actuator(design, sets, plugin)
@@ -210,6 +219,7 @@ def calibrate(
         record,
         design=actuator,
         columns=named_columns(columns),
+        units=units,
         search=search,
         bootstrap=bootstrap,
         seed=seed,
@@ -242,6 +252,7 @@ def _bend(
     span: float,
     part: str,
     columns: dict[str, str],
+    units: str | None,
     *,
     as_json: bool,
     quiet: bool,
@@ -252,7 +263,9 @@ def _bend(
     if part not in ("rod", "barrel"):
         raise UsageError(Diagnostic(f'--part "{part}"', "write rod or barrel"))
     own: Part = part  # type: ignore[assignment]
-    found = verbs.bending(record, design=actuator, span=span, part=own, columns=columns)
+    found = verbs.bending(
+        record, design=actuator, span=span, part=own, columns=columns, units=units
+    )
     if as_json:
         streams.out_json(found.to_dict())
     elif not quiet:

@@ -73,6 +73,7 @@ def command_line() -> str:
             "--quiet",
             "-q",
             "--no-record",
+            "--debug",
         ) and not word.startswith(tuple(f"{one}=" for one in _TARGETS)):
             kept.append(word)
     return shlex.join(["actuator-opt", *kept])
@@ -119,15 +120,9 @@ def keep_record(make: Callable[[], object]) -> None:
 
 
 def _check_date(date: str | None) -> None:
-    if date is None:
-        return
-    from datetime import date as day
+    from ..verbs import is_date
 
-    try:
-        known = day.fromisoformat(date).isoformat() == date
-    except ValueError:
-        known = False
-    if not known:
+    if date is not None and not is_date(date):
         raise UsageError(Diagnostic(f'--date "{date}" is no date', "write YYYY-MM-DD"))
 
 
@@ -147,3 +142,10 @@ def named_columns(texts: list[str] | None) -> dict[str, str]:
             raise UsageError(Diagnostic(message, 'write e.g. "p1=Channel 3 [bar]"'))
         found[channel.strip()] = name.strip()
     return found
+
+
+def file_of_units(units: str | None) -> list[str]:
+    """The file of a ``--units``, where it names one."""
+    from ..identification.column_units import SI
+
+    return [] if units in (None, SI) else [str(units)]

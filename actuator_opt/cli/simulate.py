@@ -10,8 +10,15 @@ import typer
 from ..errors import Diagnostic, ExitCode, UsageError
 from ..store import require_apart
 from . import streams
-from .options import REPORTS, Date, Json, Out, Quiet, Report, Set
-from .shared import assignments, check_targets, command_line, named_columns, say_files
+from .options import REPORTS, Date, Json, Out, Quiet, Report, Set, Units
+from .shared import (
+    assignments,
+    check_targets,
+    command_line,
+    file_of_units,
+    named_columns,
+    say_files,
+)
 
 if TYPE_CHECKING:
     from ..simulation import Simulation
@@ -69,6 +76,7 @@ def simulate(
     measured: MeasuredFile = None,
     fit: Fitted = None,
     columns: Columns = None,
+    units: Units = None,
     sensitivity: Sensitivity = False,
     report: Report = False,
     out: Out = REPORTS,
@@ -85,8 +93,11 @@ def simulate(
         if given and measured is None:
             raise UsageError(Diagnostic(f"{name}: only with --measured", "name the record"))
     if csv is not None:
-        require_apart(csv, scenario, *([measured] if measured else []))
-    trial = verbs.read_scenario(scenario, set=assignments(sets))
+        beside = [measured] if measured else []
+        require_apart(csv, scenario, *beside, *file_of_units(units))
+    trial = verbs.read_scenario(scenario, set=assignments(sets), units=units)
+    if units is not None and measured is None and not trial.records:
+        raise UsageError(Diagnostic("--units: no record is read", "leave it out"))
     if csv is not None:
         require_apart(csv, *map(str, trial.files))
     method: Method = "cvodes" if fast else "lsoda"
@@ -97,7 +108,7 @@ def simulate(
         else:
             overlay = verbs.compare_measured(
                 trial, measured, fit=fit or (), columns=named_columns(columns),
-                verify=verify, method=method,
+                units=units, verify=verify, method=method,
             )  # fmt: skip
             found = overlay.simulation
         ranked = verbs.servo_sensitivities(trial) if sensitivity else None

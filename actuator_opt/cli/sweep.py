@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import ActuatorError, Diagnostic, ExitCode, InputError, UsageError
+from ..suggest import shown
+from ..units import whole
 from . import streams
 from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Seed, Set
 from .shared import check_targets, command_line, keep_record, read_actuator, say_files
@@ -203,6 +205,8 @@ def _kept(reduce: str | None) -> int:
     if reduce is None:
         return 10
     name, _, number = reduce.partition(":")
-    if name != "best" or not number.isdecimal() or int(number) < 1:
-        raise UsageError(Diagnostic(f"--reduce {reduce}: unknown", "write best:K, e.g. best:20"))
-    return int(number)
+    keep = whole(number)
+    if name != "best" or not keep:
+        message = f"--reduce {shown(reduce)}: unknown"
+        raise UsageError(Diagnostic(message, "write best:K, e.g. best:20"))
+    return keep

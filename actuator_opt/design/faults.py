@@ -2,8 +2,8 @@
 
 Every check is a small function of a `View`; it yields nothing where a value it needs is missing
 or already faulty, so the checks also run on a file with other faults. Those of the walls of
-barrel and rod are in `wall_faults`, of the seals in `seal_faults`, of a joint in
-`linkage_faults`.
+barrel and rod are in `wall_faults`, of the caps' thread in `thread_faults`, of the seals in
+`seal_faults`, of a joint in `linkage_faults`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,14 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from .. import quantities, suggest
-from . import circuit_faults, linkage_faults, material_laws, seal_faults, wall_faults
+from . import (
+    circuit_faults,
+    linkage_faults,
+    material_laws,
+    seal_faults,
+    thread_faults,
+    wall_faults,
+)
 from .kinds import MaterialName
 from .material import ROLES
 from .structure import Loc, child, leaves
@@ -127,7 +134,7 @@ def environment(view: View) -> Iterator[Fault]:
 
 
 def retention(view: View) -> Iterator[Fault]:
-    """A bond names its adhesive, a thread and tie rods name their thread, tie rods their pull."""
+    """A bond names its adhesive, a thread and tie rods their thread, tie rods their pull."""
     kind = view.text("retention", "type")
     if view.has("retention", "preload") and kind in ("bond", "thread"):
         yield Fault(
@@ -141,18 +148,17 @@ def retention(view: View) -> Iterator[Fault]:
         what = "a bond needs its adhesive" if kind == "bond" else "tie rods need their material"
         yield Fault(("retention", "material"), f"missing: {what}", f'add e.g. "material: {name}"')
     if kind in ("thread", "tie_rods") and not view.has("retention", "thread"):
+        keys = "pitch" if kind == "thread" else "diameter, pitch"
         yield Fault(
             ("retention", "thread"),
             f"missing: {kind} needs it",
-            'add a block "thread:" with diameter, pitch',
+            f'add a block "thread:" with {keys}',
         )
-    diameter, bore = view.number("retention", "thread", "diameter"), view.number("cylinder", "bore")
-    if kind == "thread" and diameter is not None and bore is not None and diameter <= bore:
+    elif kind == "tie_rods" and not view.has("retention", "thread", "diameter"):
         yield Fault(
             ("retention", "thread", "diameter"),
-            f"{length_text(diameter)}: the thread lies outside the barrel, whose bore is "
-            f"{length_text(bore)}",
-            "write the diameter of the thread on the barrel's outside",
+            "missing: tie rods need it",
+            'add e.g. "diameter: 6 mm"',
         )
 
 
@@ -229,6 +235,7 @@ CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     *circuit_faults.CHECKS,
     *linkage_faults.CHECKS,
     *wall_faults.CHECKS,
+    thread_faults.fits,
 )
 
 
@@ -247,19 +254,20 @@ def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
     """Every fault that shows when the library is asked."""
     yield from _material_names(tree, materials)
     yield from wall_faults.of_materials(tree, materials)
+    yield from thread_faults.of_materials(tree, materials)
     yield from seal_faults.sliding_rings(tree, materials)
     yield from material_laws.of_fluid(tree, materials)
 
 
 def _material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
     """Unknown materials, and materials of a kind that cannot stand where they are named."""
-    bonded = View(tree).text("retention", "type") == "bond"
+    joint = View(tree).text("retention", "type")
     for loc, entry, name in leaves(tree):
         if not isinstance(entry.kind, MaterialName) or not isinstance(name, str):
             continue
         fits = ROLES[entry.kind.role]
         if loc == ("retention", "material"):
-            fits = ("adhesive",) if bonded else ("metal",)
+            fits = ("adhesive",) if joint == "bond" else fits if joint == "thread" else ("metal",)
         elif loc == ("rod", "fitting", "adhesive"):
             fits = ("adhesive",)
         if name in materials and materials.kind(name) in fits:

@@ -173,14 +173,15 @@ class _Parser:
         self.at += 1
         if self.kind != "number":
             raise self.unexpected("a number of repeats")
-        if not self.text.isdecimal() or not 1 <= int(self.text) <= MOST_REPEATS:
+        count = units.whole(self.text)
+        if count is None or not 1 <= count <= MOST_REPEATS:
             raise NotationFault(
                 self.offset,
                 f"{shown(self.text, 20)} repeats",
                 f"write a whole number from 1 to {MOST_REPEATS}",
             )
         self.at += 1
-        return int(self.tokens[self.at - 1][1])
+        return count
 
     def ply(self) -> Layer:
         """An angle with its sign."""

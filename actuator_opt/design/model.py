@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from ..quantities import Sense
 from . import choices
 from .choices import Paper
 from .circuit import Control, Line, Ports, Valve
@@ -147,6 +148,19 @@ class Thread(Section):
     pitch: Annotated[float, Of("thread_pitch", "pitch")]
 
 
+class RetentionThread(Section):
+    """Metric thread of tie rods, or of caps screwed onto the barrel's outside.
+
+    The barrel is turned down to the diameter of the caps' thread; left out, it is the outside.
+    """
+
+    diameter: Annotated[
+        float | None,
+        Of("thread_diameter", "nominal diameter (default: the barrel's outside; of tie rods none)"),
+    ] = None
+    pitch: Annotated[float, Of("thread_pitch", "pitch")]
+
+
 class Fitting(Section):
     """Metal ends bonded into a laminated rod."""
 
@@ -209,7 +223,7 @@ class Retention(Section):
     """How caps and head are held: a skirt over the barrel's outside (bond, thread), or tie rods.
 
     `length` is the overlap of skirt and barrel, `wall` the skirt's thickness, `material` the
-    adhesive or the tie-rod metal.
+    adhesive or the tie-rod metal; a thread is cut into the barrel's and the caps' own metal.
     """
 
     type: choices.RetentionType
@@ -219,7 +233,7 @@ class Retention(Section):
     wall: Annotated[float, Of("wall_thickness", "thickness of the skirt")] = 1.5e-3
     material: Annotated[str | None, MaterialName("fastening")] = None
     count: Annotated[float, Of("bolt_count", "number of tie rods")] = 4.0
-    thread: Thread | None = None
+    thread: RetentionThread | None = None
     preload: Annotated[float | None, Of("force", "total tie-rod tension without pressure")] = None
 
 
@@ -315,6 +329,17 @@ class Objective(Section):
     minimise: Annotated[str | dict[str, float] | None, Goal()] = None
     maximise: Annotated[str | dict[str, float] | None, Goal()] = None
 
+    @property
+    def aim(self) -> Sense:
+        """Whether small ("min") or large values are wanted."""
+        return "max" if self.minimise is None else "min"
+
+    @property
+    def metrics(self) -> tuple[str, ...]:
+        """The metrics it is made of."""
+        stated = self.maximise if self.minimise is None else self.minimise
+        return (stated,) if isinstance(stated, str) else tuple(stated or ())
+
 
 def _like_the_piston(stated: dict[str, Any]) -> Head:
     """A head of the piston's material and length, where the file states none."""
@@ -323,6 +348,10 @@ def _like_the_piston(stated: dict[str, Any]) -> Head:
         return Head.model_construct(material="", length=0.0)
     return Head(material=piston.material, length=piston.length)
 
+
+LAND = 1e-3
+"""Least wall beside or under a groove or thread, least rod wall, bore of a laminated rod and room
+between rod and bore (m): a choice for turned parts in this size range."""
 
 PLAIN_CAP = 0.25
 """Thickness over bore of the end plates where the file states none."""

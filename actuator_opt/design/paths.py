@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from .. import quantities, suggest
+from .. import quantities, suggest, units
 from ..errors import Diagnostic, InputError, UsageError
 from ..quantities import Quantity
 from .distributions import NUMBERS, quantity_of_entry
@@ -149,8 +149,9 @@ def _index(path: str, text: str, node: Any, loc: Loc) -> int:
     names = [child(item, "name") for item in items]
     if text in names:
         return names.index(text)
-    if text.isdecimal() and int(text) < len(items):
-        return int(text)
+    index = units.whole(text)
+    if index is not None and index < len(items):
+        return index
     have = [str(n) for n in names if n is not None] or [str(i) for i in range(len(items))]
     message = f"{path}: {spell(loc)} has no entry {suggest.shown(text)}"
     raise ValueFault(message, suggest.remedy(text, have) or "it is empty")

@@ -18,13 +18,14 @@ from .structure import Loc, child_at
 from .view import Fault, Materials, Properties, View, length_text
 
 SQUEEZE_RANGE = {
+    "energised": (0.02, 0.40),
     "plane_strain": (0.02, 0.40),
     "hertz_lindley": (0.02, 0.40),
     "chord": (0.0, 0.45),
     "stadium": (0.0, 0.45),
 }
 """Squeeze a contact law can be used at: outside, its width leaves the free section or the load
-law (compared with finite elements at 0.10 to 0.30) means nothing."""
+law (compared with finite elements at 0.08 to 0.30) means nothing."""
 
 NEEDED = {
     "o_ring": (),

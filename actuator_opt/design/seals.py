@@ -86,7 +86,7 @@ class SealElement(Section):
         float | None,
         Of("length", "gap under a U-cup's lip where it leaves the body; default: its interference"),
     ] = None
-    law: choices.SealLaw = "plane_strain"
+    law: choices.SealLaw = "energised"
     hardness_model: choices.HardnessModel = "gent"
     contact: Annotated[tuple[ContactProfile, ...], Field(max_length=50)] = ()
     back_up: choices.BackUp = "none"

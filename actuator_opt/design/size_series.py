@@ -176,7 +176,8 @@ class _WholePlies(Series):
     def fault(self, view: View, path: str) -> tuple[str, str] | None:
         if _layer(view, path, "ply_thickness") is not None:
             return None
-        return "the layer states no ply_thickness", 'add e.g. "ply_thickness: 0.2 mm" to it'
+        remedy = 'add e.g. "ply_thickness: 0.2 mm" to it; for a metal layer write a step'
+        return "the layer states no ply_thickness", remedy
 
     def parent(self, path: str) -> str | None:
         return path.removesuffix("thickness") + "angle"

@@ -175,6 +175,11 @@ class _Known:
             return {}
 
 
+def known_numbers(view: View, materials: Properties, name: str) -> dict[str, float]:
+    """What library and design state of a material; none where the entry is missing or faulty."""
+    return _Known(view, materials).numbers(name)
+
+
 def _strengths(view: View, known: _Known) -> Iterator[Fault]:
     """Every ply of the barrel has the strengths of the criterion the file chooses."""
     criterion = view.text("barrel", "criterion")

@@ -206,13 +206,19 @@ def _start(
             f"{quantity.text(lower)}",
             "swap them",
         )
-    elif isinstance(start, float) and not lower <= start <= upper:
+    elif isinstance(start, float) and not _between(lower, start, upper):
         yield Fault(
             place,
             f"{quantity.text(start)}: start value outside its bounds",
             f"write {quantity.text(lower)} to {quantity.text(upper)}, or widen "
             f"variables.{target.path}",
         )
+
+
+def _between(lower: float, start: float, upper: float) -> bool:
+    """Whether a start lies within its bounds; the last bits of a unit are forgiven."""
+    slack = 1e-12 * max(abs(lower), abs(upper))  # as of declared ranges, `kinds.check_range`
+    return lower - slack <= start <= upper + slack
 
 
 def objective(tree: dict[str, Any], metrics: Mapping[str, Quantity]) -> Iterator[Fault]:

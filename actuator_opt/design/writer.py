@@ -57,7 +57,7 @@ def exact_text(value: float, quantity: Quantity | None, unit: str | None = None)
             continue
         of = units.unit(name, quantity.dimension) if name else units.Unit("", "", 1.0)
         for number in _candidates(of.from_si(value)):
-            if of.to_si(float(number)) == value:
+            if of.text_to_si(number) == value:
                 return f"{number} {name}".rstrip()
     return f"{100 * value!r} %" if share else f"{value!r} {quantity.si_unit}".rstrip()
 

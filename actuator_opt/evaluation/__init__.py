@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .build import evaluate, prepare
-from .kernel import Subject, compute
+from .kernel import Subject, compute, without_films
 from .result import Check, Evaluation, Metric, Requirement
 
 __all__ = [
@@ -15,4 +15,5 @@ __all__ = [
     "compute",
     "evaluate",
     "prepare",
+    "without_films",
 ]

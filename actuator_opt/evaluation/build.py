@@ -18,7 +18,8 @@ from ..design.model import Design
 from ..version import VERSION
 from . import doubts, outline, standard_parts, study
 from .allow import allowances, extremes
-from .check_list import CHECK_LIST, CheckLine, Sense
+from .check_list import CHECK_LIST, CheckLine
+from .governing import governing
 from .kernel import Pass, Subject, compute
 from .limits import Limit, all_limits, check_limits, default_limits
 from .plugin import Plugin
@@ -35,26 +36,6 @@ from .rows import ALL_CASES, Computed, Row, by_case, rows_of
 from .study import dynamics
 from .values import Values, of_case
 
-SENSES: dict[str, Sense] = {line.metric: line.sense for line in CHECK_LIST if line.metric} | {
-    "stiffness_oil": "min",
-    "stiffness_rod": "min",
-    "stiffness_barrel": "min",
-    "stiffness_seals": "min",
-    "dynamic_stiffness": "min",
-    "ultimate_gain": "min",
-    "gain_margin": "min",
-    "phase_margin": "min",
-    "bandwidth": "min",
-    "line_resonance": "min",
-    "damping_ratio": "min",
-    "liner_yield_factor": "min",
-    "local_buckling_factor": "min",
-    "film_thickness": "min",
-    "joint_torque_min": "min",
-    "joint_range": "min",
-    "geometry_dead_point": "min",
-    "geometry_joint_angle": "min",
-}
 TOLERANCE = 1e-6
 """A margin of at least −TOLERANCE counts as met (CONTRACT)."""
 
@@ -187,17 +168,17 @@ def _metric(
     for place, array in computed.metrics.get(name, {}).items():
         for case, value in by_case(computed, name, array, v.cases, place):
             rows.append((float(value[0]), case, place))
-    usable = [row for row in rows if _finite(row[0])]
-    if any(math.isnan(row[0]) for row in rows):
-        usable = []  # a place without an answer must not hide behind the others
-    if not usable:
+    value = float(governing(name, computed, v, subject)[0])
+    if not _finite(value):
         why = computed.why.get(name, "the models have no finite answer for these dimensions")
-        if rows and all(math.isinf(row[0]) for row in rows):
+        if value == math.inf:
             why = computed.why.get(name, "nothing loads it: the factor is unlimited")
         definition = None if name in quantities.METRICS else subject.quantities[name]
         return Metric(name=name, value=None, why=why, definition=definition)
-    pick = min if SENSES.get(name, "max") == "min" else max
-    value, case, place = pick(usable, key=lambda row: row[0])
+    _, case, place = next(row for row in rows if row[0] == value)
+    extremes = min(row[0] for row in rows), max(row[0] for row in rows)
+    sense: quantities.Sense = "min" if value == extremes[0] else "max"
+    pick = min if sense == "min" else max
     model = model_of(
         name,
         wall=doubts.kind_of(subject),
@@ -205,14 +186,16 @@ def _metric(
         place=place,
     )
     per_case: dict[str, float] = {}
-    for one, where, _ in usable:
-        per_case[where] = pick(one, per_case.get(where, one))
+    for one, where, _ in rows:
+        if _finite(one):
+            per_case[where] = pick(one, per_case.get(where, one))
     return Metric(
         name=name,
         value=value,
         case=None if case == ALL_CASES else case,
         place=place or None,
         by_case=per_case,
+        sense=None if extremes[0] == extremes[1] else sense,
         model="" if model is None else model.name,
         reference="" if model is None else model.reference,
         in_range=name not in outside,
@@ -233,7 +216,7 @@ def _requirement(limit: Limit, computed: Computed, v: Values) -> Requirement:
     row = _worst(rows_of(limit, computed, v))
     bound = float(np.squeeze(limit.value(v)))
     if row is None or not _finite(float(row.value[0])):
-        unlimited = row is not None and float(row.value[0]) == math.inf
+        unlimited = row is not None and float(row.value[0]) == math.inf and limit.sense == "min"
         return Requirement(
             limit.name,
             limit.metric,

@@ -7,9 +7,8 @@ warned about, but bind no optimiser.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
-Sense = Literal["min", "max"]
+from ..quantities import Sense
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,14 +100,14 @@ CHECK_LIST: tuple[CheckLine, ...] = (
         "retention_factor",
         "min",
         1.5,
-        "choice: 1.5 on the elastic peak shear of a bond, on thread shear or tie-rod yield",
+        "choice: 1.5 on the elastic peak shear of a bond, on yield of threads or tie rods",
     ),
     CheckLine(
         "cap retention at burst pressure",
         "retention_burst_factor",
         "min",
         4.0,
-        "as barrel burst: 4:1 on mean bond shear, ultimate thread shear or tie-rod strength",
+        "as barrel burst: 4:1 on mean bond shear, rupture of threads and skirt, or of tie rods",
     ),
     CheckLine("end plate bending", "cap_factor", "min", 1.5, "choice: 1.5 on yield"),
     CheckLine("clevis pins", "pin_factor", "min", 2.0, "choice: 2 on shear yield"),

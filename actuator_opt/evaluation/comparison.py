@@ -18,7 +18,7 @@ from ..design.build import to_tree
 from ..design.kinds import Fraction
 from ..design.paths import quantity_of
 from ..errors import InputError
-from ..quantities import METRICS, Quantity
+from ..quantities import METRICS, Quantity, Sense
 from .result import Evaluation
 
 Value: TypeAlias = float | bool | str | Fraction | None
@@ -78,6 +78,22 @@ class Question:
 
 
 @dataclass(frozen=True, slots=True)
+class DesignState:
+    """Whether a compared design is an optimum.
+
+    `status` is that of its optimisation; None where it was only evaluated.
+    """
+
+    status: str | None = None
+    optimum: bool = False
+
+    @property
+    def word(self) -> Literal["optimum", "evaluated"]:
+        """The state in JSON."""
+        return "optimum" if self.optimum else "evaluated"
+
+
+@dataclass(frozen=True, slots=True)
 class Comparison:
     """Designs side by side; the first is what the others are held against."""
 
@@ -88,6 +104,23 @@ class Comparison:
     evaluations: tuple[Evaluation, ...]
     changes: tuple[Change, ...]
     questions: tuple[Question, ...]
+    states: tuple[DesignState, ...] = ()
+    """Which designs are optima."""
+
+    @property
+    def not_optimised(self) -> tuple[int, ...]:
+        """Positions of the designs that are not known to be optima."""
+        return tuple(k for k, one in enumerate(self.states) if not one.optimum)
+
+    @property
+    def unlike(self) -> Mapping[str, tuple[Sense | None, ...]]:
+        """Metrics that are the smallest value of one design and the largest of another.
+
+        Their limits or objectives differ in sense.
+        """
+        names = dict.fromkeys(name for e in self.evaluations for name in e.metrics)
+        found = {name: _senses(name, self.evaluations) for name in names}
+        return {name: senses for name, senses in found.items() if {"min", "max"} <= {*senses}}
 
     @property
     def duties_differ(self) -> tuple[str, ...]:
@@ -118,15 +151,18 @@ class Comparison:
                     "label": label,
                     "origin": origin,
                     "name": e.name,
+                    "state": state.word,
+                    "status": state.status,
                     "spec_hash": e.spec_hash,
                     "met": e.met,
                     "missed": [row.name for row in e.requirements if not row.met],
+                    "without_reserve": list(e.tight),
                     "mass_parts": dict(e.mass_parts),
                     "compliance": weakest(e),
                     "friction_parts": dict(e.friction_parts),
                 }
-                for label, origin, e in zip(
-                    self.labels, self.origins, self.evaluations, strict=True
+                for label, origin, e, state in zip(
+                    self.labels, self.origins, self.evaluations, self.states, strict=True
                 )
             ],
             "differences": [
@@ -155,13 +191,16 @@ class Comparison:
         }
 
 
-def compare(evaluations: Sequence[Evaluation], origins: Sequence[str]) -> Comparison:
+def compare(
+    evaluations: Sequence[Evaluation], origins: Sequence[str], states: Sequence[DesignState] = ()
+) -> Comparison:
     """Put evaluated designs side by side.
 
     Parameters
     ----------
     evaluations : two or more, the first is held against
     origins : file or run of each, in words
+    states : which are optima; default: none is known to be
 
     Raises
     ------
@@ -185,7 +224,14 @@ def compare(evaluations: Sequence[Evaluation], origins: Sequence[str]) -> Compar
         _question("stiffer", "stiffness_min", evaluations, soft),
         _question("smoother", "friction_running", evaluations, rubbing),
     )
-    return Comparison(labels, tuple(origins), tuple(evaluations), changes, questions)
+    return Comparison(
+        labels,
+        tuple(origins),
+        tuple(evaluations),
+        changes,
+        questions,
+        tuple(states) or (DesignState(),) * len(labels),
+    )
 
 
 def weakest(evaluation: Evaluation) -> dict[str, float]:
@@ -204,6 +250,12 @@ def _union(parts: Sequence[Mapping[str, float]]) -> dict[str, tuple[float, ...]]
     return {name: tuple(one.get(name, 0.0) for one in parts) for name in names}
 
 
+def _senses(metric: str, evaluations: Sequence[Evaluation]) -> tuple[Sense | None, ...]:
+    """Which of several values governs each design; None where it has only one."""
+    rows = [e.metrics.get(metric) for e in evaluations]
+    return tuple(None if row is None or row.value is None else row.sense for row in rows)
+
+
 def _question(
     name: Name, metric: str, evaluations: Sequence[Evaluation], parts: dict[str, tuple[float, ...]]
 ) -> Question:
@@ -211,7 +263,7 @@ def _question(
     values = tuple(e.metrics[metric].value for e in evaluations)
     sign = -1.0 if name == "stiffer" else 1.0
     known = [(sign * v, k) for k, v in enumerate(values) if v is not None and math.isfinite(v)]
-    if len(known) < 2:
+    if len(known) < 2 or {"min", "max"} <= {*_senses(metric, evaluations)}:
         return Question(name, metric, values, parts, None, None)
     ranked = sorted(known)
     lead, best = ranked[0]

@@ -6,10 +6,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..design.model import PLAIN_CAP
+from ..design.model import LAND, PLAIN_CAP
 from ..design.paths import quantity_of
+from ..design.thread_faults import ROUNDING
 from ..models import laminate
-from . import joint, motion_range, oil, oil_range, seal_doubts, springs
+from ..quantities import METRICS
+from . import joint, motion_range, oil, oil_range, proportions, seal_doubts, springs, threads
 from .barrel import LAMINATES, kind
 from .beam import NEAR
 from .kernel import Pass, Subject
@@ -57,9 +59,11 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
         )
         for metric in GROWTH_FED:
             yield metric, text
+    yield from (("", text) for text in proportions.warnings(subject, v, g))
     yield from _wall_warnings(subject, done)
     yield from _rod_warnings(subject, done)
     yield from _bond_warnings(done)
+    yield from _thread_warnings(done)
     for part, what in (
         ("head", "of the piston's material and length"),
         ("caps", f"of the piston's material, {PLAIN_CAP:g} bore thick"),
@@ -185,6 +189,20 @@ def _bond_warnings(done: Pass) -> Iterable[tuple[str, str]]:
             f"{sums[place]:.2f} times the strength; each is checked alone, as a ductile adhesive "
             "yields and levels both",
         )
+
+
+def _thread_warnings(done: Pass) -> Iterable[tuple[str, str]]:
+    """A thread that leaves too little metal: free sizes may start there, no search ends there."""
+    for name in threads.LANDS:
+        for left in done.computed.metrics.get(name, {}).values():
+            least = float(np.min(np.real(left)))
+            if least < LAND * (1 - ROUNDING):
+                label = METRICS[name]
+                yield (
+                    "retention_factor",
+                    f"{label.label}: {label.text(least)}, {label.text(LAND)} is the least: "
+                    "such a thread cannot be cut, and its factors do not count",
+                )
 
 
 SOURCES = frozenset({"bore_growth", "first_ply_factor", "burst_factor", "cycle_life"})

@@ -5,9 +5,9 @@ from __future__ import annotations
 from ..design.model import Design
 from ..models import density, end_stop, endurance, retention, rod
 from ..numeric import Array, maximum, where
-from . import rod_strength
+from . import rod_strength, threads
 from .allow import Stock
-from .barrel import Wall
+from .barrel import Wall, load_path
 from .geometry import Geometry
 from .joint import Demand
 from .rods import Rod
@@ -34,7 +34,7 @@ def compute(
     """Every life and service metric; `net` is the force of every case, `stop` runs into a stop."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
-    _endurance(v, stock, design, wall, section, supply, push, pull, out)
+    _endurance(v, stock, design, g, wall, section, supply, push, pull, out)
     _end_stop(v, design, g, state, supply, stop, net, out)
     _trapped(v, stock, design, g, state, wall, supply, out)
     _layers(stock, wall, out)
@@ -47,6 +47,7 @@ def _endurance(
     v: Values,
     stock: Stock,
     design: Design,
+    g: Geometry,
     wall: Wall,
     section: Rod,
     supply: Array,
@@ -54,7 +55,7 @@ def _endurance(
     pull: Array,
     out: Computed,
 ) -> None:
-    """Pressure-cycle life of metal parts: wall layers, rod (push/pull) and thread root."""
+    """Pressure-cycle life of metal parts: wall layers, rod (push/pull), thread roots."""
     cycles = wall.cycles | rod_strength.cycles(design, section, supply, push, pull)
     loads = [(place, c.material, c.span, c.mean) for place, c in cycles.items()]
     if design.rod.thread is not None:
@@ -62,6 +63,10 @@ def _endurance(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
         )
         loads.append(("rod thread", section.end_material, stress, stress / 2))
+    cut = threads.judged(v, design, stock, g)
+    if isinstance(cut, threads.Thread):
+        force = supply * load_path.largest_area(design, g)
+        loads.extend(threads.root_stresses(stock, cut, force))
     life, factor, lacking = {}, {}, []
     for place, name, span, mean in loads:
         ultimate = stock.allowable(name, "ultimate_strength")

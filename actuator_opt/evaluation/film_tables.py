@@ -8,7 +8,7 @@ evaluated alone and the same design inside the optimiser read one film.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import log, pi
 from typing import Literal
@@ -284,20 +284,38 @@ def tables(
         others = rings_of(values(spread))
         count = next(iter(spread.values())).size
     found: dict[Key, Table] = {}
+    for key, row in _rows(design, here):
+        place, case, stroke = key
+        sampled = of_place(others, place)
+        rows = [
+            Row(on_stroke([floats(r, case, k) for r in sampled], stroke), row.outward)
+            for k in range(count)
+        ]
+        found[key] = table(row, [r for r in rows if _finite(r)])
+    return found
+
+
+def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, Table]:
+    """Tables of every film of a design without its solution: what they give is NaN."""
+    found = {}
+    for key, row in _rows(design, rings):
+        inputs = {name: float(value) for name, value in row.inputs().items()}
+        nothing = np.full((3 * len(row.rings) + 2, 1 + len(inputs)), np.nan)
+        found[key] = Table(Surrogate((), inputs, nothing, tuple(inputs)), row, {})
+    return found
+
+
+def _rows(design: Design, rings: tuple[Ring, ...]) -> Iterator[tuple[Key, Row]]:
+    """The row of rings behind every film of a design, by its table."""
     places: tuple[Place, ...] = ("piston", "rod")
     for place in places:
-        own, sampled = of_place(here, place), of_place(others, place)
+        own = of_place(rings, place)
         for case, one in enumerate(design.load_cases):
             if not own or of_case(own[0]["speed"], case) == 0:
                 continue
             for stroke, outward in _outward(place, one.direction == "push").items():
-                rows = [
-                    Row(on_stroke([floats(r, case, k) for r in sampled], stroke), outward)
-                    for k in range(count)
-                ]
                 row = Row(on_stroke([floats(r, case) for r in own], stroke), outward)
-                found[place, case, stroke] = table(row, [r for r in rows if _finite(r)])
-    return found
+                yield (place, case, stroke), row
 
 
 def _finite(row: Row) -> bool:

@@ -14,13 +14,9 @@ from ..design.linkage import closed_length
 from ..design.material import Material
 from ..design.model import Design, Ply
 from ..models import forces, mass
-from ..numeric import Array, absolute
+from ..numeric import Array, absolute, minimum
 from .grooves import Groove, grooves, taken
 from .values import Values
-
-LAND = 1e-3
-"""Least wall beside or under a groove, least rod wall, bore of a laminated rod and room between
-rod and bore (m): a choice for turned parts in this size range."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +42,8 @@ class Geometry:
     plate: Array
     plate_radius: Array
     has_skirts: bool
+    skirt_radius: Array
+    """Inner radius of the skirts."""
     skirt_length: Array
     skirt_wall: Array
     barrel_length: Array
@@ -78,12 +76,14 @@ def derive(v: Values, design: Design) -> Geometry:
     retention = design.retention
     skirt_length: Array = 0.0
     skirt_wall: Array = 0.0
-    plate_radius = outer_radius
+    skirt_radius = plate_radius = outer_radius
     if retention is not None and retention.type == "tie_rods":
         plate_radius = outer_radius + 2 * v["retention.thread.diameter"]
     elif retention is not None:
         skirt_length, skirt_wall = v["retention.length"], v["retention.wall"]
-        plate_radius = outer_radius + skirt_wall
+        if retention.type == "thread" and "retention.thread.diameter" in v:
+            skirt_radius = minimum(v["retention.thread.diameter"] / 2, outer_radius)
+        plate_radius = skirt_radius + skirt_wall
     pin = v["clevis.pin_diameter"] if design.clevis is not None else 0.0
     eye_offset = mass.eye_length(pin_diameter=pin)
     return Geometry(
@@ -106,6 +106,7 @@ def derive(v: Values, design: Design) -> Geometry:
         plate=plate,
         plate_radius=plate_radius,
         has_skirts=retention is not None and retention.type != "tie_rods",
+        skirt_radius=skirt_radius,
         skirt_length=skirt_length,
         skirt_wall=skirt_wall,
         barrel_length=barrel_length,

@@ -11,7 +11,7 @@ from ..design.material import Material
 from ..design.model import Design
 from ..models import forces
 from ..numeric import Array, minimum, where
-from ..quantities import METRICS, Quantity
+from ..quantities import METRICS, Quantity, Sense
 from . import barrel as barrel_module
 from . import beam as beam_module
 from . import (
@@ -27,6 +27,7 @@ from . import (
     springs,
     state,
     strength,
+    threads,
     weight,
 )
 from . import geometry as geometry_module
@@ -60,6 +61,8 @@ class Subject:
     plugins: tuple[Plugin, ...] = ()
     reserves: Mapping[str, float] = field(default_factory=dict)
     """Margins that a search keeps beyond limits, by the name of the limit."""
+    aims: Mapping[str, Sense] = field(default_factory=dict)
+    """Objectives of a front, wanted small ("min") or large; empty: the design's own objective."""
     lenient: bool = False
     """Whether a user's metric that raises is NaN, with the reason, and no fault: in a search."""
     constants: dict[str, dict[str, Array]] = field(default_factory=dict, compare=False)
@@ -190,8 +193,13 @@ def statics(subject: Subject, v: Values, out: Computed, implicit: Implicit = IMP
     thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
     for name, value in geometry_module.lands(g, thread / 2).items():
         out.put(name, value)
+    for name, value in threads.lands(v, design, g).items():
+        out.put(name, value)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
+    if not threads.screwed(design):
+        for name in (*threads.LANDS, threads.CREST):
+            out.skip(name, "the caps are not screwed on")
     _manufacture(v, subject, out)
     out.put("barrel_length", g.barrel_length)
     out.put("closed_length", g.closed_length)
@@ -277,6 +285,18 @@ def _at_stops(
             out.metrics[name][f"loaded as {end}"] = own.metrics[name][""]
             out.applies_at[name, f"loaded as {end}"] = both
             out.applies_at[name, ""] = ~both
+
+
+@np.errstate(all="ignore")
+def without_films(subject: Subject) -> Subject:
+    """A subject whose oil films are not solved: NaN stands wherever a film decides.
+
+    Which metrics there are and which numbers are read is the same with films and without.
+    """
+    if not film_tables.films_asked(subject.design):
+        return subject
+    rings = base(subject, subject.values()).rings
+    return replace(subject, films=film_tables.unsolved(subject.design, rings))
 
 
 def _films(subject: Subject) -> dict[Key, Table]:

@@ -11,10 +11,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from ..design.model import Design, LoadCase
+from ..design.model import LAND, Design, LoadCase
+from ..models.thread import LEAST_OVERLAP
 from ..numeric import Array, absolute, real, where
-from .check_list import CHECK_LIST, Sense
-from .geometry import LAND
+from ..quantities import Sense
+from .check_list import CHECK_LIST
 from .plugin import Plugin
 from .values import Values
 
@@ -54,14 +55,17 @@ GEOMETRY: tuple[str, ...] = (
     "geometry_head_groove",
     "geometry_head_wall",
     "geometry_skirts",
+    "geometry_barrel_thread",
+    "geometry_skirt_thread",
 )
 ENDS = ("retracted", "extended")
 OWN_PLACE = "position of the case"
 """Places of a joint torque: both stops, and where a load case says it stands."""
 
-LINKAGE: tuple[tuple[str, float, str], ...] = (
+OTHER_GEOMETRY: tuple[tuple[str, float, str], ...] = (
     ("geometry_dead_point", LAND, "choice: 1 mm before a dead point, where no force turns"),
     ("geometry_joint_angle", 0.0, "the joint reaches the angle of the load case"),
+    ("geometry_thread_crest", LEAST_OVERLAP, "choice: crests within the tolerance 6g"),
 )
 
 
@@ -147,7 +151,7 @@ def geometry_limits() -> list[Limit]:
         for name in GEOMETRY
     ] + [
         Limit(name, name, "min", constant=least, origin="geometry", source=source)
-        for name, least, source in LINKAGE
+        for name, least, source in OTHER_GEOMETRY
     ]
 
 

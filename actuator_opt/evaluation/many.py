@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..numeric import Array
-from .build import SENSES, TOLERANCE
+from .build import TOLERANCE
+from .governing import governing
 from .kernel import Subject, compute
 from .limits import Limit, all_limits
-from .rows import Computed, by_case, rows_of
+from .rows import Computed, rows_of
 from .values import Values
 
 
@@ -56,7 +57,7 @@ def evaluate_many(
     v = subject.values(varied)
     computed = compute(subject, v).computed
     metrics = {
-        name: _governing(name, computed, v.cases, count)
+        name: _governing(name, computed, v, subject, count)
         for name in subject.quantities
         if wanted is None or name in wanted
     }
@@ -110,14 +111,7 @@ def limits_of(subject: Subject) -> tuple[Limit, ...]:
     return tuple(limit for limit in every if limit.origin != "advice")
 
 
-def _governing(name: str, computed: Computed, cases: tuple[str, ...], count: int) -> Array:
-    """The worst of a metric over places and load cases; infinity, unlimited, is no value."""
-    pick = np.fmin if SENSES.get(name, "max") == "min" else np.fmax
-    worst, unknown = np.full(count, np.nan), np.zeros(count, dtype=bool)
-    for place, array in computed.metrics.get(name, {}).items():
-        for _, value in by_case(computed, name, array, cases, place):
-            one = np.broadcast_to(value, (count,))
-            unknown |= np.isnan(one)
-            worst = pick(worst, np.where(np.isfinite(one), one, np.nan))
-    worst[unknown] = np.nan
-    return worst
+def _governing(name: str, computed: Computed, v: Values, subject: Subject, count: int) -> Array:
+    """The governing value of every design (count,); infinity, unlimited, is no value."""
+    found = governing(name, computed, v, subject)
+    return np.broadcast_to(np.where(np.isfinite(found), found, np.nan), (count,))

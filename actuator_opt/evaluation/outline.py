@@ -112,11 +112,24 @@ def _stations(g: Geometry) -> _Stations:
 
 
 def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
-    radius = at.bore
+    radius, held = at.bore, design.retention
+    thread = held.thread if held is not None and held.type == "thread" else None
+    stated = thread is not None and thread.diameter is not None
     for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
         outer = radius + float(thickness)
-        yield f"layup[{i}]", ply.material, [_rectangle(at.start, at.end, radius, outer)]
+        shape = _rectangle(at.start, at.end, radius, outer)
+        if stated and i == len(g.thicknesses) - 1 and float(g.skirt_radius) < outer:
+            shape = _turned_down(shape, float(g.skirt_radius), float(g.skirt_length))
+        yield f"layup[{i}]", ply.material, [shape]
         radius = outer
+
+
+def _turned_down(shape: _Polygon, radius: float, length: float) -> _Polygon:
+    """A ring whose outside is smaller at both ends, for the thread."""
+    (x0, r0), _, (x1, r1), _ = shape
+    left, right = x0 + length, x1 - length
+    ends = ((x1, radius), (right, radius), (right, r1), (left, r1), (left, radius), (x0, radius))
+    return ((x0, r0), (x1, r0), *ends)
 
 
 def _caps(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
@@ -125,7 +138,7 @@ def _caps(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         _rectangle(at.face, at.start, 0.0, radius),
         _rectangle(at.end, at.end + plate, at.hole, radius),
     ]
-    length, inner = float(g.skirt_length), float(g.outer_radius)
+    length, inner = float(g.skirt_length), float(g.skirt_radius)
     outer = inner + float(g.skirt_wall)
     if length > 0:
         polygons += [

@@ -12,7 +12,7 @@ import importlib.util
 import re
 import sys
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -20,12 +20,15 @@ from typing import Literal
 import numpy as np
 
 from ..errors import Diagnostic, InputError
-from ..numeric import Array, maximum
+from ..numeric import Array, maximum, minimum
 from ..quantities import METRICS, Quantity
+from ..suggest import shown
 from ..units import BASE, UnitError, unit
 from .values import Values
 
 _MARK = "_actuator_opt_plugin"
+_LONGEST = 300
+"""Letters of an exception that a line repeats."""
 
 
 class View:
@@ -49,13 +52,15 @@ class View:
         return self._one(self._values[path])
 
     def metric(self, name: str) -> Array:
-        """A computed metric; of several places the largest."""
+        """A computed metric; of several places the worst."""
         if name not in self._metrics:
             raise KeyError(f"no metric {name}")
         places = list(self._metrics[name].values())
+        known = METRICS.get(name)
+        pick = minimum if known is not None and known.worst == "min" else maximum
         worst = places[0]
         for place in places[1:]:
-            worst = maximum(worst, place)
+            worst = pick(worst, place)
         return self._one(worst)
 
     def _one(self, value: Array) -> Array:
@@ -105,7 +110,7 @@ class Plugin:
                 if not lenient and np.isnan(answer.value).all():
                     raise
                 return answer
-        return Answer(_checked(self, found, values, count))
+            return Answer(_checked(self, found, values, count))
 
     def _asked(
         self,
@@ -115,7 +120,9 @@ class Plugin:
     ) -> object:
         try:
             return self.function(View(values, metrics, design))
-        except (Exception, SystemExit) as error:  # a stranger's code may raise anything
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # a stranger's code may raise anything
             raise _fault(self, error) from error
 
     def _one_by_one(
@@ -164,7 +171,11 @@ def _line(error: BaseException, file: str) -> tuple[str, int | None]:
 def _said(error: BaseException) -> str:
     """An exception in one line."""
     detail = error.args[0] if isinstance(error, KeyError) and error.args else error
-    return " ".join(f"{type(error).__name__}: {detail}".split()).removesuffix(":")
+    try:
+        words = str(detail)
+    except Exception:  # its own text raises
+        words = ""
+    return shown(" ".join(f"{type(error).__name__}: {words}".split()).removesuffix(":"), _LONGEST)
 
 
 def _fault(plugin: Plugin, error: BaseException) -> PluginError:
@@ -187,7 +198,12 @@ def _complex(values: Values) -> bool:
 
 def _checked(plugin: Plugin, found: object, values: Values, designs: int) -> Array:
     """What a user's function returned, if it is a number for every design (and case)."""
-    array = np.asarray(found)
+    try:
+        array = np.asarray(found)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # rows of unequal length, or an object with ideas of its own
+        raise _fault(plugin, error) from error
     shape = np.broadcast_shapes((1,), array.shape) if array.ndim < 2 else array.shape
     plain = not _complex(values)
     message = ""
@@ -218,6 +234,9 @@ def metric(
     dimension : a dimension of `units.BASE` (``"length"``, ``"ratio"``, …)
     unit_name : display unit; default the SI unit
     label : what tables and reports call it
+
+    Of several load cases the largest value governs, unless a requirement or the objective says
+    otherwise.
     """
     if not isinstance(name, str):
         raise InputError('a metric needs its name: write @metric("my_metric") above the function')
@@ -233,7 +252,8 @@ def metric(
             unit(shown, dimension)
         except UnitError as error:
             raise InputError(f"metric {name}: {error}") from None
-    quantity = Quantity(name, name, dimension, shown, label or name.replace("_", " "))
+    shown_as = label or name.replace("_", " ")
+    quantity = Quantity(name, name, dimension, shown, shown_as, worst="max")
 
     def mark(function: Callable[[View], Array]) -> Callable[[View], Array]:
         setattr(function, _MARK, Plugin(name, quantity, function))
@@ -250,7 +270,8 @@ def constraint(
     def mark(function: Callable[[View], Array]) -> Callable[[View], Array]:
         metric(name, label=label)(function)
         found: Plugin = getattr(function, _MARK)
-        setattr(function, _MARK, Plugin(name, found.quantity, function, "min"))
+        quantity = replace(found.quantity, worst="min")
+        setattr(function, _MARK, Plugin(name, quantity, function, "min"))
         return function
 
     return mark
@@ -268,10 +289,26 @@ def collect(*functions: Callable[[View], Array]) -> tuple[Plugin, ...]:
     return tuple(found)
 
 
+def _marked(values: Iterable[object]) -> list[Plugin]:
+    """The plugins among the values of a module; a value that cannot be asked is none."""
+    found = []
+    for value in values:
+        with contextlib.suppress(Exception):
+            plugin = getattr(value, _MARK, None) if callable(value) else None
+            if type(plugin) is Plugin:
+                found.append(plugin)
+    return found
+
+
 def load(path: str | Path) -> tuple[Plugin, ...]:
     """The plugins of a Python file."""
     path = Path(path)
-    if not path.is_file():
+    try:
+        known = path.is_file()
+    except OSError as error:
+        reason = f"cannot be read: {error.strerror or type(error).__name__}"
+        raise InputError(Diagnostic(reason, "give the path of a Python file", str(path))) from None
+    if not known:
         raise InputError(Diagnostic("no such file", "give the path of a Python file", str(path)))
     spec = importlib.util.spec_from_file_location(f"_plugin_{path.stem}", path)
     if spec is None or spec.loader is None:
@@ -281,6 +318,9 @@ def load(path: str | Path) -> tuple[Plugin, ...]:
     try:
         with contextlib.redirect_stdout(sys.stderr):
             spec.loader.exec_module(module)
+            plugins = _marked(vars(module).values())
+    except KeyboardInterrupt:
+        raise
     except SyntaxError as error:
         place = (str(path), error.lineno, error.offset)
         raise InputError(Diagnostic(f"syntax error: {error.msg}", "", *place)) from None
@@ -289,11 +329,9 @@ def load(path: str | Path) -> tuple[Plugin, ...]:
         raise InputError(
             [replace(fault, file=str(path), line=line) for fault in error.diagnostics]
         ) from None
-    except (Exception, SystemExit) as error:  # a stranger's code may raise anything
+    except BaseException as error:  # a stranger's code may raise anything
         line = _line(error, str(path))[1]
         raise InputError(Diagnostic(_said(error), "mend the file", str(path), line)) from None
-    marked = [getattr(value, _MARK, None) for value in vars(module).values() if callable(value)]
-    plugins = [plugin for plugin in marked if isinstance(plugin, Plugin)]
     if not plugins:
         raise InputError(
             Diagnostic(

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
 
 from .. import quantities
 from ..design.model import Design
 from ..numeric import Array
 from ..tables import aligned
+from . import reserve
 from .study.dynamics import DynamicsStudy
 from .study.record import WallStudy
+
+State: TypeAlias = Literal["met", "no_reserve", "missed", "not_checked"]
+"""Of a limit: `no_reserve` is met, with nothing to spare."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,6 +23,7 @@ class Metric:
     """One computed quantity at its governing case (and place: a ply, a seal, a part).
 
     `value` is SI, or None with the reason in `why`; `by_case` holds every case's worst value.
+    `sense` says whether it is the smallest ("min") or the largest of several; None where all agree.
     """
 
     name: str
@@ -32,6 +37,7 @@ class Metric:
     in_range: bool = True
     definition: quantities.Quantity | None = None
     """The quantity of a user's own metric; None for the project's."""
+    sense: quantities.Sense | None = None
 
     @property
     def quantity(self) -> quantities.Quantity:
@@ -55,6 +61,13 @@ class Requirement:
     path: str = ""
     """PATH of the limit in the design (``requirements.stiffness_min.min``)."""
 
+    @property
+    def state(self) -> State:
+        """Whether it is met, and with reserve (`reserve.NO_RESERVE`)."""
+        if not self.met:
+            return "missed"
+        return "no_reserve" if reserve.without_reserve(self.margin, self.limit) else "met"
+
 
 @dataclass(frozen=True, slots=True)
 class Check:
@@ -72,6 +85,13 @@ class Check:
     place: str | None = None
     source: str = ""
     """Where the limit comes from (a standard, a paper, or a stated choice)."""
+
+    @property
+    def state(self) -> State:
+        """Its status, and whether it is met with reserve (`reserve.NO_RESERVE`)."""
+        if self.status != "met":
+            return self.status
+        return "no_reserve" if reserve.without_reserve(self.margin, self.limit) else "met"
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,11 +176,58 @@ class Evaluation:
     """Modes along the stroke, dynamic stiffness over frequency, and the position loop."""
     friction_parts: Mapping[str, float] = field(default_factory=dict)
     """Running friction of each seal (N) in the case that governs it; wipers and guides together."""
+    yield_estimate: reserve.YieldEstimate = reserve.UNKNOWN
+    """Share of the actuators built to the design that meet every requirement, where estimated."""
 
     @property
     def met(self) -> bool:
         """Whether every requirement is met."""
         return all(row.met for row in self.requirements)
+
+    @property
+    def tight(self) -> tuple[str, ...]:
+        """Names of the limits met without reserve: requirements, then checks."""
+        own = {(row.metric, row.sense, row.limit) for row in self.requirements}
+        names = [row.name for row in self.requirements if row.state == "no_reserve"]
+        names += [
+            check.name
+            for check in self.checks
+            if check.state == "no_reserve" and (check.metric, check.sense, check.limit) not in own
+        ]
+        return tuple(dict.fromkeys(names))
+
+    @property
+    def extrapolated(self) -> tuple[str, ...]:
+        """Metrics whose value rests on a model outside its valid range."""
+        return tuple(
+            m.name for m in self.metrics.values() if m.value is not None and not m.in_range
+        )
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Library values taken that nobody has verified; metrics and models out of range."""
+        return {
+            "unverified": len(self.unverified),
+            "extrapolated": len(self.extrapolated),
+            "extrapolated_models": sum(not model.in_range for model in self.models),
+        }
+
+    @property
+    def reserve_sentences(self) -> tuple[str, ...]:
+        """Limits without reserve and the yield; nothing where a requirement is missed."""
+        if not self.met or not self.requirements:
+            return ()
+        movable = bool(self.design.variables)
+        return reserve.sentences(self.tight, self.yield_estimate, movable=movable)
+
+    @property
+    def tally(self) -> str:
+        """How many requirements are met and, where all are, which check is missed all the same."""
+        total, met = len(self.requirements), sum(row.met for row in self.requirements)
+        missed = [check.name for check in self.checks if check.status == "missed"]
+        more = f" and {len(missed) - 1} more" if len(missed) > 1 else ""
+        but = f", but missed: {missed[0]}{more}" if missed and met == total else ""
+        return f"{met} of {total} requirements met{but}"
 
     def __str__(self) -> str:
         """Requirements and metrics as a table."""
@@ -174,7 +241,7 @@ class Evaluation:
                     f"{sign} {quantity.text(r.limit)}",
                     "-" if r.value is None else quantity.text(r.value),
                     "-" if r.margin is None else f"{100 * r.margin:+.1f} %",
-                    "met" if r.met else "missed",
+                    r.state.replace("_", " "),
                     r.case or "",
                 ]
             )
@@ -183,9 +250,8 @@ class Evaluation:
             shown = m.why or "" if m.value is None else m.quantity.text(m.value)
             values.append([m.name, shown, m.case or ""])
         missed = [f"check missed: {c.name}" for c in self.checks if c.status == "missed"]
-        return "\n".join(
-            [self.name, "", aligned(rows, right=(1, 2, 3)), "", aligned(values), *missed]
-        )
+        head = [self.name, self.tally, *self.reserve_sentences, ""]
+        return "\n".join([*head, aligned(rows, right=(1, 2, 3)), "", aligned(values), *missed])
 
     def to_dict(self) -> dict[str, Any]:
         """The `evaluate --json` object (SI)."""
@@ -209,6 +275,13 @@ class Evaluation:
             },
             "checks": [asdict(check) for check in self.checks],
             "requirements": [asdict(row) for row in self.requirements],
+            "reserve": {
+                "without": list(self.tight),
+                "below": reserve.NO_RESERVE,
+                "yield": self.yield_estimate.to_dict(),
+                "why": self.yield_estimate.why,
+            },
+            "counts": self.counts,
             "warnings": list(self.warnings),
             "unverified": [asdict(value) for value in self.unverified],
             "wall": None if self.wall is None else self.wall.to_dict(),

@@ -6,13 +6,13 @@ tension), and what the end stop puts through barrel and retention.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import pi, sqrt
 
 from ..design.model import Design
 from ..models import end_plate, retention, rod
 from ..numeric import Array, real, where
-from . import bonds, rod_strength
+from . import bonds, rod_strength, threads
 from .allow import Stock
 from .barrel import Wall, load_path
 from .beam import Beam
@@ -42,10 +42,15 @@ def compute(
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
     through = supply * load_path.largest_area(design, g)
-    _pressure_factors(v, wall, supply, out)
-    parts = {place: p / supply for place, p in wall.yield_pressure.items()}
+    cut = threads.judged(v, design, stock, g)
+    yields, bursts = wall.yield_pressure, wall.burst_pressure
+    if isinstance(cut, threads.Thread):
+        under = threads.barrel_pressures(stock, cut, wall.path.per_pressure)
+        yields, bursts = yields | under[0], bursts | under[1]
+    _pressure_factors(v, wall, supply, yields, bursts, out)
+    parts = {place: p / supply for place, p in yields.items()}
     parts |= rod_strength.yields(stock, design, g, state, section, beam)
-    parts |= _metal_ends(v, stock, design, g, section, through, push)
+    parts |= _metal_ends(v, stock, design, g, section, cut, through, push)
     out.put("yield_factor", parts)
     out.put("buckling_factor", beam.critical / push)
     rod_strength.compute(design, section, beam, supply, push, pull, out)
@@ -54,7 +59,7 @@ def compute(
         "caps": bonds.caps(stock, design, g, wall),
         "rod fittings": bonds.fittings(v, stock, design, section),
     }
-    _retention(v, stock, design, g, wall, laps["caps"], through, out)
+    _retention(v, stock, design, wall, laps["caps"], cut, through, out)
     _fittings(stock, laps["rod fittings"], push, out)
     bonds.thermal(v, stock, design, laps, out)
     _caps(stock, design, g, supply, out)
@@ -62,21 +67,31 @@ def compute(
     _guides(stock, design, g, state, out)
 
 
-def _pressure_factors(v: Values, wall: Wall, supply: Array, out: Computed) -> None:
-    """What the barrel bears over working and proof pressure."""
+def _pressure_factors(
+    v: Values,
+    wall: Wall,
+    supply: Array,
+    yields: Mapping[str, Array],
+    bursts: Mapping[str, Array],
+    out: Computed,
+) -> None:
+    """What the barrel bears over working and proof pressure, its thread included.
+
+    `yields` and `bursts` are pressures by place.
+    """
     proof = v["supply.proof_ratio"] * supply
-    yields = {place: p / supply for place, p in wall.yield_pressure.items()}
+    liner = {place: p / supply for place, p in wall.yield_pressure.items()}
     why = wall.missing[0] if wall.missing else "the wall has no metal layer"
     for name, factors in (
-        ("liner_yield_factor", yields),
-        ("burst_factor", {place: p / supply for place, p in wall.burst_pressure.items()}),
+        ("liner_yield_factor", liner),
+        ("burst_factor", {place: p / supply for place, p in bursts.items()}),
         ("first_ply_factor", {place: p / supply for place, p in wall.first_ply_pressure.items()}),
     ):
         if factors:
             out.put(name, factors)
         else:
             out.skip(name, "the wall has no plies" if name == "first_ply_factor" else why)
-    both = wall.yield_pressure | wall.first_ply_pressure
+    both = {**yields, **wall.first_ply_pressure}
     if both:
         out.put("proof_factor", {place: p / proof for place, p in both.items()})
     else:
@@ -89,13 +104,16 @@ def _metal_ends(
     design: Design,
     g: Geometry,
     section: Rod,
+    cut: threads.Thread | str,
     through: Array,
     push: Array,
 ) -> dict[str, Array]:
     """Yield over working stress of what hangs on the ends: the caps' skirts, rod fittings."""
     factors = {}
     strength = stock.allowable(design.caps.material, "yield_strength")
-    if strength is not None and design.retention is not None and not load_path.tied(design):
+    if isinstance(cut, threads.Thread):
+        factors["skirt under the thread"] = strength * cut.skirt_section / through
+    elif strength is not None and design.retention is not None and not load_path.tied(design):
         factors["cap skirt"] = strength * (2 * pi * g.outer_radius * g.skirt_wall) / through
     strength = stock.allowable(section.end_material, "yield_strength")
     if strength is not None and design.rod.fitting is not None:
@@ -125,15 +143,15 @@ def _retention(
     v: Values,
     stock: Stock,
     design: Design,
-    g: Geometry,
     wall: Wall,
     lap: bonds.Lap | str,
+    cut: threads.Thread | str,
     load: Array,
     out: Computed,
 ) -> None:
     """What holds caps and head: elastic limit and breaking load over the largest axial force."""
     held = design.retention
-    found: tuple[dict[str, Array], Array] | str
+    found: tuple[dict[str, Array], Array | dict[str, Array]] | str
     if held is None:
         found = "no retention stated: add retention"
     elif held.type == "bond":
@@ -142,8 +160,14 @@ def _retention(
             if isinstance(lap, str)
             else (bonds.edge_factors(stock, lap, load), bonds.mean_factor(stock, lap, load))
         )
+    elif held.type == "thread":
+        found = (
+            cut
+            if isinstance(cut, str)
+            else (threads.factors(stock, cut, load), threads.burst_factors(stock, cut, load))
+        )
     else:
-        found = _screwed(v, stock, design, g, wall, load)
+        found = _tied(v, stock, design, wall)
     if isinstance(found, str):
         out.skip("retention_factor", found)
         out.skip("retention_burst_factor", found)
@@ -164,31 +188,24 @@ def _fittings(stock: Stock, lap: bonds.Lap | str, push: Array, out: Computed) ->
         out.put("fitting_factor", bonds.edge_factors(stock, lap, push))
 
 
-def _screwed(
-    v: Values, stock: Stock, design: Design, g: Geometry, wall: Wall, load: Array
+def _tied(
+    v: Values, stock: Stock, design: Design, wall: Wall
 ) -> tuple[dict[str, Array], Array] | str:
-    """Yield and ultimate strength of the retaining thread or the tie rods; or why not."""
+    """Yield and ultimate strength of the tie rods over their stress; or why not."""
     held = design.retention
-    tied = load_path.tied(design)
-    name = held.material if held is not None and tied else design.caps.material
+    name = None if held is None else held.material
     strength = None if name is None else stock.allowable(name, "yield_strength")
     ultimate = None if name is None else stock.allowable(name, "ultimate_strength")
     if held is None or held.thread is None or strength is None or ultimate is None:
-        return "retention needs a thread and a material with yield and ultimate strength"
-    pitch = v["retention.thread.pitch"]
-    if tied:
-        assert wall.path.tie_rods is not None
-        stress = retention.tie_rod_stress(
-            force=wall.path.tie_rods.largest,
-            count=v["retention.count"],
-            diameter=v["retention.thread.diameter"],
-            pitch=pitch,
-        )
-        return {"tie rods": strength / stress}, ultimate / stress
-    stress = sqrt(3) * rod.thread_shear_stress(
-        force=load, diameter=2 * g.outer_radius, pitch=pitch, engagement=g.skirt_length
+        return "tie rods need a thread and a material with yield and ultimate strength"
+    assert wall.path.tie_rods is not None
+    stress = retention.tie_rod_stress(
+        force=wall.path.tie_rods.largest,
+        count=v["retention.count"],
+        diameter=v["retention.thread.diameter"],
+        pitch=v["retention.thread.pitch"],
     )
-    return {"thread": strength / stress}, ultimate / stress
+    return {"tie rods": strength / stress}, ultimate / stress
 
 
 def _caps(stock: Stock, design: Design, g: Geometry, supply: Array, out: Computed) -> None:
@@ -204,7 +221,7 @@ def _caps(stock: Stock, design: Design, g: Geometry, supply: Array, out: Compute
     if strength is None or ratio is None:
         out.skip("cap_factor", f"{name} states no yield strength or Poisson's ratio")
         return
-    support = (g.plate_radius + g.outer_radius) / 2
+    support = (g.plate_radius + g.skirt_radius) / 2
     stresses: dict[str, Array] = {}
     if design.cylinder.end_stop == "internal" or load_path.tied(design) or design.clevis is None:
         stresses["cap, hung on its skirt"] = end_plate.hung_plate_stress(

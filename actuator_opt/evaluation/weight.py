@@ -21,7 +21,11 @@ def _barrel(v: Values, design: Design, g: Geometry) -> Array:
         area = mass.layer_area(inner_radius=radius, thickness=thickness)
         total = total + v[f"materials.{ply.material}.density"] * area
         radius = radius + thickness
-    return total * g.barrel_length
+    if g.skirt_radius is g.outer_radius:
+        return total * g.barrel_length
+    outermost = v[f"materials.{design.barrel.layup[-1].material}.density"]
+    turned = mass.layer_area(inner_radius=g.skirt_radius, thickness=g.outer_radius - g.skirt_radius)
+    return total * g.barrel_length - outermost * turned * (2 * g.skirt_length)
 
 
 def _piston(v: Values, design: Design, g: Geometry) -> Array:
@@ -43,7 +47,7 @@ def _plate(density: Array, g: Geometry, hole: Array) -> Array:
     plate = mass.tube_mass(
         density=density, inner_diameter=hole, outer_diameter=2 * g.plate_radius, length=g.plate
     )
-    skirt = mass.layer_area(inner_radius=g.outer_radius, thickness=g.skirt_wall)
+    skirt = mass.layer_area(inner_radius=g.skirt_radius, thickness=g.skirt_wall)
     return plate + density * skirt * g.skirt_length
 
 

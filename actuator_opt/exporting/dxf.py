@@ -170,6 +170,7 @@ def _words(
     ]
     if any(one.part == "tie rods" for one in outlines):
         lines.append("Tie rods pass the plates; their holes are not drawn.")
+    lines += _thread(evaluation)
     x, y = corner
     for index, words in enumerate(lines):
         if words:
@@ -177,6 +178,16 @@ def _words(
             attributes = {"layer": "text", "height": paper.letter, "style": "Standard"}
             place = (x, y - index * 1.7 * paper.letter)
             space.add_text(text, dxfattribs=attributes).set_placement(place)
+
+
+def _thread(evaluation: Evaluation) -> list[str]:
+    """Size of the thread between barrel and caps, which is not drawn."""
+    held = evaluation.design.retention
+    if held is None or held.type != "thread" or held.thread is None:
+        return []
+    size = held.thread.diameter or evaluation.lengths["barrel_outer_diameter"]
+    sizes = f"M{1e3 * size:.5g} x {1e3 * held.thread.pitch:g}, {1e3 * held.length:.4g} long"
+    return [f"Thread of barrel and caps: {sizes}."]
 
 
 @contextmanager

@@ -18,6 +18,7 @@ from typing import Any
 
 from .. import quantities, units
 from ..design.paths import get, quantity_of
+from ..evaluation.reserve import NO_RESERVE, NO_ROOM
 from ..evaluation.result import Check, Evaluation, Requirement
 from ..extras import library
 from ..quantities import Quantity
@@ -25,6 +26,8 @@ from .words import plain
 
 TOLERANCE = "0.000001"
 """Miss of a margin that still counts as met, in formulas (CONTRACT)."""
+_TIGHT = "yes, no reserve"
+"""Verdict of a limit that is met without reserve (`reserve.NO_RESERVE`)."""
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 """The first moment a zip archive can name: same input, same bytes."""
@@ -169,7 +172,7 @@ def _limit_row(sheet: _Sheet, at: int, evaluation: Evaluation, row: Requirement 
     unjudged = isinstance(row, Check) and row.status == "not_checked"
     none = "unlimited" if met else "not checked" if unjudged else "none"
     sheet.put(f"F{at}", none if value is None or unjudged else value)
-    sign = f'IF(C{at}="min",1,-1)'
+    sign, room = f'IF(C{at}="min",1,-1)', f"IF(E{at}=0,{NO_ROOM:f},{NO_RESERVE:f})"
     sheet.formula(
         f"G{at}",
         f'IF(ISNUMBER(F{at}),IF(E{at}=0,{sign}*F{at}*I{at},{sign}*(F{at}-E{at})/ABS(E{at})),"")',
@@ -177,8 +180,8 @@ def _limit_row(sheet: _Sheet, at: int, evaluation: Evaluation, row: Requirement 
     )
     sheet.formula(
         f"H{at}",
-        f'IF(ISNUMBER(G{at}),IF(G{at}>=-{TOLERANCE},"yes","no"),IF(F{at}="unlimited","yes",'
-        f'IF(F{at}="not checked","-","no")))',
+        f'IF(ISNUMBER(G{at}),IF(G{at}<-{TOLERANCE},"no",IF(G{at}<{room},"{_TIGHT}","yes")),'
+        f'IF(F{at}="unlimited","yes",IF(F{at}="not checked","-","no")))',
     )
     sheet.put(f"I{at}", scale.factor).number_format = "General"
     sheet.put(f"J{at}", _case(row))
@@ -198,11 +201,14 @@ def _limits(
     sheet.head(_FIRST - 1, (one, *_LIMITS))
     if not rows:
         return
-    sheet.formula("B2", f'IF(COUNTIF(H{_FIRST}:H{last},"no")=0,"yes","no")', bold=True)
+    cells = f"H{_FIRST}:H{last}"
+    tight = f'IF(COUNTIF({cells},"{_TIGHT}")=0,"yes","{_TIGHT}")'
+    sheet.formula("B2", f'IF(COUNTIF({cells},"no")=0,{tight},"no")', bold=True)
     for at, row in enumerate(rows, _FIRST):
         _limit_row(sheet, at, evaluation, row)
     for cells in (f"H{_FIRST}:H{last}", "B2"):
         sheet.colour(cells, "yes", "CDE8D0")
+        sheet.colour(cells, _TIGHT, "F6E3B4")
         sheet.colour(cells, "no", "F5C9C2")
 
 

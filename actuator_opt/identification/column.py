@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import units
 from ..errors import Diagnostic, InputError
 from ..numeric import Array
 from ..suggest import remedy as remedy_for
 from ..suggest import shown
+from ..units import UnitError
+from .column_units import NONE, ColumnUnits
 from .csv_table import numbers, read_sheet
-from .record import CHANNELS, column_of, converted, header_cells
+from .record import CHANNELS, column_of, contradicted, converted, header_cells
 
 FEWEST = 2
 """Samples of a course."""
 
 
-def parse_column(text: str, header: str, dimension: str, *, name: str) -> tuple[Array, Array]:
+def parse_column(
+    text: str, header: str, dimension: str, *, name: str, units: ColumnUnits = NONE
+) -> tuple[Array, Array]:
     """Time [s] and values [SI] of a column, named by its header with or without its unit.
 
     Missing samples are NaN.
@@ -27,11 +30,13 @@ def parse_column(text: str, header: str, dimension: str, *, name: str) -> tuple[
     header : of the column; ``"U [V]"`` states the unit of a column ``U`` without one
     dimension : of the quantity, "voltage"
     name : of the file, for messages
+    units : of columns whose header states none
 
     Raises
     ------
     InputError
-        no such column, no time, a unit of another dimension, times that do not rise, no samples
+        no such column, no time, no unit or one of another dimension, a unit that `units` and the
+        header state differently, times that do not rise, no samples
     """
     sheet = read_sheet(text, name)
     cells = header_cells(sheet)
@@ -55,12 +60,20 @@ def parse_column(text: str, header: str, dimension: str, *, name: str) -> tuple[
     clock = next((k for k, (one, _) in enumerate(cells) if one.strip().lower() in _TIMES), None)
     if clock is None:
         raise fault("no column t", 'add one with its unit, "t [s]"')
+    moment, title = cells[clock], cells[place][0]
+    unit = unit or units.of(title, dimension)
+    if not unit:
+        raise fault(f'column "{shown(header)}" states no unit', 'name it with one, e.g. "U [V]"')
     try:
         columns = [
-            converted(cells[clock][1] or CHANNELS["t"].unit, "time", clock),
+            converted(moment[1] or units.of(moment[0], "time") or "s", "time", clock),
             converted(unit, dimension, place),
         ]
-    except units.UnitError as error:
+        for column, named in zip(columns, (moment[0], title), strict=True):
+            if other := contradicted(column, named, units):
+                message = f'column "{shown(named)}" is in {column.unit.name}, not {other}'
+                raise InputError(Diagnostic(message, "correct one of them", file=units.name))
+    except UnitError as error:
         message = f'column "{shown(header)}": {shown(error.message, 120)}'
         raise fault(message, shown(error.remedy, 120)) from None
     table, lines = numbers(sheet, [clock, place])

@@ -14,19 +14,24 @@ from .balance import Sliding, check_signs, slide, velocity_noise
 from .bootstrap import resampled
 from .coefficient import coefficient
 from .conditioning import Motion, condition
+from .lag import CANNOT, lag_of, taken_off, undone, unparted
 from .lugre_fit import LuGreFit, fit_lugre, settling_distance
-from .lugre_windows import LAG
-from .points import BLURRED, LASTING, SETTLED, Point, independent, steady_points
+from .lugre_problem import BENDS
+from .points import (
+    BLURRED,
+    LASTING,
+    SETTLED,
+    SETTLING,
+    Point,
+    independent,
+    settled,
+    steady_points,
+)
 from .record import Record
 from .result import Identification, Mean, Settings
 from .spectrum import spectrum
 from .stribeck_fit import StribeckFit, different, fit_stribeck
 
-LEAST_LAG = 3e-4
-"""Least lag that is worth taking off [s]."""
-EARLIEST = 6e-3
-"""Time by which pressures may come before the position [s] (a choice: filters of a position sensor
-are late too, but bristles may look so)."""
 LAWS = {"power_law": fit_power_law, "double_exponential": fit_double_exponential}
 """Laws of the secant damping over speed."""
 LEAST_SPEEDS = 3
@@ -65,30 +70,32 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
     _channels(record, bench, own)
     mass = _mass(record, bench, own)
     lag, known = own.pressure_lag or 0.0, own.pressure_lag is not None
-    notes: list[str] = []
     motion, slidings = _read(record, bench, own, mass, lag, None)
     _moving(record, motion, slidings, bench, mass)
     area = float(bench.areas(np.float64(0.0))[0])
     points, stribeck, lugre = _models(slidings, motion, area, known)
-    if isinstance(lugre, LuGreFit) and not known and _unsure(lugre):
-        known = True
-        notes.append("the reversals show no lag of the pressures; none is taken off")
-        lugre = fit_lugre(slidings, motion, points, stribeck, lag_known=known)
-    late = None if known else _late(lugre)
-    settling = settling_distance(lugre)
-    if late is not None:
-        lag = late
-        motion, slidings = _read(record, bench, own, mass, lag, motion)
-        notes.append(f"pressures come {1e3 * lag:.2f} ms late, by the reversals; taken off")
-    if late is not None or settling > SETTLED:
-        points, stribeck, lugre = _models(slidings, motion, area, known, settling)
+    settling, seen = settling_distance(lugre), None if known else lag_of(lugre)
+    late, note = taken_off(seen)
+    if late and seen is not None:
+        as_read = motion, slidings
+        motion, slidings = _read(record, bench, own, mass, late, motion)
+        points, stribeck, lugre = _models(slidings, motion, area, False, settling)
+        if why := undone(seen, lag_of(lugre)):
+            late, note, (motion, slidings) = 0.0, why, as_read
+    unknown = bool(note) and not late and note != CANNOT
+    if unknown or (not late and settling > SETTLED):
+        points, stribeck, lugre = _models(slidings, motion, area, known or unknown, settling)
+    if unknown:
+        lugre = unparted(lugre)
+    lag = late or lag
+    notes = [note] if note else []
     if own.bootstrap:
         count, seed = own.bootstrap, own.seed
         fits = resampled(
             slidings, motion, points, stribeck, lugre, count=count, seed=seed, settling=settling
         )
         stribeck, lugre = fits
-    mean, largest = _sizes(slidings, motion)
+    mean, largest, slides = _sizes(slidings, motion, settling)
     return Identification(
         record=record,
         bench=bench,
@@ -97,9 +104,11 @@ def identify(record: Record, bench: Bench, settings: Settings | None = None) -> 
         slidings=tuple(slidings),
         mass=mass,
         pressure_lag=lag,
+        lag_seen=seen,
         spectrum=spectrum(record, motion),
         mean=mean,
         largest=largest,
+        slides=slides,
         area=area,
         points=points,
         coefficient=coefficient(slidings, motion, bench),
@@ -217,25 +226,6 @@ def _models(
     return points, stribeck, lugre
 
 
-def _unsure(lugre: LuGreFit) -> bool:
-    """Whether the lag ran out of the usual range: something else is fitted by it."""
-    if "lag" not in lugre.parameters:
-        return False
-    lag = lugre.parameters["lag"].value
-    return lag > 0.99 * LAG or lag < -EARLIEST
-
-
-def _late(lugre: LuGreFit | str) -> float | None:
-    """The lag left in a record, where it shows."""
-    if isinstance(lugre, str):
-        return None
-    found = lugre.parameters.get("lag")
-    if found is None:
-        return None
-    sure = found.lower > 0 or found.upper < 0
-    return found.value if sure and abs(found.value) > LEAST_LAG else None
-
-
 def _channels(record: Record, bench: Bench, settings: Settings) -> None:
     """Refuse a record that lacks what the balance asks, or says it twice."""
     bent = ", or --span for a bending test" if "w" in record else ""
@@ -290,20 +280,28 @@ def _read(
     return motion, slide(motion, bench, mass=mass, load_force=settings.load_force)
 
 
-def _sizes(slidings: Sequence[Sliding], motion: Motion) -> tuple[Mean, float]:
-    """Mean of |F_r| while the rod moves, by means of batches, and its largest value.
+def _sizes(
+    slidings: Sequence[Sliding], motion: Motion, settling: float
+) -> tuple[Mean, float, bool]:
+    """Mean of |F_r| in sliding, by means of batches, its largest value, and whether the rod slides.
 
-    Of a record without sliding, throughout.
+    Until the rod has moved `BENDS` breakaway travels after a reversal or rest it is pre-sliding,
+    which counts for the largest value alone. Of a record without sliding the mean is that of the
+    moving rod.
     """
-    sliding = any(one.moving.any() for one in slidings)
-    friction = np.concatenate(
-        [np.abs(one.friction[one.moving if sliding else one.piece.sound]) for one in slidings]
-    )
+    bent = BENDS / SETTLING * settling
+    moving = any(one.moving.any() for one in slidings)
+    whole = [one.moving if moving else one.piece.sound for one in slidings]
+    every = [np.abs(one.friction[at]) for one, at in zip(slidings, whole, strict=True)]
+    parts = [np.abs(one.friction[settled(one, bent)]) for one in slidings]
+    slides = any(one.size for one in parts)
+    friction = np.concatenate(parts if slides else every)
     batches = int(np.clip(independent(friction.size, motion) / 5, 2, 20))
     means = np.array([np.mean(one) for one in np.array_split(friction, batches)])
     half = quantile(batches - 1) * float(np.std(means, ddof=1)) / float(np.sqrt(batches))
     middle = float(np.mean(friction))
-    return Mean(middle, middle - half, middle + half), float(np.max(friction))
+    largest = float(np.max(np.concatenate(every)))
+    return Mean(middle, middle - half, middle + half), largest, slides
 
 
 def _fits(points: Sequence[Point]) -> dict[str, Fit | str]:

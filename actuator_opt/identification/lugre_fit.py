@@ -18,7 +18,7 @@ from .doubtful import PARTED, agreed, opened, widened
 from .lugre_problem import LOGARITHMIC, SYMBOLS, TRAVELS, USUAL, LuGreFit, Problem
 from .lugre_windows import Windows, no_windows, windows
 from .points import SETTLED, SETTLING, Point
-from .stribeck_fit import EXPONENT, StribeckFit
+from .stribeck_fit import EXPONENT, OTHER, StribeckFit, held_error
 
 __all__ = [
     "LOGARITHMIC",
@@ -105,11 +105,14 @@ def _level(found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
     fit = Problem(found, (), None, lag_known, lag_seen).solve()
     slid = fit.misfit + found.largest > SLID * fit.values["coulomb"]
     if slid:
-        falling = Problem(found, (), None, lag_known, lag_seen, falling=True).solve()
+        falling = _falling(found, lag_known, lag_seen, EXPONENT)
         count = 2 * float(found.judged.sum())
         better = count * np.log(fit.misfit / falling.misfit)
         more = 2 * (len(falling.parameters) - len(fit.parameters))
-        fit = falling if better > more + SURER else fit
+        if better > more + SURER:
+            free = _falling(found, lag_known, lag_seen)
+            known = free.parameters["exponent"].identifiable
+            fit = free if known else _any_exponent(falling, found, lag_known, lag_seen)
     fastest = 1e3 * found.fastest
     if "static" in fit.parameters:
         if found.fastest < FAR * fit.values["stribeck_speed"]:
@@ -127,6 +130,30 @@ def _level(found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
         doubt = "the rod hardly slides: bristles alone are seen, no level of friction"
         fit = replace(fit, parameters=opened(fit.parameters, ("coulomb",)))
     return replace(fit, doubts=(*fit.doubts, doubt))
+
+
+def _falling(
+    found: Windows, lag_known: bool, lag_seen: bool, exponent: float | None = None
+) -> LuGreFit:
+    """The model of windows alone with a level that falls, its exponent held where one is given."""
+    held = None if exponent is None else {"exponent": exponent}
+    return Problem(found, (), None, lag_known, lag_seen, falling=True, held=held).solve()
+
+
+def _any_exponent(fit: LuGreFit, found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
+    """A level that falls, with bounds that allow for another exponent than the one held.
+
+    Each parameter is as uncertain as in the less certain fit, and by the difference of both.
+    """
+    other = _falling(found, lag_known, lag_seen, OTHER)
+    more = held_error(fit.parameters, other.values)
+    for name, extra in more.items():
+        apart = [one.parameters[name].standard_error ** 2 for one in (fit, other)]
+        if np.isfinite(apart).all():
+            more[name] = float(np.sqrt(extra**2 + max(apart[1] - apart[0], 0.0)))
+    doubt = f"the exponent is held at {EXPONENT:g}, bounds allow for {OTHER:g}"
+    parameters = widened(fit.parameters, more, NORMAL)
+    return replace(fit, parameters=parameters, doubts=(*fit.doubts, doubt))
 
 
 def _as_the_points(fit: LuGreFit, stribeck: StribeckFit, points: Sequence[Point]) -> LuGreFit:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..least_squares import Parameter, known
+from ..least_squares import Parameter, known, quantile
 from ..numeric import Array
 from .doubtful import PARTED, agreed, hidden, opened, widened
 from .lugre_windows import LAG, Windows
@@ -107,8 +107,9 @@ class Problem:
             self.held = {"viscous": 0.0, "exponent": EXPONENT, "pressure_slope": 0.0}
             self.held["stribeck_speed"] = SPEEDS[0]
             if falling:
-                del self.held["stribeck_speed"]
+                del self.held["stribeck_speed"], self.held["exponent"]
                 self.begin |= {
+                    "exponent": EXPONENT,
                     "coulomb": self.largest / 2,
                     "static": self.largest,
                     "stribeck_speed": float(np.sqrt(SPEEDS[0] * SPEEDS[1])),
@@ -285,7 +286,7 @@ class Problem:
             inverse[:, split:].reshape(-1, lanes, count),
             residuals[split:].reshape(lanes, count),
         )
-        used = int(np.sum(np.any(self.windows.judged > 0, axis=-1)))
+        used = self.used
         if used <= TOLD:
             return np.zeros(self.sizes.size)
         variance = np.sum(parts**2, axis=0) * used / (used - TOLD)
@@ -344,15 +345,12 @@ class Problem:
         shift = self.windows.grain * BENDS / self.travel(x) * own["bristle_stiffness"]
         more[place] = np.hypot(more[place], shift)
         if "lag" in own:
-            short = self.windows.short(self.windows.grain).misfit(self.values(x[None]))
             place = list(own).index("lag")
-            short_error = self.moved(x, chain, short)["lag"]
-            whole = LATE * np.hypot(np.hypot(own_error[place], more[place]), short_error)
-            whole = np.hypot(whole, self.windows.sample_time / np.sqrt(12))
             known_error = own_error[place] if np.isfinite(own_error[place]) else 0.0
-            more[place] = (
-                np.sqrt(max(whole**2 - known_error**2, 0.0)) if np.isfinite(whole) else 0.0
-            )
+            few = quantile(self.used - 1) / told.quantile
+            scatter = few * float(np.hypot(own_error[place], more[place]))
+            whole = self._lag_error(x, chain, scatter)
+            more[place] = np.sqrt(max(whole**2 - known_error**2, 0.0))
         parameters = widened(
             told.parameters, dict(zip(own, more.tolist(), strict=True)), told.quantile
         )
@@ -360,6 +358,35 @@ class Problem:
             late = self.windows.misfit(self.values(x[None]) | {"lag": np.full(1, USUAL)})
             parameters = widened(parameters, self.moved(x, chain, late), told.quantile)
         return parameters
+
+    @property
+    def used(self) -> int:
+        """Windows that are judged."""
+        return int(np.sum(np.any(self.windows.judged > 0, axis=-1)))
+
+    def _lag_error(self, x: Array, chain: Array, scatter: float) -> float:
+        """Standard error of the lag: scatter, position, velocity and sampling [s].
+
+        Steps of the position sensor shift all turns alike, its white noise each turn on its own. A
+        velocity of a lower cut-off than the pressures' begins early, which looks like a lag: by how
+        much, the velocity of the record's own cut-off shows.
+        """
+        values, windows = self.values(x[None]), self.windows
+        distance = float(np.hypot(windows.grain, windows.noise / np.sqrt(max(self.used, 1))))
+        short = self.moved(x, chain, windows.short(distance).misfit(values))["lag"]
+        whole = LATE * float(np.hypot(scatter, short))
+        return float(np.hypot(np.hypot(whole, self._early(x)), windows.sample_time / np.sqrt(12)))
+
+    def _early(self, x: Array) -> float:
+        """Difference of the lag by the velocity of the record's own cut-off [s]."""
+        windows = self.windows
+        if np.array_equal(windows.velocity, windows.options[0]):
+            return 0.0
+        self.windows = replace(windows, velocity=windows.options[0])
+        place = self.names.index("lag")
+        apart = abs(float(self.descend(x)[place] - x[place]))
+        self.windows = windows
+        return apart
 
     def solve(self) -> LuGreFit:
         """Search, weigh the windows by their own scatter, search again, and bound."""

@@ -49,7 +49,8 @@ class Windows:
     the sample at which the rod turns or starts. `steady`
     (lanes, kept) is 0 where points of steady sliding say the same, else 1; `judged` is 0 also in
     windows that are left out, `quick` says that all should be; `grain` is the error of the
-    position by its steps that shifts all turns alike [m], `sample_time` that of the record [s].
+    position by its steps that shifts all turns alike [m], `noise` its error by white noise of the
+    sensor, another in every turn [m], `sample_time` that of the record [s].
     """
 
     velocity: Array
@@ -67,6 +68,7 @@ class Windows:
     judged: Array
     blur: float
     grain: float
+    noise: float
     sample_time: float
     quick: bool = False
 
@@ -225,6 +227,7 @@ def windows(
     slopes = np.abs(np.gradient(options[-1], step, axis=-1))
     sharpest = max(float(np.median(np.max(slopes, axis=-1))), 1e-12)
     resolution = motion.quality["x"].resolution
+    band = min(2 * motion.cutoff * motion.sample_time, 1.0)
     return Windows(
         velocity=options[0],
         options=options,
@@ -240,6 +243,7 @@ def windows(
         steady=steady,
         judged=steady,
         grain=_grain([one.piece["x"][at] for one, at in lanes], resolution),
+        noise=motion.quality["x"].noise * float(np.sqrt(band)),
         sample_time=motion.sample_time,
         blur=float(np.sqrt(2 * resolution / sharpest)),
     )

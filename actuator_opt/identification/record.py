@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -16,6 +16,7 @@ from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array
 from ..suggest import remedy as remedy_for
 from ..suggest import shown
+from .column_units import NONE, ColumnUnits
 from .csv_table import Sheet, numbers, read_sheet
 
 
@@ -123,6 +124,8 @@ def parse_record(
     name: str = "record",
     columns: Mapping[str, str] | None = None,
     channels: Mapping[str, Channel] = CHANNELS,
+    units: ColumnUnits = NONE,
+    needed: Collection[str] | None = None,
 ) -> Record:
     """A record from the text of a CSV file.
 
@@ -138,26 +141,28 @@ def parse_record(
     columns : header by channel, where it is none of the known names; ``"Channel 3 [bar]"`` states
         the unit of a column ``Channel 3`` without one
     channels : those that are looked for, ``t`` among them
+    units : of columns whose header states none
+    needed : channels whose missing unit is a fault, beside ``t`` and those of `columns`; others
+        are left out; default: all but ``v`` and ``T``
 
     Returns
     -------
-    the record; columns that are no channel are named in its notes
+    the record; columns that are no channel or have no unit are named in its notes
 
     Raises
     ------
     InputError
-        no header, an unknown or doubled column, a missing or wrong unit, a cell that is no number
+        no header, an unknown or doubled column, a missing or wrong unit, a unit that `units` and
+        the header state differently, a cell that is no number
     """
     sheet = read_sheet(text, name)
-    found = _columns(sheet, columns or {}, channels)
+    asked = set(channels) - set(_OPTIONAL) if needed is None else set(needed)
+    found, notes = _columns(sheet, columns or {}, channels, units, {"t", *asked, *(columns or {})})
     table, lines = numbers(sheet, [one.place for one in found.values()])
     if not lines.size:
         message = "no samples below the header"
         raise InputError(Diagnostic(message, "give one line per sample", file=name))
     values = {channel: one.values(table[:, k]) for k, (channel, one) in enumerate(found.items())}
-    used = {one.place for one in found.values()}
-    unused = [cell for k, cell in enumerate(sheet.header) if cell and k not in used]
-    notes = [f"columns that are no channel: {_list(unused)}"] if unused else []
     notes += [
         f"{channel}: absolute pressure, less the standard atmosphere of 1.01325 bar"
         for channel, one in found.items()
@@ -276,18 +281,69 @@ def column_of(sheet: Sheet, own: list[tuple[str, str]], header: str) -> tuple[in
 
 
 def _columns(
-    sheet: Sheet, stated: Mapping[str, str], channels: Mapping[str, Channel]
-) -> dict[str, Column]:
-    """Column and unit of every channel."""
+    sheet: Sheet,
+    stated: Mapping[str, str],
+    channels: Mapping[str, Channel],
+    given: ColumnUnits,
+    needed: Collection[str],
+) -> tuple[dict[str, Column], list[str]]:
+    """Column and unit of every channel; what was left out or read by `given`, as notes."""
     faults: list[Diagnostic] = []
 
-    def fault(message: str, remedy: str) -> None:
+    def fault(message: str, remedy: str, file: str = sheet.name) -> None:
         if not any(one.message == message for one in faults):
-            faults.append(Diagnostic(message, remedy, file=sheet.name, line=sheet.header_line))
+            line = sheet.header_line if file == sheet.name else None
+            faults.append(Diagnostic(message, remedy, file=file, line=line))
 
     own = header_cells(sheet)
-    names = [one[0] for one in own]
     places = _stated_places(sheet, own, stated, channels, fault)
+    before = own
+    own = [(name, unit or given.stated.get(name, "")) for name, unit in before]
+    _place_by_header(sheet, own, places, stated, channels, fault)
+    read: dict[str, Column] = {}
+    unitless: list[int] = []
+    for channel, i in places.items():
+        known, (name, unit) = channels[channel], own[i]
+        header, unit = shown(name), unit or given.of(name, known.dimension)
+        if not unit and channel not in needed:
+            unitless.append(i)
+        elif not unit:
+            fault(
+                f'column "{header}" states no unit',
+                f'write e.g. "{header} [{known.unit}]" into the header, --column '
+                f'"{channel}={header} [{known.unit}]", or --units SI for all',
+            )
+        else:
+            place = sheet.name if before[i][1] or given.si else given.name
+            try:
+                read[channel] = converted(unit, known.dimension, i)
+                other = contradicted(read[channel], name, given)
+            except units.UnitError as error:
+                message = f'column "{header}": {shown(error.message, 120)}'
+                fault(message, shown(error.remedy, 120), place)
+            else:
+                if other:
+                    message = f'column "{header}" is in {shown(unit)} by the header, not {other}'
+                    fault(message, "correct one of them", given.name)
+    if faults:
+        raise InputError(faults)
+    notes = _column_notes(sheet, set(places.values()), [own[i][0] for i in unitless])
+    by_units = [shown(own[i][0]) for i in places.values() if i not in unitless and not before[i][1]]
+    if by_units:
+        whose = "SI units" if given.si else f"units of {shown(Path(given.name).name)}"
+        notes.append(f"{whose}, the header states none: {_list(by_units)}")
+    return read, notes
+
+
+def _place_by_header(
+    sheet: Sheet,
+    own: list[tuple[str, str]],
+    places: dict[str, int],
+    stated: Mapping[str, str],
+    channels: Mapping[str, Channel],
+    fault: Callable[[str, str], None],
+) -> None:
+    """Add the channels that the header names to `places`; a channel named twice is a fault."""
     taken = set(places.values())
     doubled = set()
     for i, (header, unit) in enumerate(own):
@@ -306,30 +362,34 @@ def _columns(
         places.setdefault(found, i)
     if "t" not in places and "t" not in stated:
         fault(
-            f"no column t; columns are {_list(names)}",
+            f"no column t; columns are {_list([one[0] for one in own])}",
             'name it with --column "t=NAME [s]"'
-            if len(names) > 1
+            if len(own) > 1
             else 'separate columns by commas, semicolons or tabs, begin other lines with "#"',
         )
-    read = {}
-    for channel, i in places.items():
-        known, (header, unit) = channels[channel], own[i]
-        header = shown(header)
-        if not unit:
-            example = known.unit
-            fault(
-                f'column "{header}" states no unit',
-                f'write e.g. "{header} [{example}]" into the header, or '
-                f'--column "{channel}={header} [{example}]"',
-            )
-            continue
-        try:
-            read[channel] = converted(unit, known.dimension, i)
-        except units.UnitError as error:
-            fault(f'column "{header}": {shown(error.message, 120)}', shown(error.remedy, 120))
-    if faults:
-        raise InputError(faults)
-    return read
+
+
+def _column_notes(sheet: Sheet, used: set[int], unitless: Sequence[str]) -> list[str]:
+    """Which columns are no channel, and which were left out for lack of a unit."""
+    unused = [cell for k, cell in enumerate(sheet.header) if cell and k not in used]
+    notes = [f"columns that are no channel: {_list(unused)}"] if unused else []
+    if unitless:
+        notes.append(f"columns without a unit, left out: {_list(unitless)}")
+    return notes
+
+
+def contradicted(column: Column, name: str, given: ColumnUnits) -> str:
+    """The unit that `given` states for a column read in another one; empty where it agrees."""
+    stated = given.stated.get(name, "")
+    if not stated:
+        return ""
+    other = converted(stated, column.unit.dimension, column.place)
+    same = (column.unit.scale, column.unit.offset, column.absolute) == (
+        other.unit.scale,
+        other.unit.offset,
+        other.absolute,
+    )
+    return "" if same else shown(stated)
 
 
 def _stated_places(

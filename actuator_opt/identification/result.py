@@ -10,6 +10,7 @@ import numpy as np
 
 from ..evaluation.study.bench import Bench
 from ..fits import Fit
+from ..least_squares import Parameter
 from ..numeric import Array
 from ..version import VERSION
 from .balance import Sliding
@@ -66,8 +67,11 @@ class Identification:
     motion, slidings : conditioned record, and friction along it
     mass : taken as moving inside the force sensor [kg]
     pressure_lag : taken off the pressures [s]
+    lag_seen : lag of the pressures as found, before any was taken off [s]; None where none was
+        looked for; bounds are infinite where the record cannot show one
     spectrum : what the cut-off keeps and loses
-    mean, largest : of |F_r| while the rod moves [N]
+    mean, largest : of |F_r| in sliding, its pre-sliding stretches left out, and throughout [N]
+    slides : whether the rod slides at all; else the mean is that of the whole record
     points : of steady sliding
     coefficient, stribeck, lugre : or one line that says why there is none
     fits : of the secant damping over speed, by name; one line where there is none
@@ -81,9 +85,11 @@ class Identification:
     slidings: tuple[Sliding, ...]
     mass: float
     pressure_lag: float
+    lag_seen: Parameter | None
     spectrum: Spectrum
     mean: Mean
     largest: float
+    slides: bool
     area: float
     points: tuple[Point, ...]
     coefficient: Coefficient | str
@@ -138,6 +144,7 @@ class Identification:
             "version": VERSION,
             "friction": {
                 "mean": self.mean.value,
+                "slides": self.slides,
                 "lower": self.mean.lower,
                 "upper": self.mean.upper,
                 "max": self.largest,
@@ -154,6 +161,7 @@ class Identification:
             "mass": self.mass,
             "load_force": self.settings.load_force,
             "pressure_lag": self.pressure_lag,
+            "lag_seen": None if self.lag_seen is None else self.lag_seen.to_dict(),
             "bounds": {
                 "method": "bootstrap" if self.settings.bootstrap else "linearised",
                 "resamples": self.settings.bootstrap,

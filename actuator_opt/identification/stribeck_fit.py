@@ -23,8 +23,9 @@ EXPONENT = 2.0
 SHARED = 0.85
 """Least scatter of a sweep's points about the curve, over their errors: neighbours share noise by
 the filter, so they lie smoother than they are sure (a choice, by records of known friction)."""
-OTHER = 1.0
-"""Exponent that bounds allow for where the points cannot tell it (Tustin's exponential)."""
+OTHER = 0.5
+"""Exponent that bounds allow for where it is held: 0.5 to 1 by Bo and Pavelescu, 1 by Tustin, 2 by
+others [ArmstrongHelouvry1994]."""
 DIFFERENT = 0.05
 """Speeds further apart than this share are different (a choice: more than `points.STEADY`)."""
 SYMBOLS = {
@@ -193,13 +194,19 @@ def _doubted(fit: StribeckFit, points: Sequence[Point], area: float) -> Stribeck
 
 
 def _unsure(fit: StribeckFit, points: Sequence[Point]) -> StribeckFit:
-    """With bounds that allow for another exponent than the one held: an even chance between."""
+    """With bounds that allow for another exponent than the one held."""
     names = tuple(name for name in fit.parameters if name != "exponent")
-    other = _fit(points, names, OTHER)
-    more = {
-        name: abs(other.values[name] - fit.parameters[name].value) / np.sqrt(3) for name in names
-    }
+    more = held_error(fit.parameters, _fit(points, names, OTHER).values)
     return replace(fit, parameters=widened(fit.parameters, more, fit.quantile))
+
+
+def held_error(parameters: Mapping[str, Parameter], other: Mapping[str, float]) -> dict[str, float]:
+    """Standard error by a held exponent: an even chance of any value between two fits, d/sqrt 3."""
+    return {
+        name: abs(other[name] - one.value) / float(np.sqrt(3))
+        for name, one in parameters.items()
+        if name != "exponent"
+    }
 
 
 def different(speeds: Sequence[float]) -> list[float]:

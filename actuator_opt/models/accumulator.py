@@ -7,10 +7,12 @@ its neck before this capacitance.
 
 from __future__ import annotations
 
+from ..geometry import geometry
 from ..numeric import Array, expm1_quotient, maximum, minimum, namespace, real, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 
+@geometry
 def gas_volume_at(
     *,
     pressure: Array,
@@ -52,6 +54,7 @@ def gas_volume_at(
     return gas_volume * (start / now) ** (1 / polytropic_index)
 
 
+@geometry
 def gas_capacitance(
     *,
     pressure: Array,
@@ -104,6 +107,7 @@ def gas_capacitance(
     return where(working, filled / (polytropic_index * absolute_pressure), 0.0)
 
 
+@geometry
 def usable_volume(
     *,
     low_pressure: Array,
@@ -159,6 +163,7 @@ def usable_volume(
     return minimum(expanded, gas_volume) - filled
 
 
+@geometry
 def stored_energy(
     *,
     pressure: Array,
@@ -208,6 +213,7 @@ def stored_energy(
     return compression - atmospheric_pressure * (gas_volume - left)
 
 
+@geometry
 def gas_pressure(
     *,
     volume: Array,

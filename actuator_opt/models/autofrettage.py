@@ -28,6 +28,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..geometry import geometry
 from ..numeric import Array, absolute, maximum, minimum, namespace, positive, real, sqrt, where
 from .layered_tube import TubeLayer, layered_tube, ply_stresses_at_faces, tube_state
 from .strength_modes import Stress
@@ -190,6 +191,7 @@ def _yielding(
     )
 
 
+@geometry
 def autofrettage(
     *,
     layers: Sequence[TubeLayer],

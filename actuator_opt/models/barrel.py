@@ -10,9 +10,11 @@ from math import pi
 
 import numpy as np
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, positive, real, sqrt
 
 
+@geometry
 def bore_growth(
     *,
     pressure: Array,
@@ -63,6 +65,7 @@ def bore_growth(
     return inner_radius / youngs_modulus * load
 
 
+@geometry
 def bore_growth_as_published(
     *,
     pressure: Array,
@@ -106,6 +109,7 @@ def bore_growth_as_published(
     return outer_radius * pressure / youngs_modulus * (wall_ratio + poissons_ratio)
 
 
+@geometry
 def bore_stresses(
     *, pressure: Array, inner_radius: Array, outer_radius: Array, axial_force: Array = 0.0
 ) -> tuple[Array, Array, Array]:
@@ -173,6 +177,7 @@ def von_mises(*, hoop: Array, radial: Array, axial: Array) -> Array:
     return namespace(squares).sqrt(squares / 2)
 
 
+@geometry
 def burst_pressure_thick(
     *,
     inner_radius: Array,
@@ -221,6 +226,7 @@ def burst_pressure_thick(
     return positive(wall) * flow / sqrt(1 - half + half * half)
 
 
+@geometry
 def chamber_compliance(*, inner_radius: Array, growth_per_pressure: Array, length: Array) -> Array:
     """Volume a chamber's wall gives per pressure.
 
@@ -254,6 +260,7 @@ def chamber_compliance(*, inner_radius: Array, growth_per_pressure: Array, lengt
     return 2 * pi * inner_radius * growth_per_pressure * length
 
 
+@geometry
 def barrel_stiffness(*, area: Array, compliance: Array) -> Array:
     """Axial stiffness that the wall's compliance leaves one chamber.
 

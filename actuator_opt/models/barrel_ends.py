@@ -6,9 +6,11 @@ The barrel's axial force follows from how the cylinder is mounted, never from a 
 
 from __future__ import annotations
 
+from ..geometry import geometry
 from ..numeric import Array, absolute, namespace, positive, real, sqrt, where
 
 
+@geometry
 def pressure_shortening(
     *,
     pressure: Array,
@@ -54,6 +56,7 @@ def pressure_shortening(
     return contraction * length / youngs_modulus
 
 
+@geometry
 def shell_decay_length(*, radius: Array, hoop_stiffness: Array, bending_stiffness: Array) -> Array:
     """Axial length over which a shell's growth settles beside a pressure step.
 
@@ -88,6 +91,7 @@ def shell_decay_length(*, radius: Array, hoop_stiffness: Array, bending_stiffnes
     return sqrt(sqrt(4 * radius * radius * bending_stiffness / hoop_stiffness))
 
 
+@geometry
 def decay_length(
     *,
     radius: Array,
@@ -133,6 +137,7 @@ def decay_length(
     )
 
 
+@geometry
 def pressure_step_factor(*, distance: Array, decay_length: Array) -> Array:
     """Share of the far-field growth at a distance from the pressure step at the piston seal.
 
@@ -166,6 +171,7 @@ def pressure_step_factor(*, distance: Array, decay_length: Array) -> Array:
     return where(real(distance) >= 0, 1 - half, half)
 
 
+@geometry
 def axial_force_cap_mounted(
     *, rod_side_pressure: Array, rod_side_area: Array, stop_force: Array = 0.0
 ) -> Array:
@@ -199,6 +205,7 @@ def axial_force_cap_mounted(
     return rod_side_pressure * rod_side_area + stop_force
 
 
+@geometry
 def axial_force_head_mounted(*, cap_side_pressure: Array, cap_side_area: Array) -> Array:
     """Axial force in the barrel wall of a cylinder held at its head.
 

@@ -7,9 +7,11 @@ overhang at the head. Critical loads come from `stepped`.
 
 from __future__ import annotations
 
+from ..geometry import geometry
 from ..numeric import Array, positive, real, sqrt, where
 
 
+@geometry
 def self_weight_moments(
     *, weight_1: Array, length_1: Array, weight_2: Array, length_2: Array
 ) -> tuple[Array, Array, Array]:
@@ -95,6 +97,7 @@ def amplified_moment(
     return bending_moment * (1 + shape * ratio) / positive(1 - ratio)
 
 
+@geometry
 def bending_axial_force(
     *, bending_moment: Array, radius: Array, axial_stiffness: Array, bending_stiffness: Array
 ) -> Array:

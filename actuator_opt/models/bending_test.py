@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..geometry import geometry
 from ..numeric import Array, positive, sqrt
 
 
+@geometry
 def bending_modulus_as_published(*, slope: Array, span: Array, second_moment: Array) -> Array:
     """Modulus from a bending test as the source has it: even section, no shear, no dents.
 
@@ -43,6 +45,7 @@ def bending_modulus_as_published(*, slope: Array, span: Array, second_moment: Ar
     return slope * span * span * span / (48 * second_moment)
 
 
+@geometry
 def bending_modulus(
     *,
     slope: Array,
@@ -88,6 +91,7 @@ def bending_modulus(
     return span * span * span / (48 * second_moment) / positive(bent)
 
 
+@geometry
 def bending_slope(
     *,
     youngs_modulus: Array,
@@ -131,6 +135,7 @@ def bending_slope(
     return 1 / (bent + span * shear_compliance / 4 + local_compliance)
 
 
+@geometry
 def equivalent_second_moment(
     *, second_moments: Sequence[Array], steps: Sequence[Array], span: Array
 ) -> Array:
@@ -173,6 +178,7 @@ def equivalent_second_moment(
     return 1 / inverse
 
 
+@geometry
 def indentation_compliance(
     *, force: Array, roller_radius: Array, specimen_radius: Array, contact_modulus: Array
 ) -> Array:

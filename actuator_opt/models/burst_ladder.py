@@ -17,6 +17,7 @@ from functools import reduce
 from math import inf
 from typing import Any, Protocol
 
+from ..geometry import geometry
 from ..numeric import Array, absolute, maximum, real, together, where
 from .strength_modes import PlyStrength, Stress, load_multiplier
 from .yielding import yield_utilisation
@@ -177,6 +178,7 @@ def inverse_strengths(layer: WallLayer) -> tuple[Array, ...]:
     )  # fmt: skip
 
 
+@geometry
 def metals_first(layers: Sequence[WallLayer]) -> tuple[int, ...]:
     """Indices of the layers from the bore, metals before plies."""
     return tuple(sorted(range(len(layers)), key=lambda i: layers[i].strength is not None))
@@ -266,6 +268,7 @@ def _together(xp: Any, walls: Sequence[WallLayer], dims: int) -> Array:
     return alike & (turned[:, None, ...] == turned[None, ...])
 
 
+@geometry
 def climb(xp: Any, mechanics: Mechanics, layers: Sequence[WallLayer], shape: Array) -> BurstLadder:
     """The ladder of a wall; `shape` is a zero of the designs' joint shape and type.
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import (
     Array,
     absolute,
@@ -75,6 +76,7 @@ def density_ratio(
     return (1 + air_content) / (1 + change + gas)
 
 
+@geometry
 def reference_volume(
     *,
     volume: Array,
@@ -236,6 +238,7 @@ def chamber_pressure(
     return where(filled, start + (change + gas - (wanted - 1)) / falling, empty)
 
 
+@geometry
 def pressure_rate(
     *, flow: Array, volume: Array, volume_rate: Array, bulk_modulus: Array, compliance: Array = 0.0
 ) -> Array:

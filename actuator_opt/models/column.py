@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from math import pi
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, real, sqrt, where
 
 
+@geometry
 def euler_load(*, bending_stiffness: Array, effective_length: Array) -> Array:
     """Euler's critical load.
 
@@ -42,6 +44,7 @@ def euler_load(*, bending_stiffness: Array, effective_length: Array) -> Array:
     return pi * pi * bending_stiffness / (effective_length * effective_length)
 
 
+@geometry
 def johnson_load(
     *,
     area: Array,
@@ -154,6 +157,7 @@ def engesser_load(*, critical_load: Array, shear_stiffness: Array) -> Array:
     return critical_load / (1 + critical_load / shear_stiffness)
 
 
+@geometry
 def local_shell_knockdown(*, radius: Array, thickness: Array) -> Array:
     """Knock-down of a thin shell's axial buckling stress for its imperfections.
 
@@ -185,6 +189,7 @@ def local_shell_knockdown(*, radius: Array, thickness: Array) -> Array:
     return 1 - 0.901 * (1 - namespace(slender).exp(-slender))
 
 
+@geometry
 def local_shell_stress(
     *,
     youngs_modulus: Array,

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, minimum, real, where
 
 
@@ -41,6 +42,7 @@ def energised_share(*, poissons_ratio: Array) -> Array:
     return poissons_ratio / (1 - poissons_ratio)
 
 
+@geometry
 def contact_width(*, squeeze: Array, face_width: Array, groove_width: Array) -> Array:
     """Width of the squeezed face, b = w/(1 - C), at most the groove.
 
@@ -73,6 +75,7 @@ def contact_width(*, squeeze: Array, face_width: Array, groove_width: Array) -> 
     return where(real(squeeze) > 0, where(valid, width, math.nan), 0.0 * width)
 
 
+@geometry
 def line_load(
     *,
     squeeze: Array,

@@ -9,6 +9,7 @@ contact, and the profile must not be used.
 
 from __future__ import annotations
 
+from ..geometry import geometry
 from ..numeric import Array, positive, real, where
 
 LAND_POWER = 8
@@ -80,6 +81,7 @@ def land_mean(*, sealed_pressure: Array, outer_pressure: Array, excess: Array) -
     return (sealed_pressure + outer_pressure) / 2 + excess * LAND_POWER / (LAND_POWER + 1)
 
 
+@geometry
 def land_excess(
     *, line_load: Array, width: Array, sealed_pressure: Array, outer_pressure: Array
 ) -> Array:
@@ -113,6 +115,7 @@ def land_excess(
     return mean * (LAND_POWER + 1) / LAND_POWER
 
 
+@geometry
 def land_peak(
     *, line_load: Array, width: Array, sealed_pressure: Array, outer_pressure: Array
 ) -> Array:

@@ -15,6 +15,7 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
+from ..geometry import geometry
 from ..numeric import Array, clip, maximum, positive, real, sqrt, where
 
 LIP_PLACES, LIP_SHARE = (0.0, 0.2, 0.6, 1.0), 0.42
@@ -96,6 +97,7 @@ def o_ring_mean(*, sealed_pressure: Array, outer_pressure: Array, excess: Array)
     return outer_pressure + share * (sealed_pressure - outer_pressure) + (math.pi / 4) * excess
 
 
+@geometry
 def o_ring_excess(
     *, line_load: Array, width: Array, sealed_pressure: Array, outer_pressure: Array
 ) -> Array:
@@ -247,6 +249,7 @@ def lip_mean(*, sealed_pressure: Array, outer_pressure: Array, excess: Array) ->
     return total
 
 
+@geometry
 def lip_excess(
     *, line_load: Array, width: Array, sealed_pressure: Array, outer_pressure: Array
 ) -> Array:

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, real, where
 
 
+@geometry
 def pipe_flow(*, dynamic_viscosity: Array, length: Array) -> Array:
     """VDC of laminar pipe flow over a length, c = 8 pi eta L; free of the bore.
 
@@ -41,6 +43,7 @@ def pipe_flow(*, dynamic_viscosity: Array, length: Array) -> Array:
     return (8 * math.pi) * dynamic_viscosity * length
 
 
+@geometry
 def annular_couette(
     *, dynamic_viscosity: Array, length: Array, inner_radius: Array, outer_radius: Array
 ) -> Array:
@@ -77,6 +80,7 @@ def annular_couette(
     return where(valid, value, math.nan)
 
 
+@geometry
 def flat_gap(*, dynamic_viscosity: Array, diameter: Array, length: Array, gap: Array) -> Array:
     """VDC of shear in a thin cylindrical gap, pi d L eta/h.
 
@@ -107,6 +111,7 @@ def flat_gap(*, dynamic_viscosity: Array, diameter: Array, length: Array, gap: A
     return math.pi * dynamic_viscosity * diameter * length / gap
 
 
+@geometry
 def piston_gap_damper(
     *, dynamic_viscosity: Array, length: Array, radius: Array, gap: Array
 ) -> Array:
@@ -145,6 +150,7 @@ def piston_gap_damper(
     return base * (3 * squeeze * squeeze + 1)
 
 
+@geometry
 def gap_leakage(
     *,
     diameter: Array,
@@ -194,6 +200,7 @@ def gap_leakage(
     return conductance * pressure_difference
 
 
+@geometry
 def gap_conductance(
     *,
     diameter: Array,

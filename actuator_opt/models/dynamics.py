@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, real, where
 
 
@@ -71,6 +72,7 @@ def friction_damping_ratio(*, incremental_damping: Array, stiffness: Array, mass
     return where(valid, 0.5 * incremental_damping / namespace(safe).sqrt(safe), math.nan)
 
 
+@geometry
 def conductance_damping_ratio(
     *,
     stiffness: Array,

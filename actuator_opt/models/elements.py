@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, sqrt
 
 
+@geometry
 def resistance(*, inner_diameter: Array, length: Array, dynamic_viscosity: Array) -> Array:
     """Laminar resistance of a line, R = 128 eta l/(pi d^4).
 
@@ -39,6 +41,7 @@ def resistance(*, inner_diameter: Array, length: Array, dynamic_viscosity: Array
     return (128 / math.pi) * dynamic_viscosity * length / (square * square)
 
 
+@geometry
 def inertance(*, inner_diameter: Array, length: Array, density: Array) -> Array:
     """Inertance of a line, L = rho l/A.
 
@@ -67,6 +70,7 @@ def inertance(*, inner_diameter: Array, length: Array, density: Array) -> Array:
     return (4 / math.pi) * density * length / (inner_diameter * inner_diameter)
 
 
+@geometry
 def capacitance(*, volume: Array, bulk_modulus: Array) -> Array:
     """Capacitance of an oil volume, C = V/K.
 
@@ -123,6 +127,7 @@ def sound_speed(*, bulk_modulus: Array, density: Array) -> Array:
     return sqrt(bulk_modulus / density)
 
 
+@geometry
 def quarter_wave_frequency(*, length: Array, sound_speed: Array) -> Array:
     """First quarter-wave frequency of a plugged branch, f = a/(4 l).
 

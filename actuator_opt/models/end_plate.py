@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from math import pi
 
+from ..geometry import geometry
 from ..numeric import Array, absolute, maximum, namespace, positive
 
 
+@geometry
 def end_plate_stress(
     *,
     pressure: Array,
@@ -50,6 +52,7 @@ def end_plate_stress(
     return factor * pressure * slender * slender
 
 
+@geometry
 def hung_plate_stress(
     *,
     pressure: Array,
@@ -97,6 +100,7 @@ def hung_plate_stress(
     return 1.5 * pressure * slender * slender * spread
 
 
+@geometry
 def hub_plate_stress(
     *,
     pressure: Array,
@@ -157,6 +161,7 @@ def hub_plate_stress(
     return 6 * moment / flex / (positive(thickness) * thickness)
 
 
+@geometry
 def annular_plate_stress(
     *,
     pressure: Array,

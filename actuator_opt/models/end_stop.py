@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, angle, clip, maximum, minimum, namespace, real, sqrt, where
 from .endurance import end_stop_energy
 from .orifice import TURBULENT_COEFFICIENT, orifice_pressure_drop
@@ -18,6 +19,7 @@ DAMPING_FACTOR = 0.5
 """Damping of a stop over sqrt(K m): a quarter of the critical value [MECE5005]."""
 
 
+@geometry
 def stop_stiffness(*, area: Array, pressure: Array, travel: Array = STOP_TRAVEL) -> Array:
     """Stiffness of an end stop, K_end = A_A p_P/0.2 mm.
 
@@ -76,6 +78,7 @@ def stop_damping(*, stiffness: Array, mass: Array, factor: Array = DAMPING_FACTO
     return factor * sqrt(stiffness * mass)
 
 
+@geometry
 def stop_force(
     *, position: Array, velocity: Array, stroke: Array, stiffness: Array, damping: Array
 ) -> Array:
@@ -200,6 +203,7 @@ def stop_restitution(*, stiffness: Array, damping: Array, mass: Array) -> Array:
     return where(valid, xp.exp(-2 * exponent), math.nan)
 
 
+@geometry
 def cushion_flow_area(
     *,
     remaining: Array,
@@ -247,6 +251,7 @@ def cushion_flow_area(
     return end_area + (open_area - end_area) * opened
 
 
+@geometry
 def cushion_pressure(
     *,
     speed: Array,
@@ -292,6 +297,7 @@ def cushion_pressure(
     )
 
 
+@geometry
 def cushion_mean_pressure(
     *, driving_force: Array, mass: Array, velocity: Array, length: Array, area: Array
 ) -> Array:
@@ -332,6 +338,7 @@ def cushion_mean_pressure(
     return energy / (area * length)
 
 
+@geometry
 def cushion_open_area(
     *,
     velocity: Array,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, real, sqrt, where
 
 _LOW_CYCLES = 1e3
@@ -142,6 +143,7 @@ def fatigue_factor(
     return where(idle, 0 * used + float("inf"), 1 / where(idle, 0 * used + 1, used))
 
 
+@geometry
 def bolt_endurance_amplitude(*, diameter: Array) -> Array:
     """Stress amplitude that a bolt's thread stands for two million cycles and more.
 
@@ -172,6 +174,7 @@ def bolt_endurance_amplitude(*, diameter: Array) -> Array:
     return 0.85e6 * (0.150 / diameter + 45)
 
 
+@geometry
 def bolt_cycles(*, amplitude: Array, diameter: Array) -> Array:
     """Cycles of a stress amplitude that a bolt's thread stands.
 
@@ -304,6 +307,7 @@ def end_stop_peak_force(*, stiffness: Array, compression: Array) -> Array:
     return stiffness * compression
 
 
+@geometry
 def end_stop_peak_pressure(*, pressure: Array, peak_force: Array, area: Array) -> Array:
     """Peak pressure of oil trapped at the end of the stroke.
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from ..geometry import geometry
 from ..numeric import Array, maximum, namespace, real, where
 
 ATMOSPHERIC_PRESSURE = 101325.0
@@ -326,6 +327,7 @@ def effective_bulk_modulus(
     return bulk_modulus * (1 + gas) / (1 + softening)
 
 
+@geometry
 def trapped_bubble_volume_change(
     *,
     volume: Array,

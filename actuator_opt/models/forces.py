@@ -9,9 +9,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, real, sqrt, where
 
 
+@geometry
 def piston_area(*, bore: Array) -> Array:
     """Area of the cap side, A_A = pi D^2/4.
 
@@ -39,6 +41,7 @@ def piston_area(*, bore: Array) -> Array:
     return (0.25 * math.pi) * bore * bore
 
 
+@geometry
 def annulus_area(*, bore: Array, rod_diameter: Array) -> Array:
     """Area of the rod side, A_B = pi (D^2 - d^2)/4.
 
@@ -66,6 +69,7 @@ def annulus_area(*, bore: Array, rod_diameter: Array) -> Array:
     return (0.25 * math.pi) * (bore * bore - rod_diameter * rod_diameter)
 
 
+@geometry
 def push_force(
     *, pressure_a: Array, pressure_b: Array, area_a: Array, area_b: Array, friction: Array
 ) -> Array:
@@ -98,6 +102,7 @@ def push_force(
     return pressure_a * area_a - pressure_b * area_b - friction
 
 
+@geometry
 def pull_force(
     *, pressure_a: Array, pressure_b: Array, area_a: Array, area_b: Array, friction: Array
 ) -> Array:
@@ -130,6 +135,7 @@ def pull_force(
     return pressure_b * area_b - pressure_a * area_a - friction
 
 
+@geometry
 def efficiency(*, force: Array, pressure: Array, area: Array) -> Array:
     """Force efficiency, F/(p A) of the driven side.
 
@@ -161,6 +167,7 @@ def efficiency(*, force: Array, pressure: Array, area: Array) -> Array:
     return where(valid, force / where(valid, ideal, 1.0), math.nan)
 
 
+@geometry
 def pressure_loss(*, friction: Array, area: Array) -> Array:
     """Pressure that friction costs on an area, F/A.
 
@@ -189,6 +196,7 @@ def pressure_loss(*, friction: Array, area: Array) -> Array:
     return friction / area
 
 
+@geometry
 def chamber_flow(*, area: Array, speed: Array) -> Array:
     """Flow a moving piston takes, q = A v.
 
@@ -217,6 +225,7 @@ def chamber_flow(*, area: Array, speed: Array) -> Array:
     return area * speed
 
 
+@geometry
 def piston_speed(*, flow: Array, area: Array) -> Array:
     """Piston speed of a flow, v = q/A.
 
@@ -308,6 +317,7 @@ class Crank(NamedTuple):
     lever_arm: Array
 
 
+@geometry
 def crank(*, base_radius: Array, crank_radius: Array, joint_angle: Array) -> Crank:
     """Pin-to-pin length and lever arm of an actuator over a joint with two pivots.
 

@@ -9,9 +9,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..geometry import geometry
 from ..numeric import Array, absolute, maximum, namespace, real, where
 
 
+@geometry
 def seal_friction(
     *, line_load: Array, diameter: Array, friction_coefficient: Array, count: Array = 1.0
 ) -> Array:
@@ -45,6 +47,7 @@ def seal_friction(
     return math.pi * friction_coefficient * line_load * diameter * count
 
 
+@geometry
 def cylinder_friction(
     *,
     piston_line_load: Array,
@@ -91,6 +94,7 @@ def cylinder_friction(
     return math.pi * (piston + rod_friction_coefficient * rod_line_load * rod_diameter * rod_count)
 
 
+@geometry
 def coulomb_as_published(
     *,
     pressure: Array,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, minimum, namespace, real, where
 
 WIDTH_RATIO = 1.3655
@@ -15,6 +16,7 @@ reciprocating glands (mid-tolerance widths 2.4255, 3.6195, 4.8135, 7.2005, 9.588
 1.778, 2.616, 3.531, 5.334, 6.985 mm); largest residual 0.083 mm (at 5.334 mm)."""
 
 
+@geometry
 def squeeze_after(*, squeeze: Array, section: Array, growth: Array, tolerance: Array) -> Array:
     """Squeeze left after bore growth and gland tolerance, C = C0 - (u + tol)/W.
 
@@ -45,6 +47,7 @@ def squeeze_after(*, squeeze: Array, section: Array, growth: Array, tolerance: A
     return squeeze - (growth + tolerance) / section
 
 
+@geometry
 def stretched_section(*, section: Array, stretch: Array) -> Array:
     """Section of a stretched ring, W' = W/sqrt(1 + e), at constant volume.
 
@@ -75,6 +78,7 @@ def stretched_section(*, section: Array, stretch: Array) -> Array:
     return where(valid, section / namespace(safe).sqrt(safe), math.nan)
 
 
+@geometry
 def gland_depth(*, squeeze: Array, section: Array) -> Array:
     """Radial room of the ring, gland depth = W (1 - C).
 
@@ -103,6 +107,7 @@ def gland_depth(*, squeeze: Array, section: Array) -> Array:
     return section * (1 - squeeze)
 
 
+@geometry
 def gland_fill(*, section: Array, groove_width: Array, gland_depth: Array) -> Array:
     """Share of the groove the ring fills, (pi W^2/4)/(width depth).
 
@@ -131,6 +136,7 @@ def gland_fill(*, section: Array, groove_width: Array, gland_depth: Array) -> Ar
     return (0.25 * math.pi) * section * section / (groove_width * gland_depth)
 
 
+@geometry
 def extrusion_gap(*, clearance: Array, growth: Array) -> Array:
     """Radial gap behind the ring, clearance plus bore growth at the seal.
 
@@ -159,6 +165,7 @@ def extrusion_gap(*, clearance: Array, growth: Array) -> Array:
     return clearance + growth
 
 
+@geometry
 def limited_width(*, contact_width: Array, groove_width: Array) -> Array:
     """Contact width no wider than the groove.
 
@@ -186,6 +193,7 @@ def limited_width(*, contact_width: Array, groove_width: Array) -> Array:
     return minimum(contact_width, groove_width)
 
 
+@geometry
 def groove_width(*, section: Array) -> Array:
     """Default groove width of a reciprocating O-ring without back-up ring, g = 1.3655 W.
 
@@ -215,6 +223,7 @@ def groove_width(*, section: Array) -> Array:
     return where(real(section) > 0, WIDTH_RATIO * section, 0 * section + float("nan"))
 
 
+@geometry
 def back_up_groove_width(*, groove_width: Array, thickness: Array, count: Array) -> Array:
     """Groove width with back-up rings, g + n t.
 

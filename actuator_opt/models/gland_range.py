@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, real, sqrt, where
 
 
@@ -79,6 +80,7 @@ def squeeze_at_volume(*, squeeze: Array, volume_ratio: Array) -> Array:
     return where(valid, 1 - (1 - squeeze) / root, 0 * (squeeze + volume_ratio) + math.nan)
 
 
+@geometry
 def squeeze_extremes(
     *,
     squeeze: Array,

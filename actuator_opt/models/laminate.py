@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from math import pi
 from typing import Any, TypeAlias
 
+from ..geometry import geometry
 from ..numeric import Array
 
 THIN_WALL_LIMIT = 0.05
@@ -21,6 +22,7 @@ Membrane: TypeAlias = tuple[Array, Array, Array]
 """Membrane stiffnesses Azz, Azt, Att of a wall [N/m]."""
 
 
+@geometry
 def membrane(*, plies: Sequence[Sequence[Any]], thicknesses: Sequence[Array]) -> Membrane:
     """Membrane stiffness of a wall of isotropic layers and balanced pairs.
 
@@ -98,6 +100,7 @@ def strains(
     )
 
 
+@geometry
 def thermal_line_forces(
     *,
     loads: Sequence[tuple[Array, Array]],
@@ -141,6 +144,7 @@ def thermal_line_forces(
     return axial * temperature_change, hoop * temperature_change
 
 
+@geometry
 def bore_growth_thin(
     *, pressure: Array, inner_radius: Array, axial_force: Array, membrane: Membrane
 ) -> Array:
@@ -184,6 +188,7 @@ def bore_growth_thin(
     return inner_radius * hoop_strain
 
 
+@geometry
 def effective_moduli(*, membrane: Membrane, thickness: Array) -> tuple[Array, Array, Array]:
     """Axial and hoop modulus of a wall, each at zero force the other way, and nu_zt nu_tz.
 
@@ -218,6 +223,7 @@ def effective_moduli(*, membrane: Membrane, thickness: Array) -> tuple[Array, Ar
     return axial * stiff, hoop * stiff, product
 
 
+@geometry
 def bending_stiffness(*, plies: Sequence[Sequence[Any]], thicknesses: Sequence[Array]) -> Array:
     """Axial bending stiffness of a wall per circumference, about its own neutral surface.
 
@@ -259,6 +265,7 @@ def bending_stiffness(*, plies: Sequence[Sequence[Any]], thicknesses: Sequence[A
     return second - first * first / zeroth
 
 
+@geometry
 def thin_wall_ratio(*, thickness: Array, inner_radius: Array) -> Array:
     """Wall thickness over bore radius; above `THIN_WALL_LIMIT` the thin laminate is unsafe.
 

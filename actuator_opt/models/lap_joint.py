@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
+from ..geometry import geometry
 from ..numeric import Array, maximum, minimum, namespace, positive, sqrt
 
 
@@ -14,6 +15,7 @@ def _edge_ratio(*, loaded: Array, free: Array, reach: Array) -> Array:
     return half * ((1 / wave - wave) + 2 * free / (free + loaded) * wave)  # no term below zero
 
 
+@geometry
 def bond_peak_ratio(
     *,
     shear_modulus: Array,
@@ -62,6 +64,7 @@ def bond_peak_ratio(
     )
 
 
+@geometry
 def least_bond_peak_ratio(
     *,
     shear_modulus: Array,
@@ -108,6 +111,7 @@ def least_bond_peak_ratio(
     return half / namespace(half).tanh(half)
 
 
+@geometry
 def bond_shear_peak(
     *,
     force: Array,
@@ -160,6 +164,7 @@ def bond_shear_peak(
     return force / (pi * diameter * length) * ratio
 
 
+@geometry
 def bond_edge_shear(
     *,
     force: Array,
@@ -215,6 +220,7 @@ def bond_edge_shear(
     return force / (pi * diameter * length) * ratio
 
 
+@geometry
 def bond_thermal_shear(
     *,
     strain_difference: Array,

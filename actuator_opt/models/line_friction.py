@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, where
 
 FRICTION = ("lossless", "steady", "distributed")
@@ -21,6 +22,7 @@ _SERIES = (-1 / 2, -1 / 8, -1 / 8, -25 / 128, -13 / 32, -1073 / 1024, -103 / 32)
 """I1(w)/I0(w) = 1 - 1/(2 w) - ... for large w."""
 
 
+@geometry
 def series_impedance(
     *,
     frequency: Array,

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..geometry import geometry
 from ..numeric import STEP, Array, absolute, namespace, real, where
 from .layered_tube import TubeLayer, layered_tube, tube_state
 from .strength_modes import Stress
@@ -91,6 +92,7 @@ def liner_cycle(
     )
 
 
+@geometry
 def layer_thickness_for_strain(
     *,
     layers: Sequence[TubeLayer],

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, absolute, clip, maximum, real, where
 
 LAMINAR_REYNOLDS = 2300.0
@@ -16,6 +17,7 @@ TURBULENT_REYNOLDS = 4000.0
 """Above: pure Blasius."""
 
 
+@geometry
 def line_compliance(
     *,
     inner_diameter: Array,
@@ -63,6 +65,7 @@ def line_compliance(
     return where(valid, compliance, math.nan)
 
 
+@geometry
 def line_volume(*, inner_diameter: Array, length: Array) -> Array:
     """Oil volume of a line, pi D^2 l/4.
 
@@ -91,6 +94,7 @@ def line_volume(*, inner_diameter: Array, length: Array) -> Array:
     return (0.25 * math.pi) * inner_diameter * inner_diameter * length
 
 
+@geometry
 def line_velocity(*, flow: Array, inner_diameter: Array) -> Array:
     """Mean oil speed in a line, v = 4 q/(pi D^2).
 
@@ -119,6 +123,7 @@ def line_velocity(*, flow: Array, inner_diameter: Array) -> Array:
     return (4 / math.pi) * flow / (inner_diameter * inner_diameter)
 
 
+@geometry
 def port_velocity(*, flow: Array, port_diameter: Array) -> Array:
     """Mean oil speed in a port, v = q/A_port.
 
@@ -147,6 +152,7 @@ def port_velocity(*, flow: Array, port_diameter: Array) -> Array:
     return line_velocity(flow=flow, inner_diameter=port_diameter)
 
 
+@geometry
 def reynolds(*, velocity: Array, diameter: Array, kinematic_viscosity: Array) -> Array:
     """Reynolds number Re = v D/nu of a round line.
 
@@ -176,6 +182,7 @@ def reynolds(*, velocity: Array, diameter: Array, kinematic_viscosity: Array) ->
     return velocity * diameter / kinematic_viscosity
 
 
+@geometry
 def line_pressure_drop(
     *,
     flow: Array,

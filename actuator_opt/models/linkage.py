@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ..geometry import geometry
 from ..numeric import Array, absolute, angle, namespace, real, sqrt, where
 from .forces import crank, joint_force
 
@@ -24,6 +25,7 @@ class Linkage(NamedTuple):
     """d2l/dtheta2 [m]."""
 
 
+@geometry
 def linkage(
     *, base_radius: Array, crank_radius: Array, joint_angle: Array, angle_offset: Array = 0.0
 ) -> Linkage:
@@ -63,6 +65,7 @@ def linkage(
     return Linkage(arm.length, arm.lever_arm, slope)
 
 
+@geometry
 def linkage_angle(
     *, length: Array, base_radius: Array, crank_radius: Array, angle_offset: Array = 0.0
 ) -> Array:
@@ -109,6 +112,7 @@ class LinkageRange(NamedTuple):
     highest: Array
 
 
+@geometry
 def linkage_range(
     *, base_radius: Array, crank_radius: Array, least_lever_arm: Array, angle_offset: Array = 0.0
 ) -> LinkageRange:

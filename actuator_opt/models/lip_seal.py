@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, maximum, minimum, namespace, real, sqrt, where
 from .contact_profile import lip_mean
 
@@ -21,6 +22,7 @@ LYING_STEPS = 7
 the roots of its two terms, so they never overshoot; the worst case is at rounding after six."""
 
 
+@geometry
 def lip_interference(*, section: Array, gland_depth: Array) -> Array:
     """Interference of the sliding lip, delta = (W - depth)/2: both lips give way alike.
 
@@ -53,6 +55,7 @@ def _plate_stiffness(youngs_modulus: Array, poissons_ratio: Array, thickness: Ar
     return youngs_modulus * thickness**3 / (12 * (1 - poissons_ratio * poissons_ratio))
 
 
+@geometry
 def lip_stiffness(
     *,
     youngs_modulus: Array,
@@ -107,6 +110,7 @@ def lip_stiffness(
     return 2 * bending * beta**3 * (xp.cosh(u) ** 2 + xp.cos(u) ** 2) / falling
 
 
+@geometry
 def lip_free_span(
     *,
     interference: Array,
@@ -166,6 +170,7 @@ def lip_free_span(
     return where(real(interference) > 0, where(real(root_clearance) > 0, span, 0.0), lip_length)
 
 
+@geometry
 def line_load(
     *,
     interference: Array,
@@ -239,6 +244,7 @@ def line_load(
     return where(real(interference) > 0, load, 0.0)
 
 
+@geometry
 def peak_pressure(
     *,
     interference: Array,
@@ -294,6 +300,7 @@ def peak_pressure(
     return where(touching, sqrt(preload * stiff / (math.pi * edge_radius)) + pressure, 0.0)
 
 
+@geometry
 def contact_width(
     *, line_load: Array, peak_pressure: Array, pressure: Array, lip_length: Array
 ) -> Array:

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array
 
 
+@geometry
 def tube_mass(
     *, density: Array, inner_diameter: Array, outer_diameter: Array, length: Array
 ) -> Array:
@@ -42,6 +44,7 @@ def tube_mass(
     return (0.25 * math.pi) * density * ring * length
 
 
+@geometry
 def layer_area(*, inner_radius: Array, thickness: Array) -> Array:
     """Section of a layer around a tube, pi t (2 r + t): no difference of like numbers.
 
@@ -69,6 +72,7 @@ def layer_area(*, inner_radius: Array, thickness: Array) -> Array:
     return math.pi * (thickness * (2 * inner_radius + thickness))
 
 
+@geometry
 def disc_mass(*, density: Array, diameter: Array, thickness: Array) -> Array:
     """Mass of a solid disc (piston, cap), rho pi D^2 t/4.
 
@@ -97,6 +101,7 @@ def disc_mass(*, density: Array, diameter: Array, thickness: Array) -> Array:
     return (0.25 * math.pi) * density * diameter * diameter * thickness
 
 
+@geometry
 def piston_groove_volume(*, diameter: Array, depth: Array, width: Array) -> Array:
     """Material removed by an outer groove (piston), pi w h (D - h).
 
@@ -127,6 +132,7 @@ def piston_groove_volume(*, diameter: Array, depth: Array, width: Array) -> Arra
     return math.pi * width * depth * (diameter - depth)
 
 
+@geometry
 def rod_groove_volume(*, diameter: Array, depth: Array, width: Array) -> Array:
     """Material removed by an inner groove (rod seal in the head), pi w h (d + h).
 
@@ -157,6 +163,7 @@ def rod_groove_volume(*, diameter: Array, depth: Array, width: Array) -> Array:
     return math.pi * width * depth * (diameter + depth)
 
 
+@geometry
 def pitch_diameter(*, diameter: Array, pitch: Array) -> Array:
     """Pitch diameter of a metric thread, d2 = d - (3 sqrt(3)/8) P.
 
@@ -185,6 +192,7 @@ def pitch_diameter(*, diameter: Array, pitch: Array) -> Array:
     return diameter - (3 * math.sqrt(3) / 8) * pitch
 
 
+@geometry
 def stud_mass(*, density: Array, diameter: Array, pitch: Array, length: Array) -> Array:
     """Mass of a threaded stud, the cylinder of its pitch diameter.
 
@@ -219,6 +227,7 @@ def stud_mass(*, density: Array, diameter: Array, pitch: Array, length: Array) -
     )
 
 
+@geometry
 def tie_rod_mass(*, density: Array, diameter: Array, length: Array, count: Array) -> Array:
     """Mass of tie rods, n plain round bars of the nominal diameter (choice: nuts not counted).
 
@@ -249,6 +258,7 @@ def tie_rod_mass(*, density: Array, diameter: Array, length: Array, count: Array
     return count * disc_mass(density=density, diameter=diameter, thickness=length)
 
 
+@geometry
 def eye_volume(*, pin_diameter: Array) -> Array:
     """Volume of a clevis eye, pi d^3, in proportions of its pin diameter d.
 
@@ -280,6 +290,7 @@ def eye_volume(*, pin_diameter: Array) -> Array:
     return math.pi * pin_diameter * pin_diameter * pin_diameter
 
 
+@geometry
 def eye_length(*, pin_diameter: Array) -> Array:
     """Distance from the pin centre to the end of the eye's neck, 2 d (see `eye_volume`).
 
@@ -307,6 +318,7 @@ def eye_length(*, pin_diameter: Array) -> Array:
     return 2 * pin_diameter
 
 
+@geometry
 def ring_mass(*, density: Array, area: Array, centre_diameter: Array) -> Array:
     """Mass of a ring of any section, rho A pi D_m; an O-ring has A = pi W^2/4.
 
@@ -337,6 +349,7 @@ def ring_mass(*, density: Array, area: Array, centre_diameter: Array) -> Array:
     return math.pi * density * area * centre_diameter
 
 
+@geometry
 def oil_mass(*, density: Array, volume: Array) -> Array:
     """Mass of the oil in a volume, rho V.
 

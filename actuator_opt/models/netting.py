@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import pi
 
+from ..geometry import geometry
 from ..numeric import Array, maximum, namespace
 
 
+@geometry
 def netting(
     *,
     pressure: Array,
@@ -86,6 +88,7 @@ def netting_angle(*, line_force_ratio: Array = 2.0) -> Array:
     return xp.atan(xp.sqrt(line_force_ratio))
 
 
+@geometry
 def netting_burst_pressure(
     *,
     angles: Sequence[Array],

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, absolute, clip, maximum, minimum, namespace, real, where
 from .orifice import orifice_conductance, orifice_flow, orifice_pressure_drop
 
@@ -23,6 +24,7 @@ _STEPS = 80
 _TOLERANCE = 1e-12
 
 
+@geometry
 def one_way_flow(
     *,
     pressure_difference: Array,
@@ -75,6 +77,7 @@ def one_way_flow(
     return orifice_flow(pressure_difference=pressure_difference, **needle) + share * free
 
 
+@geometry
 def one_way_conductance(
     *,
     pressure_difference: Array,
@@ -129,6 +132,7 @@ def one_way_conductance(
     return orifice_conductance(**needle) + free
 
 
+@geometry
 def one_way_pressure_drop(
     *,
     flow: Array,

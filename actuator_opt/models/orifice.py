@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, absolute, namespace, real, sqrt, where
 
 TURBULENT_COEFFICIENT = 0.611
@@ -61,6 +62,7 @@ def discharge_coefficient(
     )
 
 
+@geometry
 def round_diameter(*, area: Array) -> Array:
     """Hydraulic diameter of a round hole, d = sqrt(4 A/pi).
 
@@ -88,6 +90,7 @@ def round_diameter(*, area: Array) -> Array:
     return sqrt((4 / math.pi) * area)
 
 
+@geometry
 def orifice_flow(
     *,
     area: Array,
@@ -141,6 +144,7 @@ def orifice_flow(
     return where(moving, 2 * area * width * pressure_difference, 0.0) / where(moving, total, 1.0)
 
 
+@geometry
 def orifice_conductance(
     *,
     area: Array,
@@ -196,6 +200,7 @@ def orifice_conductance(
     return where(closed, 0.0, where(flowing, slope, math.nan))
 
 
+@geometry
 def orifice_pressure_drop(
     *,
     area: Array,
@@ -244,6 +249,7 @@ def orifice_pressure_drop(
     return flow * (laminar + turbulent * absolute(flow))
 
 
+@geometry
 def orifice_resistance(
     *,
     area: Array,

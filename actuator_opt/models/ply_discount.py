@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import Any
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, where
 from .burst_ladder import (
     BurstLadder,
@@ -99,6 +100,7 @@ class _Membrane:
         return more if held is None else held + more
 
 
+@geometry
 def burst_by_ply_discount(
     *,
     layers: Sequence[WallLayer],

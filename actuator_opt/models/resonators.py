@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, sqrt, where
 from .transmission_line import input_impedance, line_matrix
 
@@ -54,6 +55,7 @@ def branch_impedance(
     return resistance + 1j * reactance
 
 
+@geometry
 def helmholtz_frequency(
     *, neck_diameter: Array, neck_length: Array, volume: Array, sound_speed: Array
 ) -> Array:
@@ -120,6 +122,7 @@ def quarter_wave_length(
     return 0.25 * quarter_waves * sound_speed / frequency
 
 
+@geometry
 def plugged_branch_impedance(
     *,
     frequency: Array,
@@ -174,6 +177,7 @@ def plugged_branch_impedance(
     return input_impedance(matrix=matrix, end_impedance=math.inf)
 
 
+@geometry
 def plugged_end_pressure_ratio(
     *,
     frequency: Array,

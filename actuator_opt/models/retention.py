@@ -1,17 +1,19 @@
 """What holds the ends on: tie rods, pins; and what guides the rod.
 
-Bonds live in `lap_joint`, threads in `rod`, plates in `end_plate`, fatigue and the end of the
-stroke in `endurance`.
+Bonds live in `lap_joint`, the rod's thread in `rod`, that of the caps in `thread`, plates in
+`end_plate`, fatigue and the end of the stroke in `endurance`.
 """
 
 from __future__ import annotations
 
 from math import pi
 
+from ..geometry import geometry
 from ..numeric import Array, absolute
 from .rod import thread_stress
 
 
+@geometry
 def tie_rod_stress(*, force: Array, count: Array, diameter: Array, pitch: Array) -> Array:
     """Tensile stress in the threads of tie rods that share a force evenly.
 
@@ -44,6 +46,7 @@ def tie_rod_stress(*, force: Array, count: Array, diameter: Array, pitch: Array)
     return thread_stress(force=force / count, diameter=diameter, pitch=pitch)
 
 
+@geometry
 def pin_shear_stress(*, force: Array, diameter: Array) -> Array:
     """Mean shear stress of a clevis pin in double shear.
 
@@ -74,6 +77,7 @@ def pin_shear_stress(*, force: Array, diameter: Array) -> Array:
     return 2 * force / (pi * diameter * diameter)
 
 
+@geometry
 def guide_forces(*, side_force: Array, overhang: Array, span: Array) -> tuple[Array, Array]:
     """Split a side force at the rod eye between head bearing and piston.
 
@@ -106,6 +110,7 @@ def guide_forces(*, side_force: Array, overhang: Array, span: Array) -> tuple[Ar
     return side_force + piston, piston
 
 
+@geometry
 def bearing_pressure(*, force: Array, diameter: Array, length: Array) -> Array:
     """Mean pressure on a plain bearing or pin.
 

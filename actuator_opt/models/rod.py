@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from math import pi
 from typing import Any
 
+from ..geometry import geometry
 from ..numeric import Array
-from .mass import pitch_diameter
 
 
+@geometry
 def section_area(*, outer_diameter: Array, inner_diameter: Array = 0.0) -> Array:
     """Cross-section of a round bar or tube.
 
@@ -39,6 +40,7 @@ def section_area(*, outer_diameter: Array, inner_diameter: Array = 0.0) -> Array
     return pi / 4 * (outer_diameter * outer_diameter - inner_diameter * inner_diameter)
 
 
+@geometry
 def second_moment(*, outer_diameter: Array, inner_diameter: Array = 0.0) -> Array:
     """Second moment of area of a round bar or tube.
 
@@ -69,6 +71,7 @@ def second_moment(*, outer_diameter: Array, inner_diameter: Array = 0.0) -> Arra
     return pi / 64 * (outer * outer - inner * inner)
 
 
+@geometry
 def axial_stiffness(
     *,
     youngs_modulus: Array,
@@ -108,6 +111,7 @@ def axial_stiffness(
     return youngs_modulus * area / length
 
 
+@geometry
 def axial_stiffness_as_published(
     *, youngs_modulus: Array, outer_diameter: Array, length: Array
 ) -> Array:
@@ -144,6 +148,7 @@ def axial_stiffness_as_published(
     return youngs_modulus * section_area(outer_diameter=outer_diameter) / length
 
 
+@geometry
 def rod_stress(*, force: Array, outer_diameter: Array, inner_diameter: Array = 0.0) -> Array:
     """Axial stress of the rod.
 
@@ -174,6 +179,7 @@ def rod_stress(*, force: Array, outer_diameter: Array, inner_diameter: Array = 0
     return force / section_area(outer_diameter=outer_diameter, inner_diameter=inner_diameter)
 
 
+@geometry
 def bending_stress(
     *, bending_moment: Array, outer_diameter: Array, inner_diameter: Array = 0.0
 ) -> Array:
@@ -239,6 +245,7 @@ def free_modulus(*, wall: Sequence[Array]) -> Array:
     return zz - held
 
 
+@geometry
 def layered_section(
     *, walls: Sequence[Sequence[Any]], thicknesses: Sequence[Array], inner_diameter: Array
 ) -> tuple[Array, Array]:
@@ -285,6 +292,7 @@ def layered_section(
     return bending, shear
 
 
+@geometry
 def thread_stress_area(*, diameter: Array, pitch: Array) -> Array:
     """Tensile stress area of a metric thread.
 
@@ -316,6 +324,7 @@ def thread_stress_area(*, diameter: Array, pitch: Array) -> Array:
     return pi / 4 * core * core
 
 
+@geometry
 def thread_stress(*, force: Array, diameter: Array, pitch: Array) -> Array:
     """Tensile stress in a metric thread.
 
@@ -345,38 +354,3 @@ def thread_stress(*, force: Array, diameter: Array, pitch: Array) -> Array:
     172.45 MPa
     """
     return force / thread_stress_area(diameter=diameter, pitch=pitch)
-
-
-def thread_shear_stress(*, force: Array, diameter: Array, pitch: Array, engagement: Array) -> Array:
-    """Shear stress over the flanks of an engaged metric thread.
-
-    tau = F/(pi d_2 L_e/2), d_2 by `mass.pitch_diameter`: half the pitch cylinder is sheared
-    (a choice).
-
-    Parameters
-    ----------
-    force : axial force [N]
-    diameter : nominal diameter [m]
-    pitch : pitch [m]
-    engagement : engaged length [m]
-
-    Returns
-    -------
-    shear stress [Pa]
-
-    Notes
-    -----
-    Valid: similar strength of both threads, full profile.
-
-    References
-    ----------
-    [ISO724] pitch diameter; [derived] half of its cylinder is sheared
-
-    Examples
-    --------
-    >>> tau = thread_shear_stress(force=10e3, diameter=10e-3, pitch=1.5e-3, engagement=8e-3)
-    >>> print(f"{tau / 1e6:.2f} MPa")
-    88.17 MPa
-    """
-    sheared = pi / 2 * pitch_diameter(diameter=diameter, pitch=pitch) * engagement
-    return force / sheared

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from ..geometry import geometry
 from ..numeric import Array, magnitude, namespace, real, where
 
 _STEP = 0.15
@@ -100,6 +101,7 @@ def asperity_integral(*, film_ratio: Array, order: str = "3/2") -> Array:
     return _summed(film_ratio, _HEIGHTS, weights)
 
 
+@geometry
 def asperity_stiffness(
     *,
     youngs_modulus: Array,
@@ -141,6 +143,7 @@ def asperity_stiffness(
     return (4 / 3) * modulus * asperity_density * asperity_radius**0.5 * roughness**1.5
 
 
+@geometry
 def asperity_pressure(
     *,
     film_ratio: Array,

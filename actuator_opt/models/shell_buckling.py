@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from math import pi
 
+from ..geometry import geometry
 from ..numeric import Array, minimum, namespace, sqrt
 from .column import local_shell_stress
 
@@ -55,6 +56,7 @@ def shell_modulus(
     return minimum(mean, sqrt(mean * skew))
 
 
+@geometry
 def local_shell_force(
     *,
     youngs_modulus: Array,
@@ -106,6 +108,7 @@ def local_shell_force(
     return 2 * pi * radius * thickness * stress
 
 
+@geometry
 def bending_shell_knockdown(*, radius: Array, thickness: Array) -> Array:
     """Knock-down of a bent thin shell's buckling stress: less than in compression.
 
@@ -137,6 +140,7 @@ def bending_shell_knockdown(*, radius: Array, thickness: Array) -> Array:
     return 1 - 0.731 * (1 - namespace(slender).exp(-slender))
 
 
+@geometry
 def local_shell_moment(
     *,
     youngs_modulus: Array,

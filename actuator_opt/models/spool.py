@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
+from ..geometry import geometry
 from ..numeric import Array, maximum, positive, sqrt
 from .orifice import TURBULENT_COEFFICIENT
 
@@ -40,6 +41,7 @@ def spool_acceleration(
     return omega * (omega * (command - opening) - 2 * damping_ratio * rate)
 
 
+@geometry
 def spool_edge_coefficient(
     *,
     spool_position: Array,

@@ -10,9 +10,11 @@ land, `contact_land.land_peak`.
 
 from __future__ import annotations
 
+from ..geometry import geometry
 from ..numeric import Array, maximum, real, sqrt, where
 
 
+@geometry
 def wetted_back(*, ring_width: Array, foot_width: Array, section: Array, squeeze: Array) -> Array:
     """Length of the ring's back that the pressure wets, a_b = w - b - W (1 - C)/2, at least 0.
 
@@ -47,6 +49,7 @@ def wetted_back(*, ring_width: Array, foot_width: Array, section: Array, squeeze
     return maximum(ring_width - foot_width - section * (1 - squeeze) / 2, 0.0)
 
 
+@geometry
 def line_load(
     *,
     energiser_load: Array,
@@ -88,6 +91,7 @@ def line_load(
     return where(real(energiser_load) > 0, load, 0.0)
 
 
+@geometry
 def pressure_balance(
     *, energiser_slope: Array, wetted_back: Array, wetted_front: Array, land: Array
 ) -> Array:
@@ -98,7 +102,7 @@ def pressure_balance(
 
     Parameters
     ----------
-    energiser_slope : df_e/dp of the energiser; k_p W with k_p 0.72 to 0.80 in `plane_strain` [m]
+    energiser_slope : df_e/dp of the energiser, at most about its contact width [m]
     wetted_back, wetted_front : a_b, a_f as in `line_load` [m]
     land : width a of the running face [m]
 
@@ -124,6 +128,7 @@ def pressure_balance(
     return (energiser_slope + wetted_back - wetted_front) / land
 
 
+@geometry
 def contact_width(
     *,
     line_load: Array,

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import Any, Literal, TypeAlias
 
+from ..geometry import geometry
 from ..numeric import Array, maximum, minimum, namespace, positive, real, sqrt, where
 
 End: TypeAlias = Literal["pinned", "fixed", "free", "guided"]
@@ -182,6 +183,7 @@ def _first_zero(xp: Any, waves: _Waves, load: Array, steps: int) -> Array:
     return load
 
 
+@geometry
 def stepped_column_load(
     *,
     bending_stiffness_1: Array,
@@ -261,6 +263,7 @@ def _start(key: tuple[str, str], total: Array, near: Wave, far: Wave) -> Pair:
     return 1.0, 0.0
 
 
+@geometry
 def mode_shear_stiffness(
     *,
     critical_load: Array,

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry import geometry
+
 _STATE = {"w": 0, "slope": 1, "moment": 2, "shear": 3}
 _FREE = {
     "pinned": ("slope", "shear"),
@@ -68,6 +70,7 @@ def _determinant(
     return result
 
 
+@geometry
 def stepped_column_load_segments(
     *,
     bending_stiffness: Sequence[float],

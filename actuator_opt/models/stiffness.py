@@ -11,10 +11,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ..geometry import geometry
 from ..numeric import Array, clip, maximum, real, sqrt, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 
+@geometry
 def chamber_compliance(*, volume: Array, bulk_modulus: Array, wall_compliance: Array) -> Array:
     """Volume a closed chamber takes per pressure, C = V/K + (dV/dp)_walls.
 
@@ -44,6 +46,7 @@ def chamber_compliance(*, volume: Array, bulk_modulus: Array, wall_compliance: A
     return volume / bulk_modulus + wall_compliance
 
 
+@geometry
 def chamber_stiffness(
     *, area: Array, volume: Array, bulk_modulus: Array, wall_compliance: Array
 ) -> Array:
@@ -77,6 +80,7 @@ def chamber_stiffness(
     return area * area / (volume / bulk_modulus + wall_compliance)
 
 
+@geometry
 def hydraulic_stiffness(
     *,
     area_a: Array,
@@ -121,6 +125,7 @@ def hydraulic_stiffness(
     return (pull + 2 * area_a * area_b * compliance_ab) / cross
 
 
+@geometry
 def weakest_position(
     *,
     area_a: Array,
@@ -221,6 +226,7 @@ class HoldingPressures(NamedTuple):
     pressure_b: Array
 
 
+@geometry
 def holding_pressures(
     *, force: Array, supply_pressure: Array, return_pressure: Array, area_a: Array, area_b: Array
 ) -> HoldingPressures:
@@ -267,6 +273,7 @@ class LoadStep(NamedTuple):
     stiffness: Array
 
 
+@geometry
 def trapped_air_load_step(
     *,
     force: Array,

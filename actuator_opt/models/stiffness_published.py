@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from ..geometry import geometry
 from ..numeric import Array
 from .barrel import bore_growth_as_published
 from .lines import line_compliance
@@ -48,6 +49,7 @@ def series_of_totals_as_published(
     return 1 / (1 / oil + 1 / barrel + 1 / rod + 1 / lines + 1 / other)
 
 
+@geometry
 def oil_stiffness_as_published(
     *,
     bulk_modulus_a: Array,
@@ -87,6 +89,7 @@ def oil_stiffness_as_published(
     return side_a + bulk_modulus_b * area_b * area_b / volume_b
 
 
+@geometry
 def barrel_stiffness_as_published(
     *,
     bore: Array,
@@ -137,6 +140,7 @@ def barrel_stiffness_as_published(
     return area * (0.25 * math.pi) * bore * bore / compliance
 
 
+@geometry
 def line_stiffness_as_published(
     *,
     area: Array,
@@ -183,6 +187,7 @@ def line_stiffness_as_published(
     return area * area / compliance
 
 
+@geometry
 def cylinder_expansion_as_published(*, pressure: Array, area: Array, stroke: Array) -> Array:
     """Evaluate the "cylinder expansion stiffness" dp A/L_p: the unit fits, but it is no stiffness.
 
@@ -217,6 +222,7 @@ def cylinder_expansion_as_published(*, pressure: Array, area: Array, stroke: Arr
     return pressure * area / stroke
 
 
+@geometry
 def equivalent_stiffness_as_published(
     *,
     pressure: Array,

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, where
 from .line_friction import series_impedance
 
@@ -24,6 +25,7 @@ class LineMatrix(NamedTuple):
     D: Array
 
 
+@geometry
 def characteristic_impedance(
     *,
     frequency: Array,
@@ -76,6 +78,7 @@ def characteristic_impedance(
     return xp.sqrt(where(moving, along, math.nan) / where(moving, across, 1.0))
 
 
+@geometry
 def propagation(
     *,
     frequency: Array,
@@ -130,6 +133,7 @@ def propagation(
     return length * xp.sqrt(along * across)
 
 
+@geometry
 def line_matrix(
     *,
     frequency: Array,
@@ -188,6 +192,7 @@ def line_matrix(
     return LineMatrix(diagonal, along * quotient, across * quotient, diagonal)
 
 
+@geometry
 def lumped_line_matrix(
     *,
     frequency: Array,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, sqrt
 
 
@@ -21,6 +22,7 @@ class TrialMode:
     slope_2: Array
 
 
+@geometry
 def buckled_mode(
     *,
     critical_load: Array,
@@ -71,6 +73,7 @@ def buckled_mode(
     return TrialMode(squares[0], squares[1], slopes[0], slopes[1])
 
 
+@geometry
 def trial_mode_load(
     *,
     mode: TrialMode,

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from ..geometry import geometry
 from ..numeric import Array
 
 Chamber: TypeAlias = Literal["a", "b"]
@@ -26,6 +27,7 @@ class TrialMotion:
     pull: Array
 
 
+@geometry
 def least_energy_motion(
     *,
     area_a: Array,
@@ -77,6 +79,7 @@ def least_energy_motion(
     return TrialMotion(exchange, (1 - exchange) * stretch / give_b)
 
 
+@geometry
 def trial_motion_stiffness(
     *,
     motion: TrialMotion,

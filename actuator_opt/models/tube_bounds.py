@@ -10,10 +10,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import sqrt
 
+from ..geometry import geometry
 from ..numeric import Array, namespace
 from .mass import layer_area
 
 
+@geometry
 def least_growth(
     *,
     hoop: Sequence[Array],
@@ -73,6 +75,7 @@ def least_growth(
     return inner_radius / total
 
 
+@geometry
 def axial_stiffness(
     *, moduli: Sequence[Array], thicknesses: Sequence[Array], inner_radius: Array
 ) -> Array:
@@ -149,6 +152,7 @@ def ply_hoop_strength(
     return mean - half * xp.cos(2 * angle) + shear_12 * xp.sin(2 * angle)
 
 
+@geometry
 def greatest_pressure(
     *,
     yields: Sequence[Array | None],

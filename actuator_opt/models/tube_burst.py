@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
+from ..geometry import geometry
 from ..numeric import Array, namespace, together, where
 from .burst_ladder import (
     BurstLadder,
@@ -251,6 +252,7 @@ def _thermal(xp: Any, tube: LayeredTube, change: Array) -> Array | None:
     return together([value * change for value in (*tube.hold[:3], *own)])
 
 
+@geometry
 def burst_of_tube(
     *,
     layers: Sequence[WallLayer],

@@ -20,6 +20,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, cast
 
+from ..geometry import geometry
 from ..numeric import Array, expm1_quotient, lifted, namespace, stacked, together
 from .solid_ply import Solid, TubeStiffness, solid_expansion_load, solid_rotated
 
@@ -208,6 +209,7 @@ def _expands(layer: TubeLayer) -> bool:
     return any(not isinstance(value, (float, int)) or value != 0.0 for value in own)
 
 
+@geometry
 def layered_tube(*, layers: Sequence[TubeLayer], inner_radius: Array) -> LayeredTube:
     """Prepare a tube of bonded layers for `tube_state`.
 

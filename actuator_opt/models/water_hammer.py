@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from ..geometry import geometry
 from ..numeric import Array, maximum, sqrt
 
 
+@geometry
 def wave_speed(
     *, bulk_modulus: Array, density: Array, volume: Array, wall_compliance: Array = 0.0
 ) -> Array:
@@ -74,6 +76,7 @@ def joukowsky_pressure(*, density: Array, sound_speed: Array, velocity_change: A
     return density * sound_speed * velocity_change
 
 
+@geometry
 def closure_factor(*, length: Array, sound_speed: Array, closure_time: Array) -> Array:
     """Share of the sudden-stop pressure that a slow closure makes, min(1, 2 l/(a T)).
 
@@ -105,6 +108,7 @@ def closure_factor(*, length: Array, sound_speed: Array, closure_time: Array) ->
     return reflection / maximum(closure_time, reflection)
 
 
+@geometry
 def standing_wave_frequency(
     *, length: Array, sound_speed: Array, ends: tuple[str, str], mode: Array = 1.0
 ) -> Array:

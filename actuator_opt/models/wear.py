@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from ..geometry import geometry
 from ..numeric import Array, real, where
 
 
+@geometry
 def sliding_severity(*, line_load: Array, contact_width: Array, distance: Array) -> Array:
     """Mean contact pressure times sliding distance, (f/b) L: proportional to the depth worn.
 

@@ -9,10 +9,12 @@ import numpy as np
 
 from ..errors import Diagnostic, InputError
 from ..evaluation import Subject, compute
+from ..evaluation.governing import extreme, worst_of
 from ..evaluation.limits import all_limits, margin
-from ..evaluation.rows import UNLIMITED, Computed, Row, by_case, rows_of
+from ..evaluation.rows import UNLIMITED, Computed, Row, rows_of
 from ..evaluation.values import Values as Numbers
-from ..numeric import Array, maximum, minimum, real, where
+from ..numeric import Array, real, where
+from ..quantities import Sense
 from .problem import ParametricProblem, Problem, Values
 
 Fault = Callable[[str, str, str], Diagnostic]
@@ -28,6 +30,11 @@ class Goal:
     sign: float
 
     @property
+    def aim(self) -> Sense:
+        """Whether the metrics are wanted small or large."""
+        return "min" if self.sign > 0 else "max"
+
+    @property
     def single(self) -> str | None:
         """The metric, where there is only one."""
         return next(iter(self.weights)) if len(self.weights) == 1 else None
@@ -36,7 +43,7 @@ class Goal:
         """The objective of every design, to be minimised."""
         total: Array = 0.0
         for metric, weight in self.weights.items():
-            worst = governing(computed, metric, cases, largest=self.sign > 0)
+            worst = worst_value(computed, metric, cases, self.aim)
             total = total + weight / self.scales[metric] * worst
         return self.sign * total
 
@@ -45,13 +52,15 @@ class Goal:
         return self.sign * objective
 
 
-def governing(computed: Computed, metric: str, cases: tuple[str, ...], *, largest: bool) -> Array:
-    """The worst of a metric over load cases and places, (designs,)."""
-    pick = maximum if largest else minimum
-    worst: Array = None
-    for array in computed.metrics.get(metric, {}).values():
-        for _, value in by_case(computed, metric, array, cases):
-            worst = value if worst is None else pick(worst, value)
+def worst_value(computed: Computed, metric: str, cases: tuple[str, ...], aim: Sense) -> Array:
+    """The worst value of an objective over load cases and places, (designs,).
+
+    Raises
+    ------
+    InputError
+        the metric is not computed
+    """
+    worst = extreme(computed, metric, cases, worst_of(aim))
     if worst is None:
         reason = computed.why.get(metric, "it does not apply to this design")
         raise InputError(
@@ -67,7 +76,7 @@ def governing(computed: Computed, metric: str, cases: tuple[str, ...], *, larges
 def goal_of(subject: Subject) -> Goal:
     """The objective of a design; weighted metrics are divided by their present value."""
     objective = subject.design.objective
-    sign = 1.0 if objective.minimise is not None else -1.0
+    sign = 1.0 if objective.aim == "min" else -1.0
     stated = objective.minimise if objective.minimise is not None else objective.maximise
     assert stated is not None
     if isinstance(stated, str):
@@ -75,7 +84,7 @@ def goal_of(subject: Subject) -> Goal:
     done = compute(subject, subject.values())
     scales = {}
     for metric in stated:
-        present = governing(done.computed, metric, subject.cases, largest=sign > 0)
+        present = worst_value(done.computed, metric, subject.cases, objective.aim)
         scales[metric] = abs(float(np.squeeze(present))) or 1.0
     return Goal(dict(stated), scales, sign)
 
@@ -276,9 +285,7 @@ def idle_metrics(actuator: ActuatorProblem) -> tuple[str, ...]:
     moved = {path: np.array([x, x]) for path, x in zip(actuator.paths, start, strict=True)}
     subject, goal = actuator.subject, actuator.goal
     found = compute(subject, subject.values(moved)).computed
-    values = {
-        name: governing(found, name, subject.cases, largest=goal.sign > 0) for name in goal.weights
-    }
+    values = {name: worst_value(found, name, subject.cases, goal.aim) for name in goal.weights}
     return tuple(
         name for name, value in values.items() if np.size(value) == 1 and np.isfinite(value).all()
     )

@@ -1,15 +1,17 @@
 """The best point of a problem some of whose variables may only take listed values.
 
-Branch and bound from the continuous optimum, depth first to a first design and then the most
-promising box first: the bound of a box is its continuous optimum, re-optimised from that of the box
-around it. That optimum is a local one, so what is found is the best found and no proof. All
-roundings up and down come before, at once.
+Branch and bound from the continuous optimum, the most promising box first, and of those about as
+promising the newest, which is the deepest. The bound of a box is its continuous optimum,
+re-optimised from that of the box around it. That optimum is a local one, so the result is the best
+found and no proof. All roundings up and down come before, at once. A small box that leaves nothing
+to optimise is evaluated whole, in one call of the model.
 """
 
 from __future__ import annotations
 
 import heapq
 import itertools
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -18,6 +20,7 @@ import numpy as np
 
 from ..numeric import Array
 from . import lockstep, nearby
+from .descents import FEASIBLE
 from .evaluator import Evaluator, Point
 from .listed import ON, Assignment, Box, Listed, between, with_rows
 from .problem import ParametricProblem, Problem, Values, Vector
@@ -30,6 +33,13 @@ MOST_NEIGHBOURS = 256
 
 MOST_MISSED = 4
 """Most assignments looked at closely to say what the nearest one misses."""
+
+MOST_LISTED = 1024
+"""Most assignments of a box that are evaluated together, where nothing else may move."""
+
+TIE = 0.01
+"""Bounds this near are as promising: a share of the distance from the least bound to the best
+design, so that it holds on every scale of the objective. A choice."""
 
 CLOSE = 1e-7
 """Relative difference to a bound that counts as none: bounds are known so well."""
@@ -91,22 +101,49 @@ def search(
     else:
         run.neighbours()
     whole = tuple(tuple(range(len(one.rows))) for one in listed)
-    first = (run.start.objective, run.x) if remembered else run.relaxed([whole], run.x)[0]
-    boxes = [] if first is None else [(first[0], 0, whole, first[1])]
-    count = itertools.count(1)
+    boxes = _Boxes()
+    if run.evaluates(whole):
+        run.evaluate(whole)
+    elif remembered:
+        boxes.add(run.start.objective, whole, run.x)
+    else:
+        run.relax([whole], run.x, boxes)
     while boxes and not run.exhausted:
-        if run.best == np.inf:  # depth first until there is a design to beat
-            bound, _, box, x = boxes.pop(max(range(len(boxes)), key=lambda k: boxes[k][1]))
-            heapq.heapify(boxes)
-        else:
-            bound, _, box, x = heapq.heappop(boxes)
-        if run.beaten(bound):
-            continue
-        parts = run.parts(box, x, bound)
-        for part, found in zip(parts, run.relaxed(parts, x), strict=True):
-            if found is not None and not run.beaten(found[0]):
-                heapq.heappush(boxes, (found[0], next(count), part, found[1]))
-    return run.found(complete=all(run.beaten(bound) for bound, *_ in boxes))
+        bound, box, x = boxes.take(run.best)
+        if not run.beaten(bound):
+            run.relax(run.parts(box, x, bound), x, boxes)
+    return run.found(complete=all(run.beaten(bound) for bound in boxes.bounds()))
+
+
+class _Boxes:
+    """Boxes left to search, by their bounds and by their age."""
+
+    def __init__(self) -> None:
+        self._entries: dict[int, tuple[float, Box, Vector]] = {}
+        self._lowest: list[tuple[float, int]] = []
+        self._count = itertools.count()
+
+    def __bool__(self) -> bool:
+        return bool(self._entries)
+
+    def bounds(self) -> list[float]:
+        """The bound of every box left."""
+        return [bound for bound, *_ in self._entries.values()]
+
+    def add(self, bound: float, box: Box, x: Vector) -> None:
+        """Keep a box with its bound and its continuous optimum."""
+        number = next(self._count)
+        self._entries[number] = bound, box, x
+        heapq.heappush(self._lowest, (bound, number))
+
+    def take(self, best: float) -> tuple[float, Box, Vector]:
+        """The newest box where it is as promising as any, else the one of least bound."""
+        while self._lowest[0][1] not in self._entries:
+            heapq.heappop(self._lowest)
+        least, number = self._lowest[0]
+        newest = next(reversed(self._entries))
+        room = TIE * (best - least) if best < np.inf else np.inf
+        return self._entries.pop(newest if self._entries[newest][0] <= least + room else number)
 
 
 def at(
@@ -171,6 +208,9 @@ class _Run:
         self.reference = Evaluator(self.problem)
         self.start = start = self.reference.point(self.reference.space.to_z(self.x))
         self.x = start.x
+        others = np.setdiff1d(np.arange(len(self.x)), self.index)
+        self.only_listed = bool((self.problem.lower == self.problem.upper)[others].all())
+        self.least = np.inf
         if self.memory.curvature is None and start.valid and self.reference.space.size:
             self.reference.check_gradients(start)
             self.memory.curvature = nearby.curvature_at(self.reference, start)
@@ -184,7 +224,13 @@ class _Run:
     @property
     def best(self) -> float:
         """The objective to beat."""
-        return min(self.below, min(self.tried.values(), default=np.inf))
+        return min(self.below, self.least)
+
+    def note(self, assignment: Assignment, objective: float) -> None:
+        """Keep what an assignment comes to, perhaps known better now."""
+        worse = self.tried.get(assignment, np.inf) <= self.least < objective
+        self.tried[assignment] = objective
+        self.least = min(self.tried.values()) if worse else min(self.least, objective)
 
     def beaten(self, bound: float) -> bool:
         """Whether nothing above a bound can improve on what is known."""
@@ -202,7 +248,7 @@ class _Run:
         chosen = list(itertools.islice(itertools.product(*sides), MOST_NEIGHBOURS))
         for assignment, near in self.together(chosen):
             if near is None:
-                self.tried[assignment] = np.inf
+                self.note(assignment, np.inf)
             elif not self.exhausted:
                 self.assigned(assignment, near)
         self.confirmed()
@@ -230,7 +276,8 @@ class _Run:
         for assignment, optimum in zip(chosen, known, strict=True):
             self.solves += 1
             if optimum is not None:
-                self.tried[assignment], self.near[assignment] = optimum.objective, optimum.x
+                self.note(assignment, optimum.objective)
+                self.near[assignment] = optimum.x
         return [
             (chosen[k], None if z is None else evaluator.space.to_x(z[:, None])[:, 0])
             for k, z in zip(left, near, strict=True)
@@ -242,7 +289,7 @@ class _Run:
             values = self.values(assignment)
             box = tuple((row,) for row in assignment)
             (found,) = self._descended([(box, values, values)], near, nearby.EXACT)
-            self.tried[assignment] = np.inf if found is None else found.objective
+            self.note(assignment, np.inf if found is None else found.objective)
             if found is not None:
                 self.points[assignment] = found.x
         return self.tried[assignment]
@@ -265,12 +312,38 @@ class _Run:
         ends = nearby.resolve(tasks)
         self.ahead = dict(zip(self.memory.visited, zip(tasks, ends, strict=True), strict=True))
 
-    def relaxed(self, boxes: Sequence[Box], near: Vector) -> list[tuple[float, Vector] | None]:
-        """Objective and point of the continuous optimum in boxes; None where it is infeasible."""
-        self.visited += boxes
-        bounds = [(box, *self._bounds(box)) for box in boxes]
-        found = self._descended(bounds, near, nearby.ROUGH)
-        return [None if point is None else (point.objective, point.x) for point in found]
+    def evaluates(self, box: Box) -> bool:
+        """Whether every assignment of a box can be evaluated at once."""
+        return self.only_listed and math.prod(map(len, box)) <= MOST_LISTED
+
+    def evaluate(self, box: Box) -> None:
+        """Evaluate every assignment of a box that leaves nothing to optimise."""
+        chosen = list(itertools.product(*box))
+        points = np.repeat(self.x[:, None], len(chosen), axis=1)
+        for one, rows in zip(self.listed, np.array(chosen).T, strict=True):
+            points[list(one.index)] = one.rows[rows].T
+        values = Evaluator.screen(self.problem.rows(points))
+        met = self.reference.violations(values, "worst") <= FEASIBLE
+        objectives = np.where(met, values[0], np.inf).tolist()
+        for assignment, objective in zip(chosen, objectives, strict=True):
+            self.tried.setdefault(assignment, objective)
+        self.least = min(self.least, *objectives)
+        self.solves += 1
+        self.ends.append((self.reference, None))  # no optimum of a box to compare with
+
+    def relax(self, parts: Sequence[Box], near: Vector, boxes: _Boxes) -> None:
+        """Add the boxes whose continuous optimum may improve on what is known."""
+        large = []
+        for box in parts:
+            if self.evaluates(box):
+                self.evaluate(box)
+            else:
+                large.append(box)
+        self.visited += large
+        bounds = [(box, *self._bounds(box)) for box in large]
+        for box, point in zip(large, self._descended(bounds, near, nearby.ROUGH), strict=True):
+            if point is not None and not self.beaten(point.objective):
+                boxes.add(point.objective, box, point.x)
 
     def _bounds(self, box: Box) -> tuple[Vector, Vector]:
         """Bounds of the listed variables in a box."""

@@ -70,7 +70,8 @@ def _searched(choices: Search, wanted: Wanted, settings: Settings) -> Iterator[S
         if (count and late) or (checks, look.objective) >= best:
             break
         try:
-            sizes = sizes_of(look.actuator.subject.design, wanted)
+            subject = look.actuator.subject
+            sizes = sizes_of(subject.design, wanted, subject.materials)
         except InputError as fault:
             error, look.sizing = error or fault, "no size fits"
             continue

@@ -24,6 +24,9 @@ from .repairs import NOTHING, Opening, Relaxation
 STARTS = 2
 """Most points from which the joint relaxation is sought."""
 
+ROOM = 1.001
+"""What is granted to a limit, over the least that is enough, to get near that design."""
+
 
 @dataclass(frozen=True, slots=True)
 class Infeasibility:
@@ -38,6 +41,7 @@ class Infeasibility:
     x : the point that needs only the joint relaxation
     total : sum of the joint relaxation
     residual : optimality of the joint relaxation (small: it is the smallest near x)
+    multipliers : fall of the total per unit of margin granted to each constraint (m,)
     """
 
     joint: tuple[Relaxation, ...]
@@ -47,6 +51,7 @@ class Infeasibility:
     x: Vector
     total: float
     residual: float
+    multipliers: Vector
 
 
 def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
@@ -73,30 +78,65 @@ def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
             for group, amount in zip(groups, amounts, strict=True)
             if not mask[group].all() and amount > NOTHING
         )
-    n = len(problem.names)
-    x, amounts = found.x[:n], found.x[n:]
     quality = kkt.check(evaluator, found, objective_scale=1.0)
+    joint = _joint(problem, groups, mask, found)
+    sole: tuple[Relaxation, ...] = ()
+    x = found.x[: len(problem.names)]
+    if joint and not laws:
+        part = _taking_part(evaluator, found, quality)
+        named = {row.index for row in joint}
+        candidates = [group for group in groups if part[group].any() or group[0] in named]
+        sole = repairs.by_limits(problem, candidates, named, [x, *points[:STARTS]])
+        better = _less(problem, evaluator, groups, candidates, sole, found)
+        if better is not None:
+            found, quality = better, kkt.check(evaluator, better, objective_scale=1.0)
+            joint, x = _joint(problem, groups, mask, found), found.x[: len(problem.names)]
+    openings = _binding_bounds(problem, evaluator, quality)
+    if joint and not laws:
+        openings = repairs.by_bounds(problem, openings, x)
+    return Infeasibility(
+        joint, sole, openings, laws, x, float(found.objective), quality.residual,
+        quality.multipliers,
+    )  # fmt: skip
+
+
+def _joint(
+    problem: Problem,
+    groups: list[elastic.Indices],
+    mask: npt.NDArray[np.bool_],
+    found: Point,
+) -> tuple[Relaxation, ...]:
+    """The relaxations of a point of the stretched problem, the largest first."""
+    amounts = found.x[len(problem.names) :]
     joint = [
         Relaxation(problem.constraint_names[group[0]], int(group[0]), float(amount))
         for group, amount in zip(groups, amounts, strict=True)
         if amount > NOTHING and mask[group].all() and found.violation <= NOTHING
     ]
-    joint.sort(key=lambda r: -(r.amount or 0.0))
-    sole: tuple[Relaxation, ...] = ()
-    open_bounds = _binding_bounds(problem, evaluator, quality)
-    if joint and not laws:
-        part = _taking_part(evaluator, found, quality)
-        named = {row.index for row in joint}
-        sole = repairs.by_limits(
-            problem,
-            [group for group in groups if part[group].any() or group[0] in named],
-            named,
-            [x, *points[:STARTS]],
-        )
-        open_bounds = repairs.by_bounds(problem, open_bounds, x)
-    return Infeasibility(
-        tuple(joint), sole, open_bounds, laws, x, float(found.objective), quality.residual
-    )
+    return tuple(sorted(joint, key=lambda r: -(r.amount or 0.0)))
+
+
+def _less(
+    problem: Problem,
+    evaluator: Evaluator,
+    groups: list[elastic.Indices],
+    candidates: list[elastic.Indices],
+    sole: Sequence[Relaxation],
+    found: Point,
+) -> Point | None:
+    """A smaller joint relaxation, where one limit alone gives up less: the descent got stuck."""
+    alone = [(r.amount, group) for r, group in zip(sole, candidates, strict=True) if r.amount]
+    amount, group = min(alone, key=lambda one: one[0], default=(np.inf, groups[0]))
+    if amount >= found.objective - NOTHING:
+        return None
+    x = found.x[: len(problem.names)]
+    start = repairs.without_each(problem, [group], x, [ROOM * amount])[0]
+    if start is None:
+        return None
+    lacks = repairs.missed(Evaluator(problem), start, groups)
+    end = elastic.descend(evaluator.problem, start, lacks)
+    better = end.violation <= NOTHING and end.objective < found.objective
+    return end if better else None
 
 
 def _taking_part(evaluator: Evaluator, found: Point, quality: kkt.Kkt) -> npt.NDArray[np.bool_]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -13,17 +13,18 @@ from ..design import quantity_of
 from ..evaluation.rows import Row
 from ..quantities import METRICS, Quantity
 from .actuator import ActuatorProblem
+from .cures import DIGITS, Cure, Cures, cures, outward
 from .infeasibility import Infeasibility as Explanation
 from .infeasibility import explain
 from .outcome import Outcome, Solution
 from .repairs import WIDEST, Opening, Relaxation
 from .result import Infeasibility
 
-DIGITS = 4
-"""Digits of a needed limit, rounded so that the limit as printed is enough."""
-
 MORE_DIGITS = 6
 """Digits where the change is less than a per cent."""
+
+KINDS = ("dimension", "choice", "bound", "requirement", "safety factor")
+"""What may be changed, the most advisable first."""
 
 _ORIGINS = {"requirement": "requirement", "case": "load case", "check": "check list"}
 
@@ -42,32 +43,93 @@ def explained(
     found = explain(actuator.problem, points)
     objective = float(np.ravel(actuator.evaluate(found.x[:, None]).objective)[0])
     closest = replace(solution, x=found.x, objective=objective, kkt=None)
-    return _card(actuator, found, solution), closest
+    return _card(actuator, found, cures(actuator, found), solution), closest
 
 
-def _card(actuator: ActuatorProblem, found: Explanation, solution: Solution) -> Infeasibility:
+def _card(
+    actuator: ActuatorProblem, found: Explanation, others: Cures, solution: Solution
+) -> Infeasibility:
     named = {r.index for r in found.joint}
     sole = sorted(found.sole, key=lambda r: math.inf if r.amount is None else r.amount)
-    joint = tuple(_entry(actuator, r) for r in found.joint)
+    joint = tuple(entry_of(actuator, r) for r in found.joint)
     alone = tuple(
-        _entry(actuator, r)
+        entry_of(actuator, r)
         for r in sole
         if r.amount is not None
         or r.index in named
         or actuator.rows[r.index].limit_of.origin != "check"
     )
+    bounds = tuple(_bound(actuator, bound) for bound in found.bounds)
+    enough = [
+        *(_cure(actuator, "dimension", cure) for cure in others.dimensions),
+        *([_together(actuator, others.together)] if others.together else []),
+        *(_cure(actuator, "choice", cure) for cure in others.choices),
+        *(_listed(bound, "bound") for bound in bounds if bound["needed"] is not None),
+        *(_listed(entry, _kind(entry)) for entry in alone if entry["needed"] is not None),
+    ]
+    enough.sort(key=lambda cure: KINDS.index(cure["kind"]))
     return Infeasibility(
         joint=joint,
         sole=alone,
-        bounds=tuple(_bound(actuator, bound) for bound in found.bounds),
+        bounds=bounds,
         laws=found.laws,
         total=found.total,
-        sentence=_sentence(joint, alone, found.laws),
+        sentence=_sentence(joint, enough, found.laws),
         evidence=_evidence(found, solution),
+        cures=tuple(enough),
+        untried=others.untried,
     )
 
 
-def _entry(actuator: ActuatorProblem, relaxed: Relaxation) -> dict[str, Any]:
+def _kind(entry: Mapping[str, Any]) -> str:
+    """Whether a limit is the design's own requirement, or guards the safety of the actuator."""
+    return "safety factor" if entry["safety_factor"] else "requirement"
+
+
+def _listed(entry: Mapping[str, Any], kind: str) -> dict[str, Any]:
+    """A limit or bound that alone is enough, as the list of cures has it."""
+    return {
+        "kind": kind,
+        "parameter": entry["parameter"] or entry["requirement"],
+        "advised": kind != "safety factor",
+        "now": entry["value"] if kind == "bound" else entry["limit"],
+    } | {name: entry[name] for name in ("needed", "change", "limit_text", "needed_text")}
+
+
+def _together(actuator: ActuatorProblem, dimensions: Sequence[Cure]) -> dict[str, Any]:
+    """Dimensions that are enough all at once."""
+    parts = [_cure(actuator, "dimension", cure) for cure in dimensions]
+    texts = ("parameter", "limit_text", "needed_text")
+    entry: dict[str, Any] = {
+        "kind": "dimension",
+        "advised": True,
+        "now": None,
+        "needed": None,
+        "change": None,
+    }
+    return entry | {name: " + ".join(part[name] for part in parts) for name in texts} | {
+        "together": parts
+    }  # fmt: skip
+
+
+def _cure(actuator: ActuatorProblem, kind: str, cure: Cure) -> dict[str, Any]:
+    """A dimension or a choice that alone is enough."""
+    entry: dict[str, Any] = {"kind": kind, "parameter": cure.path, "advised": True, "now": cure.now}
+    if isinstance(cure.now, str) or isinstance(cure.needed, str):
+        more = ", ".join(f"{path.rpartition('.')[2]} {text}" for path, text in cure.beside.items())
+        needed = f"{cure.needed}, with {more}" if more else str(cure.needed)
+        texts = {"limit_text": str(cure.now), "needed_text": needed, "beside": dict(cure.beside)}
+        return entry | {"needed": cure.needed, "change": None} | texts
+    quantity = quantity_of(cure.path, actuator.subject.design)
+    return entry | {
+        "needed": cure.needed,
+        "change": cure.needed / cure.now - 1,
+        "limit_text": quantity.text(cure.now, MORE_DIGITS),
+        "needed_text": quantity.text(cure.needed, MORE_DIGITS),
+    }
+
+
+def entry_of(actuator: ActuatorProblem, relaxed: Relaxation) -> dict[str, Any]:
     """A requirement: its limit as the design states it, and the one that would do."""
     row, amount = actuator.rows[relaxed.index], relaxed.amount
     limit = float(np.ravel(row.limit)[0])
@@ -81,10 +143,11 @@ def _entry(actuator: ActuatorProblem, relaxed: Relaxation) -> dict[str, Any]:
     needed = None if amount is None else _relaxed(row, limit, amount)
     change = None if needed is None or not limit else needed / limit - 1
     shown = quantity or Quantity(row.limit_of.metric, "", "ratio", "", row.limit_of.metric)
-    entry = {
+    entry: dict[str, Any] = {
         "requirement": row.limit_of.name,
         "parameter": path,
         "origin": _ORIGINS.get(row.limit_of.origin, row.limit_of.origin),
+        "safety_factor": _guards(row),
         "metric": row.limit_of.metric,
         "sense": sense,
         "limit": limit,
@@ -93,6 +156,11 @@ def _entry(actuator: ActuatorProblem, relaxed: Relaxation) -> dict[str, Any]:
         "change": change,
     }
     return entry | _texts(shown, limit, needed, upwards=sense == "max")
+
+
+def _guards(row: Row) -> bool:
+    """Whether a limit guards safety: every one of the check list, and every factor."""
+    return row.limit_of.origin == "check" or row.limit_of.metric.endswith("_factor")
 
 
 def _relaxed(row: Row, limit: float, amount: float) -> float:
@@ -131,23 +199,10 @@ def _texts(
     return texts
 
 
-def outward(value: float, digits: int, upwards: bool) -> float:
-    """A number rounded to some digits, upwards or downwards (but for rounding itself).
-
-    >>> outward(283.0994, 4, True), outward(9.98645, 4, False), outward(400.00000001, 4, True)
-    (283.1, 9.986, 400.0)
-    """
-    if not value or not math.isfinite(value):
-        return value
-    places = digits - 1 - math.floor(math.log10(abs(value)))
-    scaled = value * 10.0**places
-    slack = 1e-7 * abs(scaled)
-    whole = math.ceil(scaled - slack) if upwards else math.floor(scaled + slack)
-    return round(whole / 10.0**places, max(places, 0))
-
-
 def change_text(entry: Any) -> str:
-    """``PATH 250 N -> 283.1 N (+13.2 %)``."""
+    """``PATH 250 N -> 283.1 N (+13.2 %)``; of changes together all of them."""
+    if "together" in entry:
+        return " and ".join(change_text(part) for part in entry["together"])
     name = entry.get("parameter") or entry["requirement"]
     change = entry.get("change")
     share = "" if change is None else f" ({percent(change)})"
@@ -165,9 +220,14 @@ def percent(share: float) -> str:
     return f"{100 * share:+.3g} %"
 
 
+_ACTS = {"dimension": "free {}", "choice": "change {}", "bound": "open {}"}
+"""What to do with each kind of cure that is no limit."""
+
+
 def _sentence(
-    joint: Sequence[dict[str, Any]], alone: Sequence[dict[str, Any]], laws: Sequence[str]
+    joint: Sequence[Mapping[str, Any]], enough: Sequence[Mapping[str, Any]], laws: Sequence[str]
 ) -> str:
+    """The advice in one line: the first cure, or the smallest change of limits."""
     if laws:
         return (
             "nothing fits whatever the requirements: the bounds leave no room for the geometry"
@@ -175,12 +235,20 @@ def _sentence(
         )
     if not joint:
         return "nothing fits, and no relaxation that would do was found"
+    first = enough[0] if enough else None
+    if first is not None and first["kind"] in _ACTS:
+        enough_text = "together are enough" if "together" in first else "alone is enough"
+        return f"nothing fits: {_ACTS[first['kind']].format(change_text(first))} {enough_text}"
     changes = "; ".join(change_text(entry) for entry in joint)
+    unsafe = any(entry["safety_factor"] for entry in joint)
     if len(joint) == 1:
-        return f"nothing fits: the smallest change is {changes}"
-    said = f"nothing fits: the smallest change, of {len(joint)} limits together, is {changes}"
-    if alone and alone[0]["needed"] is not None:
-        said += f". One alone is enough too: {change_text(alone[0])}"
+        said = f"nothing fits: the smallest change is {changes}"
+    else:
+        said = f"nothing fits: the smallest change, of {len(joint)} limits together, is {changes}"
+    if unsafe:
+        said += " (weakens a safety factor: not advised)"
+    if first is not None and (unsafe or len(joint) > 1) and first["advised"]:
+        said += f". One alone is enough too: {change_text(first)}"
     return said
 
 
@@ -192,8 +260,8 @@ def _evidence(found: Explanation, solution: Solution) -> str:
     if found.laws:
         return f"{tried}: this is evidence, not proof"
     return (
-        f"{tried}: this is evidence, not proof. For every limit said to be enough a design that"
+        f"{tried}: this is evidence, not proof. For everything said to be enough a design that"
         " meets it was calculated; that less would not do, or that one alone cannot, is again"
-        f" only what was found. Bounds were opened to {WIDEST:g} times or 1/{WIDEST:g} of their"
-        " value"
+        " only what was found. Bounds and fixed dimensions were opened to"
+        f" {WIDEST:g} times or 1/{WIDEST:g} of their value"
     )

@@ -34,7 +34,7 @@ class Outcome(Enum):
     INFEASIBLE = (
         "infeasible",
         "no point that meets every requirement was found",
-        "relax the requirements named as conflicting, or widen the bounds that bind",
+        "free a dimension, change a choice, widen a bound or relax a requirement that conflicts",
     )
     LIMIT = (
         "limit",

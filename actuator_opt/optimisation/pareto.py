@@ -8,15 +8,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..bounds import FRONT
 from ..design.model import Objective
 from ..errors import Diagnostic, InputError, UsageError
 from ..evaluation import Subject, compute, evaluate
 from ..evaluation.build import spec_hash
+from ..evaluation.governing import governing
 from ..evaluation.rows import Computed
 from ..numeric import Array
 from ..quantities import Quantity
 from ..suggest import remedy
-from .actuator import ActuatorProblem, Fault, Goal, build, governing, idle_metrics
+from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
 from .descents import FEASIBLE
 from .front.ends import NoEnd
 from .front.front import Front, Settings, front
@@ -25,9 +27,6 @@ from .infeasibility_card import explained
 from .pareto_result import FrontPoint, Knee, ParetoFront, Wish
 from .problem import Values, Vector
 from .rounding import design_at
-
-LEAST, MOST = 3, 2000
-"""Designs of a front that can be asked for."""
 
 
 def wishes(texts: Sequence[str], known: dict[str, Quantity]) -> tuple[Wish, ...]:
@@ -98,8 +97,8 @@ def pareto(
     """
     began = time.perf_counter()
     wished = wishes(objectives, dict(subject.quantities))
-    if not LEAST <= count <= MOST:
-        message = f"-n {count}: a front has {LEAST} to {MOST} designs"
+    if not FRONT.least <= count <= FRONT.most:
+        message = f"-n {count}: a front has {FRONT.least} to {FRONT.most} designs"
         raise UsageError(Diagnostic(message, "choose a number between them"))
     many = _problem(subject, wished, fault)
     names = [one.metric for one in wished]
@@ -126,7 +125,11 @@ def _problem(subject: Subject, wished: tuple[Wish, ...], fault: Fault | None) ->
             message = f"{wish.metric} cannot be an objective here: {why}"
             raise UsageError(Diagnostic(message, "choose one that `evaluate` shows a value for"))
     wish_all = Objective(minimise={one.metric: 1.0 for one in wished})
-    asked = replace(subject, design=subject.design.model_copy(update={"objective": wish_all}))
+    asked = replace(
+        subject,
+        design=subject.design.model_copy(update={"objective": wish_all}),
+        aims={one.metric: one.sense for one in wished},
+    )
     actuator = build(asked, fault)
     still = idle_metrics(actuator)
     if still:
@@ -142,17 +145,18 @@ def _problem(subject: Subject, wished: tuple[Wish, ...], fault: Fault | None) ->
 
 def _points(many: _Many, found: Front) -> tuple[FrontPoint, ...]:
     """Variables and metrics of every design: objectives, and what requirements are about."""
-    actuator, cases = many.actuator, many.actuator.subject.cases
-    varied = dict(zip(actuator.paths, found.x, strict=True))
-    computed = compute(actuator.subject, actuator.subject.values(varied), actuator.wanted).computed
-    largest = {one.metric: one.sense == "min" for one in many.wished}
-    for row in (*actuator.rows, *actuator.fixed):
-        if row.limit_of.origin in ("requirement", "case"):
-            largest.setdefault(row.limit_of.metric, row.limit_of.sense == "max")
-    count = found.x.shape[1]
+    actuator, count = many.actuator, found.x.shape[1]
+    subject = actuator.subject
+    numbers = subject.values(dict(zip(actuator.paths, found.x, strict=True)))
+    computed = compute(subject, numbers, actuator.wanted).computed
+    names = [one.metric for one in many.wished] + [
+        row.limit_of.metric
+        for row in (*actuator.rows, *actuator.fixed)
+        if row.limit_of.origin in ("requirement", "case")
+    ]
     columns = {
-        name: np.broadcast_to(governing(computed, name, cases, largest=most), (count,))
-        for name, most in largest.items()
+        name: np.broadcast_to(governing(name, computed, numbers, subject), (count,))
+        for name in dict.fromkeys(names)
     }
     return tuple(
         FrontPoint(
@@ -196,8 +200,19 @@ def _passed(values: Vector, signs: Vector) -> list[list[float]]:
 
 
 def _held(many: _Many) -> list[str]:
-    choices = many.actuator.subject.design.choices
-    return [f"choices are held as the design states them: {', '.join(choices)}"] if choices else []
+    """What of a design a front leaves out: its choices, and the sizes of its variables."""
+    design = many.actuator.subject.design
+    said = []
+    if design.choices:
+        said.append(f"choices are held as the design states them: {', '.join(design.choices)}")
+    sized = [
+        path
+        for path, variable in design.variables.items()
+        if variable.sizes is not None or variable.step is not None
+    ]
+    if sized:
+        said.append(f"sizes are not kept, the front is of free dimensions: {', '.join(sized)}")
+    return said
 
 
 def _said(wish: Wish) -> str:
@@ -217,7 +232,7 @@ def _without(many: _Many, found: NoEnd, began: float) -> ParetoFront:
         points=(),
         knee=None,
         design=subject.design,
-        evaluation=evaluate(subject),
+        evaluation=evaluate(replace(subject, aims=many.actuator.subject.aims)),
         infeasibility=why,
         unsolved=f"{_said(many.wished[found.objective])}: {solution.outcome.sentence}"
         if feasible

@@ -162,6 +162,10 @@ class ParametricProblem:
         return replace(self.problem, evaluate=lambda x: self.evaluate(x, parameters))
 
 
+ON_BOUND = 1e-12
+"""Share of a variable's range within which a coordinate is its bound: a zero reads 0, not 1e-23."""
+
+
 @dataclass(frozen=True)
 class Space:
     """The solver's coordinates of a problem: its free variables, logarithmic where positive."""
@@ -205,7 +209,7 @@ class Space:
         return np.asarray(np.clip(z, self.lower, self.upper))
 
     def to_x(self, z: Vector, *, inside: bool = True) -> Vector:
-        """Points (n, k) of coordinates (nf, k); exactly on a bound where z is.
+        """Points (n, k) of coordinates (nf, k); exactly on a bound where z is, within rounding.
 
         `inside=False` lets a finite-difference step leave the box by its own width.
         """
@@ -219,8 +223,9 @@ class Space:
         )
         inner = np.where(log, np.exp(np.where(log, z, 0.0)), z * self.scale[:, None])
         if inside:
-            inner = np.where(z <= self.lower[:, None], low, np.maximum(inner, low))
-            inner = np.where(z >= self.upper[:, None], high, np.minimum(inner, high))
+            room = ON_BOUND * (self.upper - self.lower)
+            inner = np.where(z <= (self.lower + room)[:, None], low, np.maximum(inner, low))
+            inner = np.where(z >= (self.upper - room)[:, None], high, np.minimum(inner, high))
         x = np.repeat(self.problem.lower[:, None], z.shape[1], axis=1)
         x[self.free] = inner
         return x

@@ -1,7 +1,8 @@
 """An optimisation or a front as plain data that gives it back: what a run record keeps of it.
 
 Designs are kept as trees of SI numbers, which build the very same design again; evaluations are
-kept as their designs and evaluated again. The rest is dataclasses, by their own annotations.
+kept as their designs, with the yield estimated of them, and evaluated again. The rest is
+dataclasses, by their own annotations.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import types
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
-from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -21,12 +22,15 @@ from ..design.kinds import Fraction
 from ..errors import InputError
 from ..evaluation import Evaluation, evaluate, prepare
 from ..evaluation.plugin import Plugin
-from ..quantities import METRICS
+from ..evaluation.reserve import YieldEstimate
+from ..quantities import METRICS, Sense
 from .pareto_result import ParetoFront
 from .result import Optimisation
 
 Found = TypeVar("Found", Optimisation, ParetoFront)
 _DESIGN, _EVALUATION, _FRACTION, _NUMBER = "$design", "$evaluation", "$fraction", "$number"
+_PLAIN: dict[Any, Any] = {float: (int, float), int: int, str: str, bool: bool}
+"""What stands for itself, with the types of JSON it may come as."""
 
 
 def to_plain(found: Optimisation | ParetoFront) -> dict[str, Any]:
@@ -51,7 +55,7 @@ def to_plain(found: Optimisation | ParetoFront) -> dict[str, Any]:
         if isinstance(value, Design):
             return {_DESIGN: place(value)}
         if isinstance(value, Evaluation):
-            return {_EVALUATION: place(value.design)}
+            return {_EVALUATION: [place(value.design), plain(value.yield_estimate)]}
         if isinstance(value, Mapping):
             return {key: plain(below) for key, below in value.items()}
         if is_dataclass(value):
@@ -80,6 +84,7 @@ def from_plain(
     """
     metrics = METRICS | {plugin.name: plugin.quantity for plugin in plugins}
     evaluated: dict[int, Evaluation] = {}
+    aims: dict[str, Sense] = {}
 
     def design(index: int) -> Design:
         built = build(special(data["designs"][index]), metrics=metrics, contradictions=False)
@@ -87,11 +92,14 @@ def from_plain(
             raise InputError(f"the design in it: {built.faults[0].message}")
         return built.design
 
-    def evaluation(index: int) -> Evaluation:
+    def evaluation(kept: Any) -> Evaluation:
+        index, known = kept if isinstance(kept, list) else (kept, None)  # before 0.7: no yield
         if index not in evaluated:
             subject = prepare(design(index), None, plugins)
-            evaluated[index] = evaluate(replace(subject, lenient=True))
-        return evaluated[index]
+            evaluated[index] = evaluate(replace(subject, lenient=True, aims=aims))
+        if known is None:
+            return evaluated[index]
+        return replace(evaluated[index], yield_estimate=_typed(YieldEstimate, special(known)))
 
     def special(value: Any) -> Any:
         if isinstance(value, list):
@@ -106,10 +114,12 @@ def from_plain(
         return {key: special(below) for key, below in value.items()}
 
     try:
+        aims |= {one["metric"]: one["sense"] for one in data["result"].get("objectives", ())}
         found = _typed(kind, special(data["result"]))
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
+        if not isinstance(found, kind):
+            raise TypeError(f"no {kind.__name__}")
+    except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
         raise InputError(f"does not fit this version ({type(error).__name__}: {error})") from None
-    assert isinstance(found, kind)
     return found
 
 
@@ -119,9 +129,20 @@ def _hints(kind: type) -> dict[str, Any]:
 
 
 def _typed(kind: Any, value: Any) -> Any:
-    """A value of JSON as its annotation has it: dataclasses and tuples again."""
+    """A value of JSON as its annotation has it: dataclasses and tuples again.
+
+    Raises
+    ------
+    TypeError, ValueError : it does not fit
+    """
     if value is None:
+        if type(None) not in get_args(kind) and kind not in (Any, None, object):
+            raise TypeError(f"null is no {kind}")
         return None
+    if kind in _PLAIN:
+        if not isinstance(value, _PLAIN[kind]) or (isinstance(value, bool) and kind is not bool):
+            raise TypeError(f"{type(value).__name__} is no {kind.__name__}")
+        return value
     if isinstance(kind, type) and is_dataclass(kind):
         if isinstance(value, kind):
             return value
@@ -135,4 +156,6 @@ def _typed(kind: Any, value: Any) -> Any:
         return _typed(options[0], value) if len(options) == 1 else value
     if isinstance(origin, type) and issubclass(origin, Mapping):
         return {key: _typed(inner[1], below) for key, below in value.items()}
+    if origin is Literal and value not in inner:
+        raise ValueError(f"{value!r} is none of {', '.join(map(str, inner))}")
     return value

@@ -112,12 +112,9 @@ class Redesign:
         before, after = self.best_before, self.best_after
         if before is None or after is None:
             return ()
-        wish = after.design.objective
-        terms = wish.minimise if wish.maximise is None else wish.maximise
-        names = [terms] if isinstance(terms, str) else list(terms or ())
         return tuple(
             Goal(name, after.evaluation.metrics[name].quantity, *_values(name, before, after))
-            for name in names
+            for name in after.design.objective.metrics
         )
 
     def _moved_words(self) -> str:
@@ -266,11 +263,17 @@ def _goal_words(one: Goal) -> str:
 
 
 def _repairs(one: Optimisation) -> list[str]:
-    """The smallest change of limits that lets a design meet them."""
+    """What alone lets a design meet the limits, and the smallest change of limits that does."""
     if one.infeasibility is None:
         return []
-    found = [change_text(row) for row in one.infeasibility.joint]
-    return [f"the smallest change of limits that would do: {'; '.join(found)}"] if found else []
+    first = next((cure for cure in one.infeasibility.cures if cure["advised"]), None)
+    alone = [] if first is None else [f"alone enough: {change_text(first)}"]
+    joint = one.infeasibility.joint
+    found = "; ".join(change_text(row) for row in joint)
+    unsafe = any(row["safety_factor"] for row in joint)
+    warned = " (weakens a safety factor: not advised)" if unsafe else ""
+    said = [f"the smallest change of limits that would do: {found}{warned}"] if found else []
+    return [*alone, *said]
 
 
 def _active_words(old: Sequence[str], new: Sequence[str]) -> list[str]:

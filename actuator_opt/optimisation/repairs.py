@@ -94,8 +94,8 @@ def by_limits(
     points : where to start, the point of the smallest joint relaxation first
     """
     amounts: list[float | None] = []
-    near = _nearby(problem, groups, points[0])
-    for number, (group, x) in enumerate(zip(groups, near, strict=True)):
+    reached = without_each(problem, groups, points[0])
+    for number, (group, x) in enumerate(zip(groups, reached, strict=True)):
         tell("nothing fits: which requirement alone would do", number / len(groups))
         if x is None:
             x = _without(problem, group, points if int(group[0]) in named else points[:1])
@@ -123,13 +123,13 @@ def _challenged(
     for _ in range(CHALLENGES):
         if not tried:
             break
-        near: dict[int, Vector | None] = dict.fromkeys(tried)
+        reached: dict[int, Vector | None] = dict.fromkeys(tried)
         for x in points:
-            left = [k for k in tried if near[k] is None]
-            reached = _nearby(problem, [groups[k] for k in left], x, [tried[k] for k in left])
-            near |= dict(zip(left, reached, strict=True))
+            left = [k for k in tried if reached[k] is None]
+            ends = without_each(problem, [groups[k] for k in left], x, [tried[k] for k in left])
+            reached |= dict(zip(left, ends, strict=True))
         for k, amount in tried.items():
-            found = near[k]
+            found = reached[k]
             if found is None:
                 short[k] = amount
                 continue
@@ -139,7 +139,7 @@ def _challenged(
     return [enough.get(k) for k in range(len(groups))]
 
 
-def _nearby(
+def without_each(
     problem: Problem,
     groups: Sequence[elastic.Indices],
     x: Vector,
@@ -164,6 +164,11 @@ def _nearby(
         return [None] * len(groups)
     found = lockstep.restore_together(parametric, evaluator, point.z, freed)
     return [None if z is None else evaluator.space.to_x(z[:, None])[:, 0] for z in found]
+
+
+def near(problem: Problem, x: Vector) -> Vector | None:
+    """A point near another that meets everything; None where none was found."""
+    return without_each(problem, [np.empty(0, dtype=np.intp)], x)[0]
 
 
 def _without(problem: Problem, group: elastic.Indices, points: Sequence[Vector]) -> Vector | None:
@@ -199,6 +204,11 @@ def _least_of_all(
             again, settled = _least(problem, group, start)
             amount = again if amount is None else min(amount, again or amount)
     return amount
+
+
+def least(problem: Problem, group: elastic.Indices, x: Vector) -> float | None:
+    """The least one group must give up, near a point that meets the others; None without any."""
+    return _least(problem, group, x)[0]
 
 
 def _least(problem: Problem, group: elastic.Indices, x: Vector) -> tuple[float | None, bool]:
@@ -237,10 +247,9 @@ def _opened(problem: Problem, bound: Opening, x: Vector) -> float | None:
         return Values(points[j] if upper else -points[j], rows[1 : 1 + m], rows[1 + m :])
 
     opened = replace(problem, lower=lower, upper=above, evaluate=evaluate, start=None)
-    near = _nearby(opened, [np.empty(0, dtype=np.intp)], x)[0]
-    if near is None:
+    start = near(opened, x)
+    if start is None:
         return None
     evaluator = Evaluator(opened)
-    start = evaluator.point(evaluator.space.to_z(near))
-    found = elastic.go(evaluator, start)
+    found = elastic.go(evaluator, evaluator.point(evaluator.space.to_z(start)))
     return float(found.x[j]) if found.violation <= NOTHING else None

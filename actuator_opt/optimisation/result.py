@@ -53,13 +53,20 @@ class Infeasibility:
 
     `joint` and `sole` entries hold requirement, origin, parameter (PATH), metric, sense, limit,
     needed (the limit that would do; None where this one alone cannot help), relaxation (margin
-    given up, a fraction), change (of the limit, a fraction) and both limits as text in the
-    display unit, the needed one rounded so that it is enough as printed. Where a torque is
-    required through a lever, limit and needed are the torque.
+    given up, a fraction), change (of the limit, a fraction), safety_factor (whether it is of the
+    check list or a factor: giving way is not advised) and both limits as text in the display unit,
+    the needed one rounded so that it is enough as printed. Where a torque is required through a
+    lever, limit and needed are the torque.
 
     `bounds` entries hold variable, parameter (PATH), quantity, bound (side), value, gain (fall of
     `total` per unit of relative opening: 0.01 of it for 1 %), needed (the bound that alone would
     do, None where none was found), change and texts.
+
+    `cures` lists what alone is enough, the most advisable first: kind (dimension, choice, bound,
+    requirement, safety factor), parameter (PATH), now and needed (SI, or a word), change, texts,
+    and advised (False for safety factors). A dimension is one no variable moves; `together` lists
+    several that are enough all at once, `beside` what a choice needs to be stated with it, by PATH.
+    Each was met by a design; `untried` names what may help and was not tried.
 
     `laws` names geometry that conflicts, `total` is the sum of the joint relaxations, `sentence`
     the advice in one line and `evidence` what of it is proven.
@@ -72,6 +79,8 @@ class Infeasibility:
     total: float | None = None
     sentence: str = ""
     evidence: str = ""
+    cures: tuple[Mapping[str, Any], ...] = ()
+    untried: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +133,20 @@ class RunnerUp:
 
 
 @dataclass(frozen=True, slots=True)
+class SizeRemedy:
+    """A small change of one number that lets a design have better sizes.
+
+    `change` holds parameter (PATH), limit and needed (SI), change (a fraction) and both as text;
+    `objective` and `values` (sizes by PATH) are of a design that meets everything with it.
+    """
+
+    change: Mapping[str, Any]
+    sentence: str
+    objective: float
+    values: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
 class Rounding:
     """The best design of whole plies, standard or other listed sizes, and what rounding costs.
 
@@ -132,7 +155,9 @@ class Rounding:
     where nothing tried meets every requirement. `plies` counts those of every layer that states its
     ply thickness, `tried` and `feasible` count rounded designs, `solves` re-optimisations;
     `complete` tells that the search did not stop at a limit. Bounds of the search are local optima:
-    the best found, no proof.
+    the best found, no proof. `unmade` names by PATH what is no whole plies or allowed angle, where
+    the sizes asked for leave it free: such a design is not one to build yet. `remedies` has small
+    changes of a limit, load or pressure that allow better sizes, where rounding costs much.
     """
 
     met: bool
@@ -153,6 +178,8 @@ class Rounding:
     runners_up: tuple[RunnerUp, ...] = ()
     design: Design | None = None
     evaluation: Evaluation | None = None
+    unmade: tuple[str, ...] = ()
+    remedies: tuple[SizeRemedy, ...] = ()
 
     def __str__(self) -> str:
         """Outcome, cost and the rounded variables as a table."""
@@ -167,28 +194,21 @@ class Rounding:
 
     def to_dict(self) -> dict[str, Any]:
         """The "rounding" of `optimise --json` (SI)."""
-        kept = {
-            name: getattr(self, name)
-            for name in ("met", "remedy", "cost", "percent", "tried", "feasible", "solves")
-        }
-        return kept | {
+        kept = ("met", "remedy", "cost", "percent", "tried", "feasible", "solves")
+        return {name: getattr(self, name) for name in kept} | {
             "sizes": self.name,
             "outcome": self.sentence,
             "complete": self.complete,
             "objective": {"continuous": self.objective_before, "rounded": self.objective_after},
             "variables": {
-                v.path: {
-                    "continuous": v.continuous,
-                    "value": v.value,
-                    "discrete": v.discrete,
-                    "plies": v.plies,
-                    "sizes": v.sizes,
-                }
+                v.path: {key: x for key, x in asdict(v).items() if key not in ("path", "quantity")}
                 for v in self.variables
             },
             "plies": dict(self.plies),
             "runners_up": [asdict(row) for row in self.runners_up],
             "notes": list(self.notes),
+            "unmade": list(self.unmade),
+            "remedies": [asdict(one) for one in self.remedies],
             "evaluation": None if self.evaluation is None else self.evaluation.to_dict(),
         }
 
@@ -319,6 +339,11 @@ class Optimisation:
         return self.evaluation if found is None else found
 
     @property
+    def tight(self) -> tuple[str, ...]:
+        """Limits of the design to build without reserve; none where it has the yield asked for."""
+        return () if self.robust and self.robust.reached else self.best_evaluation.tight
+
+    @property
     def best_objective(self) -> float:
         """The objective of the design to build (SI)."""
         found = None if self.made is None else self.made.objective_after
@@ -329,6 +354,11 @@ class Optimisation:
         """The free dimensions of the design to build."""
         known = {} if self.made is None else {row.path: row.value for row in self.made.variables}
         return tuple(v.moved(known[v.path]) if v.path in known else v for v in self.variables)
+
+    @property
+    def optimum(self) -> bool:
+        """Whether the design to build is an optimum, of its sizes where some are asked for."""
+        return self.status == "optimal" and self.best_evaluation.met
 
     @property
     def shown(self) -> str:
@@ -342,6 +372,9 @@ class Optimisation:
                 f"shown is the continuous optimum, not a design to build: {self.rounding.sentence}"
             )
         to_build = "the one to build" if self.rounding.met else "which misses a requirement"
+        if self.rounding.met and self.rounding.unmade:
+            names = ", ".join(self.rounding.unmade)
+            to_build = f"not one to build yet: {names} not in whole plies or allowed angles"
         return (
             f"shown is the design of {name} ({quantity.label} {after}), {to_build}; the continuous "
             f"optimum has {before}, and prices are those of it"
@@ -371,29 +404,20 @@ class Optimisation:
             quantity = INPUTS[v.quantity]
             numbers = [quantity.text(x, 6) for x in (v.value, v.lower, v.upper)]
             rows.append([v.path, *numbers, f"at {v.at_bound} bound" if v.at_bound else ""])
-        said = [part for part in (self.sentence, self.shown) if part]
+        why = "" if self.infeasibility is None else self.infeasibility.sentence
+        said = [part for part in (self.sentence, why, self.shown) if part]
         parts = [*said, "", aligned(rows, right=(1, 2, 3)), "", str(self.best_evaluation)]
         return "\n".join(parts if self.rounding is None else [*parts, "", str(self.rounding)])
 
     def columns(self) -> dict[str, list[Any]]:
         """The sensitivity table as columns: SI, but `limit` in its display `unit`."""
-        rows = self.sensitivities
-        return {
-            "parameter": [r.parameter for r in rows],
-            "limit": [r.limit / r.scale for r in rows],
-            "unit": [r.unit for r in rows],
-            "active": [r.active for r in rows],
-            "price": [r.price for r in rows],
-            "percent_per_percent": [r.percent_per_percent for r in rows],
-            "predicted_10": [r.predicted_10 for r in rows],
-            "resolved_10": [r.resolved_10 for r in rows],
-            "predicted_minus10": [r.predicted_minus10 for r in rows],
-            "resolved_minus10": [r.resolved_minus10 for r in rows],
-            "holds_until": [r.holds_until for r in rows],
-            "next_active": [r.next_active for r in rows],
-            "price_up": [r.price_up for r in rows],
-            "price_down": [r.price_down for r in rows],
-        }
+        names = (
+            "parameter", "limit", "unit", "active", "price", "percent_per_percent",
+            "predicted_10", "resolved_10", "predicted_minus10", "resolved_minus10",
+            "holds_until", "next_active", "price_up", "price_down",
+        )  # fmt: skip
+        found = {name: [getattr(row, name) for row in self.sensitivities] for name in names}
+        return found | {"limit": [row.limit / row.scale for row in self.sensitivities]}
 
     def to_dict(self) -> dict[str, Any]:
         """The `optimise --json` object (SI): the evaluation's keys and the optimiser's."""

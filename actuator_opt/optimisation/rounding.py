@@ -9,23 +9,26 @@ Everything else stays continuous and is optimised again. The search is no proof:
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..design import Design, quantity_of, with_values
+from ..design.material import Material
 from ..design.model import Ply
 from ..design.size_series import WHOLE, along
 from ..design.sizes import groups
 from ..errors import Diagnostic, InputError
 from ..evaluation import Evaluation, evaluate, prepare
+from ..quantities import INPUTS
 from .actuator import ActuatorProblem, Fault
 from .branch_and_bound import Found, search
 from .listed import SAME, Assignment, Listed
 from .outcome import Solution
 from .problem import Vector
 from .result import Optimisation, RoundedVariable, Rounding, RunnerUp
+from .size_remedies import size_remedies
 from .solver import solve
 
 RUNNERS_UP = 3
@@ -76,6 +79,20 @@ def plies(ply: Ply) -> int | None:
     return count if abs(ply.thickness / ply.ply_thickness - count) <= WHOLE and count else None
 
 
+def uncounted(design: Design, materials: Mapping[str, Material]) -> tuple[str, ...]:
+    """PATHs of the thickness of layers of fibres whose plies nobody can count.
+
+    They state no ply thickness, and no variable keeps to sizes of its own.
+    """
+    found = []
+    for path, ply in layers(design):
+        free = design.variables.get(f"{path}.thickness")
+        own = free is not None and (free.sizes is not None or free.step is not None)
+        if ply.ply_thickness is None and not own and not materials[ply.material].isotropic:
+            found.append(f"{path}.thickness")
+    return tuple(found)
+
+
 def misfits(design: Design) -> tuple[str, ...]:
     """PATHs of the numbers of a lay-up that are no whole plies, or no allowed angle."""
     found = []
@@ -100,20 +117,29 @@ def unrounded(optimisation: Optimisation) -> str:
     return f"{', '.join(left)}: not whole plies or allowed angles yet; see --whole-plies"
 
 
-def sizes_of(design: Design, wanted: Wanted, fault: Fault | None = None) -> Sizes | None:
+def sizes_of(
+    design: Design,
+    wanted: Wanted,
+    materials: Mapping[str, Material],
+    fault: Fault | None = None,
+) -> Sizes | None:
     """The variables that only take listed values; None where there are none, and none is asked.
 
     Parameters
     ----------
     design : the design with its variables
     wanted : what is asked beside the sizes of the file
+    materials : of the design, by name
     fault : places a variable's fault in its file; default: by PATH only
 
     Raises
     ------
     InputError
-        sizes are asked and no variable has any, or the bounds of one hold none
+        sizes are asked and no variable has any, or the bounds of one hold none; whole plies are
+        asked and a layer has none
     """
+    if wanted.whole_plies or wanted.standard:
+        _require_plies(design, wanted, materials)
     found, faults = groups(design, plies=wanted.whole_plies, standard=wanted.standard)
     if faults:
         raise InputError(
@@ -137,6 +163,34 @@ def sizes_of(design: Design, wanted: Wanted, fault: Fault | None = None) -> Size
     return Sizes(listed, labels) if found else None
 
 
+def _require_plies(design: Design, wanted: Wanted, materials: Mapping[str, Material]) -> None:
+    """Every layer of fibres must be of plies that can be counted, and whole where it is fixed."""
+    known = dict(layers(design))
+    alone = "" if wanted.whole_plies else '; for bore and rod alone write "sizes: iso_3320"'
+    faults = [
+        Diagnostic(
+            "the layer states no ply_thickness: its plies cannot be counted",
+            f'add e.g. "ply_thickness: 0.2 mm" to it{alone}',
+            path=path,
+        )
+        for path in uncounted(design, materials)
+    ]
+    for path in misfits(design):
+        ply = known.get(path.removesuffix(".thickness"))
+        if path not in design.variables and ply is not None and ply.ply_thickness is not None:
+            one = INPUTS["ply_thickness"].text(ply.ply_thickness)
+            pairs = "" if not ply.balanced or along(ply.angle) else "pairs of "
+            faults.append(
+                Diagnostic(
+                    f"no whole number of {pairs}plies of {one}, and no variable",
+                    "change it, or make it a variable",
+                    path=path,
+                )
+            )
+    if faults:
+        raise InputError(faults)
+
+
 def _nothing(wanted: Wanted) -> Diagnostic:
     if wanted.standard:
         message = "nothing to round: no variable has standard sizes"
@@ -156,7 +210,7 @@ def design_at(actuator: ActuatorProblem, x: Vector) -> tuple[Design, Evaluation]
     values = dict(zip(actuator.paths, x.tolist(), strict=True))
     design = with_values(subject.design, values, metrics=subject.quantities, contradictions=False)
     found = prepare(design, subject.materials, subject.plugins)
-    return design, evaluate(replace(found, lenient=True))
+    return design, evaluate(replace(found, lenient=True, aims=subject.aims))
 
 
 def rounded(
@@ -190,7 +244,10 @@ def rounded(
             starts = (*solution.starts, *again.starts)
             solution = replace(again, samples=solution.samples, starts=starts)
             found = search(problem, sizes.listed, solution.x, until=until)
-    return _rounding(actuator, solution, sizes, found), solution
+    remedies, note = size_remedies(actuator, solution, sizes.listed, found, until)
+    made = _rounding(actuator, solution, sizes, found)
+    notes = (*made.notes, note) if note else made.notes
+    return replace(made, remedies=remedies, notes=notes), solution
 
 
 def _cost(objective: float, solution: Solution) -> float:
@@ -221,15 +278,18 @@ def _rounding(
         feasible=feasible,
         solves=found.solves,
         complete=found.complete,
-        notes=_fixed_misfits(actuator.subject.design),
+        notes=_unmade(actuator, actuator.subject.design)[1],
     )
     if found.x is None or found.objective is None:
         return before
     design, evaluation = design_at(actuator, found.x)
     cost = _cost(found.objective, solution)
     sentence, remedy = _sentence(sizes.name, evaluation.met, found.complete)
+    unmade, notes = _unmade(actuator, design)
     return replace(
         before,
+        unmade=unmade,
+        notes=notes,
         met=evaluation.met,
         sentence=sentence,
         remedy=remedy,
@@ -294,14 +354,27 @@ def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
     )
 
 
-def _fixed_misfits(design: Design) -> tuple[str, ...]:
-    """What no variable can round."""
-    notes = []
-    for path in misfits(design):
-        if path not in design.variables:
-            what = "an allowed angle" if path.endswith("angle") else "a whole number of plies"
-            notes.append(f"{path} is no variable and is not {what}")
-    return tuple(notes)
+def _unmade(actuator: ActuatorProblem, design: Design) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """PATHs of what cannot be laid as it stands, and a sentence on each.
+
+    Of a design before its rounding these are those that no variable moves.
+    """
+    start = design is actuator.subject.design
+    moved = design.variables if start else {}
+    odd = [path for path in misfits(design) if path not in moved]
+    open_ = [path for path in uncounted(design, actuator.subject.materials) if path not in moved]
+    notes = [
+        (
+            f"{path} is no variable and is not "
+            if path not in design.variables
+            else f"{path} is not "
+        )
+        + ("an allowed angle" if path.endswith("angle") else "a whole number of plies")
+        for path in odd
+    ]
+    notes += [f"{path}: the layer states no ply_thickness, its plies are not counted"
+              for path in open_]  # fmt: skip
+    return (*odd, *open_), tuple(notes)
 
 
 def _variables(

@@ -68,7 +68,7 @@ def optimise(
     began = time.perf_counter()
     until = None if max_seconds is None else began + max_seconds
     wanted = Wanted(whole_plies, standard_sizes)
-    sizes = sizes_of(subject.design, wanted, fault)
+    sizes = sizes_of(subject.design, wanted, subject.materials, fault)
     sized: Sized | None = None
     choices: Choices | None = None
     if subject.design.choices:

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from ..suggest import CONTROLS
 from .ink import Ink
 from .text import STATUS_WORDS
 
@@ -19,7 +20,7 @@ Block: TypeAlias = dict[str, Any]
 
 _PIECES = re.compile(r"[^._/=)\]]{0,17}(?:[._/=)\]]+(?![0-9])|$)|.{1,18}", re.DOTALL)
 _WORDS = re.compile(r"\s*\S+\s*|\s+")
-_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ufeff]")
+_CONTROL = re.compile(rf"[{CONTROLS}]")
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from ..evaluation.reserve import count_words
 from ..evaluation.study.bench import Bench
 from ..identification.calibration import Calibration
 from ..optimisation.redesign import Redesign, solved
@@ -14,6 +15,7 @@ from .blocks import Block, Cell, column, notes, short, soft, table
 from .calibration_figure import calibration_figure
 from .identification_rows import force, samples_hash
 from .origin import Origin, tile
+from .page import doubts
 
 
 def write_calibration_sheet(
@@ -69,17 +71,22 @@ def verdict(changes: Redesign) -> dict[str, Any]:
     total = len(changes.evaluation.requirements)
     met = sum(row.met for row in changes.evaluation.requirements)
     lines = [f"as tested: {met} of {total} requirements met"]
-    best = changes.best_after
+    best, count = changes.best_after, 0
     if best is None:
         met = changes.evaluation.met
         state, words = ("met", "REQUIREMENTS MET") if met else ("missed", "REQUIREMENTS MISSED")
+        count = len(changes.evaluation.tight) if met else 0
     elif solved(best):
         state, words = "met", "REDESIGN MEETS ALL"
+        count = rows.tight(changes)
         lines.append("the best design meets every one")
     else:
         state, words = "infeasible", "INFEASIBLE AS MEASURED"
         lines.append("no design meets every one")
-    return {"state": state, "text": words, "lines": lines}
+    if count:
+        state, words = "checks", f"{words}, {count_words(count).upper()}"
+    plain, cautions = doubts(changes.evaluation)
+    return {"state": state, "text": words, "lines": lines + plain, "cautions": cautions}
 
 
 def _tiles(found: Calibration, changes: Redesign) -> list[dict[str, Any]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ..evaluation.reserve import count_words
 from ..identification.calibration import Calibration
 from ..optimisation.redesign import Redesign, Shift, solved
 from ..quantities import INPUTS, Quantity
@@ -48,7 +49,7 @@ def _shift(one: Shift) -> Line:
     if one.move == 0:
         cells[1:] = ["same", "", ""]
     limit = text.limit_text(quantity, one.after.sense, one.after.limit)
-    state = "met" if one.after.met else "missed"
+    state = one.after.state
     return Line((one.after.name, limit, *cells, one.verdict), state)
 
 
@@ -95,9 +96,17 @@ def what(found: Calibration) -> str:
     )
 
 
+def tight(changes: Redesign) -> int:
+    """Limits without reserve of the best design with the measured values, where there is one."""
+    best = changes.best_after
+    return len(best.tight) if best is not None and solved(best) else 0
+
+
 def remarks(found: Calibration, changes: Redesign) -> list[str]:
     """What changed, what was left, what it all rests on."""
     said = list(changes.sentences)
+    if count := tight(changes):
+        said.append(f"{count_words(count)} at the best design: it lies on its limits")
     said += [f"{key} stays as the design says: {why}" for key, why in found.left.items()]
     said += found.doubts
     return [sentence(text.pretty(words)) for words in dict.fromkeys(said)]

@@ -50,6 +50,6 @@ def _table(
         )
         for k, head in enumerate(heads)
     ]
-    paint = {"met": "green", "missed": "red", "": ""}
+    paint = {"met": "green", "no_reserve": "yellow", "missed": "red", "": ""}
     styles = [[""] * last + [paint[line.state]] for line in lines]
     return console.table(columns, [list(line.cells) for line in lines], styles)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..evaluation.comparison import Comparison, Question
 from ..quantities import METRICS
-from .compare_text import PART_TITLES, PART_UNITS, answer, duties, named, part_name
+from .compare_text import PART_TITLES, PART_UNITS, answer, duties, named, optimality, part_name
 from .fallback import wrap
 from .figures import AREAS, fills
 from .ink import BLACK, GREY, Ink, text_width
@@ -20,11 +20,9 @@ _NOTE = "Parts of a bar in the order of their key; bold: the best."
 def comparison_figure(found: Comparison) -> Ink:
     """A bar for every design and question; equal parts have equal fills; lengths are to scale."""
     questions = [q for q in found.questions if any(map(sum, q.parts.values()))]
-    heads = [
-        wrap(named(one, origin), _WIDTH - 12.0, 7.0)
-        for origin, one in zip(found.origins, found.evaluations, strict=True)
-    ]
-    notes = [line for said in (_NOTE, *duties(found)) for line in _wrapped(said)]
+    heads = [wrap(named(found, k), _WIDTH - 12.0, 7.0) for k in range(len(found.labels))]
+    said = (_NOTE, *duties(found), *optimality(found))
+    notes = [line for words in said for line in _wrapped(words)]
     above = _TOP + 1.0 + _LINE * sum(map(len, heads)) + _SMALL * len(notes) + 4.0
     heights = [_height(found, question) for question in questions]
     ink = Ink(_WIDTH, above + sum(heights) + 2.0)
@@ -48,24 +46,29 @@ def comparison_figure(found: Comparison) -> Ink:
 
 def comparison_ucurves(found: Comparison) -> Ink | None:
     """Stiffness over the stroke of the first `MOST` designs; None where none has any."""
-    some = list(zip(found.labels, found.origins, found.evaluations, strict=True))[:MOST]
-    if not any(has_points(one.curve) for _, _, one in some):
+    some = list(zip(found.labels, found.evaluations, strict=True))[:MOST]
+    if not any(has_points(one.curve) for _, one in some):
         return None
     ink = Ink(_WIDTH, 400.0)
     ink.text(4.0, 4.0, "Stiffness over the stroke", size=9.0, bold=True)
-    top = _TOP + 1.0
-    for (label, origin, one), style in zip(some, STYLES, strict=False):
+    top = _TOP
+    for words in optimality(found):
+        for line in _wrapped(words):
+            ink.text(4.0, top, line, color=GREY)
+            top += _SMALL
+    top += 1.0
+    for k, ((label, _), style) in enumerate(zip(some, STYLES, strict=False)):
         ink.line((4.0, top), (9.0, top), **style)
         ink.text(10.5, top, label, size=7.5, bold=True)
-        for line in wrap(named(one, origin), _WIDTH - 18.0, 7.0):
+        for line in wrap(named(found, k), _WIDTH - 18.0, 7.0):
             ink.text(15.5, top, line, size=7.0)
             top += _LINE
     labels = []
-    for label, _, one in some:
+    for label, one in some:
         metric = one.metrics["stiffness_min"]
         value = "" if metric.value is None else f": least {number(metric.value / 1e6, 4)} kN/mm"
         labels.append(label + value)
-    curves = [one.curve for _, _, one in some]
+    curves = [one.curve for _, one in some]
     ink.height = curves_drawn(ink, top + 7.0, curves, labels, _required(found), "A")
     return ink
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from ..design.kinds import Fraction
 from ..evaluation.comparison import Change, Comparison, Question, Value
-from ..evaluation.result import Evaluation
+from ..evaluation.reserve import count_words
 from ..quantities import Quantity, of_metric
 from . import text
 from .console import Column, Console, visible
@@ -41,7 +41,40 @@ def sentences(found: Comparison) -> list[str]:
         missed = [row.name for row in one.requirements if not row.met]
         if missed:
             said.append(f"{label} misses {len(missed)} of its requirements: {', '.join(missed)}")
-    return [*said, *duties(found)]
+    return [*said, *optimality(found, remedy=True), *unlike(found), *duties(found)]
+
+
+def unlike(found: Comparison) -> list[str]:
+    """Metrics whose values are not of the same kind, and why."""
+    said = []
+    for metric, senses in found.unlike.items():
+        least, most = (
+            ", ".join(x for x, own in zip(found.labels, senses, strict=True) if own == sense)
+            for sense in ("min", "max")
+        )
+        said.append(
+            f"{metric}: the smallest value of {least} and the largest of {most} govern, so that "
+            f"they cannot be compared"
+        )
+    return said
+
+
+def optimality(found: Comparison, *, remedy: bool = False) -> list[str]:
+    """Which designs are not known to be optima, and with `remedy` how to optimise them."""
+    labels = [found.labels[k] for k in found.not_optimised]
+    if not labels:
+        return []
+    many = len(labels) > 1
+    who = f"{', '.join(labels[:-1])} and {labels[-1]}" if many else labels[0]
+    said = (
+        f"{who} {'are' if many else 'is'} not known to be {'optima' if many else 'an optimum'}: "
+        "the differences may not be those of the best designs"
+    )
+    can = any(
+        found.states[k].status is None and found.evaluations[k].design.variables
+        for k in found.not_optimised
+    )
+    return [f"{said}; --optimise optimises each design first" if remedy and can else said]
 
 
 def duties(found: Comparison) -> list[str]:
@@ -72,6 +105,8 @@ def answer(found: Comparison, question: Question) -> str:
         labels = ", ".join(found.labels[k] for k in unknown)
         why = found.evaluations[unknown[0]].metrics[question.metric].why or "not computed"
         note = f"; {_NAMED[name]} of {labels} is not known: {why}"
+    if question.metric in found.unlike:
+        return f"{name}: cannot be said{note}"
     if question.best is None or question.other is None:
         if len(unknown) + 1 >= len(question.values):
             return f"{name}: cannot be said{note}"
@@ -106,8 +141,8 @@ def comparison_text(
     """Everything, for the terminal."""
     console = Console(colour, unicode, width)
     lines = []
-    for label, origin, one in zip(found.labels, found.origins, found.evaluations, strict=True):
-        lines.append(console.wrap(f"{label}  {named(one, origin)}", "bold"))
+    for k, label in enumerate(found.labels):
+        lines.append(console.wrap(f"{label}  {named(found, k)}", "bold"))
     lines += ["", *(console.wrap(text.pretty(said)) for said in sentences(found))]
     changes = [
         [c.path, *(console.cut(shown(c, v), _LONGEST) for v in c.values)]
@@ -130,10 +165,17 @@ def comparison_text(
     return "\n".join(lines) + "\n"
 
 
-def named(one: Evaluation, origin: str) -> str:
-    """A design's name, where it is from, and whether it meets what is asked of it."""
+def named(found: Comparison, k: int) -> str:
+    """A design's name, its origin, whether it is an optimum and meets its requirements."""
+    one, origin, own = found.evaluations[k], found.origins[k], found.states[k]
     beside = "" if origin == one.name else f" ({origin})"
-    return f"{one.name}{beside}, requirements {'met' if one.met else 'missed'}"
+    state = "optimum" if own.optimum else "evaluated, not optimised"
+    if own.status is not None and not own.optimum:
+        state = f"no optimum (search: {own.status.replace('_', ' ')})"
+    verdict = f"requirements {'met' if one.met else 'missed'}"
+    if one.met and one.tight:
+        verdict += f", {count_words(len(one.tight))}"
+    return f"{one.name}{beside}, {state}, {verdict}"
 
 
 def shown(change: Change, value: Value) -> str:

@@ -12,6 +12,9 @@ from .blocks import clean
 from .text import plain
 
 _CODES = {"bold": "1", "dim": "2", "red": "31", "green": "32", "yellow": "33", "cyan": "36"}
+_CODE = "|".join(_CODES.values())
+PAINT = rf"\x1b\[(?:0|(?:{_CODE})(?:;(?:{_CODE}))*)m"
+"""What `Console.paint` writes, as a regular expression."""
 _BREAK = re.compile(r"[\t\n\r\v\f\u2028\u2029]+")
 
 

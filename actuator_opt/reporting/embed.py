@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import re
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 
 from ..errors import Diagnostic, InputError
 
-_EMBEDDED = re.compile(rb"<<([^<>]*/EmbeddedFile(?:[^<>]|<<[^<>]*>>)*)>>\s*stream\r?\n")
 MOST_BYTES = 50_000_000
 """Of an attachment: a choice far above any input."""
+MOST_FILES = 16
+"""Attachments: a choice above the two of a report and what an editor may add."""
+NEAR = 4096
+"""Bytes from a dictionary's type to its begin and to its end: a choice; ours have some 200."""
+_MARK, _OBJECT = b"/EmbeddedFile", b" obj"
+_STREAM = re.compile(rb">>\s{0,16}stream\r?\n")
+_STEP = 1_000_000
+"""Bytes unpacked at once."""
 _DAMAGED = Diagnostic("its attachment is damaged", "take the original file")
 
 
@@ -62,47 +69,87 @@ def _update(objects: dict[int, bytes], offset: int, size: int, root: int, previo
     return body + table + trailer % (size, root, previous, offset + len(body))
 
 
-def extract(pdf: bytes) -> dict[str, bytes]:
+def extract(pdf: bytes, kinds: Sequence[str]) -> dict[str, bytes]:
     """Attached files by media type; reads what `embed`, the Typst report and most editors write.
 
-    Streams are found by their own dictionaries, whatever the cross-reference table says.
+    Streams are found by their own dictionaries, whatever the cross-reference table says. A PDF may
+    come from a stranger: whatever it holds, it is looked through once, and at most `MOST_FILES`
+    dictionaries of at most `NEAR` bytes to either side and `MOST_BYTES` of content are read.
+
+    Parameters
+    ----------
+    pdf : the file
+    kinds : media types to read; others are passed over
 
     Raises
     ------
     InputError : an attachment is damaged, too large, or not alone of its kind
     """
     found: dict[str, bytes] = {}
-    for match in _EMBEDDED.finditer(pdf):
-        kind = re.search(rb"/Subtype\s*/([\w#.+-]+)", match[1])
+    for about, begin in streams(pdf):
+        kind = re.search(rb"/Subtype\s*/([\w#.+-]+)", about)
         if kind is None:
             continue
         name = kind[1].replace(b"#2F", b"/").replace(b"#2f", b"/").decode("ascii", "replace")
-        content = _content(pdf, match.end(), match[1])
+        if name not in kinds:
+            continue
+        content = _content(pdf, begin, about)
         if found.setdefault(name, content) != content:
             message = f"carries several attachments of the kind {name}"
             raise InputError(Diagnostic(message, "give the report of one design"))
     return found
 
 
+def streams(pdf: bytes) -> Iterator[tuple[bytes, int]]:
+    """Dictionaries of embedded files, and where their streams begin."""
+    count, place = 0, pdf.find(_MARK)
+    while place >= 0:
+        end = place + len(_MARK)
+        if count == MOST_FILES:
+            raise InputError(f"names more than {MOST_FILES} attachments")
+        if not pdf[end : end + 1].isalnum():  # another word
+            count += 1
+            begin = pdf.rfind(_OBJECT, max(place - NEAR, 0), place)
+            opened = _STREAM.search(pdf, end, end + NEAR)
+            if begin >= 0 and opened is not None and pdf.find(b"endobj", begin, opened.start()) < 0:
+                yield pdf[begin + len(_OBJECT) : opened.start()], opened.end()
+        place = pdf.find(_MARK, end)
+
+
 def _content(pdf: bytes, begin: int, about: bytes) -> bytes:
     """What an embedded file holds; its size must be the one it states."""
     if re.search(rb"/Filter\s*(?:\[\s*)?/FlateDecode\s*\]?", about):
-        packed = zlib.decompressobj()
-        try:
-            content = packed.decompress(pdf[begin:], MOST_BYTES)
-        except zlib.error:
-            raise InputError(_DAMAGED) from None
-        if packed.unconsumed_tail:
-            raise InputError(f"its attachment is larger than {MOST_BYTES // 1_000_000} MB")
-        whole = packed.eof
+        content, whole = _unpacked(pdf, begin)
     elif b"/Filter" in about:
         raise InputError("its attachment is packed in a way that is not read")
     else:
-        length = re.search(rb"/Length\s+(\d+)(?!\s+\d+\s+R)\b", about)
+        length = re.search(rb"/Length\s+(\d{1,12})(?!\d|\s+\d+\s+R)", about)
         end = begin + int(length[1]) if length else pdf.find(b"endstream", begin)
-        content = pdf[begin:end] if length else pdf[begin:end].removesuffix(b"\n")
         whole = begin <= end <= len(pdf)
-    size = re.search(rb"/Size\s+(\d+)", about)
+        if end - begin > MOST_BYTES:
+            raise _too_large()
+        content = pdf[begin:end] if length else pdf[begin:end].removesuffix(b"\n")
+    size = re.search(rb"/Size\s+(\d{1,12})(?!\d)", about)
     if not whole or (size is not None and int(size[1]) != len(content)):
         raise InputError(_DAMAGED)
     return content
+
+
+def _unpacked(pdf: bytes, begin: int) -> tuple[bytes, bool]:
+    """The content of a packed stream, and whether its end was reached."""
+    packed, parts, room = zlib.decompressobj(), list[bytes](), MOST_BYTES
+    for place in range(begin, min(len(pdf), begin + MOST_BYTES), _STEP):
+        try:
+            parts.append(packed.decompress(pdf[place : place + _STEP], room + 1))
+        except zlib.error:
+            raise InputError(_DAMAGED) from None
+        room -= len(parts[-1])
+        if room < 0:
+            raise _too_large()
+        if packed.eof:
+            break
+    return b"".join(parts), packed.eof
+
+
+def _too_large() -> InputError:
+    return InputError(f"its attachment is larger than {MOST_BYTES // 1_000_000} MB")

@@ -12,7 +12,7 @@ from .ink import BLACK, GREY, PALE, RED, WHITE, Ink, text_width
 SHEET = (210.0, 297.0)
 LEFT, RIGHT, TOP, BOTTOM = 15.0, 195.0, 15.0, 280.0
 NOTE = "Plain layout: the typst package is not installed; install it for the full report sheet."
-GREEN = "#00654a"
+GREEN, AMBER = "#00654a", "#8a5a00"
 _SIZE = 6.2
 _LINE = 3.0
 
@@ -116,9 +116,11 @@ def _title(flow: _Flow, data: Mapping[str, Any]) -> None:
     flow.words(f"{data['kind']}, actuator-opt {data['version']}, spec {data['hash']}{dated}", 6.5)
     flow.y += 1.5
     verdict = data["verdict"]
-    color = GREEN if verdict["state"] == "met" else RED
+    color = {"met": GREEN, "checks": AMBER}.get(verdict["state"], RED)
     flow.words(verdict["text"], 11.0, bold=True, color=color)
     flow.words("; ".join(verdict["lines"]), 6.5)
+    if verdict.get("cautions"):
+        flow.words("; ".join(verdict["cautions"]), 6.5, bold=True, color=AMBER)
     flow.words(joined(data["sentence"]), 7.0)
     flow.y += 2.0
     for tile in data["tiles"]:

@@ -71,7 +71,7 @@ def _tiles(found: Identification) -> list[dict[str, Any]]:
     largest = f"{rows.pressure(found.largest / found.area)} of the maximum"
     tiles = [
         (
-            "mean friction while it moves",
+            rows.mean_label(found).replace("mean", "mean friction", 1),
             rows.force(mean.value),
             f"95 %: {rows.bounds(mean.lower, mean.upper, rows.FORCE)}",
         ),

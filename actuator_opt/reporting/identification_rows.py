@@ -63,7 +63,7 @@ PARAMETERS = {
 _NOTHING = {
     "viscous": "no viscous friction",
     "pressure_slope": "no effect of pressure",
-    "lag": "no further lag",
+    "bristle_damping": "σ₁ not parted from a lag",
 }
 COEFFICIENTS = {
     ("power_law", "coefficient"): _by(DAMPING, "power law", "a"),
@@ -143,7 +143,7 @@ def every_parameter(found: Identification) -> list[Parameter]:
 
 def held(values: Mapping[str, float]) -> str:
     """Values that were not asked for, in words; empty for none."""
-    left = dict(values)
+    left = {name: value for name, value in values.items() if name != "lag"}
     found = []
     if "stribeck_speed" in left:
         for name in ("static", "stribeck_speed", "exponent"):
@@ -283,17 +283,31 @@ def conditioning(found: Identification) -> str:
     load = found.settings.load_force
     known = load is not None and "F_L" not in found.record
     against = f" against the stated load of {force(load)}" if known and load is not None else ""
-    lag = "no lag of the pressures taken off"
-    if found.pressure_lag:
-        stated = "" if found.settings.pressure_lag is None else ", as stated"
-        lag = f"{number(1e3 * found.pressure_lag, 3)} ms taken off the pressures{stated}"
     return (
         f"Zero-phase Butterworth filter of order {motion.order} at {trimmed(motion.cutoff)} Hz"
         f" ({gain}), which keeps {number(100 * found.spectrum.kept, 3)} % of the velocity's power:"
         f" {found.spectrum.says(motion.cutoff)}. Force balance with"
-        f" {value_text(MASS, found.mass)} moving inside the force sensor{against}; {lag}."
+        f" {value_text(MASS, found.mass)} moving inside the force sensor{against}; {_lag(found)}."
         f" {_bounds_by(found)}"
     )
+
+
+def _lag(found: Identification) -> str:
+    """What was taken off the pressures, or why nothing was."""
+    taken, seen = found.pressure_lag, found.lag_seen
+    if found.settings.pressure_lag is not None:
+        return f"{number(1e3 * taken, 3)} ms of lag taken off the pressures, as stated"
+    if taken:
+        return f"{number(1e3 * taken, 3)} ms taken off the pressures"
+    if seen is None or not math.isfinite(seen.upper - seen.lower):
+        return "whether the pressures come late the record cannot show, none is taken off"
+    low, high = (number(1e3 * x, 2) for x in (seen.lower, seen.upper))
+    return f"lag of the pressures {low} to {high} ms by the record, none taken off"
+
+
+def mean_label(found: Identification) -> str:
+    """What the mean friction is the mean of."""
+    return "mean in sliding" if found.slides else "mean, without sliding"
 
 
 def _bounds_by(found: Identification) -> str:

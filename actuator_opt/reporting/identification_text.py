@@ -47,7 +47,7 @@ def _friction(found: Identification, console: Console) -> str:
     low, high = number(mean.lower), number(mean.upper)
     loss = [number(rows.PRESSURE.to_display(x / area), 3) for x in (mean.lower, mean.upper)]
     body = [
-        ["mean while it moves", rows.force(mean.value), low, high],
+        [rows.mean_label(found), rows.force(mean.value), low, high],
         ["maximum", rows.force(found.largest), "", ""],
         ["equivalent pressure loss", rows.pressure(mean.value / area), *loss],
         ["pressure loss at maximum", rows.pressure(found.largest / area), "", ""],

@@ -46,18 +46,21 @@ def blocks(card: Infeasibility) -> list[Block]:
     if card.joint:
         these = "this" if len(card.joint) == 1 else "all of these together"
         note = f"With {these} a design exists: the one shown here. No smaller sum was found."
+        if any(entry["safety_factor"] for entry in card.joint):
+            note += " It weakens a safety factor, which is not advised."
         found.append(table("Smallest joint relaxation", *_limits(card.joint), note=note))
-    alone = [entry for entry in card.sole if entry["needed"] is not None]
     others = [str(e["parameter"] or e["requirement"]) for e in card.sole if e["needed"] is None]
     words = ""
-    if alone:
-        words = "Any one of these, changed alone, is enough; less than that was not. "
+    if card.cures:
+        words = "Any one line alone is enough, the most advisable first; less of it was not. "
     if others:
-        words += f"Not enough alone, however much it gives way: {', '.join(others)}."
-    if alone:
-        found.append(table("One limit alone", *_limits(alone), note=words.strip()))
-    elif others:
-        found.append(notes("One limit alone", [words]))
+        words += f"Not enough alone, however much it gives way: {', '.join(others)}. "
+    if card.untried:
+        words += f"Not tried, for the time it takes: {', '.join(card.untried)}."
+    if card.cures:
+        found.append(table("What is enough alone", *_cures(card.cures), note=words.strip()))
+    elif words:
+        found.append(notes("What is enough alone", [words.strip()]))
     if card.bounds:
         found.append(_bounds(card))
     if card.evidence:
@@ -89,6 +92,32 @@ def _limits(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Block], list[lis
         for entry in entries
     ]
     return columns, rows
+
+
+def _cures(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Block], list[list[Cell]]]:
+    """Columns and rows of what is enough alone."""
+    columns = [
+        column("what", "left", 1.3, mono=True),
+        column("stands for", "left", 1.3),
+        column("now", "right"),
+        column("needed", "right", strong=True),
+        column("change", "right"),
+    ]
+    rows: list[list[Cell]] = [
+        [
+            soft(entry["parameter"]),
+            soft(_STANDS_FOR.get(entry["kind"], entry["kind"])),
+            text.pretty(entry["limit_text"]),
+            text.pretty(entry["needed_text"]),
+            _change(entry["change"]),
+        ]
+        for entry in entries
+    ]
+    return columns, rows
+
+
+_STANDS_FOR = {"dimension": "fixed dimension", "safety factor": "safety: not advised"}
+"""Words of a kind of cure, where they say more."""
 
 
 def _origin(entry: Mapping[str, Any]) -> str:

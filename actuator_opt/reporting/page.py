@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
-from ..evaluation.result import Evaluation
+from ..evaluation.reserve import count_words
+from ..evaluation.result import Evaluation, Requirement
 from ..evaluation.study.seal import SealStudy
 from ..optimisation.result import Optimisation
 from . import (
@@ -54,6 +56,8 @@ _SHORT = {
 
 _SHORT_OF = ("missed", "infeasible")
 """States in which an optimum has not the yield asked for."""
+_MET = ("met", "checks")
+"""States in which every requirement is met: green, and amber."""
 
 
 def parts_of(subject: Evaluation | Optimisation) -> tuple[Evaluation, Optimisation | None]:
@@ -77,6 +81,15 @@ def sentences(optimisation: Optimisation) -> list[str]:
     return [text.pretty(optimum.sentence(part)) for part in said if part]
 
 
+def reserve_sentences(subject: Evaluation | Optimisation) -> list[str]:
+    """Limits without reserve and the yield, where requirements are met and nothing said it."""
+    evaluation, optimisation = parts_of(subject)
+    told = optimisation is not None and optimisation.robust is not None
+    if told or verdict(subject)["state"] not in _MET:
+        return []
+    return [text.pretty(part) for part in evaluation.reserve_sentences]
+
+
 def warnings(subject: Evaluation | Optimisation) -> list[str]:
     """What the evaluation warns of, then the optimiser."""
     evaluation, optimisation = parts_of(subject)
@@ -84,13 +97,17 @@ def warnings(subject: Evaluation | Optimisation) -> list[str]:
 
 
 def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
-    """The badge: state, words, and how many rows and checks stand behind it."""
+    """The badge: state, words, how many rows and checks stand behind it, and what to doubt.
+
+    `cautions` are lines in amber: limits without reserve, values nobody has verified, values
+    outside a model's range.
+    """
     evaluation, optimisation = parts_of(subject)
     missed = sum(not row.met for row in evaluation.requirements)
-    total = len(evaluation.requirements)
     failed = sum(check.status == "missed" for check in evaluation.checks)
     rounding = None if optimisation is None else optimisation.rounding
     robust = None if optimisation is None else optimisation.robust
+    tight = len((optimisation or evaluation).tight)
     none_made = rounding.name if rounding is not None and rounding.design is None else ""
     of = "continuous: " if none_made else f"{rounding.name}: " if rounding else ""
     if optimisation is not None and optimisation.infeasibility is not None:
@@ -105,22 +122,50 @@ def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
         state, words = "missed", "YIELD MISSED"
     elif failed:
         state, words = "checks", "REQUIREMENTS MET, CHECKS MISSED"
+    elif tight:
+        state, words = "checks", f"REQUIREMENTS MET, {count_words(tight).upper()}"
     else:
         state, words = "met", "REQUIREMENTS MET"
     counts = {
         name: sum(check.status == name for check in evaluation.checks)
         for name in ("met", "missed", "not_checked")
     }
+    lines, cautions = doubts(evaluation)
     return {
         "state": state,
         "text": words,
         "lines": [
-            f"{of}{total - missed} of {total} requirements met"
+            f"{of}{evaluation.tally}{_misfit(optimisation)}"
             + (", without reserves for the yield" if robust and state in _SHORT_OF else ""),
             f"checks: {counts['met']} met · {counts['missed']} missed"
             f" · {counts['not_checked']} not checked",
+            *lines,
+        ],
+        "cautions": [
+            *([count_words(tight)] if tight and failed and state == "checks" else []),
+            *cautions,
         ],
     }
+
+
+def doubts(evaluation: Evaluation) -> tuple[list[str], list[str]]:
+    """Plain lines and cautions: values nobody has verified, results that are extrapolated."""
+    counts = evaluation.counts
+    results, models = counts["extrapolated"], counts["extrapolated_models"]
+    words = f"{results} result{'' if results == 1 else 's'}"
+    if models:
+        words += f", {models} model{'' if models == 1 else 's'}"
+    known = (
+        (counts["unverified"], f"values not verified: {counts['unverified']}"),
+        (results + models, f"EXTRAPOLATED: {words}"),
+    )
+    return [said for number, said in known if not number], [said for n, said in known if n]
+
+
+def _misfit(optimisation: Optimisation | None) -> str:
+    """The geometry that does not fit, where no limit need be missed for that."""
+    why = None if optimisation is None else optimisation.infeasibility
+    return f"; the geometry does not fit: {', '.join(why.laws)}" if why and why.laws else ""
 
 
 def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
@@ -132,14 +177,14 @@ def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
     tiles = []
     for name in names:
         metric, quantity = evaluation.metrics[name], text.metric(name)
-        row = next((r for r in evaluation.requirements if r.metric == name), None)
-        state, note = "none", "" if metric.case is None else f"case {metric.case}"
+        row = _limited(evaluation, name)
+        value, state, note = metric.value, "none", f"case {metric.case}" if metric.case else ""
         before = _before(optimisation, name)
         if name in first and before is not None and metric.value is not None:
             change = text.number(100 * (metric.value / before[1] - 1), before[2], signed=True)
             note = f"{before[0]} {text.value_text(quantity, before[1])}, {change} %"
-        elif row is not None:
-            state = "met" if row.met else "missed"
+        elif row is not None and row.value is not None:
+            value, state = row.value, "met" if row.met else "missed"
             limit = text.limit_text(quantity, row.sense, row.limit)
             note = f"{limit}, margin {text.margin_of(quantity, row.limit, row.margin, met=row.met)}"
         elif name == "mass" and metric.value is not None:
@@ -150,13 +195,19 @@ def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
             {
                 "label": short(_SHORT.get(name, quantity.label), 30),
                 "symbol": quantity.symbol,
-                "value": text.number(text.display(quantity, metric.value)),
+                "value": text.number(text.display(quantity, value)),
                 "unit": text.unit_text(quantity.unit),
                 "note": short(note, 44),
                 "state": state,
             }
         )
     return tiles
+
+
+def _limited(evaluation: Evaluation, name: str) -> Requirement | None:
+    """The limit on a metric with the smallest margin; one without a value comes last."""
+    rows = [row for row in evaluation.requirements if row.metric == name]
+    return min(rows, key=lambda r: math.inf if r.margin is None else r.margin, default=None)
 
 
 def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float, int] | None:
@@ -209,6 +260,7 @@ def page(
         blocks += [tables.extra(given)] + ([given.drawing] if given.drawing is not None else [])
     blocks.append(listing(f"Input: {source_name}", source_text))
     said = [] if optimisation is None else sentences(optimisation)
+    said += reserve_sentences(subject)
     origin = Origin(source_text, source_name, command, evaluation.spec_hash, date)
     return origin.heading(name=evaluation.name, kind=kind) | {
         "version": clean(evaluation.version),

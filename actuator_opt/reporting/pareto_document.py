@@ -6,12 +6,14 @@ import hashlib
 from pathlib import Path
 from typing import Any
 
+from ..evaluation.reserve import count_words
 from ..optimisation.pareto_result import ParetoFront
 from . import pareto_rows as rows
 from . import text, writer
 from .blocks import Block, Cell, column, notes, short, soft, table
 from .image import images
 from .origin import Origin, tile
+from .page import doubts
 from .pareto_figure import front_figure
 
 FEWER = 17
@@ -58,7 +60,13 @@ def front_page(found: ParetoFront, origin: Origin) -> dict[str, Any]:
 
 def _verdict(found: ParetoFront) -> dict[str, Any]:
     lines = [f"{len(found.points)} designs", "none dominated, every requirement met"]
-    return {"state": "met", "text": "PARETO FRONT", "lines": lines}
+    tight = len(found.evaluation.tight)
+    state = "checks" if tight else "met"
+    plain, cautions = doubts(found.evaluation)
+    if tight:
+        cautions.insert(0, f"{rows.evaluated(found)}: {count_words(tight)}")
+    lines += plain
+    return {"state": state, "text": "PARETO FRONT", "lines": lines, "cautions": cautions}
 
 
 def _tiles(found: ParetoFront) -> list[dict[str, Any]]:

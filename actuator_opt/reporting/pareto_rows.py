@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..design import quantity_of
+from ..evaluation.reserve import count_words
 from ..optimisation.front.even import Gap
 from ..optimisation.pareto_result import ParetoFront
 from ..quantities import Quantity
@@ -120,6 +121,11 @@ def moving(found: ParetoFront, most: int) -> list[str]:
     return [path for path in paths if span(path) > 1e-3][:most]
 
 
+def evaluated(found: ParetoFront) -> str:
+    """The design that the front's evaluation is of."""
+    return "first design" if found.knee is None else "knee"
+
+
 def remarks(found: ParetoFront) -> list[str]:
     """What was checked, how even it is, the knee, and what to doubt."""
     said = [found.sentence]
@@ -136,6 +142,11 @@ def remarks(found: ParetoFront) -> list[str]:
     if found.points:
         worst = max(point.kkt_residual for point in found.points)
         said.append(f"optimality conditions hold to {text.number(worst, 2)} at every design")
+        if tight := len(found.evaluation.tight):
+            said.append(
+                f"{evaluated(found)}: {count_words(tight)}; `actuator-opt uncertainty` gives the "
+                "yield of a design"
+            )
     return [*said, *found.warnings]
 
 

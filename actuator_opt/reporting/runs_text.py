@@ -52,7 +52,7 @@ def runs_table(
                 str(head.get("version", "")),
             ]
         )
-        paint = "green" if head.get("met") else "yellow"
+        paint = "green" if head.get("met") and not head.get("without_reserve") else "yellow"
         styles.append(["bold", "dim", "", paint, "", "dim", "dim"])
     return "\n".join(console.table(columns, cells, styles)) + "\n"
 
@@ -66,7 +66,10 @@ def outcome(head: Mapping[str, Any]) -> str:
     if status == "front":
         return f"{head['points']} designs"
     if status == "optimal":
-        return "met" if head.get("met") else "requirement missed"
+        if not head.get("met"):
+            return "requirement missed"
+        count = head.get("without_reserve", 0)
+        return f"met, {count} without reserve" if count else "met"
     return status.replace("_", " ")
 
 

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..evaluation.reserve import count_words
 from ..quantities import RESULTS, SCENARIOS, Quantity
 from ..simulation.loops import LOOPS, loop_of
 from ..simulation.result import Row, Simulation
@@ -81,7 +82,7 @@ class Shown(NamedTuple):
     @property
     def state(self) -> str:
         """Whether its limit is met; empty without one."""
-        return "" if self.row is None else "met" if self.row.met else "missed"
+        return "" if self.row is None else self.row.state
 
 
 def label(name: str) -> str:
@@ -286,8 +287,13 @@ def verdict(found: Simulation) -> dict[str, Any]:
     if met < total:
         return {"state": "missed", "text": "REQUIREMENTS MISSED", "lines": lines}
     words = "REQUIREMENTS MET" if total else "SIMULATED"
+    tight = sum(row.state == "no_reserve" for row in found.requirements)
+    if tight:
+        words += f", {count_words(tight).upper()}"
     if not sound(found):
-        return {"state": "checks", "text": f"{words}, IN DOUBT", "lines": lines}
+        words += ", IN DOUBT"
+    if tight or not sound(found):
+        return {"state": "checks", "text": words, "lines": lines}
     return {"state": "met", "text": words, "lines": lines}
 
 

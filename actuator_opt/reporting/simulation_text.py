@@ -15,7 +15,7 @@ from .simulation_words import what
 from .text import number, unit_text
 
 _PAINTS = {"met": "green", "checks": "yellow bold", "missed": "red bold"}
-_MARKS = {"met": ("✔", "ok"), "missed": ("✘", "MISSED")}
+_MARKS = {"met": ("✔", "ok"), "no_reserve": ("!", "!"), "missed": ("✘", "MISSED")}
 POINTS = 240
 """Points of the curve of a step."""
 
@@ -90,7 +90,7 @@ def _results(found: Simulation, console: Console) -> str:
                 quantity.label if first else "",
             ]
         )
-        paint = {"met": "green", "missed": "red"}.get(one.state, "")
+        paint = {"met": "green", "no_reserve": "yellow", "missed": "red"}.get(one.state, "")
         styles.append(["", "bold", "dim", "", paint, paint, paint, "dim"])
     lines = console.table(columns, body, styles) if body else []
     for key in rows.bench(found):

@@ -7,7 +7,6 @@ unit as metadata, the file has what its rows rest on.
 
 from __future__ import annotations
 
-import json
 from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from types import TracebackType
@@ -19,6 +18,7 @@ from ..evaluation import prepare
 from ..evaluation.build import spec_hash
 from ..extras import library
 from ..numeric import Array
+from ..plain_json import encoded
 from ..store import aside_bytes, writing
 from ..variants.axes import Axis
 from ..variants.chunk import Chunk, Study
@@ -160,7 +160,7 @@ def _told(study: Study) -> dict[str, str]:
         "version": VERSION,
         "spec_hash": spec_hash(prepare(study.design, plugins=study.plugins)),
         "study": study.hash,
-        "plan": json.dumps(points, ensure_ascii=False),
+        "plan": encoded(points, ensure_ascii=False),
         "design": study.text,
     }
     return {f"actuator_opt.{key}": value for key, value in told.items()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..design.paths import quantity_of
+from ..evaluation.reserve import NO_RESERVE
 from ..quantities import Quantity
 from ..variants import Best, Swept
 from . import text
@@ -27,7 +28,9 @@ def sweep_text(
         lines += ["", *_table(console, swept)]
     else:
         lines += ["", console.wrap(_nothing(swept))]
-    lines += [console.wrap(said) for said in study.remarks if swept.best]
+    if swept.damaged:
+        rows = "1 row" if swept.damaged == 1 else f"{swept.damaged} rows"
+        lines.append(console.wrap(f"{rows} in the store were damaged and computed again."))
     reasons = sorted(swept.failures.items(), key=lambda one: (-one[1], one[0]))
     for reason, times in reasons[:FAILURES]:
         lines.append(console.wrap(f"failed: {times} times {reason}"))
@@ -85,7 +88,13 @@ def _table(console: Console, swept: Swept) -> list[str]:
                 text.margin_text(best.margin),
             ]
         )
-    return console.table(columns, rows)
+    tight = [best.margin < NO_RESERVE for best in swept.best]
+    styles = [[""] * (len(columns) - 1) + ["yellow" if one else ""] for one in tight]
+    lines = console.table(columns, rows, styles)
+    if any(tight):
+        words = f"{sum(tight)} of these without reserve: least margin below {100 * NO_RESERVE:g} %"
+        lines.append(console.wrap(words, "yellow"))
+    return lines
 
 
 def _head(name: str, quantity: Quantity | None) -> str:

@@ -24,13 +24,13 @@ def requirements(evaluation: Evaluation) -> Block:
         quantity = text.metric(row.metric)
         rows.append(
             [
-                soft(row.name),
+                soft(row.name + text.flag(evaluation, row.metric)),
                 clean(quantity.label),
                 text.limit_text(quantity, row.sense, row.limit),
                 _result(evaluation, row),
                 text.margin_of(quantity, row.limit, row.margin, met=row.met),
                 bar(row.margin, met=row.met),
-                status("met" if row.met else "missed"),
+                status(row.state),
                 where(row.case, row.place),
             ]
         )
@@ -45,6 +45,7 @@ def requirements(evaluation: Evaluation) -> Block:
         column("governing case", "left", 1.15),
     ]
     note = "Margin is the room left, relative to the limit; the bar is full at 100 %."
+    note = " ".join([note, *(f"{line}." for line in text.row_notes(evaluation))])
     if not rows:
         return notes("Requirements", ["The design states no requirement."])
     return table("Requirements", columns, rows, note=note)
@@ -103,11 +104,11 @@ def checks(evaluation: Evaluation) -> Block:
         shown = row.metric is not None and row.value is not None
         rows.append(
             [
-                clean(row.name),
+                clean(row.name + text.flag(evaluation, row.metric)),
                 text.limit_text(quantity, row.sense, row.limit),
                 text.value_text(quantity, row.value) if shown else DASH,
                 text.margin_of(quantity, row.limit, row.margin, met=row.status != "missed"),
-                status(row.status),
+                status(row.state),
                 where(row.case, row.place),
                 soft(remark or DASH),
             ]

@@ -28,14 +28,23 @@ from .text import DASH
 
 _STATE_STYLE = {
     "met": "green",
+    "no_reserve": "yellow",
     "missed": "red bold",
     "checks": "yellow bold",
     "not_checked": "dim",
     "infeasible": "red bold",
 }
-_MARKS = {"met": "✔", "checks": "!", "missed": "✘", "not_checked": "○", "infeasible": "✘"}
+_MARKS = {
+    "met": "✔",
+    "no_reserve": "!",
+    "checks": "!",
+    "missed": "✘",
+    "not_checked": "○",
+    "infeasible": "✘",
+}
 _PLAIN_MARKS = {
     "met": "ok",
+    "no_reserve": "!",
     "checks": "!",
     "missed": "MISSED",
     "not_checked": "-",
@@ -60,7 +69,7 @@ def verdict(
     unicode: bool = True,
     width: int = 100,
 ) -> str:
-    """One line: name, verdict, how many requirements and checks stand behind it."""
+    """Name and verdict, how many requirements and checks stand behind it, what to doubt."""
     console = Console(colour, unicode, width)
     evaluation, optimisation = page.parts_of(subject)
     found = page.verdict(subject)
@@ -72,18 +81,28 @@ def verdict(
         + console.paint(mark + found["text"].lower(), *_STATE_STYLE[state].split())
     ]
     lines.append(console.wrap("; ".join(found["lines"]), "dim"))
+    if found["cautions"]:
+        names = ", ".join(evaluation.extrapolated)
+        lines.append(
+            console.wrap("; ".join(found["cautions"]) + (f" ({names})" if names else ""), "yellow")
+        )
     missed = [row.name for row in evaluation.requirements if not row.met]
     if missed:
         lines.append(console.wrap("missed: " + ", ".join(missed), "red"))
     if optimisation is not None:
         lines += [console.wrap(part) for part in page.sentences(optimisation)]
+    paint = "yellow" if state == "checks" else ""
+    lines += [console.wrap(part, paint) for part in page.reserve_sentences(subject)]
     return "\n".join(lines)
 
 
 def evaluation_table(
     evaluation: Evaluation, *, colour: bool = False, unicode: bool = True, width: int = 100
 ) -> str:
-    """Every computed quantity: value, unit, limit, margin bar, governing case."""
+    """Every computed quantity: value, unit, limit, margin bar, governing case.
+
+    Beside a limit stands the value that the margin is of.
+    """
     console = Console(colour, unicode, width)
     columns = [
         Column("quantity"),
@@ -108,15 +127,16 @@ def evaluation_table(
         entries: Sequence[Requirement | None] = limits.get(metric.name) or [None]
         for index, row in enumerate(entries):
             case = brief(metric.case, metric.place)
-            flag = "" if metric.in_range else " (!)"
+            flag = "" if metric.in_range else text.FLAG
             limit = "" if row is None else text.limit_text(quantity, row.sense, row.limit)
             margin = None if row is None else row.margin
             met = row is None or row.met
+            value = metric.value if row is None else row.value
             rows.append(
                 [
                     metric.name + flag if index == 0 else "",
-                    text.number(quantity.to_display(metric.value)) if index == 0 else "",
-                    text.unit_text(quantity.unit) if index == 0 else "",
+                    DASH if value is None else text.number(quantity.to_display(value)),
+                    text.unit_text(quantity.unit),
                     limit,
                     text.margin_of(quantity, row.limit, margin, met=met) if row else "",
                     console.margin_bar(margin, half),
@@ -124,11 +144,11 @@ def evaluation_table(
                     quantity.label if index == 0 else "",
                 ]
             )
-            paint = "" if row is None else "green" if met else "red"
+            paint = "" if row is None else _STATE_STYLE[row.state]
             styles.append(["", "bold", "dim", "", paint, paint, "dim", "dim"])
     lines = console.table(columns, rows, styles)
     if any(not metric.in_range for metric in evaluation.metrics.values()):
-        lines.append(console.paint("(!) a model was used outside its valid range", "yellow"))
+        lines.append(console.paint(text.FLAGGED, "yellow"))
     if missing:
         lines += ["", console.paint("not computed", "dim")]
         for why, names in missing.items():
@@ -158,11 +178,10 @@ def requirements_table(
         quantity = text.metric(row.metric)
         metric = evaluation.metrics.get(row.metric)
         why = metric.why if metric is not None and row.value is None else None
-        state = "met" if row.met else "missed"
         rows.append(
             [
-                _mark(console, state),
-                row.name,
+                _mark(console, row.state),
+                row.name + text.flag(evaluation, row.metric),
                 text.limit_text(quantity, row.sense, row.limit),
                 why or text.value_text(quantity, row.value),
                 text.margin_of(quantity, row.limit, row.margin, met=row.met),
@@ -170,9 +189,11 @@ def requirements_table(
                 brief(row.case, row.place),
             ]
         )
-        paint = _STATE_STYLE[state]
+        paint = _STATE_STYLE[row.state]
         styles.append([paint, "" if row.met else "bold", "", "bold", paint, paint, "dim"])
-    return "\n".join(console.table(columns, rows, styles))
+    lines = console.table(columns, rows, styles)
+    lines += [console.paint(line, "yellow") for line in text.row_notes(evaluation)]
+    return "\n".join(lines)
 
 
 def checks_table(
@@ -183,11 +204,11 @@ def checks_table(
     unicode: bool = True,
     width: int = 100,
 ) -> str:
-    """The check list: missed and unchecked lines, or all; the count of met lines always."""
+    """The check list: lines missed, without reserve and unchecked, or all; how many are met."""
     console = Console(colour, unicode, width)
-    order = {"missed": 0, "not_checked": 1, "met": 2}
-    shown = [row for row in evaluation.checks if all_rows or row.status != "met"]
-    shown.sort(key=lambda row: order[row.status])
+    order = {"missed": 0, "no_reserve": 1, "not_checked": 2, "met": 3}
+    shown = [row for row in evaluation.checks if all_rows or row.state != "met"]
+    shown.sort(key=lambda row: order[row.state])
     met = sum(row.status == "met" for row in evaluation.checks)
     title = f"checks: {met} of {len(evaluation.checks)} met"
     columns = [
@@ -200,16 +221,19 @@ def checks_table(
     rows, styles = [], []
     for row in shown:
         quantity = text.metric(row.metric or "")
+        why = row.reason or row.source
+        if row.state == "no_reserve":
+            why = f"met without reserve: {why}"
         rows.append(
             [
-                _mark(console, row.status),
-                row.name,
+                _mark(console, row.state),
+                row.name + text.flag(evaluation, row.metric),
                 text.limit_text(quantity, row.sense, row.limit),
                 DASH if row.value is None else text.value_text(quantity, row.value),
-                row.reason or row.source,
+                why,
             ]
         )
-        paint = _STATE_STYLE[row.status]
+        paint = _STATE_STYLE[row.state]
         styles.append([paint, "", "", "bold" if row.status == "missed" else "", "dim"])
     lines = [console.paint(title, "bold")]
     return "\n".join(lines + (console.table(columns, rows, styles) if rows else []))

@@ -4,16 +4,30 @@ from __future__ import annotations
 
 import math
 import re
+from typing import TYPE_CHECKING
 
 from .. import quantities
+from ..evaluation import reserve
 from ..quantities import Quantity
+
+if TYPE_CHECKING:
+    from ..evaluation.result import Evaluation
 
 MINUS = "\N{MINUS SIGN}"
 DASH = "\N{EN DASH}"
 NARROW = "\N{NARROW NO-BREAK SPACE}"
 AT_LEAST, AT_MOST = "\N{GREATER-THAN OR EQUAL TO}", "\N{LESS-THAN OR EQUAL TO}"
 SENSES = {"min": AT_LEAST, "max": AT_MOST}
-STATUS_WORDS = {"met": "met", "missed": "missed", "not_checked": "not checked"}
+STATUS_WORDS = {
+    "met": "met",
+    "no_reserve": "no reserve",
+    "missed": "missed",
+    "not_checked": "not checked",
+}
+NO_RESERVE = f"No reserve: met, with a margin below {100 * reserve.NO_RESERVE:g} %"
+FLAG = " (!)"
+"""Behind the name of a quantity whose value rests on a model outside its valid range."""
+FLAGGED = "(!) EXTRAPOLATED: a model was used outside its valid range"
 
 _UNITS = {"-": "", "degC": "°C", "degF": "°F", "deg": "°", "um": "µm"}
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
@@ -169,6 +183,19 @@ def input_quantity(name: str) -> Quantity:
 def display(quantity: Quantity, value: float | None) -> float | None:
     """SI value in the display unit, None stays None."""
     return None if value is None else quantity.to_display(value)
+
+
+def flag(evaluation: Evaluation, name: str | None) -> str:
+    """`FLAG`, where a metric rests on a model outside its valid range; else nothing."""
+    known = evaluation.metrics.get(name or "")
+    return "" if known is None or known.in_range else FLAG
+
+
+def row_notes(evaluation: Evaluation) -> list[str]:
+    """What the states and marks of requirements mean, where some have them."""
+    rows = evaluation.requirements
+    said = [NO_RESERVE] if any(row.state == "no_reserve" for row in rows) else []
+    return said + ([FLAGGED] if any(flag(evaluation, row.metric) for row in rows) else [])
 
 
 def limit_text(quantity: Quantity, sense: str | None, limit: float | None) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from ..evaluation.reserve import count_words, without_reserve
 from ..scatter.result import Uncertainty
 from . import text, writer
 from . import uncertainty_rows as rows
@@ -49,6 +50,11 @@ def verdict(found: Uncertainty) -> dict[str, Any]:
     """Whether the design as it stands meets its requirements, and how many do."""
     met = sum(one.margin is not None and one.margin >= -1e-6 for one in found.required)
     state, words = ("met", "MET AS IT STANDS") if found.met else ("missed", "MISSED AS IT STANDS")
+    tight = sum(
+        one.margin is not None and without_reserve(one.margin, one.limit) for one in found.required
+    )
+    if found.met and tight:
+        state, words = "checks", f"{words}, {count_words(tight).upper()}"
     lines = [
         f"as it stands: {met} of {len(found.required)} requirements met",
         f"yield {rows.percent(found.rate.value)}",

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from ..design import quantity_of
 from ..optimisation.result import Optimisation, Rounding
 from ..quantities import Quantity
 from . import text
@@ -94,21 +97,25 @@ def notes(optimisation: Optimisation) -> list[str]:
         f" {rounding.solves} re-optimisations."
     )
     for row in rounding.runners_up:
-        values = []
-        for path, value in row.values.items():
-            quantity = text.input_quantity(_quantity(rounding, path))
-            shown = text.trimmed(quantity.to_display(value))
-            values.append(f"{_short(path)} {text.with_unit(shown, text.unit_text(quantity.unit))}")
         share = text.number(row.percent, 3, signed=True)
         percent = "" if row.percent is None else f" ({share} %)"
-        lines.append(
-            f"Next: {text.value_text(objective, row.objective)}{percent} with {', '.join(values)}."
-        )
+        sizes = _sizes(optimisation, row.values)
+        lines.append(f"Next: {text.value_text(objective, row.objective)}{percent} with {sizes}.")
+    for remedy in rounding.remedies:
+        change = text.pretty(remedy.sentence).replace("->", "→")
+        reached = text.value_text(objective, remedy.objective)
+        lines.append(f"With {change}: {reached} with {_sizes(optimisation, remedy.values)}.")
     return [line for line in [*lines, *map(sentence, rounding.notes)] if line]
 
 
-def _quantity(rounding: Rounding, path: str) -> str:
-    return next(row.quantity for row in rounding.variables if row.path == path)
+def _sizes(optimisation: Optimisation, sizes: Mapping[str, float]) -> str:
+    """Sizes by PATH in words."""
+    words = []
+    for path, value in sizes.items():
+        quantity = quantity_of(path, optimisation.design)
+        shown = text.trimmed(quantity.to_display(value))
+        words.append(f"{_short(path)} {text.with_unit(shown, text.unit_text(quantity.unit))}")
+    return ", ".join(words)
 
 
 def _short(path: str) -> str:

@@ -20,7 +20,8 @@ from ..errors import Diagnostic, InputError
 from ..evaluation.result import Evaluation
 from ..evaluation.study.seal import SealStudy
 from ..optimisation.result import Optimisation
-from ..store import read_bytes
+from ..plain_json import encoded
+from ..store import read_bytes, read_json
 from ..store import write_all as write_all
 from .blocks import ExtraTable, printable
 from .embed import extract
@@ -140,7 +141,7 @@ def write_page(
         "title": _encodable(title),
         "source": _encodable(origin.source_text),
         "source_file": _attachment_name(_encodable(origin.source_name)),
-        "run": _encodable(json.dumps(origin.run() | run, ensure_ascii=False, sort_keys=True)),
+        "run": _encodable(encoded(origin.run() | run, ensure_ascii=False, sort_keys=True)),
     }
     pdf, images = _render(data, _timestamp(origin.date))
     contents = {f"{stem}.pdf": pdf, f"{stem}.png": images[0]}
@@ -171,8 +172,8 @@ def read_attachment(path: Path) -> Attachment:
             raise InputError(Diagnostic("is no PDF", _OURS))
         if re.search(rb"/Encrypt\s+\d+\s+\d+\s+R", content):
             raise InputError(Diagnostic("is encrypted", "save it without a password"))
-        found = extract(content)
-        source, run = found["application/yaml"].decode(), json.loads(found["application/json"])
+        found = extract(content, ("application/yaml", "application/json"))
+        source, run = found["application/yaml"].decode(), read_json(found["application/json"])
         if not isinstance(run, dict) or "actuator_opt" not in run:
             raise KeyError("actuator_opt")
     except KeyError:
@@ -226,6 +227,7 @@ def sheets(source: bytes, data: Mapping[str, Any], timestamp: int) -> tuple[byte
 
     compiler = typst.Compiler(
         source,
+        root=TEMPLATE.parent,  # not the working directory, which may be gone
         font_paths=typst.Fonts(
             include_system_fonts=False, include_embedded_fonts=True, font_paths=font_folders()
         ),

@@ -9,8 +9,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import betaincinv, stdtrit
-from scipy.stats import qmc
 
 from ..optimisation.problem import Vector
 from ..progress import tell
@@ -42,10 +40,31 @@ def exact(hits: int, count: int) -> Rate:
     >>> round(bounds.lower, 4), round(bounds.upper, 4)
     (0.0, 0.0362)
     """
-    tail = (1 - LEVEL) / 2
-    lower = float(betaincinv(hits, count - hits + 1, tail)) if hits > 0 else 0.0
-    upper = float(betaincinv(hits + 1, count - hits, 1 - tail)) if hits < count else 1.0
+    lower = _least(hits, count) if hits > 0 else 0.0
+    upper = 1 - _least(count - hits, count) if hits < count else 1.0
     return Rate(hits / count, lower, upper)
+
+
+SUMMED = 2000
+"""Most draws whose binomial probabilities are summed: without SciPy, which is slow to load."""
+
+
+def _least(hits: int, count: int) -> float:
+    """The probability at which `hits` or more of `count` draws come up in 2.5 % of all samples."""
+    tail = (1 - LEVEL) / 2
+    if count > SUMMED:
+        from scipy.special import betaincinv
+
+        return float(betaincinv(hits, count - hits + 1, tail))
+    number = np.arange(1, count + 1)
+    ways = np.concatenate([[0.0], np.cumsum(np.log((count - number + 1) / number))])[hits:]
+    number = np.arange(hits, count + 1)
+    low, high = 0.0, 1.0
+    for _ in range(60):  # halves the bracket to the precision of a float
+        middle = (low + high) / 2
+        share = np.exp(ways + number * np.log(middle) + (count - number) * np.log1p(-middle)).sum()
+        low, high = (low, middle) if share > tail else (middle, high)
+    return (low + high) / 2
 
 
 def replicated(hits: Vector, each: int) -> Rate:
@@ -65,13 +84,20 @@ def replicated(hits: Vector, each: int) -> Rate:
 
 def half_width(values: Vector) -> float:
     """Half the 95 % interval of the mean of independent replicates, by Student's t."""
-    count = len(values)
-    quantile = float(stdtrit(count - 1, (1 + LEVEL) / 2))
-    return quantile * float(np.std(values, ddof=1)) / float(np.sqrt(count))
+    return _student(len(values)) * float(np.std(values, ddof=1))
+
+
+def _student(count: int) -> float:
+    """Half the 95 % interval of a mean over the standard deviation of what it is the mean of."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(count - 1, (1 + LEVEL) / 2)) / float(np.sqrt(count))
 
 
 def quasi(dimension: int, power: int, seed: tuple[int, ...]) -> Vector:
     """2^power scrambled Sobol points (dimension, n) [Sobol1967] [Owen2013]."""
+    from scipy.stats import qmc
+
     generator = np.random.default_rng(seed)
     points = qmc.Sobol(dimension, scramble=True, seed=generator).random_base2(power)
     return np.asarray(points.T)
@@ -132,8 +158,7 @@ def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indice
         pooled = sums[:, :-1].mean(axis=0) / variance.mean(axis=0)
     flat = ~(variance.mean(axis=0) > 0)
     pooled[:, flat], shares[:, :, flat] = np.nan, np.nan
-    quantile = float(stdtrit(REPLICATES - 1, (1 + LEVEL) / 2))
-    half = quantile * np.std(shares, axis=0, ddof=1) / np.sqrt(REPLICATES)
+    half = _student(REPLICATES) * np.std(shares, axis=0, ddof=1)
     return Indices(
         first=pooled[:dimension],
         total=pooled[dimension:],

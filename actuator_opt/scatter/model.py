@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..errors import Diagnostic, InputError
 from ..evaluation import Subject, compute
+from ..evaluation.governing import governing
 from ..evaluation.limits import Limit, all_limits
 from ..evaluation.rows import UNLIMITED, Computed, rows_of
 from ..evaluation.values import Values
-from ..optimisation.actuator import governing
 from ..optimisation.problem import Vector
 from .inputs import Input
 
@@ -43,15 +43,15 @@ class Model:
     ----------
     subject : the design
     inputs : what scatters
-    metrics : metrics asked for beside the margins, in their worst case
+    metrics : metrics asked for beside the margins
     """
 
     def __init__(
-        self, subject: Subject, inputs: Sequence[Input], metrics: Mapping[str, bool] | None = None
+        self, subject: Subject, inputs: Sequence[Input], metrics: Sequence[str] = ()
     ) -> None:
         self.subject = replace(without_basis(subject, inputs), lenient=True)
         self.inputs = tuple(inputs)
-        self.metrics = dict(metrics or {})
+        self.metrics = tuple(metrics)
         nominal = compute(self.subject, self.subject.values())
         kept = ("requirement", "case", "check")
         self.limits = tuple(
@@ -99,10 +99,7 @@ class Model:
         wanted = None if self.subject.plugins else self._wanted
         computed = compute(self.subject, numbers, wanted).computed
         margins = [_margin(limit, computed, numbers, count) for limit in self.limits]
-        metrics = [
-            governing(computed, name, numbers.cases, largest=largest)
-            for name, largest in self.metrics.items()
-        ]
+        metrics = [governing(name, computed, numbers, self.subject) for name in self.metrics]
         return Drawn(values, _rows(margins, count), _rows(metrics, count))
 
 
@@ -123,7 +120,7 @@ def _margin(limit: Limit, computed: Computed, numbers: Values, count: int) -> Ve
     return np.where(least > UNLIMITED / 1e6, np.inf, least) if seen else np.full(count, np.nan)
 
 
-def _require_metrics(metrics: Mapping[str, bool], computed: Computed) -> None:
+def _require_metrics(metrics: Sequence[str], computed: Computed) -> None:
     for name in metrics:
         if not computed.metrics.get(name):
             why = computed.why.get(name, "no such metric of this design")

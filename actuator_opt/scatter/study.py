@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..evaluation import Subject
-from ..evaluation.build import SENSES, spec_hash
+from ..evaluation.build import spec_hash
 from ..optimisation.problem import Vector
 from ..progress import tell
 from ..version import VERSION
@@ -58,7 +58,7 @@ def uncertainty(
     """
     began = time.perf_counter()
     found = inputs(subject)
-    model = Model(subject, found, followed(subject, metrics))
+    model = Model(subject, found, metrics or subject.design.objective.metrics)
     blocks = BLOCKS if quasi_random else 1
     tally = draw(model, count, seed, blocks)
     rates = tally.rates()
@@ -86,15 +86,6 @@ def uncertainty(
         notes=notes(subject, found),
         seconds=time.perf_counter() - began,
     )
-
-
-def followed(subject: Subject, metrics: Sequence[str] = ()) -> dict[str, bool]:
-    """Metrics to follow, and whether their largest value is the worst."""
-    objective = subject.design.objective
-    stated = objective.minimise if objective.minimise is not None else objective.maximise
-    assert stated is not None
-    own = [stated] if isinstance(stated, str) else list(stated)
-    return {name: SENSES.get(name, "max") == "max" for name in metrics or own}
 
 
 @dataclass(frozen=True, slots=True)

@@ -144,6 +144,8 @@ def interruptible() -> Iterator[None]:
     def press(number: int, frame: FrameType | None) -> None:
         nonlocal pressed
         pressed = True
+        if callable(before):
+            before(number, frame)
         raise KeyboardInterrupt
 
     if threading.current_thread() is not threading.main_thread() or not callable(before):

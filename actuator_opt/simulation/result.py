@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..design.scenario.model import Scenario
+from ..evaluation.reserve import without_reserve
+from ..evaluation.result import State
 from ..evaluation.study.plant import Plant
 from ..numeric import Array
 from ..quantities import RESULTS, Quantity
@@ -96,6 +98,13 @@ class Row:
     margin: float | None
     met: bool
     why: str = ""
+
+    @property
+    def state(self) -> State:
+        """Whether it is met, and with reserve (`reserve.NO_RESERVE`)."""
+        if not self.met:
+            return "missed"
+        return "no_reserve" if without_reserve(self.margin, self.limit) else "met"
 
 
 @dataclass(frozen=True, slots=True)

@@ -113,11 +113,12 @@ def read_axis(text: str, design: Design, metrics: Metrics = None) -> Axis:
 def _steps(text: str, count: str | None) -> int | None:
     if count is None:
         return None
-    if not count.strip().isdecimal() or int(count) < 2:
+    steps = units.whole(count)
+    if steps is None or steps < 2:
         raise UsageError(
             Diagnostic(f"--vary {shown(text)}: {shown(count) or 'nothing'} steps", "give 2 or more")
         )
-    return int(count)
+    return steps
 
 
 def _with_unit(texts: list[str]) -> list[str]:

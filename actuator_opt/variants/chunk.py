@@ -16,7 +16,7 @@ from ..design import Design
 from ..design.paths import quantity_of
 from ..design.writer import to_yaml
 from ..errors import InputError
-from ..evaluation.build import SENSES, spec_hash
+from ..evaluation.build import spec_hash
 from ..evaluation.many import Many, evaluate_many, limits_of
 from ..evaluation.plugin import Plugin
 from ..numeric import Array
@@ -52,6 +52,8 @@ class Chunk:
     objective: Array
     feasible: Array
     places: Array | None = None
+    damaged: int = 0
+    """Rows computed now because those in the database were damaged."""
 
     @property
     def ranked(self) -> Array:
@@ -185,12 +187,11 @@ class Study:
     def _screen(self, variant: int, fixed: Mapping[str, float]) -> Scores | None:
         """The screen of designs that differ in numbers alone, where they are enough to be worth it.
 
-        None for the user's own metrics, which are no expressions, and where the rows' worst of the
-        objective is another than that of a search, by which it promises.
+        None for the user's own metrics, which are no expressions.
         """
         axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
         alike = self.plan.count / self.plan.variants / self.designs.apart_count
-        if not axes or self.plugins or alike < WORTH or self.remarks:
+        if not axes or self.plugins or alike < WORTH:
             return None
         key = (variant, *fixed.values())
         if key not in self._screens:
@@ -204,17 +205,6 @@ class Study:
                 found = screen(design, [axis.path for axis in axes], ends, self.engine)
             self._screens[key] = found
         return self._screens[key]
-
-    @property
-    def remarks(self) -> list[str]:
-        """What to know of the order of the best: where rows do not show what `optimise` goes by."""
-        told = ("least", "largest") if self.goal.sign > 0 else ("largest", "least")
-        return [
-            f"ranked by the {told[0]} {name} of all cases and places, as rows show it; `optimise` "
-            f"goes by the {told[1]}"
-            for name in self.goal.weights
-            if (SENSES.get(name) != "min") != (self.goal.sign > 0)
-        ]
 
     def _contradictions(self, chunk: Chunk, points: Points, most: int | None) -> dict[int, str]:
         """What the design's file would refuse among feasible rows; models look at less.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,6 +28,9 @@ from .plan import Plan, Points
 
 BEST = 100
 """Best feasible designs that are never thinned out."""
+
+VARIANTS = 1_000_000
+"""Combinations of texts, at most: a choice, far above what a sweep of texts has."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +64,8 @@ class Explored:
     """What the rows are of, in words."""
     shown: tuple[str, ...] = ()
     """Metrics shown at first, across and up, where not the usual."""
+    damaged: int = 0
+    """Rows left out because they are damaged."""
 
     @property
     def kind(self) -> str:
@@ -100,15 +106,15 @@ def explored(
     """
     with reading(path, VERSION) as reader:
         kept = reader.study(reader.number(study) if isinstance(study, str) else study)
-        good = kept.rows - sum(kept.failures.values())
-        if not good:
-            reason = next(iter(kept.failures))
-            message = f"study {kept.number}: every design failed: {reason}"
-            raise InputError(Diagnostic(message, "vary something else", str(path)))
-        _, some = next(reader.rows(kept))
+        failed = sum(kept.failures.values())
+        _, some = next(reader.rows(kept), (None, None))
+        if some is None:
+            raise _none_whole(kept, path)
         bare = _study(kept, plugins, path, np.stack([some.min(axis=0), some.max(axis=0)], axis=1))
-        keys, numbers = _thinned(reader, kept, bare, good, most)
-    variants = _variants(kept)
+        keys, numbers, good = _thinned(reader, kept, bare, kept.rows - failed, most)
+        damaged = kept.rows - failed - good
+        kept = kept._replace(rows=failed + good)
+    variants = _variants(kept, path)
     variant = _texts_of(keys, numbers, bare, variants, path)
     order = np.lexsort((*(numbers[:, k] for k in reversed(range(len(bare.order)))), variant))
     numbers, variant = numbers[order], variant[order]
@@ -125,7 +131,17 @@ def explored(
         bare.judged(0, Rows(numbers, {}), 0).objective,
         most,
         origin=f"Study {kept.number}",
+        damaged=damaged,
     )
+
+
+def _none_whole(kept: Kept, path: Path) -> InputError:
+    """Why a study has no numbers."""
+    if not kept.failures:
+        message = f"study {kept.number}: its rows are damaged"
+        return InputError(Diagnostic(message, "run its sweep again with --store", str(path)))
+    message = f"study {kept.number}: every design failed: {next(iter(kept.failures))}"
+    return InputError(Diagnostic(message, "vary something else", str(path)))
 
 
 def explored_designs(
@@ -212,7 +228,10 @@ def _hidden(study: Study) -> tuple[str, ...]:
     return ("rod.fitting",) if moved else ()
 
 
-def _variants(kept: Kept) -> tuple[dict[str, str], ...]:
+def _variants(kept: Kept, path: Path) -> tuple[dict[str, str], ...]:
+    if math.prod(len(texts) for texts in kept.texts.values()) > VARIANTS:
+        message = f"study {kept.number} has over {VARIANTS} combinations of texts"
+        raise InputError(Diagnostic(message, "vary fewer of them", str(path)))
     paths = list(kept.texts)
     return tuple(
         dict(zip(paths, texts, strict=True)) for texts in itertools.product(*kept.texts.values())
@@ -227,10 +246,13 @@ def _study(kept: Kept, plugins: tuple[Plugin, ...], path: Path, ends: Array) -> 
     """
     own = METRICS | {plugin.name: plugin.quantity for plugin in plugins}
     try:
-        design = read_design(kept.design, metrics=own).design
+        design = read_design(f"{kept.design}\n", metrics=own).design
     except InputError:
         raise _another(path) from None
-    first = [column.name for column in kept.columns].index(next(iter(METRICS)))
+    names = [column.name for column in kept.columns]
+    if next(iter(METRICS)) not in names:
+        raise _another(path)
+    first = names.index(next(iter(METRICS)))
     numeric = [
         Axis(column.name, np.array([low, high]), range=True, count=2)
         for column, (low, high) in zip(kept.columns[:first], ends, strict=False)
@@ -250,8 +272,8 @@ def _another(path: Path) -> InputError:
 
 def _thinned(
     reader: Reader, kept: Kept, study: Study, good: int, most: int
-) -> tuple[list[bytes], Array]:
-    """Rows spread evenly over the study, and its best."""
+) -> tuple[list[bytes], Array, int]:
+    """Rows spread evenly over the study, and its best; and how many are whole."""
     step = -(-good // most)
     keys: list[bytes] = []
     numbers: list[Array] = []
@@ -267,7 +289,7 @@ def _thinned(
     known = set(keys)
     extra = [k for k, key in enumerate(best.keys) if key not in known]
     keys += [best.keys[k] for k in extra]
-    return keys, np.concatenate([*numbers, best.numbers[extra]])
+    return keys, np.concatenate([*numbers, best.numbers[extra]]), start
 
 
 @dataclass(frozen=True)

@@ -222,8 +222,9 @@ def field(study: Study) -> Field:
     just = np.abs(margins) <= TOLERANCE  # met, as in every verdict
     room = np.where(just.any(axis=(1, 2)), TOLERANCE, 0.0)
     margins += room[:, None, None]
-    margins[:, failed] = np.nan
-    failed |= _cut_away(study, margins)
+    gone = _cut_away(study, margins)
+    margins[:, failed & ~gone] = np.nan  # a wall below nothing keeps the margins of its shape
+    failed |= gone
     rows = np.stack([one.rows.numbers for one in chunks])
     thinned = any(len(one) > FINEST for one in values)
     return Field(study, xs, ys, rows, margins, failed, room, thinned)

@@ -17,14 +17,16 @@ class Lacking(NamedTuple):
     first: int
     keys: list[bytes]
     some: Array | None
+    damaged: int
+    """Rows that it has, but damaged."""
 
 
 def lacking(base: Database, study: Study, first: int, count: int) -> Lacking:
-    """The keys of a chunk whose rows do not stand."""
+    """The keys of a chunk whose rows do not stand, or are damaged."""
     keys = study.keys(first, count)
-    missing = base.missing(keys)
+    missing, damaged = base.missing(keys)
     some = None if len(missing) == len(keys) else np.array(missing, dtype=np.intp)
-    return Lacking(first, [keys[k] for k in missing], some)
+    return Lacking(first, [keys[k] for k in missing], some, damaged)
 
 
 def kept(base: Database, study: Study, first: int, count: int) -> tuple[Rows, int]:
@@ -34,9 +36,9 @@ def kept(base: Database, study: Study, first: int, count: int) -> tuple[Rows, in
     numbers = np.full((len(keys), len(study.columns)), np.nan)
     numbers[:, : len(points.numbers)] = points.numbers[study.order].T
     failures, known = {}, base.known(keys)
-    for k, (blob, failure) in known.items():
+    for k, (row, failure) in known.items():
         if failure is not None:
             failures[k] = failure
         else:
-            numbers[k] = base.numbers(blob)
+            numbers[k] = row
     return Rows(numbers, failures), len(keys) - len(known)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import signal
 import sys
+import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -42,6 +46,10 @@ ANEW = 8
 
 ALONE = 0.5
 """Seconds of work up to which other processes are not worth their start."""
+
+
+MASKS = hasattr(signal, "pthread_sigmask")
+"""Whether the system can keep a signal waiting."""
 
 
 class Task(NamedTuple):
@@ -148,13 +156,14 @@ def swept_again(
     found = Swept(study, study.plan.count, sample=Sample(tuple(watch)))
     with reading(store, VERSION) as reader:
         number = reader.number(study.hash)
-        base = Database(reader.connection, number, len(study.columns), store)
+        base = Database(reader.connection, number, study.hash, len(study.columns), store)
         size = _chunk_size(study)
         for first in range(0, study.plan.count, size):
             rows, missing = kept(base, study, first, size)
             if missing:
-                message = f"study {number} lacks rows of this sweep"
-                raise refused(store, message, "run the sweep again with --store")
+                message = f"study {number} lacks rows of this sweep, or holds them damaged"
+                remedy = "run the sweep again with --store: it computes them"
+                raise refused(store, message, remedy)
             chunk = study.judged(first, rows, 0)
             found.add(chunk, keep)
             if each is not None:
@@ -181,12 +190,17 @@ def _computed(
         return
     with ProcessPoolExecutor(count, initializer=_begin, initargs=(study,)) as pool:
         waiting: deque[Future[Chunk]] = deque()
-        for task in chain([first], rest):
-            waiting.append(pool.submit(_work, task))
-            if len(waiting) > 2 * count:
+        try:
+            for task in chain([first], rest):
+                with _without_interrupts():  # processes begin here
+                    waiting.append(pool.submit(_work, task))
+                if len(waiting) > 2 * count:
+                    yield waiting.popleft().result()
+            while waiting:
                 yield waiting.popleft().result()
-        while waiting:
-            yield waiting.popleft().result()
+        except BaseException:  # of what waits nothing is begun any more
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
 
 
 def _here(study: Study, chunks: int, tasks: Iterator[Task], *, patient: bool) -> Iterator[Chunk]:
@@ -206,7 +220,36 @@ _STUDY: list[Study] = []
 
 def _begin(study: Study) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that waits
+    if MASKS:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     _STUDY[:] = [study]
+
+
+def _end_with_parent() -> None:
+    """End this process when the one that began it has ended, however that was.
+
+    Waits for the end of a pipe that the parent alone holds open, which needs no signal of the
+    system's own. Where processes are forks, a later one holds the pipes of those before it: they
+    end one after the other, the last one first.
+    """
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Keep Ctrl-C waiting: a process that is just beginning would take it for its own."""
+    if not MASKS:
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _work(task: Task) -> Chunk:
@@ -253,6 +296,6 @@ def _stored(
                 yield standing(asked.popleft())
             one = asked.popleft()
             base.put(one.keys, fresh.rows)
-            yield fresh if one.some is None else standing(one)
+            yield replace(fresh if one.some is None else standing(one), damaged=one.damaged)
         for one in asked:
             yield standing(one)

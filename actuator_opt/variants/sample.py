@@ -7,7 +7,6 @@ from itertools import combinations
 
 import numpy as np
 
-from ..evaluation.build import SENSES
 from ..numeric import Array
 from .chunk import Chunk, Study
 
@@ -23,19 +22,18 @@ MORE_IS_BETTER = 1
 
 
 def better(study: Study, metric: str) -> int:
-    """Which way a metric is better: by the objective, a requirement, else the check list.
+    """Which way a metric is better: by the objective, its limits, else its worst value.
 
-    1 for more, -1 for less, 0 where nothing says so or both ways are limited.
+    1 for more, -1 for less, 0 where both ways are limited.
     """
     goal = study.goal
     if metric in goal.weights:
         return LESS_IS_BETTER if goal.sign * goal.weights[metric] > 0 else MORE_IS_BETTER
-    senses: set[str] = {one.sense for one in study.binding if one.metric == metric}
-    if not senses:
-        senses = {"max"} if metric == "mass" else {SENSES.get(metric, "")}
+    senses: set[str | None] = {one.sense for one in study.binding if one.metric == metric}
     if len(senses) > 1:
         return 0
-    return {"min": MORE_IS_BETTER, "max": LESS_IS_BETTER}.get(senses.pop(), 0)
+    sense = senses.pop() if senses else study.quantity(metric).worst
+    return MORE_IS_BETTER if sense == "min" else LESS_IS_BETTER
 
 
 def front(first: Array, second: Array) -> Array:

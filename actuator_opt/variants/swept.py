@@ -35,6 +35,8 @@ class Swept:
     requested: int
     computed: int = 0
     reused: int = 0
+    damaged: int = 0
+    """Rows computed again because those in the database were damaged."""
     failed: int = 0
     feasible: int | None = 0
     """None where the best alone are asked for: then most are never evaluated."""
@@ -77,6 +79,7 @@ class Swept:
             "requested": self.requested,
             "computed": self.computed,
             "reused": self.reused,
+            "damaged": self.damaged,
             "failed": self.failed,
             "feasible": self.feasible,
             "screened": self.screened,
@@ -87,7 +90,6 @@ class Swept:
             ],
             "failures": self.failures,
             "missed": self.missed,
-            "remarks": self.study.remarks,
             "seconds": self.seconds,
         }
 
@@ -103,6 +105,7 @@ class Swept:
     def add(self, chunk: Chunk, keep: int) -> None:
         """Count a chunk."""
         self.computed += chunk.computed
+        self.damaged += chunk.damaged
         self.reused += max(len(chunk.rows.numbers) - chunk.computed, 0)
         self.screened += 0 if chunk.places is None else chunk.computed - len(chunk.places)
         if chunk.places is None:

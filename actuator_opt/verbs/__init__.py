@@ -2,13 +2,13 @@
 
 from ..evaluation.comparison import Comparison
 from .actuator import Actuator, read
-from .checking import check
+from .checking import check, examine
 from .comparing import compare, comparison_json, draw_comparison
 from .exploring import explore
 from .exports import export
 from .fronts import pareto, write_front, write_front_csv
 from .installation import Installation, doctor
-from .optimum import evaluate, optimise, sensitivity
+from .optimum import evaluate, optimise, sensitivity, with_yield
 from .recorded_runs import Run, delete_run, prune_runs, read_run, record_run, runs, sound
 from .recording import record, record_front, record_sweep
 from .records import (
@@ -22,7 +22,7 @@ from .records import (
     write_series,
 )
 from .repeating import Rerun, rerun
-from .reports import date_from_environment, report, save
+from .reports import date_from_environment, is_date, report, save
 from .restoring import Restored, draw_run, report_run, restore
 from .seals import seal, with_contact, write_seal
 from .simulations import (
@@ -64,10 +64,12 @@ __all__ = [
     "draw_run",
     "draw_sweep",
     "evaluate",
+    "examine",
     "explore",
     "export",
     "fitting",
     "identify",
+    "is_date",
     "optimise",
     "pareto",
     "prune_runs",
@@ -94,6 +96,7 @@ __all__ = [
     "uncertainty",
     "verify_dynamics",
     "with_contact",
+    "with_yield",
     "write_calibration",
     "write_comparison",
     "write_draws",

@@ -10,12 +10,13 @@ from .. import run_store
 from ..design import Design
 from ..errors import Diagnostic, InputError, UsageError
 from ..evaluation import Evaluation, comparison
-from ..evaluation.comparison import Comparison
+from ..evaluation.comparison import Comparison, DesignState
 from .actuator import Actuator, Plugins, read
 from .optimum import evaluate
 from .recorded_runs import Run
 from .reports import file_name
 from .restoring import Restored, restore
+from .stamp import is_optimum
 
 if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
@@ -28,6 +29,8 @@ def compare(
     *designs: Actuator | Design | Evaluation | Optimisation | Run | str | Path,
     set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
     plugins: Plugins = (),
+    optimise: bool = False,
+    seed: int = 0,
 ) -> Comparison:
     """Designs side by side: what differs in the inputs, and which parts make one better.
 
@@ -37,6 +40,8 @@ def compare(
         is what the others are held against
     set : values to replace in every file
     plugins : the user's own metrics
+    optimise : optimise every design first that is no optimum and has variables
+    seed : of these searches
 
     Raises
     ------
@@ -50,17 +55,18 @@ def compare(
         raise UsageError(Diagnostic(f"{len(designs)} designs are too many", f"name up to {MOST}"))
     if sum(one == "-" for one in designs if isinstance(one, str)) > 1:
         raise UsageError(Diagnostic("standard input holds one design", "name - once"))
-    found: list[tuple[Evaluation, str]] = []
+    found: list[tuple[Evaluation, str, DesignState]] = []
     faults: list[Diagnostic] = []
     for one in designs:
         try:
-            found.append(_evaluated(one, set, plugins))
+            found.append(_found(one, set, plugins, optimise, seed))
         except InputError as error:
             faults += error.diagnostics
     if faults:
         raise InputError(faults)
     try:
-        return comparison.compare([e for e, _ in found], _told([origin for _, origin in found]))
+        evaluations, origins, states = zip(*found, strict=True)
+        return comparison.compare(evaluations, _told(origins), states)
     except InputError as error:
         remedy = "name designs that differ"
         raise InputError(Diagnostic(error.diagnostics[0].message, remedy)) from None
@@ -74,26 +80,44 @@ def _told(origins: Sequence[str]) -> list[str]:
     ]
 
 
-def _evaluated(one: Any, set: Any, plugins: Plugins) -> tuple[Evaluation, str]:
-    """The evaluation of whatever names a design, and where it comes from."""
+def _found(
+    one: Any, set: Any, plugins: Plugins, optimise: bool, seed: int
+) -> tuple[Evaluation, str, DesignState]:
+    """The evaluation of whatever names a design, its origin, and whether it is an optimum."""
     from ..optimisation.result import Optimisation
+    from . import optimum
 
     if isinstance(one, (str, Path)) and not run_store.is_name(str(one)):
-        actuator = read(one, set=set, plugins=plugins)
-        name = str(one) if "\n" not in str(one) else file_name(actuator.design, actuator.source)
-        return evaluate(actuator), "<stdin>" if name == "-" else name
-    if isinstance(one, (str, Path, Run)):
+        one, name = _file(one, set, plugins)
+    elif isinstance(one, (str, Path, Run)):
         if set:
             message = "--set: a run is compared as it was"
             raise UsageError(Diagnostic(message, "name designs instead"))
         back: Restored = restore(one, plugins=plugins)
-        return back.optimisation.best_evaluation, f"run {back.run.id}"
-    if isinstance(one, Optimisation):
-        return one.best_evaluation, f"{one.best_evaluation.name}, optimised"
-    if isinstance(one, Evaluation):
-        return one, one.name
-    name = file_name(one.design, one.source) if isinstance(one, Actuator) else one.name
-    return evaluate(one, plugins=plugins), name
+        one, name = back.optimisation, f"run {back.run.id}"
+    elif isinstance(one, Optimisation):
+        name = one.best_evaluation.name
+    elif isinstance(one, Actuator):
+        name = file_name(one.design, one.source)
+    else:
+        name = one.name
+    if not isinstance(one, Optimisation):
+        evaluation = one if isinstance(one, Evaluation) else evaluate(one, plugins=plugins)
+        known = isinstance(one, Actuator) and one.source is not None
+        if known and is_optimum(one.source.text, evaluation.spec_hash):
+            return evaluation, name, DesignState("optimal", optimum=True)
+        design = one if isinstance(one, Actuator) else evaluation.design
+        if not (optimise and evaluation.design.variables):
+            return evaluation, name, DesignState()
+        one = optimum.optimise(design, plugins=plugins, prices=False, seed=seed)
+    return one.best_evaluation, name, DesignState(one.status, optimum=one.optimum)
+
+
+def _file(one: str | Path, set: Any, plugins: Plugins) -> tuple[Actuator, str]:
+    """A design read from a file or a text, and where it comes from."""
+    actuator = read(one, set=set, plugins=plugins)
+    name = str(one) if "\n" not in str(one) else file_name(actuator.design, actuator.source)
+    return actuator, "<stdin>" if name == "-" else name
 
 
 def comparison_json(found: Comparison) -> dict[str, Any]:

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import run_store
+from .. import store as files
 from ..errors import Diagnostic, InputError, UsageError
-from .actuator import plugins_of
+from .actuator import Plugins, plugins_of
 from .kept_sweeps import store_of
 from .recorded_runs import Run, read_run, sound
-from .restoring import own_files, restore
+from .restoring import changed_plugins, named_plugins, restore
 from .sweeping import free
 
 if TYPE_CHECKING:
@@ -39,8 +40,8 @@ def explore(
     out : the page's file (``.html``), or a folder
     study : number of the study; default: the newest, or that of the run
     rows : most designs of a sweep shown; of more, an even sample and the best
-    plugins : files with the user's metrics and constraints, as in the sweep; default of a run:
-        those it was made with
+    plugins : files with the user's metrics and constraints, as in the sweep; a record names them
+        but never runs them
 
     Returns
     -------
@@ -67,26 +68,28 @@ def explore(
     front = run is not None and run.head.get("kind") == "pareto"
     which: int | str | None = study
     source, target = Path(store), Path(out)
+    own, remarks = plugins_of(plugins), list[str]()
     if run is not None:
         with sound(run):
             source, which = (run.path, None) if front else store_of(run)
-            plugins = plugins or own_files(run)
+            remarks = changed_plugins(run, named_plugins(run, own))
     if target.suffix.lower() not in (".html", ".htm"):
         stem = f"{Path(str(run.head.get('file'))).stem}_pareto" if run and front else source.stem
         target = target / f"{stem}_explore.html"
     _require(target, source)
     if run is not None and front:
-        found = _front(run, plugins)
+        with sound(run):
+            found = _front(run, own)
     else:
-        found = explored(source, study=which, most=rows, plugins=plugins_of(plugins))
-    target.parent.mkdir(parents=True, exist_ok=True)
+        found = explored(source, study=which, most=rows, plugins=own)
+    with files.writing(target.parent):
+        target.parent.mkdir(parents=True, exist_ok=True)
     named = [os.path.relpath(Path(file).resolve(), target.parent.resolve()) for file in plugins]
-    return write_explorer(found, target, plugins=named)
+    return write_explorer(found, target, plugins=named, remarks=remarks)
 
 
 def _require(target: Path, source: Path) -> None:
     """Refuse a place where nothing can be written, or what is read stands."""
-    from .. import store as files
     from ..reporting.explorer import design_beside
 
     files.require_folder(target.parent)
@@ -94,7 +97,7 @@ def _require(target: Path, source: Path) -> None:
         files.require_apart(path, str(source))
 
 
-def _front(run: Run, plugins: Sequence[str | Path]) -> Explored:
+def _front(run: Run, plugins: Plugins) -> Explored:
     """The designs of a recorded front."""
     from ..optimisation.pareto_result import ParetoFront
     from ..variants.explored import explored_designs

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import Diagnostic, InputError
+from ..errors import Diagnostic, InputError, UsageError
 from .actuator import Actuator
 from .recorded_runs import Run
 from .reports import file_name
@@ -38,7 +38,7 @@ def _plan(run: Run) -> Plan:
     import numpy as np
 
     from ..variants.axes import Axis
-    from ..variants.plan import Plan
+    from ..variants.plan import plan
 
     told: dict[str, Any] = run.body["plan"]
     axes = [
@@ -51,7 +51,19 @@ def _plan(run: Run) -> Plan:
         )
         for one in told["axes"]
     ]
-    return Plan(tuple(axes), told["method"], told["count"], run.head["seed"])
+    for axis in axes:
+        ends = axis.range and axis.values is not None and len(axis.values) == 2
+        steps = axis.count is None or axis.count >= 2
+        if not (ends and steps if axis.range else axis.size):
+            raise ValueError("an axis without values")
+    count = None if told["method"] == "grid" else told["count"]
+    try:
+        found = plan(axes, method=told["method"], count=count, seed=run.head["seed"])
+    except UsageError as error:
+        raise ValueError(str(error)) from None
+    if found.count != told["count"]:
+        raise ValueError("another number of points")
+    return found
 
 
 def store_of(run: Run) -> tuple[Path, str]:

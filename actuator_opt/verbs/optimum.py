@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..design import Design
 from ..errors import InputError
-from ..evaluation import Evaluation, Subject
+from ..evaluation import Evaluation, Subject, prepare
 from ..evaluation import evaluate as evaluate_subject
+from ..evaluation.plugin import Plugin
+from ..evaluation.reserve import YieldEstimate
 from .actuator import Actuator, Plugins, as_actuator, located, place, unanswered
 
 if TYPE_CHECKING:
@@ -19,6 +22,23 @@ if TYPE_CHECKING:
 def evaluate(design: Actuator | Design | str | Path, *, plugins: Plugins = ()) -> Evaluation:
     """Every metric, requirement and check of a design as it stands."""
     return evaluate_subject(as_actuator(design, plugins).subject())
+
+
+def with_yield(
+    evaluation: Evaluation, *, plugins: tuple[Plugin, ...] = (), seed: int = 0
+) -> Evaluation:
+    """An evaluation with a quick estimate of its yield (`scatter.quick`).
+
+    Parameters
+    ----------
+    evaluation : of a design
+    plugins : the user's own metrics it was evaluated with
+    seed : of the draws
+    """
+    from ..scatter.quick import quick_yield
+
+    subject = replace(prepare(evaluation.design, plugins=plugins), lenient=True)
+    return replace(evaluation, yield_estimate=quick_yield(subject, evaluation, seed=seed))
 
 
 def optimise(
@@ -39,7 +59,8 @@ def optimise(
     """The best design; parameters as `optimisation.run.optimise`.
 
     With a `yield_target` all limits hold with that probability while the design's numbers scatter
-    (`scatter.robust`); `robust` of the result says how.
+    (`scatter.robust`); `robust` of the result says how. Without one, `best_evaluation` carries a
+    quick estimate of its yield (`scatter.quick`).
     """
     from ..optimisation.run import optimise as run
 
@@ -67,10 +88,31 @@ def optimise(
 
     with located(actuator):
         if yield_target is None:
-            return search(subject, True)
+            return _estimated(search(subject, True), actuator.plugins)
         from ..scatter.robust import robust
 
-        return robust(subject, yield_target, search, seed=seed)
+        return _estimated(robust(subject, yield_target, search, seed=seed), actuator.plugins)
+
+
+def _estimated(found: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
+    """An optimum whose evaluation has its yield: of its own sample, else a quick estimate."""
+    best, sample = found.best_evaluation, found.robust
+    if sample is not None:
+        known = YieldEstimate(
+            value=sample.rate,
+            lower=sample.lower,
+            upper=sample.upper,
+            draws=sample.samples,
+            with_checks=None if sample.left_out else sample.rate,
+        )
+        best = replace(best, yield_estimate=known)
+    elif found.status.startswith("interrupted"):
+        best = replace(best, yield_estimate=YieldEstimate(why="the search was interrupted"))
+    else:
+        best = with_yield(best, plugins=plugins, seed=found.seed)
+    if found.made is None:
+        return replace(found, evaluation=best)
+    return replace(found, rounding=replace(found.made, evaluation=best))
 
 
 def sensitivity(

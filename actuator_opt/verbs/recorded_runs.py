@@ -19,6 +19,7 @@ from ..errors import Diagnostic, InputError
 from ..evaluation.plugin import Plugin
 from ..version import VERSION
 from .actuator import Actuator
+from .record_form import body_fault, head_fault
 from .reports import date_from_environment, file_name
 
 _STATED = re.compile(r"^Version: *(\S+)", re.MULTILINE)
@@ -46,9 +47,20 @@ def sound(run: Run) -> Iterator[None]:
     """Say in one line that what is read of a record is not in it, or not as it should be."""
     try:
         yield
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        message = f"is damaged ({type(error).__name__})"
-        raise InputError(Diagnostic(message, "run it again", str(run.path))) from None
+    except (
+        LookupError,
+        TypeError,
+        ValueError,
+        AttributeError,
+        ArithmeticError,
+        RecursionError,
+        AssertionError,
+    ) as error:
+        raise InputError(_damaged(type(error).__name__, run.path)) from None
+
+
+def _damaged(what: str, path: Path) -> Diagnostic:
+    return Diagnostic(f"is damaged ({what})", "run it again", str(path))
 
 
 def record_run(
@@ -163,7 +175,10 @@ def runs(
     place = run_store.folder() if folder is None else Path(folder)
     if place is None:
         return [], []
-    found, faults = run_store.entries(place)
+    every, faults = run_store.entries(place)
+    wrong = {entry.id: head_fault(entry.head) for entry in every}
+    faults += [_damaged(wrong[entry.id], entry.path) for entry in every if wrong[entry.id]]
+    found = [entry for entry in every if not wrong[entry.id]]
     stem = None if design is None else Path(design).name
     kept = [
         entry
@@ -193,6 +208,9 @@ def read_run(name: str | Path, *, folder: str | Path | None = None) -> Run:
     place = run_store.folder() if folder is None else Path(folder)
     path = run_store.find(place, str(name))
     head, body = run_store.read(path)
+    fault = head_fault(head) or body_fault(head["kind"], body)
+    if fault:
+        raise InputError(_damaged(fault, path))
     return Run(path.stem, path, head, body)
 
 
@@ -202,19 +220,18 @@ def delete_run(name: str, *, folder: str | Path | None = None) -> str:
     if not run_store.is_record(path):
         remedy = "write its id"
         raise InputError(Diagnostic("is no record of a run", remedy, str(path)))
-    run_store.delete(path)
+    if not run_store.delete(path):
+        raise InputError(Diagnostic("no such file", "see: actuator-opt runs list", str(path)))
     return path.stem
 
 
 def prune_runs(*, keep: int, folder: str | Path | None = None) -> list[str]:
-    """Delete all runs but the newest `keep`; ids of those deleted."""
+    """Delete all runs but the newest `keep`; ids of those deleted, by nobody else meanwhile."""
     place = run_store.folder() if folder is None else Path(folder)
     if place is None:
         return []
     found, _ = run_store.entries(place)
-    for entry in found[keep:]:
-        run_store.delete(entry.path)
-    return [entry.id for entry in found[keep:]]
+    return [entry.id for entry in found[keep:] if run_store.delete(entry.path)]
 
 
 def differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:

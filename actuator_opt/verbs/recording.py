@@ -56,6 +56,7 @@ def record(
         "status": result.status,
         "outcome": result.sentence,
         "met": result.best_evaluation.met and (result.rounding is None or result.rounding.met),
+        "without_reserve": len(result.tight),
         "objective": result.to_dict()["objective"],
         "seconds": result.seconds,
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,7 +33,17 @@ _WISHES = (
 """Keys of a design that say nothing of the actuator tested."""
 
 
-def read_record(source: str | Path, *, columns: Mapping[str, str] | None = None) -> Record:
+Units = str | Path | Mapping[str, str] | None
+"""Units of columns whose header states none: ``"SI"``, a file, or by column."""
+
+
+def read_record(
+    source: str | Path,
+    *,
+    columns: Mapping[str, str] | None = None,
+    units: Units = None,
+    needed: Collection[str] | None = None,
+) -> Record:
     """Read the CSV file of a test record.
 
     Parameters
@@ -41,6 +51,11 @@ def read_record(source: str | Path, *, columns: Mapping[str, str] | None = None)
     source : path, ``"-"`` for standard input
     columns : header by channel where it is none of the known names, with a unit where the file
         states none: ``{"p1": "Channel 3 [bar]"}``
+    units : of columns whose header states none: ``"SI"`` (m, s, Pa, N, m/s, K), a file with lines
+        ``p1: bar`` (YAML) or ``p1,bar``, or a mapping; a unit in the header counts before ``"SI"``
+        and must agree with one stated for its column
+    needed : channels whose missing unit is a fault; others are left out and noted; default: all
+        but v and T
 
     Returns
     -------
@@ -51,13 +66,15 @@ def read_record(source: str | Path, *, columns: Mapping[str, str] | None = None)
     InputError
         no such file, an unknown or doubled column, a missing unit, a cell that is no number
     """
-    from ..identification import decode_record, parse_record
+    from ..identification import column_units, decode_record, parse_record
     from ..store import read_bytes
 
+    known = column_units(units)
     kinds = (".csv", ".txt", ".tsv")
     name = "<stdin>" if str(source) == "-" else str(source)
     data = read_bytes(source, most=MOST_BYTES + 1, kinds=kinds, what="CSV file")
-    return parse_record(decode_record(data, name, most=MOST_BYTES), name=name, columns=columns)
+    text = decode_record(data, name, most=MOST_BYTES)
+    return parse_record(text, name=name, columns=columns, units=known, needed=needed)
 
 
 def identify(
@@ -65,6 +82,7 @@ def identify(
     *,
     design: Actuator | Design | str | Path,
     columns: Mapping[str, str] | None = None,
+    units: Units = None,
     cutoff: float = 30.0,
     order: int = 4,
     compensated: bool = True,
@@ -82,7 +100,7 @@ def identify(
     ----------
     record : as read, or its path
     design : the actuator as tested
-    columns : as `read_record`
+    columns, units : as `read_record`
     cutoff, order, compensated : of the zero-phase Butterworth filter [Hz]; compensated: both
         passes together are -3 dB at the cut-off
     mass : moving inside the force sensor [kg]; default: rod, piston and fastening, without a
@@ -115,17 +133,24 @@ def identify(
         bootstrap=bootstrap,
         seed=seed,
     )
-    own = as_actuator(design).subject()
-    return run(_record(record, columns), bench(own), settings)
+    tested = bench(as_actuator(design).subject())
+    needed = ("p1", "x", "F_L") if tested.plunger else ("p1", "p2", "x", "F_L")
+    return run(_record(record, columns, units, needed), tested, settings)
 
 
-def _record(record: Record | str | Path, columns: Mapping[str, str] | None) -> Record:
+def _record(
+    record: Record | str | Path,
+    columns: Mapping[str, str] | None,
+    units: Units,
+    needed: Collection[str],
+) -> Record:
     """A record as read."""
     if isinstance(record, (str, Path)):
-        return read_record(record, columns=columns)
-    if columns:
-        message = "columns are named, and the record is read already"
-        raise InputError(Diagnostic(message, "name them in read_record"))
+        return read_record(record, columns=columns, units=units, needed=needed)
+    for given, what in ((columns, "columns are named"), (units, "units are stated")):
+        if given:
+            message = f"{what}, and the record is read already"
+            raise InputError(Diagnostic(message, "give them to read_record"))
     return record
 
 
@@ -137,6 +162,7 @@ def bending(
     part: Part = "rod",
     specimen: Specimen | None = None,
     columns: Mapping[str, str] | None = None,
+    units: Units = None,
 ) -> BendingResult:
     """Modulus of a part from a three-point bending test, channels F_L and w.
 
@@ -147,7 +173,7 @@ def bending(
     design, part : whose section was bent, "rod" or "barrel"; of a metal part its shear modulus
         too is taken from there
     specimen : in place of span, design and part
-    columns : as `read_record`
+    columns, units : as `read_record`
 
     Raises
     ------
@@ -162,7 +188,7 @@ def bending(
             message = "the section of the bending test is not known"
             raise InputError(Diagnostic(message, "give span and design, or a specimen"))
         specimen = specimen_of(as_actuator(design).subject(), part, span)
-    return run(_record(record, columns), specimen)
+    return run(_record(record, columns, units, ("F_L", "w")), specimen)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -199,6 +225,7 @@ def calibrate(
     *,
     design: Actuator | Design | str | Path,
     columns: Mapping[str, str] | None = None,
+    units: Units = None,
     search: bool = True,
     seed: int = 0,
     **settings: Any,
@@ -212,7 +239,7 @@ def calibrate(
     ----------
     record : as read or identified, or its path
     design : the actuator as tested
-    columns, settings : as `identify`, for a record that is not identified yet
+    columns, units, settings : as `identify`, for a record that is not identified yet
     search : whether to optimise before and after
     seed : of the searches and the resampling
 
@@ -230,10 +257,12 @@ def calibrate(
     before = as_actuator(design)
     refuse_films(before.design)
     if isinstance(record, Identification):
-        _require_use(record, before.design, columns, settings)
+        _require_use(record, before.design, {"columns": columns, "units": units}, settings)
         identified = record
     else:
-        identified = identify(record, design=before, columns=columns, seed=seed, **settings)
+        identified = identify(
+            record, design=before, columns=columns, units=units, seed=seed, **settings
+        )
     found = learn(identified)
     after, doubts = _with_values(before, found)
     found = replace(found, doubts=(*found.doubts, *doubts))
@@ -271,11 +300,11 @@ def _with_values(before: Actuator, found: Calibration) -> tuple[Actuator, list[s
 def _require_use(
     identified: Identification,
     design: Design,
-    columns: Mapping[str, str] | None,
+    reading: Mapping[str, object],
     settings: Mapping[str, Any],
 ) -> None:
     """Refuse what an identified record has no use for, and another actuator's record."""
-    unused = [*(["columns"] if columns else []), *settings]
+    unused = [*(name for name, given in reading.items() if given), *settings]
     if unused:
         message = f"{', '.join(unused)}: of no use, the record is identified already"
         raise InputError(Diagnostic(message, "give them to identify"))

@@ -5,18 +5,22 @@ from __future__ import annotations
 import argparse
 import re
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from ..bounds import CHECKS, FRONT, SEED, STARTS, Bounds
 from ..errors import Diagnostic, InputError
 from ..evaluation import Evaluation
+from ..suggest import shown
 from ..version import VERSION
 from .actuator import Actuator, Plugins, plugins_of, read_as
 from .fronts import pareto
-from .optimum import evaluate, optimise
+from .optimum import evaluate, optimise, with_yield
+from .record_form import run_fault
 from .recorded_runs import differing
+from .reports import is_date
 
 if TYPE_CHECKING:
     from ..optimisation.pareto_result import ParetoFront
@@ -28,6 +32,8 @@ FRONTS = ("pareto",)
 """Commands that can be run again."""
 _VALUES = ("--algorithm", "--verify-dynamics", "--date")
 _FLAGS = ("--whole-plies", "--standard-sizes", "--certify")
+_LONGEST = 100_000
+"""Letters of a command, at most: somewhat less than the system takes as one argument."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +92,9 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
     inside = read_attachment(path)
     try:
         run = {key: _text(inside.run, key) for key in ("actuator_opt", "command", "source_name")}
+        date = _require_facts(inside.run)
         if _order(run["actuator_opt"]) > _order(VERSION):
-            message = f"was made by actuator-opt {run['actuator_opt']}, this is {VERSION}"
+            message = f"was made by actuator-opt {shown(run['actuator_opt'])}, this is {VERSION}"
             raise InputError(Diagnostic(message, "install that version, or a later one"))
         verb, asked = parsed(run["command"])
         if asked.plugin and not plugins:
@@ -112,7 +119,7 @@ def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
         file=path,
         command=run["command"],
         version=run["actuator_opt"],
-        date=inside.run.get("date"),
+        date=date,
         subject=subject,
         actuator=actuator,
         tables=tuple(tables),
@@ -129,16 +136,27 @@ def _text(run: Mapping[str, Any], key: str) -> str:
     return value
 
 
+def _require_facts(run: Mapping[str, Any]) -> str | None:
+    """The date among the facts of a report; refuse what is not as we write it."""
+    fault, date = run_fault(run), run.get("date")
+    if not fault and date is not None and not is_date(date):
+        fault = "date is no date"
+    if fault:
+        message = f"its attachment is damaged ({shown(fault)})"
+        raise InputError(Diagnostic(message, "take the original file"))
+    return date
+
+
 def _order(version: str) -> tuple[int, ...]:
     """A version as numbers, to compare."""
-    return tuple(int(part) for part in re.findall(r"\d+", version)[:3])
+    return tuple(int(part) for part in re.findall(r"\d{1,9}", version)[:3])
 
 
 class _Parser(argparse.ArgumentParser):
     """Options of a report's command; what is not among them is told as a fault."""
 
     def error(self, message: str) -> NoReturn:
-        told = f"its command cannot be run again: {message}"
+        told = f"its command cannot be run again: {shown(message, 200)}"
         raise InputError(Diagnostic(told, "run it by hand"))
 
 
@@ -148,11 +166,11 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("design")
     made.add_argument("--set", action="append", default=[])
     made.add_argument("--plugin", action="append", default=[])
-    made.add_argument("--starts", type=int, default=6)
-    made.add_argument("--seed", type=int, default=0)
+    made.add_argument("--starts", type=_within(STARTS), default=6)
+    made.add_argument("--seed", type=_within(SEED), default=0)
     made.add_argument("--objective", action="append", default=[])
-    made.add_argument("-n", type=int, default=50)
-    made.add_argument("--checks", type=int, default=3)
+    made.add_argument("-n", type=_within(FRONT), default=50)
+    made.add_argument("--checks", type=_within(CHECKS), default=3)
     made.add_argument("--yield", type=float, dest="yield_target")
     for name in _VALUES:
         made.add_argument(name)
@@ -163,6 +181,9 @@ def parser() -> argparse.ArgumentParser:
 
 def parsed(command: str) -> tuple[str, argparse.Namespace]:
     """Verb and options of a command line as a report carries it."""
+    if len(command) > _LONGEST:
+        message = f"its command has more than {_LONGEST} letters"
+        raise InputError(Diagnostic(message, "run it by hand"))
     try:
         words = shlex.split(command)
     except ValueError:
@@ -172,9 +193,28 @@ def parsed(command: str) -> tuple[str, argparse.Namespace]:
         raise InputError(Diagnostic(message, "run the script"))
     verb = words[1]
     if words[0] != "actuator-opt" or verb not in OPTIMISED + EVALUATED + FRONTS:
-        message = f"was made by {' '.join(words[:2])}, whose input is more than a design"
-        raise InputError(Diagnostic(message, f"run it by hand: {command}"))
-    return verb, parser().parse_args(words[2:])
+        made = shown(" ".join(words[:2]))
+        message = f"was made by {made}, whose input is more than a design"
+        raise InputError(Diagnostic(message, f"run it by hand: {shown(command, 400)}"))
+    asked = parser().parse_args(words[2:])
+    scenario = asked.verify_dynamics
+    if scenario == "-" or (scenario and Path(scenario).exists() and not Path(scenario).is_file()):
+        message = f"its command asks for the scenario {shown(scenario)}, which is no regular file"
+        raise InputError(Diagnostic(message, "run it by hand"))
+    return verb, asked
+
+
+def _within(bounds: Bounds) -> Callable[[str], int]:
+    """What reads a whole number as the terminal does, within the same bounds."""
+
+    def whole(text: str) -> int:
+        if not re.fullmatch(r"[+-]?\d{1,19}", text):
+            raise argparse.ArgumentTypeError(f"{shown(text)} is no whole number")
+        if not bounds.least <= int(text) <= bounds.most:
+            raise argparse.ArgumentTypeError(f"give {bounds.least} to {bounds.most}")
+        return int(text)
+
+    return whole
 
 
 def _pair(text: str) -> tuple[str, str]:
@@ -188,7 +228,7 @@ def _again(
 ) -> tuple[Evaluation | Optimisation | ParetoFront, Sequence[ExtraTable]]:
     """The result of the command, and the further tables of its report."""
     if verb in EVALUATED:
-        return evaluate(actuator), []
+        return with_yield(evaluate(actuator), plugins=actuator.plugins, seed=asked.seed), []
     if verb in FRONTS:
         how = {"n": asked.n, "seed": asked.seed, "checks": asked.checks}
         return pareto(actuator, asked.objective, **how), []
@@ -259,5 +299,5 @@ def _change(name: str, then: Any, now: Any) -> tuple[float, str]:
     """How far one value moved, as a fraction, and in words."""
     if isinstance(then, (int, float)) and isinstance(now, (int, float)) and then:
         moved = abs(now / then - 1)
-        return moved, f"{name} {100 * (now / then - 1):+.3g} %"
-    return float("inf"), f"{name} {then} before, {now} now"
+        return moved, f"{shown(name)} {100 * (now / then - 1):+.3g} %"
+    return float("inf"), f"{shown(name)} {shown(then)} before, {now} now"

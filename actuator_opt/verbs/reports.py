@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING
 
 from ..design import Design, Source
 from ..errors import Diagnostic, UsageError
-from ..evaluation import Evaluation, Subject, prepare
+from ..evaluation import Evaluation, Subject, evaluate, prepare
+from ..evaluation.reserve import UNKNOWN
 from ..quantities import METRICS
-from .actuator import Actuator
+from .actuator import Actuator, Plugins, as_actuator
+from .optimum import with_yield
+from .stamp import stamped
 
 if TYPE_CHECKING:
     from ..evaluation.rings import Place
@@ -36,7 +39,7 @@ def _seal_studies(subject: Subject) -> list[SealStudy]:
 
 
 def report(
-    subject: Evaluation | Optimisation,
+    subject: Actuator | Design | Evaluation | Optimisation | str | Path,
     *,
     folder: str | Path = "reports",
     stem: str | None = None,
@@ -44,23 +47,32 @@ def report(
     command: str = "",
     date: str | None = None,
     extra_tables: Sequence[ExtraTable] = (),
+    plugins: Plugins = (),
 ) -> list[ReportFile]:
-    """Write the PDF and PNG report of an evaluation or an optimisation.
+    """Write the PDF and PNG report of a design, an evaluation or an optimisation.
+
+    An evaluation without an estimate of its yield gets one (`with_yield`, seed 0).
 
     Parameters
     ----------
-    subject : what to report
+    subject : what to report; a design in any form is evaluated
     folder, stem : where to; default: the design's name in ``reports/``
     actuator : the design as read, for the input listing and attachment
     command : what made the report, printed on it
     date : ISO date; default: SOURCE_DATE_EPOCH, else none
     extra_tables : further tables
+    plugins : the user's metrics and constraints, of a design that is no `Actuator` yet
     """
     from ..design.writer import to_yaml
     from ..reporting import write_report
     from ..reporting.published import published_tables
     from ..reporting.robust_rows import robust_tables
 
+    if isinstance(subject, Actuator | Design | str | Path):
+        actuator = as_actuator(subject, plugins)
+        subject = evaluate(actuator.subject())
+    if isinstance(subject, Evaluation) and subject.yield_estimate == UNKNOWN:
+        subject = with_yield(subject, plugins=() if actuator is None else actuator.plugins)
     source = None if actuator is None else actuator.source
     design = subject.design if isinstance(subject, Evaluation) else subject.best
     text = source.text if source is not None else to_yaml(design)
@@ -103,6 +115,20 @@ def origin(
     )
 
 
+def is_date(text: str) -> bool:
+    """Whether a text is an ISO date.
+
+    >>> is_date("2026-02-28"), is_date("2026-02-30"), is_date("20260228")
+    (True, False, False)
+    """
+    from datetime import date
+
+    try:
+        return date.fromisoformat(text).isoformat() == text
+    except ValueError:
+        return False
+
+
 def date_from_environment() -> str | None:
     """The date of SOURCE_DATE_EPOCH (UTC), or None.
 
@@ -122,12 +148,31 @@ def date_from_environment() -> str | None:
     return datetime.fromtimestamp(int(stamp), UTC).date().isoformat()
 
 
-def save(design: Actuator | Design, path: str | Path, *, source: Source | None = None) -> Path:
-    """Write a design file that keeps full precision, comments and order where it can."""
+def save(
+    design: Actuator | Design | Evaluation | Optimisation | str | Path,
+    path: str | Path,
+    *,
+    source: Source | None = None,
+) -> Path:
+    """Write a design file that keeps full precision, comments and order where it can.
+
+    Of an optimisation it is the design to build. Its first line says so where it is an optimum,
+    unless it has metrics of the user's own, which may change without the file.
+    """
     from ..design.writer import to_yaml
+    from ..optimisation.result import Optimisation
     from ..store import write_text
 
     metrics = None if source is None else source.metrics
+    if isinstance(design, Optimisation):
+        text = to_yaml(design.best, source, metrics=metrics)
+        if design.optimum and design.best_evaluation.metrics.keys() <= METRICS.keys():
+            text = stamped(text, design.best_evaluation.spec_hash)
+        return write_text(Path(path), text)
+    if isinstance(design, str | Path):
+        design = as_actuator(design)
+    elif isinstance(design, Evaluation):
+        design = design.design
     if isinstance(design, Actuator):
         source = source or design.source
         metrics = METRICS | {plugin.name: plugin.quantity for plugin in design.plugins}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -53,11 +53,11 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
     Parameters
     ----------
     of : the run, or what `read_run` takes
-    plugins : its own metrics; default: the files it was made with
+    plugins : the Python files of its own metrics; they are programs, so never taken by themselves
 
     Raises
     ------
-    InputError : a run of another command, a damaged record, plugins that are missing or changed
+    InputError : a run of another command, a damaged record, plugins that are not named
     """
     found = of if isinstance(of, Run) else read_run(of)
     kind = found.head.get("kind")
@@ -67,13 +67,15 @@ def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
     try:
         with sound(found):
             given = found.body["input"]
-            own = plugins_of(plugins) or plugins_of(own_files(found))
+            own = named_plugins(found, plugins)
             sets = [(path, value) for path, value in given["set"]]
             actuator = read_as(given["text"], given["name"], set=sets, plugins=own)
             if kind == "sweep":
-                return Restored(found, kept_sweep(found, actuator), actuator)
+                doubts = tuple(changed_plugins(found, own))
+                return Restored(found, kept_sweep(found, actuator), actuator, doubts)
             result, shown = _solved(found, own)
-            return Restored(found, result, actuator, tuple(_doubts(found, shown)))
+            doubts = (*changed_plugins(found, own), *_doubts(found, shown))
+            return Restored(found, result, actuator, doubts)
     except InputError as error:
         faults = [replace(x, file=x.file or str(found.path)) for x in error.diagnostics]
         raise InputError(faults) from None
@@ -92,24 +94,29 @@ def _solved(found: Run, own: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoF
     return best, best.best_evaluation
 
 
-def own_files(found: Run) -> list[str]:
-    """The plugin files of a run, which must be what they were: they are run.
+def named_plugins(found: Run, plugins: Plugins) -> tuple[Plugin, ...]:
+    """The plugins that this call names for a run; a record by itself never runs a program.
 
     Raises
     ------
-    InputError : one has changed, is not there, or was a function of a script
+    InputError : the run had own metrics, and none is named
     """
-    files: Sequence[Mapping[str, str]] = found.body["input"]["plugins"]
-    for one in files:
-        now = sha256(one["file"]) if one["file"] else ""
-        if now and now == one["sha256"]:
-            continue
-        name = one["file"] or "a function of a script"
-        why = "has changed since" if now else "is not there"
-        message = f"its own metrics came from {name}, which {why}"
-        remedy = "name the file with --plugin"
-        raise InputError(Diagnostic(message, remedy, str(found.path)))
-    return [one["file"] for one in files]
+    own = plugins_of(plugins)
+    files = [one["file"] or "a function of a script" for one in found.body["input"]["plugins"]]
+    if files and not own:
+        message = f"its own metrics came from {', '.join(files)}, which is a program"
+        raise InputError(Diagnostic(message, "name it with --plugin to run it", str(found.path)))
+    return own
+
+
+def changed_plugins(found: Run, own: Sequence[Plugin]) -> list[str]:
+    """Say which files of own metrics are not those that were recorded."""
+    now = {sha256(file) for file in {plugin.file for plugin in own} if file}
+    return [
+        f"run {found.id} was made with another {one['file']} (its SHA-256 differs)"
+        for one in found.body["input"]["plugins"]
+        if one["file"] and one["sha256"] not in now
+    ]
 
 
 def _doubts(found: Run, now: Evaluation) -> list[str]:
@@ -147,10 +154,15 @@ def report_run(
     date : default: that of the run
     plugins : as `restore`
     """
+    found = of if isinstance(of, Restored) else restore(of, plugins=plugins)
+    with sound(found.run):
+        return _reported(found, folder, date)
+
+
+def _reported(found: Restored, folder: str | Path, date: str | None) -> list[ReportFile]:
     from ..optimisation.result import Optimisation
     from ..reporting import ExtraTable
 
-    found = of if isinstance(of, Restored) else restore(of, plugins=plugins)
     result, body = found.result, found.run.body
     if isinstance(result, KeptSweep):
         return report_sweep(result, folder=folder)
@@ -184,9 +196,9 @@ def draw_run(of: Run, folder: str | Path) -> list[Path]:
         message = f"is a run of {of.head.get('kind')}, whose search has no convergence to draw"
         remedy = f"draw it with: actuator-opt report {of.id}"
         raise InputError(Diagnostic(message, remedy, str(of.path)))
-    metric = str((of.head.get("objective") or {}).get("metric", ""))
-    result = of.body.get("result", {})
-    title = f"{of.head['name']}: search, {result.get('algorithm', '')}, seed {of.head['seed']}"
-    count = int(result.get("evaluations", 0))
-    ink = convergence_figure(of.body.get("trace", ()), metric, count, title)
-    return write_ink(ink, Path(folder), f"{of.id}-convergence")
+    with sound(of):
+        result = of.body["result"]
+        title = f"{of.head['name']}: search, {result['algorithm']}, seed {of.head['seed']}"
+        metric = str(of.head["objective"].get("metric", ""))
+        ink = convergence_figure(of.body["trace"], metric, result["evaluations"], title)
+        return write_ink(ink, Path(folder), f"{of.id}-convergence")

@@ -13,6 +13,7 @@ from ..errors import Diagnostic, InputError
 from ..evaluation.study.plant import plant
 from ..numeric import Array
 from .actuator import Actuator, as_actuator
+from .records import Units
 from .reports import origin
 
 if TYPE_CHECKING:
@@ -48,7 +49,10 @@ class Trial:
 
 
 def read_scenario(
-    source: str | Path, *, set: Mapping[str, str | float] | Sequence[tuple[str, str]] = ()
+    source: str | Path,
+    *,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    units: Units = None,
 ) -> Trial:
     """Read a scenario file (a path, ``"-"`` for standard input, or the text itself).
 
@@ -56,6 +60,7 @@ def read_scenario(
     ----------
     source : path or text
     set : values to replace, by PATH of the scenario, else of its design; a bare number is SI
+    units : of columns of recorded inputs whose header states none, as `read_record`
 
     Raises
     ------
@@ -69,15 +74,16 @@ def read_scenario(
     loaded = read(source, overrides=[(path, str(value)) for path, value in pairs])
     design = read_design_of(loaded)
     actuator = Actuator(design.design, design.source)
-    return Trial(loaded.scenario, actuator, _records(loaded), loaded)
+    return Trial(loaded.scenario, actuator, _records(loaded, units), loaded)
 
 
-def _records(loaded: LoadedScenario) -> dict[tuple[str, str], tuple[Array, Array]]:
+def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tuple[Array, Array]]:
     """Every column that a signal of the scenario names."""
     from ..design.scenario import recorded_parts
-    from ..identification import decode_record, parse_column
+    from ..identification import column_units, decode_record, parse_column
     from ..store import read_bytes
 
+    known = column_units(units)
     found: dict[tuple[str, str], tuple[Array, Array]] = {}
     texts: dict[str, str] = {}
     for path, part, dimension in recorded_parts(loaded.scenario):
@@ -88,7 +94,9 @@ def _records(loaded: LoadedScenario) -> dict[tuple[str, str], tuple[Array, Array
                 path_of = loaded.folder / file
                 data = read_bytes(path_of, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
                 texts[file] = decode_record(data, name, most=MOST_BYTES)
-            found[file, column] = parse_column(texts[file], column, dimension, name=name)
+            found[file, column] = parse_column(
+                texts[file], column, dimension, name=name, units=known
+            )
         except InputError as error:
             at = path if file in texts else f"{path.removesuffix('column')}file"
             raise InputError([_where(fault, at, loaded) for fault in error.diagnostics]) from None
@@ -204,6 +212,7 @@ def compare_measured(
     *,
     fit: Sequence[str] = (),
     columns: Mapping[str, str] | None = None,
+    units: Units = None,
     verify: bool = False,
     method: Method = "lsoda",
     simulation: Simulation | None = None,
@@ -216,6 +225,7 @@ def compare_measured(
     record : CSV file with t and any of p1, p2, x, v, F_L, ...
     fit : names of parameters, as ``air_content``; see `simulation.measured.parameters`
     columns : header by channel where it is none of the known names
+    units : of columns whose header states none, as `read_record`
     verify, method : as `simulate`; of a fit, of the run with the fitted values
     simulation : of the scenario, where it has been run
 
@@ -224,7 +234,7 @@ def compare_measured(
     InputError
         as `read_scenario`; nothing in common, an unknown parameter
     """
-    from ..identification import decode_record
+    from ..identification import column_units, decode_record
     from ..simulation.measured import overlay, parse_measured
     from ..simulation.measured.fit import fit as fitted
     from ..simulation.run import spec_of
@@ -234,7 +244,7 @@ def compare_measured(
     name = str(record)
     data = read_bytes(record, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
     text = decode_record(data, name, most=MOST_BYTES)
-    measured = parse_measured(text, name=name, columns=columns)
+    measured = parse_measured(text, name=name, columns=columns, units=column_units(units))
     with placed(trial):
         if not fit:
             done = simulation or simulate(trial, verify=verify, method=method)

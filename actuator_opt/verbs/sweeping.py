@@ -11,6 +11,7 @@ from ..design import Design
 from ..errors import Diagnostic, InputError, UsageError
 from ..evaluation import Subject, compute
 from ..store import require_apart
+from ..store import writing as cannot_write
 from .actuator import Actuator, Plugins, as_actuator, unanswered
 from .reports import file_name
 
@@ -160,7 +161,10 @@ def _require_apart(*files: str | Path | None) -> None:
     if "-" in map(str, files):
         message = "-: standard output carries the results"
         raise UsageError(Diagnostic(message, "name a file for --store, --csv or --parquet"))
-    places = [Path(file).resolve() for file in files if file is not None]
+    places = []
+    for path in (Path(file) for file in files if file is not None):
+        with cannot_write(path):
+            places.append(path.resolve())
     for place in places:
         if places.count(place) > 1:
             message = f"{place.name}: one file for two of --store, --csv and --parquet"

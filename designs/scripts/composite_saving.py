@@ -116,6 +116,12 @@ def print_reasons(saving: Saving) -> None:
     kept = ("rod", "fastening", "clevises")
     same = sum(saving.mass(composite, part) for part in kept) / composite.objective_value
     ends = 1 - saving.mixed.objective_value / steel.objective_value
+    rest = saving.share - ends
+    carbon = (
+        f"saves another {rest:.1%}"
+        if rest > 0
+        else f"saves nothing more: that actuator is {-rest:.1%} of the steel mass heavier"
+    )
     thick = saving.thick.metrics["mass"].value
     wall = steel.design.barrel.layup[0].thickness
     bores = [1e3 * optimum.design.cylinder.bore for optimum in (steel, composite)]
@@ -123,8 +129,9 @@ def print_reasons(saving: Saving) -> None:
         f"the barrel alone saves {saving.part_share('barrel'):.0%}: the makers' largest figures are"
         " for a barrel or a rod, not for a whole cylinder",
         f"{same:.0%} of the composite actuator is steel in both designs: {', '.join(kept)}",
-        f"aluminium caps, head and piston on a steel barrel save {ends:.0%} already; the carbon"
-        f" barrel with the bond it needs saves the other {saving.share - ends:.0%}",
+        f"aluminium caps, head and piston on a steel barrel save {ends:.1%} already:"
+        f" {1e3 * saving.mixed.objective_value:.1f} g; the carbon barrel with the bond it needs"
+        f" {carbon}",
         f"the makers compare with walls of {1e3 * THICK_WALL:.0f} mm and more, the steel optimum"
         f" has {1e3 * wall:.2f} mm; with {1e3 * THICK_WALL:.0f} mm it weighs {1e3 * thick:.0f} g"
         f" and the composite saves {1 - composite.objective_value / thick:.0%}",

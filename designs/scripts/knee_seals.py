@@ -13,6 +13,7 @@ and are checked by solving again; closed forms stand beside the models.
 from __future__ import annotations
 
 import argparse
+from functools import cache
 from math import ceil, floor, pi
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,9 @@ from typing import Any
 import yaml
 
 import actuator_opt as ao
+from actuator_opt.models.contact_profile import o_ring_mean
 from actuator_opt.models.elastomer import modulus_gent
+from actuator_opt.models.seals import LAWS
 from actuator_opt.reporting.blocks import column, figure, table
 from actuator_opt.reporting.figures import Axes
 from actuator_opt.reporting.ink import BLUE, GREY, RED, WHITE, Ink
@@ -68,8 +71,6 @@ STEP = 1e-3
 TIGHT = 0.19
 """Squeeze that every search on a film begins from: the films are tabulated over what moves them
 there, and below 15 % the contact hardly depends on squeeze, so that it would be left out."""
-PRESSURE_SHARE = 0.72
-"""Line load over pressure and section of the plane-strain law, to 15 % of squeeze."""
 METRICS = (
     "friction_running",
     "friction_breakaway",
@@ -175,15 +176,26 @@ def measured(found: Any) -> Data:
 def by_hand(design: Any) -> Data:
     """Friction of the pressure alone, and what a coefficient gives for the same rings.
 
-    F = mu pi (D W_p (p_s - p_r) + d W_r p_s) 0.72: the pressure's part of mu pi d f with the
-    plane-strain line load f, in the case that drives the rod chamber.
+    F = mu pi (D f_p + d f_r) with f = (10/11) b p, b the contact width: the pressure's part of the
+    line load, in the case that drives the rod chamber.
     """
     supply, back = design.supply.pressure, design.supply.return_pressure
-    loads = (
-        design.cylinder.bore * design.seals.piston.section * (supply - back),
-        design.rod.outer_diameter * design.seals.rod.section * supply,
+    sealed = (
+        (design.seals.piston, design.cylinder.bore, supply - back),
+        (design.seals.rod, design.rod.outer_diameter, supply),
     )
-    return {"around": pi * PRESSURE_SHARE * sum(loads)}
+    loads = [
+        diameter
+        * o_ring_mean(sealed_pressure=pressure, outer_pressure=0.0, excess=0.0)
+        * LAWS[seal.law].contact_width(
+            squeeze=seal.squeeze,
+            section=seal.section,
+            youngs_modulus=moduli()[1],
+            pressure=pressure,
+        )
+        for seal, diameter, pressure in sealed
+    ]
+    return {"around": pi * float(sum(loads))}
 
 
 def coulomb(row: Data, variant: str) -> float:
@@ -280,10 +292,11 @@ def coefficients() -> Data:
     return {"stated": seal.friction_coefficient, "asperities": numbers["asperity_friction"]}
 
 
-def moduli() -> list[float]:
+@cache
+def moduli() -> tuple[float, ...]:
     """Young's modulus of the knee's compound at 5 Shore A less, as stated, 5 more, Pa."""
     hardness = ao.load_library().get(ao.read(DESIGN).design.seals.rod.compound).numbers["hardness"]
-    return [float(modulus_gent(hardness=hardness + scatter)) for scatter in (-5, 0, 5)]
+    return tuple(float(modulus_gent(hardness=hardness + scatter)) for scatter in (-5, 0, 5))
 
 
 def compute(*, quick: bool = False) -> Data:
@@ -302,7 +315,7 @@ def compute(*, quick: bool = False) -> Data:
         "version": ao.__version__,
         "required": _required("friction_running"),
         "coefficients": coefficients(),
-        "moduli": moduli(),
+        "moduli": list(moduli()),
         "series": rows,
         "prices": prices,
         "choices": [row for bare in (False, True) for row in enumerated(bare, quick)],
@@ -435,24 +448,31 @@ def lead(study: Data) -> list[str]:
     shipped, free, film = (rows[name] for name in VARIANTS)
     base = {name: study["prices"][name] for name in study["prices"]}
     tight, wide = base.get("shipped"), base["free"]
-    paid = abs(grams(wide["prices"].get("friction_running", 0.0), "friction_running"))
     least = [fixed(found[-1]["asked"] or 0.0, 0) for found in (shipped, free, film)]
     said = [
         f"At the required {fixed(study['required'], 0)} N the knee weighs"
-        f" {fixed(1e3 * wide['mass'], 1)} g with free sections and clearances, where a newton"
-        f" less costs {number(paid, 2)} g.",
+        f" {fixed(1e3 * wide['mass'], 1)} g with free sections and clearances, where"
+        f" {_paid(wide)}.",
         f"The least friction within reach is {least[0]} N with rings of 1.78 mm and {least[1]} N"
         " with free ones, by coefficient"
         + (f"; {least[2]} N with free ones on the film." if optima(film) else "."),
     ]
     if tight:
         more = 1e3 * (tight["mass"] - wide["mass"])
-        paid = abs(grams(tight["prices"]["friction_running"], "friction_running"))
         said[0] += (
             f" With its rings of 1.78 mm and clearances of 30 µm it weighs {fixed(more, 1)} g more"
-            f" and a newton less costs {number(paid, 2)} g."
+            f" and {_paid(tight)}."
         )
     return said
+
+
+def _paid(row: Data) -> str:
+    """What a newton less costs at an optimum; nothing where friction stays below its limit."""
+    paid = row["prices"].get("friction_running")
+    if paid is None:
+        running = fixed(row["metrics"]["friction_running"], 0)
+        return f"friction runs at {running} N and its limit costs nothing"
+    return f"a newton less costs {number(abs(grams(paid, 'friction_running')), 2)} g"
 
 
 def optima(rows: list[Data]) -> list[Data]:
@@ -534,7 +554,8 @@ def remarks(study: Data) -> Data:
             "Any: no limit on friction; last of each kind: the least friction within reach,"
             " whatever it weighs."
             " Coulomb: the same rings and dimensions with the stated coefficient"
-            f" {given['stated']:.2f}, μπDf of both; pressure alone: its part 0.72 μπDWp, by hand."
+            f" {given['stated']:.2f}, μπDf of both; pressure alone: its part (10/11) μπDbp"
+            " with b the contact width, by hand."
             " Rod leakage is told too high: an averaged film passes oil at any gap."
             f" The film takes {given['asperities']:.2f} between rough faces: where no oil carries,"
             f" that alone is {number(ratio, 3)} times the coefficient, and the breakaway on the"

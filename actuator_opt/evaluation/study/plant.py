@@ -19,7 +19,11 @@ from ..values import Values
 from .bench import Bench, bench
 
 LEAST_AIR = 1e-4
-"""Least free air of an oil (a choice, 0.01 %): without any, nothing bounds a vacuum."""
+"""Free air from which on it bounds a vacuum itself (a choice, 0.01 %)."""
+
+CAVITY = 1e-6
+"""Content of the cavity that bounds it in oil of less air, below atmospheric pressure only (a
+choice: at 0.05 bar absolute it takes 0.006 % of the volume)."""
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Chamber pressures over the supply's at which the friction is read."""
 
@@ -39,6 +43,11 @@ class Oil:
     dynamic_viscosity: float
     kinematic_viscosity: float
     vapour_pressure: float
+
+    @property
+    def cavity(self) -> float:
+        """Content of the cavity that opens below atmospheric pressure; none where air does it."""
+        return CAVITY if self.air_content < LEAST_AIR else 0.0
 
     @property
     def law(self) -> dict[str, float]:
@@ -252,7 +261,7 @@ def _oil(subject: Subject, v: Values, own: Bench, supply: float) -> Oil:
         temperature=temperature,
         bulk_modulus=at_rest,
         slope=(modulus(supply) - at_rest) / supply,
-        air_content=max(float(v["fluid.air_content"]), LEAST_AIR),
+        air_content=float(v["fluid.air_content"]),
         polytropic_index=float(v["fluid.polytropic_index"]),
         density=density,
         dynamic_viscosity=kinematic * density,

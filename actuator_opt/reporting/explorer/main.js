@@ -33,8 +33,9 @@ function describe(row) {
   drawSection(row);
   const missed = row < 0 ? [] : LIMITS.filter((one) => one.cut[row]).sort((a, b) => a.margin[row] - b.margin[row]);
   const verdict = byId("verdict");
-  verdict.className = missed.length ? "bad" : "good";
-  verdict.textContent = row < 0 ? "" : !missed.length ? "Meets every requirement and check."
+  const tight = missed.length || row < 0 ? [] : LIMITS.filter((one) => one.margin[row] < one.reserve);
+  verdict.className = missed.length ? "bad" : tight.length ? "doubt" : "good";
+  verdict.textContent = row < 0 ? "" : !missed.length ? `Meets every requirement and check${tight.length ? `; without reserve: ${tight.map((one) => one.name).join(", ")}` : ""}.`
     : `Misses ${missed.slice(0, 5).map((one) => `${one.name} (${marginText(one, row)})`).join(", ")}${missed.length > 5 ? ` and ${missed.length - 5} more` : ""}.`;
   byId("numbers").replaceChildren(...(row < 0 ? [] : COLUMNS.map((column) => {
     const line = document.createElement("tr"), head = document.createElement("th");

@@ -9,13 +9,13 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
-import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...plain_json import encoded
 from ...store import write_text
 from ...variants.explored import Explored
 from .payload import payload
@@ -31,10 +31,13 @@ class ExplorerFile:
 
     path: Path
     sha256: str
+    remarks: tuple[str, ...] = ()
+    """What to know of what it shows."""
 
     def to_dict(self) -> dict[str, object]:
         """The JSON form."""
-        return {"path": str(self.path), "sha256": self.sha256}
+        told: dict[str, object] = {"path": str(self.path), "sha256": self.sha256}
+        return told | ({"remarks": list(self.remarks)} if self.remarks else {})
 
 
 def page(explored: Explored, *, design: str, plugins: Sequence[str] = ()) -> str:
@@ -66,7 +69,11 @@ def design_beside(target: Path) -> Path:
 
 
 def write_explorer(
-    explored: Explored, target: Path, *, plugins: Sequence[str] = ()
+    explored: Explored,
+    target: Path,
+    *,
+    plugins: Sequence[str] = (),
+    remarks: Sequence[str] = (),
 ) -> list[ExplorerFile]:
     """Write the page, and beside it the base design that its command names.
 
@@ -75,6 +82,7 @@ def write_explorer(
     explored : the sweep
     target : the page's file
     plugins : files with the user's metrics, for the command
+    remarks : what to know of the rows, told with the page
 
     Raises
     ------
@@ -82,12 +90,19 @@ def write_explorer(
         a file cannot be written
     """
     design = design_beside(target)
+    if explored.damaged:
+        rows = "1 row is" if explored.damaged == 1 else f"{explored.damaged} rows are"
+        remarks = [*remarks, f"{rows} damaged and left out; the sweep's own command computes again"]
     texts = {
         target: page(explored, design=design.name, plugins=plugins),
         design: explored.kept.design,
     }
     return [
-        ExplorerFile(write_text(path, text), hashlib.sha256(text.encode()).hexdigest())
+        ExplorerFile(
+            write_text(path, text),
+            hashlib.sha256(text.encode()).hexdigest(),
+            tuple(remarks) if path == target else (),
+        )
         for path, text in texts.items()
     ]
 
@@ -103,5 +118,5 @@ def _hash(text: str) -> str:
 
 def _json(data: dict[str, Any]) -> str:
     """JSON in which nothing reads as markup."""
-    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    text = encoded(data, ensure_ascii=False, separators=(",", ":"))
     return re.sub("[<>&\u2028\u2029]", lambda found: _ESCAPES[found[0]], text)

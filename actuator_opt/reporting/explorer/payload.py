@@ -13,6 +13,7 @@ from ...design.paths import quantity_of
 from ...evaluation import prepare
 from ...evaluation.limits import Limit
 from ...evaluation.plugin import Plugin
+from ...evaluation.reserve import NO_RESERVE, NO_ROOM
 from ...evaluation.result import Outline
 from ...evaluation.shapes import LENGTHS, Template
 from ...numeric import Array
@@ -144,6 +145,7 @@ def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
                 "name": limit.name,
                 "text": f"{_label(limit, quantity, study.plugins)} {words}",
                 "plain": bound == 0.0,
+                "reserve": NO_ROOM if bound == 0.0 else NO_RESERVE,
                 "margin": _base64(np.clip(margin, -MOST, MOST), "<f4"),
             }
         )
@@ -201,6 +203,8 @@ def _summary(explored: Explored) -> str:
         told = "; ".join(f"{times} times {reason}" for reason, times in reasons[:TOLD])
         more = f"; and {len(reasons) - TOLD} more reasons" if len(reasons) > TOLD else ""
         words += f" {explored.failed} failed, which have no numbers: {told}{more}."
+    if explored.damaged:
+        words += f" {explored.damaged} damaged and left out."
     return f"{pretty(words)} Models of version {VERSION}."
 
 

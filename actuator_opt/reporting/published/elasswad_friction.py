@@ -54,7 +54,7 @@ def coefficient_table(evaluation: Evaluation) -> ExtraTable:
     ring = evaluation.design.seals.piston
     hardness = properties(evaluation, ring.compound).get("hardness", float("nan"))
     modulus = elastomer.MODULUS_LAWS[ring.hardness_model].modulus(hardness=hardness)
-    ours = seals.LAWS["plane_strain"]
+    ours = seals.LAWS["energised"]
     size = {"section": ring.section, "youngs_modulus": modulus}
     printed_width = chord(ring)
     width = float(ours.contact_width(squeeze=ring.squeeze, pressure=0.0, **size))
@@ -98,8 +98,8 @@ def coefficient_table(evaluation: Evaluation) -> ExtraTable:
         f"µ cannot be identified alone: with preload and energised rings {average} fits "
         f"{text.number(coefficient(2e6), 3)} at 2 MPa as well as {text.number(coefficient(7e6), 3)}"
         " at 7 MPa, and eq. 16 has no friction at all without pressure. "
-        "Eq. 19 is the chord of the unsqueezed circle: at 10 % squeeze 38 %, at 20 % 15 % wider "
-        "than the plane-strain finite elements that ours follows within 5 %. "
+        "Eq. 19 is the chord of the unsqueezed circle, wider than the plane-strain finite "
+        "elements that ours follows within 3 %. "
         "Ring section, squeeze and both rings under the full pressure are assumed."
     )
     return ExtraTable("El Asswad 2018: friction coefficient", COLUMNS, rows, note)

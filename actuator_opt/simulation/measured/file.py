@@ -9,6 +9,7 @@ import numpy as np
 
 from ...design.scenario.recorded import gap_words, gaps
 from ...errors import Diagnostic, InputError
+from ...identification.column_units import NONE, ColumnUnits
 from ...identification.record import CHANNELS, Channel, Record, parse_record
 from ...numeric import Array
 
@@ -86,7 +87,11 @@ class Measured:
 
 
 def parse_measured(
-    text: str, *, name: str = "record", columns: Mapping[str, str] | None = None
+    text: str,
+    *,
+    name: str = "record",
+    columns: Mapping[str, str] | None = None,
+    units: ColumnUnits = NONE,
 ) -> Measured:
     """A measured record from the text of a CSV file, columns as in `COLUMNS`.
 
@@ -95,15 +100,18 @@ def parse_measured(
     text : of the file
     name : of the file, for messages
     columns : header by channel, where it is none of the known names: ``{"p1": "Channel 3 [bar]"}``
+    units : of columns whose header states none
 
     Raises
     ------
     InputError
         as `identification.parse_record`; no channel that a simulation tells
     """
-    record = parse_record(text, name=name, columns=columns, channels=COLUMNS)
+    record = parse_record(
+        text, name=name, columns=columns, channels=COLUMNS, units=units, needed=SIGNALS
+    )
     notes = [
-        f"{one}; channels are {', '.join(SIGNALS)}" if one.startswith("columns") else one
+        f"{one}; channels are {', '.join(SIGNALS)}" if one.startswith("columns that") else one
         for one in record.notes
     ]
     return Measured.of(replace(record, notes=tuple(notes)))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from ...evaluation.springs import Give
 from ...evaluation.study.plant import Oil
 from ...models import chamber, oil_energy
+from ...models.cavity import cavity
 from ...models.fluid import ATMOSPHERIC_PRESSURE
 from ...numeric import clip, maximum, where
 from ...symbolic import Expression, Namespace, Symbol
@@ -31,12 +32,27 @@ class Volumes(NamedTuple):
 
 
 def oil_at(oil: Oil, pressure: Expression) -> Volumes:
-    """Density ratio, bulk modulus and energy density at a pressure above vacuum."""
+    """Density ratio, bulk modulus and energy density at a pressure above vacuum.
+
+    Oil with (almost) no air opens a cavity below atmospheric pressure, which bounds the vacuum.
+    """
     held = maximum(pressure, FLOOR - ATMOSPHERIC_PRESSURE)
-    return Volumes(
+    mixed = Volumes(
         chamber.density_ratio(pressure=held, **oil.law),
         chamber.mixture_bulk_modulus(pressure=held, **oil.law),
         oil_energy.oil_energy_density(pressure=held, **oil.law),
+    )
+    if not oil.cavity:
+        return mixed
+    opened, falling, work = cavity(
+        pressure=held, content=oil.cavity, polytropic_index=oil.polytropic_index
+    )
+    filled = (1 + oil.air_content) / mixed.ratio
+    whole = filled + opened
+    return Volumes(
+        (1 + oil.air_content) / whole,
+        whole / (filled / mixed.modulus + falling),
+        (mixed.energy * filled + work) / whole,
     )
 
 

@@ -1,0 +1,80 @@
+"""The governing value of a metric: which of its values over load cases and places stands for it.
+
+It is decided here alone, for one design and for many: tables, JSON, sweeps, fronts, the optimiser
+and reports show this value.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..numeric import Array, maximum, minimum, where
+from ..quantities import Sense
+from .kernel import Subject
+from .limits import margin
+from .rows import Computed, by_case
+from .values import Values
+
+
+def worst_of(aim: Sense) -> Sense:
+    """The worst value of what is minimised ("min") is the largest; of what is maximised, the least.
+
+    >>> worst_of("min")
+    'max'
+    """
+    return "max" if aim == "min" else "min"
+
+
+def sense_of(metric: str, subject: Subject) -> Sense | None:
+    """Whether the smallest ("min") or the largest value of a metric governs a design.
+
+    1. The worst value of an objective governs: the largest where it is minimised.
+    2. A metric with a required limit is governed in the sense of that limit. Limited both ways it
+       has no sense of its own (None): the value with the smaller margin governs.
+    3. Any other metric is governed by its worst value as `quantities.METRICS` states it.
+    """
+    objective = subject.design.objective
+    aims = subject.aims or dict.fromkeys(objective.metrics, objective.aim)
+    if metric in aims:
+        return worst_of(aims[metric])
+    required = subject.design.requirements.get(metric)
+    if required is None:
+        return subject.quantities[metric].worst
+    if required.min is not None and required.max is not None:
+        return None
+    return "max" if required.min is None else "min"
+
+
+def extreme(computed: Computed, metric: str, cases: tuple[str, ...], sense: Sense) -> Array | None:
+    """The smallest or largest value over load cases and places (designs,), SI.
+
+    NaN where one of them has no number, None where the metric is not computed.
+    """
+    pick = maximum if sense == "max" else minimum
+    found: Array | None = None
+    for place, array in computed.metrics.get(metric, {}).items():
+        for _, value in by_case(computed, metric, array, cases, place):
+            if found is None:
+                found = value
+            else:
+                unknown = np.isnan(found) | np.isnan(value)
+                found = where(unknown, np.nan, pick(found, value))
+    return found
+
+
+def governing(metric: str, computed: Computed, v: Values, subject: Subject) -> Array:
+    """The governing value of a metric of every design (designs,), SI.
+
+    Infinite where nothing loads the part; NaN where a value has no number, or the metric is not
+    computed.
+    """
+    sense = sense_of(metric, subject)
+    if sense is not None:
+        found = extreme(computed, metric, v.cases, sense)
+        return np.full(1, np.nan) if found is None else found
+    least = extreme(computed, metric, v.cases, "min")
+    most = extreme(computed, metric, v.cases, "max")
+    if least is None or most is None:
+        return np.full(1, np.nan)
+    lowest, highest = (v[f"requirements.{metric}.{one}"] for one in ("min", "max"))
+    return where(margin(least, lowest, "min") <= margin(most, highest, "max"), least, most)

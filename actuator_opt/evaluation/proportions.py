@@ -1,0 +1,266 @@
+"""Values out of all proportion: a slip of unit or decimal point that no limit would show.
+
+A table of ratios, each with the range that designs keep; every limit is a choice, wide of what
+catalogues show, and a value beyond it is a warning, never a fault. Only dimensions are read, no
+model, so that `check` may look too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from math import inf, pi
+
+import numpy as np
+
+from ..design.model import Design
+from ..numeric import Array
+from . import geometry
+from .geometry import Geometry
+from .kernel import Subject
+from .threads import screwed
+from .values import Values
+
+Ratio = Callable[[Values, Design, Geometry], Array | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Proportion:
+    """A number that stays within a range in sensible designs.
+
+    `path` is the value to look at, `what` the words after the number, `source` why the range;
+    `of` gives the number, one or many, or None where the design has none.
+    """
+
+    path: str
+    what: str
+    least: float
+    most: float
+    source: str
+    of: Ratio
+
+    def beyond(self, number: float) -> str | None:
+        """What to say of a number; None where it is within the range."""
+        if self.least <= number <= self.most:
+            return None
+        low, high = _plain(self.least), _plain(self.most)
+        usual = f"{low} to {high}"
+        if self.most == inf:
+            usual = f"at least {low}"
+        elif self.least in (0.0, -inf):
+            usual = f"at most {high}"
+        return (
+            f"{self.path} is out of proportion: {_plain(number)} {self.what}, usual is {usual} "
+            f"({self.source}); check its unit and decimal point"
+        )
+
+
+def _plain(number: float) -> str:
+    """Three digits, without an exponent up to a million.
+
+    >>> _plain(2187.3), _plain(0.016), _plain(1.2345e9)
+    ('2190', '0.016', '1.23e+09')
+    """
+    return f"{float(f'{number:.3g}'):g}"
+
+
+def _dead(chamber: str) -> Ratio:
+    def ratio(v: Values, design: Design, g: Geometry) -> Array:
+        area = g.area_a if chamber == "a" else g.area_b
+        return v[f"cylinder.dead_volume_{chamber}"] / (area * g.stroke)
+
+    return ratio
+
+
+def _stated(path: str, over: Callable[[Geometry], Array]) -> Ratio:
+    """A value that the file may leave out, over a dimension."""
+
+    def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
+        value = v.get(path, None)
+        return None if value is None else value / over(g)
+
+    return ratio
+
+
+def _pin(v: Values, design: Design, g: Geometry) -> Array | None:
+    return None if design.clevis is None else g.pin_diameter / g.bore
+
+
+def _wall(v: Values, design: Design, g: Geometry) -> Array:
+    return (g.outer_radius - g.inner_radius) / g.inner_radius
+
+
+def _hoop(v: Values, design: Design, g: Geometry) -> Array:
+    return v["supply.pressure"] * 1e-6 / _wall(v, design, g)
+
+
+def _gland(place: str) -> Ratio:
+    def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
+        grooves = g.piston_grooves if place == "piston" else g.rod_grooves
+        size = g.bore if place == "piston" else g.rod_diameter
+        depths = [one.gland_depth / size for one in grooves if one.role == "element"]
+        return np.array(depths, dtype=float) if depths else None
+
+    return ratio
+
+
+def _skirt(of: Callable[[Geometry], Array]) -> Ratio:
+    def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
+        return of(g) if g.has_skirts else None
+
+    return ratio
+
+
+def _turns(v: Values, design: Design, g: Geometry) -> Array | None:
+    return g.skirt_length / v["retention.thread.pitch"] if screwed(design) else None
+
+
+def _acceleration(v: Values, design: Design, g: Geometry) -> Array | None:
+    mass = v.get("load.mass", None)
+    return None if mass is None or mass == 0 else v["supply.pressure"] * g.area_a / mass
+
+
+def _strokes(v: Values, design: Design, g: Geometry) -> Array | None:
+    speeds = np.array([case.speed for case in design.load_cases if case.speed], dtype=float)
+    return speeds / g.stroke if speeds.size else None
+
+
+def _temperatures(v: Values, design: Design, g: Geometry) -> Array:
+    cases = [c.temperature for c in design.load_cases if c.temperature is not None]
+    return np.array([v["fluid.temperature"], *cases], dtype=float) - 273.15
+
+
+def _climate(v: Values, design: Design, g: Geometry) -> Array | None:
+    if design.environment is None:
+        return None
+    return v["environment.temperature_max"] - v["environment.temperature_min"]
+
+
+def _lines(v: Values, design: Design, g: Geometry) -> Array | None:
+    volumes = [
+        pi / 4 * line.inner_diameter**2 * line.length / (g.area_a * g.stroke)
+        for line in design.lines
+    ]
+    return np.array(volumes, dtype=float) if volumes else None
+
+
+_BORE = "times the bore"
+_WIDE = "choice"
+
+TABLE: tuple[Proportion, ...] = (
+    Proportion(
+        "cylinder.dead_volume_a", "times the volume that the piston displaces", 0.0, 1.0,
+        "choice: most of the oil moves", _dead("a"),
+    ),
+    Proportion(
+        "cylinder.dead_volume_b", "times the volume that the piston displaces", 0.0, 1.0,
+        "choice: most of the oil moves", _dead("b"),
+    ),
+    Proportion(
+        "lines", "times the volume that the piston displaces, in one line", 0.0, 20.0, _WIDE,
+        _lines,
+    ),
+    Proportion(
+        "rod.outer_diameter", _BORE, 0.15, 0.98, "choice; ISO 6020-2 has 0.44 to 0.72",
+        lambda v, design, g: g.rod_diameter / g.bore,
+    ),
+    Proportion(
+        "clevis.pin_diameter", _BORE, 0.1, 1.5, "choice; 0.4 to 0.6 is common", _pin,
+    ),
+    Proportion(
+        "rod.thread.diameter", _BORE, 0.1, 1.0, "choice; 0.4 to 0.7 is common",
+        _stated("rod.thread.diameter", lambda g: g.bore),
+    ),
+    Proportion(
+        "cylinder.port_diameter", _BORE, 0.02, 0.9, _WIDE,
+        _stated("cylinder.port_diameter", lambda g: g.bore),
+    ),
+    Proportion(
+        "cylinder.stroke", _BORE, 0.1, 60.0, _WIDE, lambda v, design, g: g.stroke / g.bore,
+    ),
+    Proportion(
+        "barrel.layup", "times the inner radius in wall", 0.005, 2.0, _WIDE, _wall,
+    ),
+    Proportion(
+        "supply.pressure", "MPa of mean hoop stress, pressure times radius over wall", 0.2, 2500.0,
+        "choice: above the fibres of the library", _hoop,
+    ),
+    Proportion(
+        "supply.return_pressure", "times the supply pressure", 0.0, 0.5, _WIDE,
+        lambda v, design, g: v["supply.return_pressure"] / v["supply.pressure"],
+    ),
+    Proportion(
+        "supply.proof_ratio", "times the supply pressure", 1.0, 4.0, "choice; ISO 10100 has 1.5",
+        lambda v, design, g: v["supply.proof_ratio"],
+    ),
+    Proportion(
+        "piston.clearance", _BORE, 5e-5, 0.01, "choice; a fit H8/f7 of 25 mm has 0.0008 to 0.0015",
+        lambda v, design, g: g.piston_clearance / g.bore,
+    ),
+    Proportion(
+        "head.clearance", "times the rod's diameter", 5e-5, 0.02, "choice, as of the piston",
+        lambda v, design, g: g.head_clearance / g.rod_diameter,
+    ),
+    Proportion(
+        "piston.length", _BORE, 0.1, 5.0, _WIDE, lambda v, design, g: g.piston_length / g.bore,
+    ),
+    Proportion(
+        "head.length", _BORE, 0.1, 5.0, _WIDE, lambda v, design, g: g.head_length / g.bore,
+    ),
+    Proportion(
+        "caps.thickness", _BORE, 0.03, 2.0, _WIDE, lambda v, design, g: g.plate / g.bore,
+    ),
+    Proportion(
+        "rod.extension", "times the bore and stroke together", 0.0, 3.0, _WIDE,
+        lambda v, design, g: g.rod_extension / (g.bore + g.stroke),
+    ),
+    Proportion(
+        "barrel.length", "times stroke, piston and head together", 0.0, 3.0, _WIDE,
+        lambda v, design, g: g.barrel_length / (g.stroke + g.piston_length + g.head_length),
+    ),
+    Proportion(
+        "cylinder.stop_travel", "times the stroke", 0.0, 0.2, _WIDE,
+        lambda v, design, g: v["cylinder.stop_travel"] / g.stroke,
+    ),
+    Proportion(
+        "seals.piston", "times the bore in depth of a groove", 0.004, 0.25,
+        "choice; ISO 3601-2 grooves", _gland("piston"),
+    ),
+    Proportion(
+        "seals.rod", "times the rod's diameter in depth of a groove", 0.004, 0.4,
+        "choice; ISO 3601-2 grooves", _gland("rod"),
+    ),
+    Proportion(
+        "retention.wall", _BORE, 0.01, 0.7, _WIDE, _skirt(lambda g: g.skirt_wall / g.bore),
+    ),
+    Proportion(
+        "retention.length", _BORE, 0.1, 4.0, _WIDE, _skirt(lambda g: g.skirt_length / g.bore),
+    ),
+    Proportion(
+        "retention.length", "turns of the thread", 5.0, 60.0,
+        "choice: start and run-out take two, the first turns carry most", _turns,
+    ),
+    Proportion(
+        "load.mass", "m/s^2, what the supply pressure can give the load", 0.05, inf, _WIDE,
+        _acceleration,
+    ),
+    Proportion("load_cases", "strokes a second", 1e-5, 200.0, _WIDE, _strokes),
+    Proportion(
+        "fluid.temperature", "degC of oil", -60.0, 200.0, "choice; hydraulic oils", _temperatures,
+    ),
+    Proportion(
+        "environment", "K between coldest and hottest", 0.0, 250.0, _WIDE, _climate,
+    ),
+)  # fmt: skip
+"""Every proportion that is looked at."""
+
+
+@np.errstate(all="ignore")  # what has no finite answer is said elsewhere
+def warnings(subject: Subject, v: Values, g: Geometry | None = None) -> Iterator[str]:
+    """A sentence for each value that is out of all proportion."""
+    g = geometry.derive(v, subject.design) if g is None else g
+    for proportion in TABLE:
+        ratio = proportion.of(v, subject.design, g)
+        numbers: Iterable[float] = [] if ratio is None else np.ravel(np.real(ratio)).tolist()
+        texts = [proportion.beyond(number) for number in numbers if np.isfinite(number)]
+        yield from dict.fromkeys(text for text in texts if text is not None)

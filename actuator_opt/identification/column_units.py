@@ -1,0 +1,109 @@
+"""Units of columns whose header states none: SI for all, or by column from a file."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .. import units
+from ..design.yaml_source import MAX_BYTES, decode, parse
+from ..errors import Diagnostic, InputError
+from ..store import read_bytes
+from ..suggest import shown
+
+SI = "SI"
+"""Word that stands for the SI unit of every column: m, s, Pa, N, m/s, K."""
+_WHAT = "units"
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnUnits:
+    """Units that a header leaves out; a unit in the header counts before them.
+
+    Parameters
+    ----------
+    stated : unit by name of the column
+    si : whether every other column without a unit is in SI units
+    name : where the units are from, for messages
+    """
+
+    stated: Mapping[str, str] = field(default_factory=dict)
+    si: bool = False
+    name: str = _WHAT
+
+    def of(self, column: str, dimension: str) -> str:
+        """Unit of a column whose header states none; empty where none is known."""
+        return self.stated.get(column) or (units.BASE[dimension] if self.si else "")
+
+
+NONE = ColumnUnits()
+
+
+def column_units(source: str | Path | Mapping[str, str] | None) -> ColumnUnits:
+    """Units of columns by ``"SI"``, by column, or from a file.
+
+    A YAML file (``.yaml``, ``.yml``) holds lines ``p1: bar``, any other lines ``p1,bar``: the
+    column's name as the header writes it, and its unit. Columns that a record lacks are no fault.
+
+    Parameters
+    ----------
+    source : ``"SI"``, unit by column, path of a file, or None
+
+    Returns
+    -------
+    the units
+
+    Raises
+    ------
+    InputError
+        no such file, a line that is no column with its unit, a column named twice
+    """
+    if source is None:
+        return NONE
+    if isinstance(source, Mapping):
+        return ColumnUnits(dict(source))
+    if str(source) == SI:
+        return ColumnUnits(si=True, name=SI)
+    file = str(source)
+    kinds = (".csv", ".yaml", ".yml", ".txt")
+    data = read_bytes(source, most=MAX_BYTES + 1, kinds=kinds, what="file of units")
+    text = decode(data, file, _WHAT)
+    of_yaml = Path(file).suffix.lower() in (".yaml", ".yml")
+    return ColumnUnits(_yaml(text, file) if of_yaml else _csv(text, file), name=file)
+
+
+def _yaml(text: str, file: str) -> dict[str, str]:
+    document = parse(text, file, _WHAT)
+    faults = list(document.faults)
+    for column, unit in document.data.items():
+        if not isinstance(unit, str) or not unit.strip():
+            span = document.keys.get((column,))
+            message = f'column "{shown(column)}" has no unit'
+            faults.append(document.diagnostic(span, message, "write e.g. p1: bar"))
+    if faults:
+        raise InputError(faults)
+    return {column: unit.strip() for column, unit in document.data.items()}
+
+
+def _csv(text: str, file: str) -> dict[str, str]:
+    found: dict[str, str] = {}
+    faults: list[Diagnostic] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        separator = next((one for one in "\t;," if one in line), ",")
+        cells = [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+        message, remedy = "", "write the column and its unit, e.g. p1,bar"
+        if len(cells) != 2 or not all(cells):
+            message = f'"{shown(line)}" is no column with its unit'
+        elif cells[0] in found:
+            message, remedy = f'column "{shown(cells[0])}" is named twice', "delete one line"
+        if message:
+            faults.append(Diagnostic(message, remedy, file=file, line=number))
+        else:
+            found[cells[0]] = cells[1]
+    if faults:
+        raise InputError(faults)
+    return found

@@ -1,0 +1,329 @@
+"""Two engaged ISO 60 degree threads: what shears off each, their flanks, and what they spread.
+
+Each thread is judged by its own metal. The wall under a thread is a tube (`rod.section_area`,
+`barrel.bore_stresses`) between its other face and the thread's root.
+"""
+
+from __future__ import annotations
+
+from math import pi, sqrt, tan
+
+from ..geometry import geometry
+from ..numeric import Array, real, where
+from .mass import pitch_diameter
+
+HEIGHT = sqrt(3) / 2
+"""Height H of the sharp triangle of an ISO thread over its pitch [ISO68-1]."""
+
+RUN_OUT = 0.8
+"""Pitches of the length that carry nothing: chamfer and run-out [VDI2230]."""
+
+FLANK = pi / 6
+"""Half of the angle of the thread [rad]."""
+
+LEAST_OVERLAP = 0.8
+"""Least overlap of the flanks over that of full crests (a choice: what the tolerance 6g leaves of a
+pitch of 1 mm)."""
+
+MALE = (5.594, -13.682, 14.107, -6.057, 0.9353)
+FEMALE = (0.728, 1.769, -2.896, 1.296)
+LEAST = 0.897
+"""Alexander's reductions: polynomials in the strength ratio, and what they start from at 1."""
+
+
+@geometry
+def minor_diameter(*, diameter: Array, pitch: Array) -> Array:
+    """Minor diameter of the female thread, D_1 = d - 1.25 H, H = (sqrt(3)/2) P.
+
+    Parameters
+    ----------
+    diameter : nominal diameter d [m]
+    pitch : P [m]
+
+    Returns
+    -------
+    diameter [m]
+
+    Notes
+    -----
+    Valid: ISO 60 degree threads, basic sizes.
+
+    References
+    ----------
+    [ISO68-1] basic profile; [ISO724]
+
+    Examples
+    --------
+    >>> print(f"{minor_diameter(diameter=26e-3, pitch=1e-3) * 1e3:.4f} mm")
+    24.9175 mm
+    """
+    return diameter - 1.25 * HEIGHT * pitch
+
+
+@geometry
+def root_diameter(*, diameter: Array, pitch: Array) -> Array:
+    """Diameter at the root of the male thread, d_3 = d - 17 H/12, H = (sqrt(3)/2) P.
+
+    Parameters
+    ----------
+    diameter : nominal diameter d [m]
+    pitch : P [m]
+
+    Returns
+    -------
+    diameter [m]
+
+    Notes
+    -----
+    Valid: ISO 60 degree threads with a root of radius H/6.
+
+    References
+    ----------
+    [ISO68-1] design profile
+
+    Examples
+    --------
+    >>> print(f"{root_diameter(diameter=26e-3, pitch=1e-3) * 1e3:.4f} mm")
+    24.7731 mm
+    """
+    return diameter - 17 / 12 * HEIGHT * pitch
+
+
+@geometry
+def engaged_length(*, length: Array, pitch: Array) -> Array:
+    """Length of an overlap whose threads carry, L_e = L - 0.8 P.
+
+    Parameters
+    ----------
+    length : L of the overlap [m]
+    pitch : P [m]
+
+    Returns
+    -------
+    length [m]
+
+    Notes
+    -----
+    Valid: one chamfer and one run-out.
+
+    References
+    ----------
+    [VDI2230] 0.8 P lost
+
+    Examples
+    --------
+    >>> print(f"{engaged_length(length=8e-3, pitch=1e-3) * 1e3:.1f} mm")
+    7.2 mm
+    """
+    return length - RUN_OUT * pitch
+
+
+@geometry
+def male_strip_area(*, diameter: Array, pitch: Array, engagement: Array) -> Array:
+    """Area over which the male thread shears off, at the crests of the female one.
+
+    A = pi D_1 (L_e/P) [P/2 + (d_2 - D_1)/sqrt(3)] = 0.75 pi D_1 L_e.
+
+    Parameters
+    ----------
+    diameter : nominal diameter [m]
+    pitch : P [m]
+    engagement : engaged length L_e [m]
+
+    Returns
+    -------
+    area [m^2]
+
+    Notes
+    -----
+    Valid: ISO 60 degree threads, basic sizes; worst tolerances take some 10 % off.
+
+    References
+    ----------
+    [FED-STD-H28], [VDI2230] section 5.5.5
+
+    Examples
+    --------
+    >>> area = male_strip_area(diameter=26e-3, pitch=1e-3, engagement=7.2e-3)
+    >>> print(f"{area * 1e6:.3f} mm^2")
+    422.715 mm^2
+    """
+    minor = minor_diameter(diameter=diameter, pitch=pitch)
+    width = pitch / 2 + (pitch_diameter(diameter=diameter, pitch=pitch) - minor) / sqrt(3)
+    return pi * minor * (engagement / pitch) * width
+
+
+@geometry
+def female_strip_area(
+    *, diameter: Array, pitch: Array, engagement: Array, crest_diameter: Array
+) -> Array:
+    """Area over which the female thread shears off, at the crests of the male one.
+
+    A = pi d_c (L_e/P) [P/2 + (d_c - D_2)/sqrt(3)]; = 0.875 pi d L_e with full crests, d_c = d.
+
+    Parameters
+    ----------
+    diameter : nominal diameter d [m]
+    pitch : P [m]
+    engagement : engaged length L_e [m]
+    crest_diameter : d_c over the crests of the male thread, below d on a tube below d [m]
+
+    Returns
+    -------
+    area [m^2]
+
+    Notes
+    -----
+    Valid: ISO 60 degree threads, basic sizes; worst tolerances take some 10 % off.
+
+    References
+    ----------
+    [FED-STD-H28], [VDI2230] section 5.5.5
+
+    Examples
+    --------
+    >>> size = {"diameter": 26e-3, "pitch": 1e-3, "engagement": 7.2e-3}
+    >>> area = female_strip_area(**size, crest_diameter=26e-3)
+    >>> print(f"{area * 1e6:.3f} mm^2")
+    514.593 mm^2
+    """
+    width = pitch / 2 + (crest_diameter - pitch_diameter(diameter=diameter, pitch=pitch)) / sqrt(3)
+    return pi * crest_diameter * (engagement / pitch) * width
+
+
+@geometry
+def crest_overlap(*, diameter: Array, pitch: Array, crest_diameter: Array) -> Array:
+    """Overlap of the flanks over that of full crests, (d_c - D_1)/(d - D_1).
+
+    Parameters
+    ----------
+    diameter : nominal diameter d [m]
+    pitch : P [m]
+    crest_diameter : diameter d_c over the crests of the male thread [m]
+
+    Returns
+    -------
+    share [-]; below zero where the threads do not meet
+
+    Notes
+    -----
+    Valid: ISO 60 degree threads, basic sizes.
+
+    References
+    ----------
+    [ISO68-1] basic profile
+
+    Examples
+    --------
+    >>> print(f"{crest_overlap(diameter=26e-3, pitch=1e-3, crest_diameter=25.8e-3):.3f}")
+    0.815
+    """
+    minor = minor_diameter(diameter=diameter, pitch=pitch)
+    return (crest_diameter - minor) / (diameter - minor)
+
+
+@geometry
+def flank_area(*, diameter: Array, pitch: Array, engagement: Array, crest_diameter: Array) -> Array:
+    """Projected area of the flanks in contact, A = pi d_2 (d_c - D_1)/2 (L_e/P).
+
+    With full crests the flanks overlap by (d - D_1)/2 = (5/8) H.
+
+    Parameters
+    ----------
+    diameter : nominal diameter d [m]
+    pitch : P [m]
+    engagement : engaged length L_e [m]
+    crest_diameter : diameter d_c over the crests of the male thread [m]
+
+    Returns
+    -------
+    area [m^2]
+
+    Notes
+    -----
+    Valid: ISO 60 degree threads, basic sizes, all turns alike.
+
+    References
+    ----------
+    [ISO724] sizes; [derived] overlap of the flanks
+
+    Examples
+    --------
+    >>> area = flank_area(diameter=26e-3, pitch=1e-3, engagement=7.2e-3, crest_diameter=26e-3)
+    >>> print(f"{7273.57 / area / 1e6:.2f} MPa")
+    23.44 MPa
+    """
+    overlap = (crest_diameter - minor_diameter(diameter=diameter, pitch=pitch)) / 2
+    return pi * pitch_diameter(diameter=diameter, pitch=pitch) * overlap * (engagement / pitch)
+
+
+def stripping_reductions(*, strength_ratio: Array) -> tuple[Array, Array]:
+    """What the bending of the turns leaves of the strip strength at rupture, male and female.
+
+    C_2 = 5.594 - 13.682 R + 14.107 R^2 - 6.057 R^3 + 0.9353 R^4 for 1 < R < 2.2, 0.897 below;
+    C_3 = 0.728 + 1.769 R - 2.896 R^2 + 1.296 R^3 for 0.4 < R < 1, 0.897 above.
+
+    Parameters
+    ----------
+    strength_ratio : R, strength times strip area of the female thread over that of the male [-]
+
+    Returns
+    -------
+    C_2 of the male thread, C_3 of the female thread [-]
+
+    Notes
+    -----
+    Valid: R 0.4 to 2.2; outside, the value at the nearer end.
+
+    References
+    ----------
+    [Alexander1977], [VDI2230]
+
+    Examples
+    --------
+    >>> male, female = stripping_reductions(strength_ratio=1.08092)
+    >>> print(f"{male:.5f}, {female:.3f}")
+    0.91452, 0.897
+    """
+    ratio = strength_ratio
+    over = where(real(ratio) > 1, where(real(ratio) < 2.2, ratio, 2.2 + 0 * ratio), 1 + 0 * ratio)
+    under = where(real(ratio) < 1, where(real(ratio) > 0.4, ratio, 0.4 + 0 * ratio), 1 + 0 * ratio)
+    male, female = (
+        sum(factor * base**power for power, factor in enumerate(law))
+        for law, base in ((MALE, over), (FEMALE, under))
+    )
+    least = LEAST + 0 * ratio
+    return where(real(ratio) > 1, male, least), where(real(ratio) < 1, female, least)
+
+
+@geometry
+def spread_stress(*, force: Array, thickness: Array, engagement: Array) -> Array:
+    """Hoop stress of a thin female ring that the flanks spread.
+
+    sigma = p_s d_2/(2 t) with p_s = F tan(30 deg)/(pi d_2 L_e): F tan(30 deg)/(2 pi L_e t).
+
+    Parameters
+    ----------
+    force : axial force [N]
+    thickness : t of the ring over the thread [m]
+    engagement : engaged length L_e [m]
+
+    Returns
+    -------
+    stress [Pa]
+
+    Notes
+    -----
+    Valid: thin ring, no friction on the flanks (which would help), all turns alike.
+
+    References
+    ----------
+    [derived] radial share of the force on the flanks, thin ring
+
+    Examples
+    --------
+    >>> stress = spread_stress(force=7273.57, thickness=2e-3, engagement=7.2e-3)
+    >>> print(f"{stress / 1e6:.2f} MPa")
+    46.41 MPa
+    """
+    return force * tan(FLANK) / (2 * pi * thickness * engagement)

@@ -1,0 +1,414 @@
+"""Which fixed dimension, or which choice, alone makes an infeasible actuator possible.
+
+A dimension is freed by solving with it as a variable, from the design that needs the smallest joint
+relaxation, in the direction in which it helps there. A choice is tried in place of the value of the
+file. Every cure was met by a design, all limits and checks at their values. The effort is bounded
+by counts, so that the same input gives the same cures; what was not tried is named.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..design import quantity_of, standards, with_values
+from ..design.material import Material
+from ..design.materials import Library, load_library
+from ..design.model import Design
+from ..design.seals import BACK_UPS, Seal
+from ..design.variable import Variable
+from ..errors import InputError
+from ..evaluation import Subject, prepare
+from ..evaluation.build import names_of_materials
+from ..numeric import STEP, Array
+from ..progress import tell
+from ..quantities import INPUTS, Quantity
+from ..units import unit
+from . import elastic, repairs
+from .actuator import ActuatorProblem, build
+from .evaluator import Evaluator
+from .infeasibility import Infeasibility
+from .problem import Problem, Values, Vector
+
+DIMENSIONS = (
+    "bore", "wall_thickness", "winding_angle", "rod_diameter", "rod_inner_diameter", "part_length",
+    "radial_clearance", "thread_diameter", "squeeze", "diameter",
+)  # fmt: skip
+"""Quantities of dimensions that may be freed. Stroke and what a duty asks are none: a choice."""
+
+PARTS = re.compile(r"(cylinder|barrel|rod|piston|head|caps|retention|clevis|seals|lines)\b")
+"""What these dimensions belong to."""
+
+MOST_DIMENSIONS = 8
+"""Most dimensions freed, those that help most first: a choice, for the time it takes."""
+
+MOST_CHOICES = 4
+"""Most choices solved, those that miss least first: a choice, for the time it takes."""
+
+ENOUGH = 3
+"""Cures of one kind after which no more of that kind are sought: a choice."""
+
+WORTH = 0.1
+"""Share of the missed margins that a number at twice, or half, its value must close by its slope:
+what closes less is no cure alone, and is not tried. A choice."""
+
+DIGITS = 4
+"""Digits of a dimension, at which it is solved again: what is printed is what was met."""
+
+SUBSTITUTES = {
+    "metal": ("al_7075_t6", "ti_6al4v", "steel_42crmo4", "steel_17_4ph_h1025"),
+    "ply": ("t700_epoxy", "im7_8552", "s2glass_epoxy"),
+    "seal": ("nbr_70", "nbr_90", "hnbr_75", "fkm_90"),
+    "adhesive": ("epoxy_structural",),
+}
+"""Materials of the library tried in place of one of their kind: a choice, few and usual."""
+
+JOINTS = ("bond", "thread", "tie_rods")
+"""Joints of caps and head that are tried."""
+
+BACK_UP = "back_up_ptfe"
+"""Material of a back-up ring where the design has none: the usual one, a choice."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cure:
+    """What alone is enough: a fixed dimension at another value (SI), or another choice.
+
+    `beside` has what a choice needs to be stated with it, by PATH, as a file has it.
+    """
+
+    path: str
+    now: float | str
+    needed: float | str
+    beside: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Cures:
+    """Dimensions and choices that alone are enough, and the PATHs that were not tried.
+
+    `together` has dimensions of which none alone, but all at once are enough.
+    """
+
+    dimensions: tuple[Cure, ...] = ()
+    together: tuple[Cure, ...] = ()
+    choices: tuple[Cure, ...] = ()
+    untried: tuple[str, ...] = ()
+
+
+def cures(actuator: ActuatorProblem, found: Infeasibility) -> Cures:
+    """The fixed dimensions and the choices of which one alone is enough.
+
+    Parameters
+    ----------
+    actuator : the infeasible problem
+    found : why nothing fits
+    """
+    if found.laws or not found.joint:
+        return Cures()
+    least = WORTH * found.total / math.log(repairs.WIDEST)
+    gains = {path: gain for path, gain in _gains(actuator, found).items() if abs(gain) >= least}
+    dimensions, together, left = _dimensions(actuator, found.x, gains)
+    choices, others = _choices(actuator, found, gains)
+    return Cures(dimensions, together, choices, (*left, *others))
+
+
+def _gains(actuator: ActuatorProblem, found: Infeasibility) -> dict[str, float]:
+    """Fall of the missed margins per relative growth of every number, by PATH."""
+    subject = actuator.subject
+    values = subject.values(
+        {path: np.array([x]) for path, x in zip(actuator.paths, found.x, strict=True)}
+    )
+    subject.touch(values)
+    paths = [
+        path
+        for path in sorted(values.read)
+        if path not in actuator.paths
+        and subject.numbers.get(path, 0.0) > 0
+        and (PARTS.match(path) or path.startswith("materials."))
+    ]
+    if not paths:
+        return {}
+    present = np.array([subject.numbers[path] for path in paths])
+    varied = np.repeat(present[:, None].astype(complex), len(paths), axis=1)
+    varied += np.diag(1j * STEP * present)
+    points = np.repeat(found.x[:, None], len(paths), axis=1)
+    margins = actuator.evaluate(points, dict(zip(paths, varied, strict=True))).constraints
+    slopes = np.nan_to_num(np.imag(margins) / STEP, posinf=0.0, neginf=0.0)
+    return dict(zip(paths, (found.multipliers @ slopes).tolist(), strict=True))
+
+
+def _dimensions(
+    actuator: ActuatorProblem, x: Vector, gains: Mapping[str, float]
+) -> tuple[tuple[Cure, ...], tuple[Cure, ...], list[str]]:
+    """Dimensions that alone are enough, the least change first; else together; those not tried."""
+    design = actuator.subject.design
+    candidates = sorted(
+        (
+            path
+            for path in gains
+            if PARTS.match(path) and quantity_of(path, design).name in DIMENSIONS
+        ),
+        key=lambda path: -abs(gains[path]),
+    )
+    tried = candidates[:MOST_DIMENSIONS]
+    if not tried:
+        return (), (), []
+    problem = opened(actuator, tried)
+    start = np.concatenate([x, problem.lower[len(x) :]])
+    limits = {
+        len(x) + k: _limit(quantity_of(path, design), start[len(x) + k], gains[path])
+        for k, path in enumerate(tried)
+    }
+    enough: list[Cure] = []
+    for number, (path, place) in enumerate(zip(tried, limits, strict=True)):
+        if len(enough) == ENOUGH:
+            return _least_first(enough), (), candidates[number:]
+        tell("nothing fits: which fixed dimension alone would do", number / len(tried))
+        enough += freed(problem, start, {place: limits[place]}, {place: path}, design)
+    together: list[Cure] = []
+    if not enough and len(tried) > 1:
+        together = freed(problem, start, limits, dict(zip(limits, tried, strict=True)), design)
+    return _least_first(enough), tuple(together), candidates[len(tried) :]
+
+
+def _limit(quantity: Quantity, now: float, gain: float) -> float:
+    """How far a dimension may go the way it helps, within the range of its quantity."""
+    limit = now * repairs.WIDEST if gain > 0 else now / repairs.WIDEST
+    limit = limit if quantity.lower is None else max(limit, quantity.lower)
+    return float(limit if quantity.upper is None else min(limit, quantity.upper))
+
+
+def freed(
+    problem: Problem,
+    start: Vector,
+    limits: Mapping[int, float],
+    paths: Mapping[int, str],
+    design: Design,
+) -> list[Cure]:
+    """The least change of some fixed variables with which all is met; none where there is none.
+
+    The values are rounded outwards, and a design is found again at the rounded ones.
+
+    Parameters
+    ----------
+    problem, start : the problem with these variables fixed, and a point of it
+    limits, paths : how far each may go, and its PATH, by place
+    design : where the quantities of PATHs are looked up
+    """
+    places = [place for place, limit in limits.items() if limit != start[place]]
+    if not places:
+        return []
+    now = start[places]
+    ends = np.array([limits[place] for place in places])
+    lower, upper = problem.lower.copy(), problem.upper.copy()
+    lower[places], upper[places] = np.minimum(now, ends), np.maximum(now, ends)
+    sign = np.sign(ends - now)[:, None]
+
+    def evaluate(points: Array) -> Values:
+        change = (sign * np.log(points[places] / now[:, None])).sum(axis=0)
+        return Values(change, problem.evaluate(points).constraints)
+
+    free = replace(problem, lower=lower, upper=upper, evaluate=evaluate)
+    near = repairs.near(free, start)
+    if near is None:
+        return []
+    evaluator = Evaluator(free)
+    end = elastic.go(evaluator, evaluator.point(evaluator.space.to_z(near)))
+    if end.violation > repairs.NOTHING:
+        return []
+    found = []
+    for place, limit in zip(places, ends, strict=True):
+        old, value = float(start[place]), float(end.x[place])
+        if abs(math.log(value / old)) > repairs.NOTHING:
+            value = rounded_outward(quantity_of(paths[place], design), value, upwards=limit > old)
+            value = min(max(value, lower[place]), upper[place])
+            found.append(Cure(paths[place], old, value))
+        lower[place] = upper[place] = value
+    fixed = replace(problem, lower=lower, upper=upper)
+    return found if repairs.near(fixed, start) is not None else []
+
+
+def rounded_outward(quantity: Quantity, value: float, *, upwards: bool) -> float:
+    """A value (SI) rounded outwards in the unit it is shown in."""
+    shown = outward(quantity.to_display(value), DIGITS, upwards)
+    return unit(quantity.unit, quantity.dimension).to_si(shown) if quantity.unit else shown
+
+
+def _least_first(enough: Sequence[Cure]) -> tuple[Cure, ...]:
+    return tuple(
+        sorted(enough, key=lambda cure: abs(math.log(float(cure.needed) / float(cure.now))))
+    )
+
+
+def opened(actuator: ActuatorProblem, paths: Sequence[str]) -> Problem:
+    """The problem with more variables, each still at its value.
+
+    Rows that only these move count too, but for checks that were missed for good before.
+    """
+    subject, numbers = actuator.subject, actuator.subject.numbers
+    at = {path: numbers[path] for path in paths}
+    more = {path: Variable(lower=x, upper=x, start=x) for path, x in at.items()}
+    variables = dict(subject.design.variables) | more
+    wider = build(
+        replace(subject, design=subject.design.model_copy(update={"variables": variables}))
+    )
+    return _kept(wider, _lost(actuator))
+
+
+def _kept(actuator: ActuatorProblem, lost: frozenset[str]) -> Problem:
+    """The problem without the rows of some checks."""
+    rows = np.array([row.label not in lost for row in actuator.rows], dtype=bool)
+
+    def evaluate(points: Array) -> Values:
+        values = actuator.evaluate(points)
+        return Values(values.objective, values.constraints[rows])
+
+    names = tuple(np.array(actuator.problem.constraint_names, dtype=object)[rows].tolist())
+    return replace(
+        actuator.problem, evaluate=evaluate, constraint_names=names, relaxable=None, groups=None,
+        start=None,
+    )  # fmt: skip
+
+
+def _lost(actuator: ActuatorProblem) -> frozenset[str]:
+    """Checks that no variable can mend, by their rows."""
+    return frozenset(
+        row.label
+        for row in actuator.fixed
+        if row.limit_of.origin == "check" and not float(row.margin[0]) >= -repairs.NOTHING
+    )
+
+
+def outward(value: float, digits: int, upwards: bool) -> float:
+    """A number rounded to some digits, upwards or downwards (but for rounding itself).
+
+    >>> outward(283.0994, 4, True), outward(9.98645, 4, False), outward(400.00000001, 4, True)
+    (283.1, 9.986, 400.0)
+    """
+    if not value or not math.isfinite(value):
+        return value
+    places = digits - 1 - math.floor(math.log10(abs(value)))
+    scaled = value * 10.0**places
+    slack = 1e-7 * abs(scaled)
+    whole = math.ceil(scaled - slack) if upwards else math.floor(scaled + slack)
+    return round(whole / 10.0**places, max(places, 0))
+
+
+def _choices(
+    actuator: ActuatorProblem, found: Infeasibility, gains: Mapping[str, float]
+) -> tuple[tuple[Cure, ...], list[str]]:
+    """Choices that alone are enough, those that miss least first; those not tried."""
+    subject, library = actuator.subject, load_library()
+    before = _missed(actuator.problem, found.x)
+    offered: list[tuple[float, Cure, Problem]] = []
+    margins = np.ravel(actuator.evaluate(found.x[:, None]).constraints)
+    rows = zip(actuator.rows, margins.tolist(), strict=True)
+    places = {row.place for row, margin in rows if not margin >= -repairs.NOTHING}
+    for path, word, beside in _vocabulary(subject, library, gains, places):
+        now = _word(subject.design, path)
+        problem = None if word == now else _chosen(actuator, {path: word, **beside}, library)
+        missed = math.inf if problem is None else _missed(problem, found.x)
+        if problem is not None and missed < before - repairs.NOTHING:
+            offered.append((missed, Cure(path, now, word, beside), problem))
+    offered.sort(key=lambda one: (one[0], one[1].path))
+    enough: list[Cure] = []
+    for number, (_, cure, problem) in enumerate(offered):
+        if len(enough) == ENOUGH or number == MOST_CHOICES:
+            rest = dict.fromkeys(one.path for _, one, _ in offered[number:])
+            return tuple(enough), [path for path in rest if path not in {c.path for c in enough}]
+        tell("nothing fits: which choice alone would do", number / len(offered))
+        if repairs.near(problem, found.x) is not None:
+            enough.append(cure)
+    return tuple(enough), []
+
+
+def _missed(problem: Problem, x: Vector) -> float:
+    """Sum of the margins missed at a point; infinite where the models have no answer."""
+    rows = Evaluator.screen(problem.rows(x[:, None]))[1:, 0]
+    return float(np.maximum(-rows, 0.0).sum()) if np.isfinite(rows).all() else math.inf
+
+
+def _vocabulary(
+    subject: Subject, library: Library, gains: Mapping[str, float], places: set[str]
+) -> Iterator[tuple[str, str, dict[str, str]]]:
+    """PATHs of words and materials that take part in the conflict, what to try, and beside what.
+
+    A part does by its numbers (`gains`), a seal also where it misses a limit (`places`).
+    """
+    design = subject.design
+
+    def matters(*starts: str) -> bool:
+        return any(path.startswith(starts) for path in gains)
+
+    for name in ("piston", "rod"):
+        seal, here = getattr(design.seals, name), f"seals.{name}"
+        missing = any(place.startswith(f"{name} seal") for place in places)
+        if missing or matters(f"{here}.", f"materials.{seal.compound}."):
+            for word, count in BACK_UPS.items():
+                if count > seal.back_ups and (beside := _rings(seal, here, count)) is not None:
+                    yield f"{here}.back_up", word, beside
+            if seal.type == "o_ring":
+                for compound in SUBSTITUTES["seal"]:
+                    yield f"{here}.compound", compound, {}
+    if design.retention is not None and matters("retention."):
+        for joint in JOINTS:
+            yield "retention.type", joint, {}
+    parts = ["rod", "piston", "head", "caps", "retention", "clevis"]
+    parts += [f"barrel.layup[{i}]" for i in range(len(design.barrel.layup))]
+    parts += [f"rod.layup[{i}]" for i in range(len(design.rod.layup))]
+    for part in parts:
+        material = _word(design, f"{part}.material")
+        if material and matters(f"materials.{material}."):
+            for other in SUBSTITUTES.get(library.kind(material) or "", ()):
+                yield f"{part}.material", other, {}
+
+
+def _rings(seal: Seal, here: str, count: int) -> dict[str, str] | None:
+    """What more back-up rings need beside the word; None where no standard has their width."""
+    if seal.back_up_material is not None and seal.back_up_thickness is not None:
+        return {}
+    try:
+        gland = standards.gland(seal.section)
+        room = sum(gland.widths(count)) / 2 - gland.width
+    except InputError:
+        return None
+    thickness = INPUTS["part_length"].text(room / count, 2)
+    return {f"{here}.back_up_material": BACK_UP, f"{here}.back_up_thickness": thickness}
+
+
+def _word(design: Design, path: str) -> str:
+    """The word or material at a PATH; "" where the design states none."""
+    found: object = design
+    for step in re.split(r"\.|(?=\[)", path):
+        layer = re.fullmatch(r"\[(\d+)\]", step)
+        if layer is not None and isinstance(found, tuple):
+            found = found[int(layer[1])]
+        else:
+            found = getattr(found, step, None)
+    return found if isinstance(found, str) else ""
+
+
+def _chosen(
+    actuator: ActuatorProblem, values: Mapping[str, str], library: Library
+) -> Problem | None:
+    """The problem with another choice; None where it contradicts the design, or costs a check."""
+    subject = actuator.subject
+    try:
+        design = with_values(
+            subject.design, dict(values), materials=library, metrics=subject.quantities
+        )
+        known: dict[str, Material] = {
+            name: subject.materials.get(name) or library.get(name)
+            for name in names_of_materials(design)
+        }
+        made = prepare(design, known, subject.plugins)
+        other = build(replace(made, reserves=subject.reserves))
+    except InputError:
+        return None
+    lost = _lost(actuator)
+    return _kept(other, lost) if _lost(other) <= lost else None

@@ -1,0 +1,181 @@
+"""What the fields of a run record and of a report's attachment must be.
+
+Either may be damaged, or written by a stranger.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+Form = Any
+"""A type, a tuple of forms of which one must fit, ``[form]`` for a list of any length, or an
+object: fields by name (``name?`` may be missing, others may be beside them), or ``{"*": form}``
+for any names. ``float`` takes whole numbers too, None is null, ``object`` is anything."""
+
+_OBJECTIVE = {"metric?": (str, None), "value?": (float, None)}
+_HEAD: Form = {
+    "kind": str,
+    "name": str,
+    "file": str,
+    "started": str,
+    "command": str,
+    "version": str,
+    "spec_hash": str,
+    "seed": int,
+    "status?": str,
+    "outcome?": str,
+    "met?": bool,
+    "seconds?": float,
+    "objective?": (_OBJECTIVE, None),
+    "objectives?": [{"metric": str, "sense": str}],
+    "points?": int,
+    "knee?": ({"*": (float, None)}, None),
+    "requested?": int,
+    "feasible?": (int, None),
+    "failed?": int,
+}
+_BODY: Form = {
+    "date": (str, None),
+    "input": {
+        "name": str,
+        "text": str,
+        "set": [[str]],
+        "plugins": [{"file": str, "sha256": str}],
+    },
+    "versions": {"*": str},
+}
+_STATE: Form = {"designs": [{}], "result": {}}
+_AXIS: Form = {
+    "path": str,
+    "quantity": (str, None),
+    "values": ([float], None),
+    "texts": [str],
+    "range": bool,
+    "steps": (int, None),
+}
+_HEADS: Mapping[str, Form] = {
+    "optimise": {"met": bool, "objective": _OBJECTIVE},
+    "pareto": {"objectives": object, "points": object, "knee": object},
+    "sweep": {"met": bool, "objective": {"metric": str}, "requested": object, "feasible": object},
+}
+_BODIES: Mapping[str, Form] = {
+    "optimise": {
+        "trace": [[float]],
+        "result": {
+            "metrics": {"*": {"value": (float, None)}},
+            "algorithm": str,
+            "evaluations": int,
+        },
+        "state": _STATE,
+        "tables": [
+            {"title": str, "columns": [str], "rows": [[object]], "note": str, "widths": [float]}
+        ],
+    },
+    "pareto": {
+        "result": {
+            "metrics": {"*": {"value": (float, None)}},
+            "points": [{"metrics": {"*": (float, None)}}],
+        },
+        "state": _STATE,
+    },
+    "sweep": {
+        "plan": {"method": str, "count": int, "axes": [_AXIS]},
+        "asked": {
+            "store": ({"path": str, "study": str}, None),
+            "csv": (str, None),
+            "parquet": (str, None),
+            "reduce": bool,
+            "keep": int,
+            "figures": [str],
+            "show": [str],
+        },
+        "result": {
+            "best": [{"variables": {"*": (float, str)}, "metrics": {"*": (float, None)}}],
+        },
+    },
+}
+
+
+_NUMBERS: Form = ({"*": (float, None)}, None)
+_RUN: Form = {
+    "actuator_opt": str,
+    "command": str,
+    "source_name": str,
+    "date?": (str, None),
+    "spec_hash?": str,
+    "result?": (
+        {
+            "status?": (str, None),
+            "spec_hash?": str,
+            "metrics?": _NUMBERS,
+            "variables?": _NUMBERS,
+        },
+        None,
+    ),
+}
+
+
+def run_fault(run: object) -> str:
+    """What is wrong with the facts attached to a report; "" where nothing is."""
+    return _fault(run, _RUN)
+
+
+def head_fault(head: object) -> str:
+    """What is wrong with the head of a record; "" where nothing is.
+
+    >>> head_fault({"kind": 3})
+    'kind is no text'
+    """
+    found = _fault(head, _HEAD)
+    if found or not isinstance(head, Mapping):
+        return found
+    return _fault(head, _HEADS.get(head["kind"], {}))
+
+
+def body_fault(kind: str, body: object) -> str:
+    """What is wrong with the body of a record of this kind; "" where nothing is."""
+    return _fault(body, _BODY) or _fault(body, _BODIES.get(kind, {}))
+
+
+_WORDS = {str: "text", int: "whole number", bool: "true or false", float: "number"}
+
+
+def _fault(value: object, form: Form, path: str = "") -> str:
+    """Where a value does not fit a form, and what it should be; "" where it does."""
+    if isinstance(form, tuple):
+        found = [_fault(value, one, path) for one in form]
+        return "" if "" in found else found[0]
+    if isinstance(form, list):
+        if not isinstance(value, list):
+            return f"{path} is no list"
+        return next(
+            filter(None, (_fault(x, form[0], f"{path}[{k}]") for k, x in enumerate(value))), ""
+        )
+    if isinstance(form, dict):
+        return _object_fault(value, form, path)
+    if form is None:
+        return "" if value is None else f"{path} is not null"
+    wanted = (int, float) if form is float else form
+    if isinstance(value, wanted) and (form in (bool, object) or not isinstance(value, bool)):
+        return ""
+    return f"{path} is no {_WORDS[form]}"
+
+
+def _object_fault(value: object, form: dict[str, Form], path: str) -> str:
+    """As `_fault`, of an object."""
+    if not isinstance(value, dict):
+        return f"{path or 'it'} is no object"
+    head = f"{path}." if path else ""
+    if "*" in form:
+        found = (_fault(below, form["*"], f"{head}{name}") for name, below in value.items())
+        return next(filter(None, found), "")
+    for key, below in form.items():
+        name = key.removesuffix("?")
+        if name in value:
+            fault = _fault(value[name], below, f"{head}{name}")
+            if fault:
+                return fault
+        elif name == key:
+            return f"{head}{name} is missing"
+    return ""
