@@ -8,8 +8,10 @@ evaluated alone and the same design inside the optimiser read one film.
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from math import log, pi
 from typing import Literal
 
@@ -291,8 +293,14 @@ def tables(
             Row(on_stroke([floats(r, case, k) for r in sampled], stroke), row.outward)
             for k in range(count)
         ]
-        found[key] = table(row, [r for r in rows if _finite(r)])
+        found[key] = _table(pickle.dumps((row, [r for r in rows if _finite(r)])))
     return found
+
+
+@lru_cache(maxsize=64)
+def _table(inputs: bytes) -> Table:
+    """`table` of pickled inputs: equal films, of a report or a comparison, are solved once."""
+    return table(*pickle.loads(inputs))
 
 
 def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, Table]:

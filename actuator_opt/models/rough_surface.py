@@ -18,6 +18,14 @@ _HEIGHTS = tuple((_STEP * i) ** 2 for i in range(29))
 """Squares of the nodes of a trapezium sum: exact to 1e-11 for film ratios of -6 to 20."""
 _ORDERS = {"-1/2": 0, "1/2": 2, "3/2": 4, "5/2": 6}
 """Order n of an asperity integral as the even power 2n + 1 under its sum."""
+_WEIGHTS = {
+    order: tuple(
+        2 * _STEP / math.sqrt(2 * math.pi) * (0.5 if s == 0 else 1) * s ** (power / 2)
+        for s in _HEIGHTS
+    )
+    for order, power in _ORDERS.items()
+}
+"""Weights of the trapezium sum at each height, by order."""
 _PLACES, _SHARES = (tuple(part.tolist()) for part in np.polynomial.legendre.leggauss(32))
 """Nodes and weights of Gauss and Legendre on -1 to 1."""
 _FLATTEST = 15.0
@@ -26,11 +34,17 @@ _CERTAIN = 8.5
 """Film ratio beyond which the normal distribution is 0 or 1 to double precision."""
 
 
-def _summed(value: Array, exponents: tuple[float, ...], weights: tuple[float, ...]) -> Array:
-    """Sum of weights times exp(-(value + exponent)^2/2), on a new last axis."""
+def _bells(value: Array) -> Array:
+    """exp(-(value + height)^2/2) at every summit height of the sum, on a new last axis."""
     xp = namespace(value)
-    column = xp.asarray(value)[..., None] + xp.asarray(exponents)
-    return xp.sum(xp.asarray(weights) * xp.exp(-0.5 * column * column), axis=-1)
+    column = xp.asarray(value)[..., None] + xp.asarray(_HEIGHTS)
+    return xp.exp(-0.5 * column * column)
+
+
+def _summed(bells: Array, order: str) -> Array:
+    """The asperity integral of an order from the bells at its film ratio."""
+    xp = namespace(bells)
+    return xp.sum(xp.asarray(_WEIGHTS[order]) * bells, axis=-1)
 
 
 def composite_roughness(*, first: Array, second: Array) -> Array:
@@ -95,10 +109,7 @@ def asperity_integral(*, film_ratio: Array, order: str = "3/2") -> Array:
     """
     if order not in _ORDERS:
         raise ValueError(f"order {order!r} of an asperity integral: use one of {list(_ORDERS)}")
-    scale = 2 * _STEP / math.sqrt(2 * math.pi)
-    power = _ORDERS[order] / 2
-    weights = tuple(scale * (0.5 if s == 0 else 1) * s**power for s in _HEIGHTS)
-    return _summed(film_ratio, _HEIGHTS, weights)
+    return _summed(_bells(film_ratio), order)
 
 
 @geometry
@@ -228,9 +239,9 @@ def film_ratio_under_contact(*, contact_pressure: Array, stiffness: Array) -> Ar
     light = real(target) < -0.844  # F_3/2(0) = 0.43
     thin = xp.sqrt(0.835 - 2 * (where(light, target, -0.844) + 0.844)) - 0.914
     film = where(light, thin, -(ratio ** (2 / 3)))
-    for _ in range(8):
-        value = asperity_integral(film_ratio=film)
-        slope = asperity_integral(film_ratio=film, order="1/2")
+    for _ in range(6):  # five reach rounding from -6 to 20, one more a complex step
+        bells = _bells(film)
+        value, slope = _summed(bells, "3/2"), _summed(bells, "1/2")
         film = film + (xp.log(value) - target) * value / (1.5 * slope)
     return where(valid, film, math.nan)
 
