@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import argparse
 from functools import cache
-from math import ceil, floor, pi
+from math import ceil, floor, inf, pi
 from pathlib import Path
 from typing import Any
 
@@ -486,7 +486,7 @@ def drawing(study: Data) -> Ink:
     points = {
         name: [
             (
-                row["metrics"]["friction_running"] if row["asked"] is None else row["asked"],
+                min(row["metrics"]["friction_running"], row["asked"] or inf),
                 1e3 * row["mass"],
             )
             for row in optima(found)
