@@ -55,7 +55,7 @@ def geometry(function: Callable[P, T]) -> Callable[P, T]:
         given: dict[str, Any] = arguments
         wrong: Any = False
         for name in names:
-            if given.get(name) is not None:
+            if name in given and not _possible(given[name]):
                 given[name], found = _checked(given[name])
                 wrong = wrong | found
         for greater, lesser in pairs:
@@ -64,7 +64,7 @@ def geometry(function: Callable[P, T]) -> Callable[P, T]:
                     real(given[greater]) <= real(given[lesser]), given[greater]
                 )
                 wrong = wrong | found
-        if "layers" in given:
+        if "layers" in given and not all(_possible(one.thickness) for one in given["layers"]):
             kept = [_checked(layer.thickness) for layer in given["layers"]]
             given["layers"] = [
                 layer if value is layer.thickness else replace(layer, thickness=value)
@@ -75,6 +75,15 @@ def geometry(function: Callable[P, T]) -> Callable[P, T]:
         return result if wrong is False else _spoiled(result, wrong)
 
     return checked
+
+
+def _possible(value: Any) -> bool:
+    """Whether a size is known to hold nothing negative: the common case, kept short."""
+    if isinstance(value, float):
+        return not value < 0
+    if type(value) is np.ndarray and value.dtype.kind in "fc":
+        return not np.fmin.reduce(value.real, axis=None, initial=0.0) < 0
+    return value is None
 
 
 def _checked(value: Any) -> tuple[Any, Any]:
@@ -90,10 +99,10 @@ def _kept(impossible: Any, value: Any) -> tuple[Any, Any]:
     """A value with NaN where it is impossible; where that is. Symbols stay as they are."""
     if impossible is False:
         return value, False
-    if isinstance(impossible, bool | np.bool_) or (
-        isinstance(impossible, np.ndarray) and impossible.dtype.kind == "b"
-    ):
-        if not np.any(impossible):
+    if impossible is True:
+        return where(impossible, np.nan, value), impossible
+    if isinstance(impossible, np.bool_ | np.ndarray) and impossible.dtype.kind == "b":
+        if not impossible.any():
             return value, False
         return where(impossible, np.nan, value), impossible
     return value, False

@@ -165,8 +165,8 @@ def test_the_winner_is_that_of_brute_force(name, lists):
     """
     shipped = BENCH if name is None else (DESIGNS / f"{name}.yaml").read_text(encoding="utf-8")
     text = listed(lists, shipped.rstrip() + "\n")
-    result = optimum(text, starts=6)
-    objectives, best = brute_force(text, result, starts=6)
+    result = optimum(text, starts=3)
+    objectives, best = brute_force(text, result, starts=3)
     assert result.choices.combinations[0].how == "multistart"
     good = {key: value for key, value in objectives.items() if math.isfinite(value)}
     assert good

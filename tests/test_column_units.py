@@ -28,7 +28,7 @@ def refused(*given, **more):
 
 
 def test_si_is_m_s_pa_n_and_kelvin():
-    """`SI` reads every column as it stands, temperatures in K, and a note names the columns."""
+    """`SI` takes every column in SI units, temperatures in K; a note names the columns."""
     record = parse_record(BARE, units=column_units("SI"))
     np.testing.assert_array_equal(record.time, [0.0, 0.5])
     for name, values in {"p1": (2e6, 3e6), "x": (0.05, 0.06), "F_L": (-70, 80)}.items():

@@ -181,7 +181,7 @@ def test_columns_too_long():
 
 
 def test_a_doctor_of_a_long_folder():
-    """`doctor` tells of a folder that cannot be."""
+    """`doctor` reports a folder that cannot exist."""
     result = run("doctor", "--out", LONG)
     assert result.code == 1
     assert "File name too long" in result.out
@@ -189,7 +189,7 @@ def test_a_doctor_of_a_long_folder():
 
 @pytest.mark.parametrize("place", ["~nosuchuser/x", "~nosuchuser"])
 def test_a_home_that_nobody_has(place):
-    """The variable is named; a result is told all the same."""
+    """The message names the variable; the result is printed all the same."""
     where = {"ACTUATOR_OPT_RUNS": place}
     result = run("runs", "list", environment=where)
     assert (result.code, result.out) == (3, "")

@@ -54,7 +54,7 @@ EVALUATED = fuzz.Input("set", ("evaluate", "-", "--json"), BENCH.encode())
     ],
 )
 def test_the_fuzz_finds(broken, reason, tmp_path, monkeypatch):
-    """A fault, a hang and an exit code of none are told as such."""
+    """The fuzz test reports a fault, a hang and an undocumented exit code."""
     monkeypatch.setattr(fuzz, "BOUND", 0.3)
     monkeypatch.setattr(verbs, "evaluate", broken)
     assert reason in fuzz.fault(EVALUATED, tmp_path)

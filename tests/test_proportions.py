@@ -89,7 +89,7 @@ def test_a_slip_is_told(key):
 
 @pytest.mark.parametrize("path", sorted(DESIGNS.glob("*.yaml")), ids=lambda p: p.stem)
 def test_shipped_designs_are_in_proportion(path):
-    """None of them is told anything."""
+    """No shipped design draws a warning."""
     assert said(path) == []
     assert said(FREE) == []
 

@@ -258,8 +258,11 @@ def _goal_words(one: Goal) -> str:
     old, new = one.before, one.after
     if old is None or new is None:
         return f"{one.metric} has no value"
+    was, now = one.quantity.text(old, 5), one.quantity.text(new, 5)
+    if was == now:
+        return f"{one.metric} stays {now}"
     change = f" ({100 * (new / old - 1):+.1f} %)" if old else ""
-    return f"{one.metric} {one.quantity.text(old, 5)} to {one.quantity.text(new, 5)}{change}"
+    return f"{one.metric} {was} to {now}{change}"
 
 
 def _repairs(one: Optimisation) -> list[str]:

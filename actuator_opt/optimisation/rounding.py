@@ -355,7 +355,7 @@ def _sentence(name: str, met: bool, complete: bool) -> tuple[str, str]:
 
 
 def _unmade(actuator: ActuatorProblem, design: Design) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """PATHs of what cannot be laid as it stands, and a sentence on each.
+    """PATHs off whole plies or allowed angles or without `ply_thickness`, a sentence on each.
 
     Of a design before its rounding these are those that no variable moves.
     """

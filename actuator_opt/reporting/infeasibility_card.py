@@ -54,7 +54,7 @@ def blocks(card: Infeasibility) -> list[Block]:
     if card.cures:
         words = "Any one line alone is enough, the most advisable first; less of it was not. "
     if others:
-        words += f"Not enough alone, however much it gives way: {', '.join(others)}. "
+        words += f"Not enough alone, however far it is relaxed: {', '.join(others)}. "
     if card.untried:
         words += f"Not tried, for the time it takes: {', '.join(card.untried)}."
     if card.cures:
@@ -72,15 +72,18 @@ def _arrows(words: str) -> str:
     return text.pretty(sentence(words)).replace("->", "→")
 
 
-def _limits(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Block], list[list[Cell]]]:
-    """Columns and rows of limits that give way."""
-    columns = [
-        column("limit", "left", 1.3, mono=True),
+def _columns(first: str) -> list[Block]:
+    return [
+        column(first, "left", 1.3, mono=True),
         column("stands for", "left", 1.3),
         column("now", "right"),
         column("needed", "right", strong=True),
         column("change", "right"),
     ]
+
+
+def _limits(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Block], list[list[Cell]]]:
+    """Columns and rows of limits that give way."""
     rows: list[list[Cell]] = [
         [
             soft(entry["parameter"] or entry["requirement"]),
@@ -91,18 +94,11 @@ def _limits(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Block], list[lis
         ]
         for entry in entries
     ]
-    return columns, rows
+    return _columns("limit"), rows
 
 
 def _cures(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Block], list[list[Cell]]]:
     """Columns and rows of what is enough alone."""
-    columns = [
-        column("what", "left", 1.3, mono=True),
-        column("stands for", "left", 1.3),
-        column("now", "right"),
-        column("needed", "right", strong=True),
-        column("change", "right"),
-    ]
     rows: list[list[Cell]] = [
         [
             soft(entry["parameter"]),
@@ -113,7 +109,7 @@ def _cures(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Block], list[list
         ]
         for entry in entries
     ]
-    return columns, rows
+    return _columns("what"), rows
 
 
 _STANDS_FOR = {"dimension": "fixed dimension", "safety factor": "safety: not advised"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import erfc, sqrt
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -66,46 +67,17 @@ class Distribution:
         return np.asarray(self.centre + steps)
 
 
-_MIDDLE = (
-    (2509.0809287301227, 33430.575583588128, 67265.770927008700, 45921.953931549871,
-     13731.693765509461, 1971.5909503065514, 133.14166789178438, 3.3871328727963666),
-    (5226.4952788528546, 28729.085735721943, 39307.895800092711, 21213.794301586596,
-     5394.1960214247511, 687.18700749205791, 42.313330701600911, 1.0),
-)  # fmt: skip
-_NEAR = (
-    (7.7454501427834141e-4, 2.2723844989269185e-2, 2.4178072517745061e-1, 1.2704582524523684,
-     3.6478483247632046, 5.7694972214606914, 4.6303378461565453, 1.4234371107496836),
-    (1.0507500716444168e-9, 5.4759380849953449e-4, 1.5198666563616457e-2, 1.4810397642748007e-1,
-     6.8976733498510000e-1, 1.6763848301838038, 2.0531916266377588, 1.0),
-)  # fmt: skip
-_FAR = (
-    (2.0103343992922881e-7, 2.7115555687434876e-5, 1.2426609473880784e-3, 2.6532189526576123e-2,
-     2.9656057182850489e-1, 1.7848265399172913, 5.4637849111641144, 6.6579046435011038),
-    (2.0442631033899398e-15, 1.4215117583164459e-7, 1.8463183175100547e-5, 7.8686913114561326e-4,
-     1.4875361290850615e-2, 1.3692988092273581e-1, 5.9983220655588794e-1, 1.0),
-)  # fmt: skip
-"""Numerator and denominator of the quantile: in the middle, to e^-25, beyond [Wichura1988]."""
-
-
 def normal_quantile(share: Vector) -> Vector:
     """The standard normal value below which shares of the probability lie [Wichura1988].
-
-    Algorithm AS 241 (PPND16), to 1e-15 of the value. SciPy has the same, but is slow to load.
 
     Examples
     --------
     >>> normal_quantile(np.array([0.5, 0.975])).round(6).tolist()
     [0.0, 1.959964]
     """
-    middle = np.asarray(share) - 0.5
-    root = np.sqrt(-np.log(np.minimum(share, 1 - share)))
-    tail = np.where(root <= 5, _ratio(_NEAR, root - 1.6), _ratio(_FAR, root - 5))
-    inner = middle * _ratio(_MIDDLE, 0.180625 - middle**2)
-    return np.where(np.abs(middle) <= 0.425, inner, np.copysign(tail, middle))
-
-
-def _ratio(pair: tuple[tuple[float, ...], tuple[float, ...]], at: Vector) -> Vector:
-    return np.polyval(pair[0], at) / np.polyval(pair[1], at)
+    shares = np.asarray(share)
+    values = map(NormalDist().inv_cdf, shares.ravel().tolist())
+    return np.fromiter(values, float, shares.size).reshape(shares.shape)
 
 
 def about(

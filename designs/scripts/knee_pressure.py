@@ -41,7 +41,7 @@ Data = dict[str, Any]
 DESIGN = Path(__file__).resolve().parents[1] / "knee.yaml"
 BAR = 1e5
 PRESSURES = (60, 75, 90, 105, 120, 140, 160, 185, 210, 240, 275, 310, 350)
-QUICK = (90, 140, 210)
+QUICK = (90, 210)
 """Supply pressures [bar]."""
 SHIPPED = 210
 """Where every walk along the pressures begins [bar]: that of the knee as shipped."""

@@ -318,7 +318,9 @@ def compute(*, quick: bool = False) -> Data:
         "moduli": list(moduli()),
         "series": rows,
         "prices": prices,
-        "choices": [row for bare in (False, True) for row in enumerated(bare, quick)],
+        "choices": [
+            row for bare in ((True,) if quick else (False, True)) for row in enumerated(bare, quick)
+        ],
     }
     return rounded(study)
 

@@ -149,9 +149,10 @@ class Bench:
         0 where the least of `CONTENTS` already moves more, infinite where the most moves less.
         """
         content = np.linspace(*CONTENTS, 300)
-        largest = np.array(
-            [self.answer(load, self.entrained(c), share=share).range[1] for c in content]
-        )
+        air = Air(content[:, None] * self.oil.a, content[:, None] * self.oil.b)
+        moved = np.abs(self.step((1 - share) * load, air).displacement)
+        known = np.where(np.isfinite(moved), moved, -np.inf)[:, :-1]
+        largest = known.max(axis=1) + abs(load) * self.flexibility
         held = np.isfinite(largest)
         if not held.any():
             return float("inf")
