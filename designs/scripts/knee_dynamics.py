@@ -221,15 +221,9 @@ def _asked(row: Data) -> float:
 def compute(*, quick: bool = False) -> Data:
     """The whole study as plain numbers, SI."""
     knee = ao.read(DESIGN)
-<<<<<<< Updated upstream
-    required = measured(ao.optimise(knee, starts=2, prices=not quick), "bandwidth")
+    required = measured(ao.optimise(knee, starts=1 if quick else 2, prices=not quick), "bandwidth")
     shares = (0.0, 0.9) if quick else SHARES
     changes = list(CHANGES)[:2] if quick else list(CHANGES)
-=======
-    required = measured(ao.optimise(knee, starts=1 if quick else 2, prices=not quick), "bandwidth")
-    shares = (0.0, 0.5, 0.9) if quick else SHARES
-    changes = list(CHANGES)[:: 3 if quick else 1]
->>>>>>> Stashed changes
     kept = knee.changed(required["values"])
     at_mass = wishes(without="bandwidth", goal="bandwidth", mass=(1 + FREE) * required["mass"])
     study = {
