@@ -10,6 +10,7 @@ import json
 import math
 import re
 from collections.abc import Iterator, Mapping
+from decimal import Decimal
 from typing import Any, NamedTuple
 
 from .. import quantities, units
@@ -56,17 +57,19 @@ def exact_text(value: float, quantity: Quantity | None, unit: str | None = None)
         if name is None or (share and not name):
             continue
         of = units.unit(name, quantity.dimension) if name else units.Unit("", "", 1.0)
-        for number in _candidates(of.from_si(value)):
+        for number in _candidates(value, of):
             if of.text_to_si(number) == value:
                 return f"{number} {name}".rstrip()
     return f"{100 * value!r} %" if share else f"{value!r} {quantity.si_unit}".rstrip()
 
 
-def _candidates(value: float) -> Iterator[str]:
-    """Texts of a number and of its nearest neighbours, shortest first."""
+def _candidates(value: float, of: units.Unit) -> Iterator[str]:
+    """Texts in a unit of an SI value and of its nearest neighbours, shortest first."""
+    low = high = of.from_si(value)
     for digits in (6, 9, 12, 15, 16, 17):
-        yield f"{value:.{digits}g}"
-    low = high = value
+        yield f"{low:.{digits}g}"
+    if not of.offset:
+        yield f"{Decimal(repr(float(value))) / Decimal(repr(of.scale)):.17g}"
     for _ in range(4):
         low, high = math.nextafter(low, -math.inf), math.nextafter(high, math.inf)
         yield repr(low)
