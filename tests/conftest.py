@@ -15,7 +15,13 @@ for library in ("OPENBLAS", "OMP", "MKL"):
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # A loaded machine is no failure; continuous integration tries the same examples every time.
-settings.register_profile("house", deadline=None, derandomize="CI" in os.environ)
+SAME_EVERY_TIME = "CI" in os.environ
+settings.register_profile(
+    "house",
+    deadline=None,
+    derandomize=SAME_EVERY_TIME,
+    max_examples=40 if SAME_EVERY_TIME else 100,
+)
 settings.load_profile("house")
 
 # No test writes into a person's own folders, nor does a process that a test starts.
