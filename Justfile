@@ -9,6 +9,10 @@ check:
 test *ARGS:
     .venv/bin/python -m pytest {{ARGS}}
 
+# whole studies and coverage of bounds, which the tests leave out
+test-long *ARGS:
+    .venv/bin/python -m pytest -n auto -m long {{ARGS}}
+
 lint:
     .venv/bin/ruff check . && .venv/bin/ruff format --check . && .venv/bin/mypy && .venv/bin/lint-imports
 

@@ -60,6 +60,7 @@ def bootstrapped(points, *, count=200, seed=0):
     return fit, resampled_stribeck(points, fit, count=count, rng=np.random.default_rng(seed))
 
 
+@pytest.mark.long
 def test_bounds_hold_the_truth():
     """95 % bounds hold the true parameters in 90 to 99 % of 100 sets of 16 uneven points.
 

@@ -63,6 +63,7 @@ def test_no_page_holds_a_nan():
         assert not re.search(r"\bnan\b", text.lower())
 
 
+@pytest.mark.long
 def test_a_design_that_cannot_meet_its_limits_says_so():
     """The bore alone to change: infeasible, with the smallest change of limits that would do."""
     design = ao.read(DESIGN).design

@@ -108,6 +108,7 @@ def test_the_yield_is_that_of_the_size_to_build():
     assert made.nominal_rate == pytest.approx(0.5, abs=0.03)
 
 
+@pytest.mark.long
 def test_no_size_with_enough_yield_saves_nothing(tmp_path):
     """The largest size holds in norm.cdf(1.5) of the draws: missed, told, and nothing saved."""
     sizes = "15 mm, 15.3 mm"

@@ -28,10 +28,10 @@ def quick(tmp_path_factory) -> tuple[str, Path]:
     return ran("knee_dynamics", tmp_path_factory.mktemp("reports"))
 
 
-@pytest.fixture(params=["quick", "committed"])
-def numbers(request, quick) -> dict[str, Any]:
+@pytest.fixture(params=[pytest.param("quick", marks=pytest.mark.long), "committed"])
+def numbers(request) -> dict[str, Any]:
     """The numbers of a quick run, and those that the committed report carries inside."""
-    return carried(quick[1] if request.param == "quick" else REPORT)
+    return carried(request.getfixturevalue("quick")[1] if request.param == "quick" else REPORT)
 
 
 @pytest.mark.parametrize("spool", [60.0, 120.0, 240.0])
@@ -203,6 +203,7 @@ def test_the_page_says_the_numbers(numbers) -> None:
         assert f"{row['metrics']['bandwidth']:.3g}" in words
 
 
+@pytest.mark.long
 def test_the_quick_run_prints_what_it_writes(quick) -> None:
     """Every mass of the attached numbers stands in the printed tables."""
     printed, pdf = quick

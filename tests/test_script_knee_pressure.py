@@ -25,10 +25,10 @@ def quick(tmp_path_factory) -> tuple[str, Path]:
     return ran("knee_pressure", tmp_path_factory.mktemp("reports"))
 
 
-@pytest.fixture(params=["quick", "committed"])
-def numbers(request, quick) -> dict[str, Any]:
+@pytest.fixture(params=[pytest.param("quick", marks=pytest.mark.long), "committed"])
+def numbers(request) -> dict[str, Any]:
     """The numbers of a quick run, and those that the committed report carries inside."""
-    return carried(quick[1] if request.param == "quick" else REPORT)
+    return carried(request.getfixturevalue("quick")[1] if request.param == "quick" else REPORT)
 
 
 def _knee(row: dict[str, Any], *, free: bool = True) -> Any:
@@ -183,6 +183,7 @@ def test_the_committed_report_is_made_of_its_own_numbers() -> None:
     assert text_of(study.page(carried(REPORT))[0]) == text_of(REPORT.read_bytes())
 
 
+@pytest.mark.long
 def test_the_quick_run_prints_what_it_writes(quick) -> None:
     """Every mass of the attached numbers stands in the printed table."""
     printed, pdf = quick

@@ -179,6 +179,7 @@ def test_a_map_follows_the_growth_of_its_pressures():
     assert table.friction[3, 6] == pytest.approx(point.friction, rel=2e-3)
 
 
+@pytest.mark.long
 @pytest.mark.xfail(strict=True, reason="point, map and evaluation of a pair each have their own")
 def test_breakaway_of_a_pair_is_one_number():
     """Study, its map and the evaluation agree on the friction after a standstill."""

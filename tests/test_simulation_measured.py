@@ -405,6 +405,7 @@ def test_a_fit_finds_the_cylinder_of_the_record():
     assert len(told["correlations"]) == 6
 
 
+@pytest.mark.long
 def test_bounds_hold_the_truth_as_often_as_they_say():
     """Of 9 bounds of 95 % at least 7 hold; by chance fewer would once in 120 times."""
     held = []

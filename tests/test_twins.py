@@ -59,6 +59,7 @@ def test_bounds_names_and_the_continuous_optimum_must_be_the_same(evidence):
     assert not evidence.holds_for(other, evidence.optimum * 1.01)
 
 
+@pytest.mark.long
 def test_oils_of_one_bulk_modulus_are_searched_once(monkeypatch):
     """Every combination gets the same result as if each were searched, with fewer searches."""
     text = KNEE.read_text("utf-8").replace("max: 290 N", "max: 400 N")
