@@ -99,9 +99,8 @@ def test_write_to_impossible_places(place, design, tmp_path, monkeypatch):
     """--write is checked before the search starts."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "file").write_text("mine")
-    began = time.process_time()
+    monkeypatch.setattr("actuator_opt.optimisation.run.solve", None)
     result = run("optimise", design, "--json", "--write", place)
-    assert time.process_time() - began < 0.2
     assert result.code == 3
     assert result.errors[0]["file"] == place
 
