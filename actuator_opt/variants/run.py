@@ -199,7 +199,7 @@ def _computed(
             while waiting:
                 yield waiting.popleft().result()
         except BaseException:  # of what waits nothing is begun any more
-            pool.shutdown(wait=False, cancel_futures=True)
+            pool.shutdown(cancel_futures=True)
             raise
 
 
