@@ -109,14 +109,14 @@ class Database:
         self.width, self.seals = width, Seals(study, width)
 
     def missing(self, keys: Sequence[bytes]) -> tuple[list[int], int]:
-        """Numbers of the keys whose rows do not stand, and how many of these are damaged ones."""
+        """Numbers of the keys without a whole row, and how many of their rows are damaged."""
         known = self._known(keys)
         sound = [key for key, row in known.items() if row is not None]
         lacking = set(keys).difference(sound)
         return [k for k, key in enumerate(keys) if key in lacking], len(known) - len(sound)
 
     def known(self, keys: Sequence[bytes]) -> dict[int, tuple[Array | None, str | None]]:
-        """Rows that stand already, by the number of their key; damaged ones do not."""
+        """Rows already stored, by the number of their key, without damaged ones."""
         rows = self._known(keys)
         kept: dict[int, tuple[Array | None, str | None]] = {}
         for k, key in enumerate(keys):

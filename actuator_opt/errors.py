@@ -40,7 +40,7 @@ EXIT_CODES = {
     ExitCode.FAULT: "a fault of the program (`--debug` shows its traceback)",
     ExitCode.INTERRUPTED: "interrupted",
 }
-"""Exit codes as help and README tell them."""
+"""Exit codes as help and README list them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Sizes that cannot be give NaN: one rule for every pure model, by the names of its arguments."""
+"""Impossible sizes give NaN: one rule for every pure model, by the names of its arguments."""
 
 from __future__ import annotations
 

@@ -187,7 +187,7 @@ def _parsed(line: bytes, path: Path, *, sealed: bool = False) -> tuple[dict[str,
             whole, sealed = line == _sealed(_bare(line)), True
         if whole:
             return data, sealed
-    remedy = "delete the file; the run itself is to be repeated"
+    remedy = "delete the file and repeat the run"
     raise InputError(Diagnostic("is no record of a run, or a damaged one", remedy, str(path)))
 
 

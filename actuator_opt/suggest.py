@@ -51,7 +51,7 @@ def escaped(text: str, own: str = "") -> str:
 
     Parameters
     ----------
-    text : whatever is to be printed
+    text : to print
     own : sequences that stay as they are, as a regular expression without groups
 
     >>> print(escaped("\x1b[2J\u202e" "a\tb"))

@@ -35,16 +35,16 @@ ROUNDING = 1e-9
 
 
 LONG = {"knee of free pressure", "steel of free pressure", "knee sized by growth"}
-"""Cases that take long, run by ``-m long``."""
+"""Slow cases; ``-m long`` runs them."""
 
 
-def shared(names):
+def marked(names):
     """Names as parameters, those of `LONG` marked."""
     marks = {name: [pytest.mark.long] if name in LONG else [] for name in names}
     return [pytest.param(name, marks=found) for name, found in marks.items()]
 
 
-@pytest.fixture(params=shared(CASES), scope="module")
+@pytest.fixture(params=marked(CASES), scope="module")
 def some(request):
     """A case with designs that meet every limit."""
     found = case(*CASES[request.param])
@@ -159,7 +159,7 @@ bore, so that the bound of knee and 90 mm rests on looser limits.
 """
 
 
-@pytest.mark.parametrize("name", shared(GAPS))
+@pytest.mark.parametrize("name", marked(GAPS))
 def test_bound_and_gap(name):
     """The bound is below the optimum, closest on metal; every limit is covered or dropped."""
     what, gap = GAPS[name]

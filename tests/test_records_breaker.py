@@ -216,9 +216,8 @@ def test_weighted_objectives_are_compared_term_by_term():
     old = found.redesign.best_before.evaluation.metrics
     for name, one in goals.items():
         assert one.before == old[name].value
-        assert f"{name} {one.quantity.text(one.before, 5)} to" in words or (
-            f"{name} stays {one.quantity.text(one.after, 5)}" in words
-        )
+        was, now = (one.quantity.text(value, 5) for value in (one.before, one.after))
+        assert (f"{name} stays {now}" if was == now else f"{name} {was} to {now}") in words
     assert set(found.to_dict()["optimum"]["objective"]) == set(goals)
 
 

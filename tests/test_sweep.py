@@ -370,7 +370,7 @@ def test_a_damaged_row_is_computed_again(change, tmp_path):
 
 
 def test_a_mass_changed_by_hand_is_not_taken_over(tmp_path):
-    """In text, JSON and CSV: -5 kg of a row is computed again, and the user is told."""
+    """In text, JSON and CSV: a row of -5 kg is computed again, and a line says so."""
     store, table = tmp_path / "s.db", tmp_path / "s.csv"
     words = ["sweep", STEEL, "--vary", "cylinder.bore=18..26 mm:5", "--store", store]
     words += ["--csv", table]

@@ -227,7 +227,7 @@ class _Run:
         return min(self.below, self.least)
 
     def note(self, assignment: Assignment, objective: float) -> None:
-        """Keep what an assignment comes to, perhaps known better now."""
+        """Store the value of an assignment, or a more exact one."""
         worse = self.tried.get(assignment, np.inf) <= self.least < objective
         self.tried[assignment] = objective
         self.least = min(self.tried.values()) if worse else min(self.least, objective)

@@ -58,7 +58,7 @@ def size_remedies(
     Parameters
     ----------
     actuator, solution : the problem and its continuous optimum
-    listed, found : the sizes, and what their search came to
+    listed, found : the sizes, and the result of their search
     until : time of `time.perf_counter` to stop at
     """
     below = math.inf if found.objective is None else found.objective

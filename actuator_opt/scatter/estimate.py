@@ -88,7 +88,7 @@ def half_width(values: Vector) -> float:
 
 
 def _student(count: int) -> float:
-    """Half the 95 % interval of a mean over the standard deviation of what it is the mean of."""
+    """Half the 95 % interval of a mean, over the standard deviation of the values."""
     from scipy.special import stdtrit
 
     return float(stdtrit(count - 1, (1 + LEVEL) / 2)) / float(np.sqrt(count))

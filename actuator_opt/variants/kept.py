@@ -22,7 +22,7 @@ class Lacking(NamedTuple):
 
 
 def lacking(base: Database, study: Study, first: int, count: int) -> Lacking:
-    """The keys of a chunk whose rows do not stand, or are damaged."""
+    """The keys of a chunk whose rows are missing or damaged."""
     keys = study.keys(first, count)
     missing, damaged = base.missing(keys)
     some = None if len(missing) == len(keys) else np.array(missing, dtype=np.intp)

@@ -227,7 +227,7 @@ def _begin(study: Study) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process when the one that began it has ended, however that was.
+    """End this process once its parent has ended, for whatever reason.
 
     Waits for the end of a pipe that the parent alone holds open, which needs no signal of the
     system's own. Where processes are forks, a later one holds the pipes of those before it: they

@@ -32,7 +32,7 @@ class ExplorerFile:
     path: Path
     sha256: str
     remarks: tuple[str, ...] = ()
-    """What to know of what it shows."""
+    """Remarks on its rows."""
 
     def to_dict(self) -> dict[str, object]:
         """The JSON form."""
@@ -82,7 +82,7 @@ def write_explorer(
     explored : the sweep
     target : the page's file
     plugins : files with the user's metrics, for the command
-    remarks : what to know of the rows, told with the page
+    remarks : on the rows, printed with the page
 
     Raises
     ------
