@@ -10,7 +10,7 @@ from cli_runner import KNEE, run
 
 import actuator_opt as ao
 from actuator_opt.evaluation.kernel import base
-from actuator_opt.evaluation.touch import touch
+from actuator_opt.evaluation.seal_contact import seal_contact
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.models.contact_profile import o_ring_profile
@@ -88,7 +88,7 @@ def test_a_saved_contact_is_read_again(solved):
     subject = actuator.subject()
     rings = base(subject, subject.values()).rings
     ring = next(one for one in rings if one.name == "rod")
-    at_supply = touch(ring.at(pressure=21e6))
+    at_supply = seal_contact(ring.at(pressure=21e6))
     (contact,) = found["contact"]
     assert float(np.max(at_supply.line_load)) == pytest.approx(contact["line_load"], rel=1e-12)
     profiles = actuator.design.seals.rod.contact

@@ -137,7 +137,7 @@ def test_balance_of_the_step_ring_by_hand(found, pressure):
     """Load, width and balance of the closed form, worked out again."""
     ring = found.plunger.rings[0]
     load, width, balance = by_hand(ring, pressure)
-    contact = trend.touch(ring.at(pressure=pressure))
+    contact = trend.seal_contact(ring.at(pressure=pressure))
     assert (contact.line_load, contact.width) == pytest.approx((load, width), rel=1e-3)
     assert trend.balance(ring, pressure) == pytest.approx(balance, rel=1e-3)
 

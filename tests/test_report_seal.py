@@ -365,7 +365,7 @@ def test_tables_carry_the_numbers_of_the_study(name, place):
         assert value["flow towards the outer side"] == pytest.approx(1e9 * point.flow, rel=6e-4)
     contacts = seal_rows.contacts(one)
     assert first_number(contacts[0][3]) == pytest.approx(
-        1e-3 * float(one.drive.rings[0].touch.line_load), rel=6e-4
+        1e-3 * float(one.drive.rings[0].contact.line_load), rel=6e-4
     )
     assert len(contacts) == (4 if len(one.out.rings) == 2 else 1)
     title = next(b["title"] for b in seal_sheet.blocks(one) if ": at " in b["title"])
@@ -478,7 +478,7 @@ def test_a_film_that_fails_is_a_sentence_and_no_figure():
     assert f"No film on the outstroke: {one.out.why}" in table["note"]
     friction = next(row for row in table["rows"] if row[0] == "friction, film")
     assert friction[1] == "–"
-    assert float(one.out.rings[0].touch.line_load) == 0
+    assert float(one.out.rings[0].contact.line_load) == 0
     assert (one.out.breakaway, one.out.coefficient_friction) == (0.0, 0.0)  # nothing presses
     data = seal_document.sheet_page(one, ORIGIN)
     assert data["verdict"]["state"] == "missed"

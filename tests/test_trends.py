@@ -15,9 +15,9 @@ import pytest
 from actuator_opt import verbs
 from actuator_opt.design.materials import load_library
 from actuator_opt.evaluation.film import Row, slopes, solve
+from actuator_opt.evaluation.seal_contact import seal_contact
 from actuator_opt.evaluation.study import trends
 from actuator_opt.evaluation.study.trends import FACTORS
-from actuator_opt.evaluation.touch import touch
 from actuator_opt.reporting.published import aalto_trends
 
 DESIGNS = Path(__file__).parents[1] / "designs"
@@ -331,11 +331,11 @@ def test_groove_width(found):
     assert said(found, "groove width") == ("no effect", "no effect")
     assert found.contact_share < 1
     for ring in found.rings:
-        width = float(touch(ring).width)
+        width = float(seal_contact(ring).width)
         assert width < (2 * ring["squeeze"] + 0.45) * ring["section"]
-        narrow = touch(ring.at(groove_width=0.9 * width))
+        narrow = seal_contact(ring.at(groove_width=0.9 * width))
         assert float(narrow.width) == pytest.approx(0.9 * width)
-        assert float(narrow.line_load) == float(touch(ring).line_load)
+        assert float(narrow.line_load) == float(seal_contact(ring).line_load)
 
 
 def test_diameter(found):

@@ -1,10 +1,17 @@
-"""The words a design file may choose from: one type each, with what every word means."""
+"""The words a design file may choose from: one type each, with what every word means.
+
+Words of kinds (seal types, friction laws, laws of contact and hardness) come from their registry.
+"""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal, TypeAlias
 
-from .kinds import Choice
+from ..friction.kinds import LAWS as FRICTION_LAWS
+from ..models.elastomer import MODULUS_LAWS
+from ..models.seals import LAWS as CONTACT_LAWS
+from ..seals.kinds import TYPES as SEAL_TYPES
+from .kinds import Choice, choice_of
 
 Paper: TypeAlias = Annotated[
     Literal["ElAsswad2018", "AaltoThesis", "Huang2017"] | None,
@@ -73,13 +80,8 @@ RetentionType: TypeAlias = Annotated[
     ),
 ]
 SealType: TypeAlias = Annotated[
-    Literal["o_ring", "step_ring", "u_cup", "compact"],
-    Choice(
-        "kind of seal; o_ring: a rubber ring of round section; "
-        "step_ring: a sliding ring of PTFE, pressed on by an O-ring behind it; "
-        "u_cup: two lips that the pressure spreads; "
-        "compact: a rubber body between two guides, sealing both ways"
-    ),
+    str,
+    choice_of("kind of seal", SEAL_TYPES),
 ]
 BackUp: TypeAlias = Annotated[
     Literal["none", "one", "both"],
@@ -89,30 +91,16 @@ BackUp: TypeAlias = Annotated[
     ),
 ]
 FrictionModel: TypeAlias = Annotated[
-    Literal["coefficient", "film"],
-    Choice(
-        "how the friction of the seal follows; coefficient: a coefficient times its contact load, "
-        "with the Stribeck curve; film: the oil film between rough surfaces, which also tells "
-        "the leakage"
-    ),
+    str,
+    choice_of("how the friction of the seal follows", FRICTION_LAWS),
 ]
 SealLaw: TypeAlias = Annotated[
-    Literal["energised", "plane_strain", "hertz_lindley", "chord", "stadium"],
-    Choice(
-        "contact width and force of the squeezed ring; "
-        "energised: line contact that the oil widens and loads, within 3 % of finite elements; "
-        "plane_strain: an older fit, with up to 38 % more force under pressure; "
-        "hertz_lindley: Hertz line contact under Lindley's force, as wide at any pressure; "
-        "chord: as [ElAsswad2018] prints it, no force without pressure; "
-        "stadium: a flattened ring of the same section, likewise"
-    ),
+    str,
+    choice_of("contact width and force of the squeezed ring", CONTACT_LAWS),
 ]
 HardnessModel: TypeAlias = Annotated[
-    Literal["gent", "ruess"],
-    Choice(
-        "Young's modulus of the rubber from its Shore A hardness; gent: Gent's formula; "
-        "ruess: Ruess's formula, 1.8 times as stiff at 70 Shore A"
-    ),
+    str,
+    choice_of("Young's modulus of the rubber from its Shore A hardness", MODULUS_LAWS),
 ]
 Direction: TypeAlias = Annotated[
     Literal["push", "pull"],

@@ -14,7 +14,6 @@ from typing import Any, Literal, TypeAlias
 from ..errors import Diagnostic, InputError
 from .standards import Gland, citation, metres, section_tolerance, tables
 
-Element: TypeAlias = Literal["u_cup", "step_ring", "guide", "wiper"]
 Place: TypeAlias = Literal["rod", "piston"]
 Points: TypeAlias = tuple[tuple[float, float], ...]
 
@@ -84,7 +83,7 @@ class Deviation:
 
 
 @functools.cache
-def housings(element: Element, place: Place) -> tuple[Housing, ...]:
+def housings(element: str, place: Place) -> tuple[Housing, ...]:
     """Housings of an element in a place, in the order of the standard."""
     return tuple(
         _housing(group, row)
@@ -115,12 +114,12 @@ def _housing(group: Mapping[str, Any], row: Mapping[str, Any]) -> Housing:
     )
 
 
-def housings_for(element: Element, place: Place, diameter: float) -> tuple[Housing, ...]:
+def housings_for(element: str, place: Place, diameter: float) -> tuple[Housing, ...]:
     """Housings whose range has a rod or bore diameter, those that name it first.
 
     Parameters
     ----------
-    element : ``u_cup``, ``step_ring``, ``guide`` or ``wiper`` (rod only)
+    element : a seal type, ``guide`` or ``wiper`` (rod only)
     place : ``rod`` or ``piston``
     diameter : of the rod or the bore, m
 

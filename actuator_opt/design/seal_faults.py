@@ -5,11 +5,17 @@ Those of stated contact profiles are in `profile_faults`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from ..errors import InputError
+from ..friction.kinds import LAWS as FRICTION_LAWS
 from ..models.elastomer import modulus_gent
+from ..models.seals import LAWS
+from ..seals.kinds import SIZES, TYPES
+from ..seals.seal_type import SealType, SizeFault
+from ..seals.sizes import GROOVE_WIDTH
+from ..seals.u_cup import lip_faults
 from ..suggest import article
 from . import profile_faults
 from .profile_faults import elements
@@ -17,54 +23,13 @@ from .seals import BACK_UPS
 from .structure import Loc, child_at
 from .view import Fault, Materials, Properties, View, length_text
 
-SQUEEZE_RANGE = {
-    "energised": (0.02, 0.40),
-    "plane_strain": (0.02, 0.40),
-    "hertz_lindley": (0.02, 0.40),
-    "chord": (0.0, 0.45),
-    "stadium": (0.0, 0.45),
-}
-"""Squeeze a contact law can be used at: outside, its width leaves the free section or the load
-law (compared with finite elements at 0.08 to 0.30) means nothing."""
-
-NEEDED = {
-    "o_ring": (),
-    "step_ring": ("thickness", "width"),
-    "u_cup": ("thickness", "width", "groove_width"),
-    "compact": ("width",),
-}
-"""Fields an element of a type cannot do without."""
-
-EXAMPLES = {"thickness": "1.5 mm", "width": "4 mm", "groove_width": "6.3 mm"}
-
-STRANGE = {
-    "o_ring": ("thickness", "width", "land", "relief", "taper", "root_clearance"),
-    "step_ring": ("root_clearance",),
-    "u_cup": ("relief", "taper"),
-    "compact": ("thickness", "relief", "taper", "root_clearance"),
-}
-"""Fields an element of a type has not."""
-
 
 def fields(view: View) -> Iterator[Fault]:
     """Every type states what it is made of, and nothing else; a piston has no wiper."""
     for loc in elements(view):
-        kind = view.text(*loc, "type") or ""
-        for field in NEEDED.get(kind, ()):
-            if not view.has(*loc, field):
-                yield Fault(
-                    (*loc, field),
-                    f"missing: {article(kind)} needs it",
-                    f'add e.g. "{field}: {EXAMPLES[field]}"',
-                )
-        for field in STRANGE.get(kind, ()):
-            if view.has(*loc, field):
-                yield Fault(
-                    (*loc, field),
-                    f"{article(kind)} has none",
-                    "remove the line, or write another type",
-                    at_key=True,
-                )
+        kind = _kind(view, loc)
+        if kind is not None:
+            yield from _sizes(view, loc, kind)
         yield from _back_ups(view, loc)
     if view.has("seals", "piston", "wiper"):
         yield Fault(
@@ -73,6 +38,30 @@ def fields(view: View) -> Iterator[Fault]:
             "remove the block",
             at_key=True,
         )
+
+
+def _kind(view: View, loc: Loc) -> SealType | None:
+    """The seal type of an element; None of a word that names none."""
+    return TYPES.get(view.text(*loc, "type") or "")
+
+
+def _sizes(view: View, loc: Loc, kind: SealType) -> Iterator[Fault]:
+    """Sizes a type needs and has not; sizes it does not have. Any type has a groove's width."""
+    for size in SIZES:
+        if size.key in kind.needed and not view.has(*loc, size.key):
+            yield Fault(
+                (*loc, size.key),
+                f"missing: {article(kind.name)} needs it",
+                f'add e.g. "{size.key}: {size.example}"',
+            )
+    for size in SIZES:
+        if size.key not in (*kind.keys, GROOVE_WIDTH.key) and view.has(*loc, size.key):
+            yield Fault(
+                (*loc, size.key),
+                f"{article(kind.name)} has none",
+                "remove the line, or write another type",
+                at_key=True,
+            )
 
 
 def _back_ups(view: View, loc: Loc) -> Iterator[Fault]:
@@ -95,8 +84,10 @@ def _back_ups(view: View, loc: Loc) -> Iterator[Fault]:
 def widths(view: View) -> Iterator[Fault]:
     """What lies in a groove fits its width; a land is no wider than its ring."""
     for loc in elements(view):
-        groove = view.number(*loc, "groove_width")
-        field = "section" if view.text(*loc, "type") == "o_ring" else "width"
+        kind = _kind(view, loc)
+        if kind is None:
+            continue
+        groove, field = view.number(*loc, "groove_width"), kind.width_key
         ring, land = view.number(*loc, field), view.number(*loc, "land")
         if groove is not None and ring is not None and groove < ring:
             yield Fault(
@@ -127,19 +118,17 @@ def _grooves(view: View, seal: str) -> Iterator[tuple[Loc, float, float]]:
         if loc[1] != seal:
             continue
         section, squeeze = view.number(*loc, "section"), view.number(*loc, "squeeze")
-        count = view.number(*loc, "count")
-        if section is None or squeeze is None or count is None or count == 0:
+        count, kind = view.number(*loc, "count"), _kind(view, loc)
+        if section is None or squeeze is None or count is None or count == 0 or kind is None:
             continue
-        depth, ring = section * (1 - squeeze), section
-        if view.text(*loc, "type") != "o_ring":
-            ring = view.number(*loc, "width") or 0.0
-        if view.text(*loc, "type") == "step_ring":
-            depth += view.number(*loc, "thickness") or 0.0
+        known = {key: view.number(*loc, key) or 0.0 for key in kind.needed}
+        groove = kind.groove({"section": section, "squeeze": squeeze} | known)
+        ring = groove.ring_width
         stated = view.number(*loc, "groove_width")
         field = "section" if stated is None else "groove_width"
         backs = BACK_UPS.get(view.text(*loc, "back_up") or "", 0)
         ring += backs * (view.number(*loc, "back_up_thickness") or 0.0)
-        yield (*loc, field), depth, count * (ring if stated is None else stated)
+        yield (*loc, field), groove.depth, count * (ring if stated is None else stated)
     at = ("seals", seal, "wiper")
     section, squeeze = view.number(*at, "section"), view.number(*at, "squeeze")
     width = view.number(*at, "groove_width")
@@ -212,18 +201,21 @@ def clearances(view: View) -> Iterator[Fault]:
 def squeeze(view: View) -> Iterator[Fault]:
     """The nominal squeeze of an O-ring lies where its law holds; that of the others is not none."""
     for loc in elements(view):
-        value, law = view.number(*loc, "squeeze"), view.text(*loc, "law")
-        if value is None:
+        value, kind = view.number(*loc, "squeeze"), _kind(view, loc)
+        if value is None or kind is None:
             continue
-        if view.text(*loc, "type") not in ("o_ring", "step_ring"):
+        if not kind.round_ring:
             if value == 0:
                 yield Fault((*loc, "squeeze"), "0: the seal does not touch", "write e.g. 8 %")
             continue
-        low, high = SQUEEZE_RANGE.get(law or "", (0.0, 1.0))
+        law = LAWS.get(view.text(*loc, "law") or "")
+        if law is None:
+            continue
+        low, high = law.squeeze_limits
         if not low <= value <= high:
             yield Fault(
                 (*loc, "squeeze"),
-                f"{value * 100:.4g} %: outside the range of the law {law}",
+                f"{value * 100:.4g} %: outside the range of the law {law.name}",
                 f"write {low * 100:g} % to {high * 100:g} %",
             )
 
@@ -231,37 +223,11 @@ def squeeze(view: View) -> Iterator[Fault]:
 def shapes(view: View) -> Iterator[Fault]:
     """What a ring is made of fits inside it."""
     for loc in elements(view):
-        kind = view.text(*loc, "type")
-        width, section = view.number(*loc, "width"), view.number(*loc, "section")
-        if width is None or section is None:
-            continue
-        if kind == "step_ring":
-            if section > width * (1 + ROOM):
-                yield Fault(
-                    (*loc, "section"),
-                    f"{length_text(section)}: the O-ring behind is wider than the ring "
-                    f"({length_text(width)})",
-                    "widen the ring, or use a smaller O-ring",
-                )
-            land, relief = view.number(*loc, "land"), view.number(*loc, "relief")
-            if land is None or relief is None:
-                continue
-            if land <= width < (land + relief) * (1 - 1e-9):
-                yield Fault(
-                    (*loc, "relief"),
-                    f"{length_text(relief)}: with the land it is wider than the ring "
-                    f"({length_text(width)})",
-                    f"write at most {length_text(width - land)}",
-                )
-        thickness = view.number(*loc, "thickness")
-        if kind == "u_cup" and thickness is not None:
-            yield from _lip(loc, thickness, width)
-        if kind == "u_cup" and thickness is not None and 2 * thickness >= section:
-            yield Fault(
-                (*loc, "thickness"),
-                f"{length_text(thickness)}: two lips fill the section ({length_text(section)})",
-                f"write less than {length_text(section / 2)}",
-            )
+        kind = _kind(view, loc)
+        if kind is not None:
+            keys = ("section", *kind.keys)
+            known = {key: value for key in keys if (value := view.number(*loc, key)) is not None}
+            yield from _said(loc, kind.faults(known))
 
     for name in ("piston", "rod"):
         loc = ("seals", name, "wiper")
@@ -269,7 +235,7 @@ def shapes(view: View) -> Iterator[Fault]:
         section = view.number(*loc, "section")
         if thickness is None or width is None:
             continue
-        yield from _lip(loc, thickness, width)
+        yield from _said(loc, lip_faults(width, thickness))
         if section is not None and thickness >= section:
             yield Fault(
                 (*loc, "thickness"),
@@ -278,22 +244,14 @@ def shapes(view: View) -> Iterator[Fault]:
             )
 
 
-def _lip(loc: Loc, thickness: float, width: float) -> Iterator[Fault]:
-    """A lip is longer than thick: else it is no beam, and no model of ours."""
-    if width < thickness:
-        yield Fault(
-            (*loc, "width"),
-            f"{length_text(width)}: the lip is shorter than thick ({length_text(thickness)})",
-            f"write {length_text(thickness)} or more",
-        )
-
-
-ROOM = 0.1
-"""Share by which a step ring's O-ring may be wider than the ring: its groove is that much wider."""
+def _said(loc: Loc, found: Iterable[SizeFault]) -> Iterator[Fault]:
+    """Faults of sizes at their place."""
+    for one in found:
+        yield Fault((*loc, one.key), one.message, one.remedy)
 
 
 def films(view: View) -> Iterator[Fault]:
-    """A film is asked of both elements of a pair or of none, and of single rings."""
+    """Both elements of a pair have one friction law; a film is known of single rings."""
     for name in ("piston", "rod"):
         both: list[Loc] = [("seals", name)]
         if view.has("seals", name, "secondary"):
@@ -307,7 +265,8 @@ def films(view: View) -> Iterator[Fault]:
             )
         for loc in both:
             count = view.number(*loc, "count")
-            if view.text(*loc, "friction") == "film" and count is not None and count != 1:
+            law = FRICTION_LAWS.get(view.text(*loc, "friction") or "")
+            if law is not None and law.film and count is not None and count != 1:
                 yield Fault(
                     (*loc, "count"),
                     f"{count:g} rings in a row: a film is known of one ring or of a pair",
@@ -335,7 +294,7 @@ def sliding_rings(tree: Any, materials: Materials) -> Iterator[Fault]:
     if not isinstance(materials, Properties):
         return
     for loc in elements(view):
-        name, kind = view.text(*loc, "compound"), view.text(*loc, "type")
+        name, kind = view.text(*loc, "compound"), _kind(view, loc)
         if name is None or kind is None or materials.kind(name) != "seal":
             continue
         try:
@@ -345,7 +304,8 @@ def sliding_rings(tree: Any, materials: Materials) -> Iterator[Fault]:
             continue
         modulus, hardness = known.get("youngs_modulus", 0.0), known.get("hardness", 0.0)
         sliding = modulus > SLIDING_RING * float(modulus_gent(hardness=hardness))
-        if sliding != (kind == "step_ring"):
+        if sliding != (kind.modulus_by == "hardness"):
             has = "is a plastic ring on rubber" if sliding else "has no sliding ring"
-            other = "write type: step_ring" if sliding else "use e.g. ptfe_bronze_nbr_70"
-            yield Fault((*loc, "compound"), f"{name} {has}, not for {article(kind)}", other)
+            fits = " or ".join(x.name for x in TYPES.values() if x.modulus_by == "hardness")
+            other = f"write type: {fits}" if sliding else "use e.g. ptfe_bronze_nbr_70"
+            yield Fault((*loc, "compound"), f"{name} {has}, not for {article(kind.name)}", other)

@@ -6,6 +6,13 @@ from typing import Annotated
 
 from pydantic import Field
 
+from ..friction import coefficient
+from ..friction.kinds import LAWS
+from ..friction.law import FrictionLaw
+from ..seals import o_ring
+from ..seals.kinds import SIZES, TYPES
+from ..seals.seal_type import SealType
+from ..seals.sizes import GROOVE_WIDTH
 from . import choices
 from .kinds import MaterialName, Of
 from .section import Section
@@ -38,7 +45,7 @@ class SealElement(Section):
     O-ring behind a step ring, the lips of a U-cup, the body of a compact seal.
     """
 
-    type: choices.SealType = "o_ring"
+    type: choices.SealType = o_ring.TYPE.name
     compound: Annotated[str, MaterialName("seal")]
     section: Annotated[float, Of("cross_section", "free cross-section of the ring")]
     squeeze: Annotated[float, Of("squeeze", "nominal squeeze over the free section")]
@@ -46,46 +53,16 @@ class SealElement(Section):
     section_tolerance: Annotated[float, Of("tolerance", "tolerance of the free cross-section")] = (
         0.0
     )
-    groove_width: Annotated[
-        float | None, Of("groove_width", "axial width of the groove; default: the standard gland")
-    ] = None
+    groove_width: Annotated[float | None, Of(GROOVE_WIDTH.quantity, GROOVE_WIDTH.help)] = None
     stretch: Annotated[float, Of("stretch", "stretch of the ring in its groove")] = 0.02
     count: Annotated[float, Of("seal_count", "seals in a row")] = 1.0
-    thickness: Annotated[
-        float | None, Of("part_length", "radial thickness of a step ring, or of a lip at its root")
-    ] = None
-    width: Annotated[
-        float | None,
-        Of("part_length", "axial width of a step ring or compact seal, or length of a lip"),
-    ] = None
-    land: Annotated[
-        float | None,
-        Of(
-            "part_length",
-            "axial width of the face that touches without pressure; default: half of a step "
-            "ring's width, all of a compact seal's; of a U-cup twice the radius of its rim, "
-            "default a tenth of the lip's length",
-        ),
-    ] = None
-    relief: Annotated[
-        float | None,
-        Of(
-            "length",
-            "face of a step ring before its land, wetted by the pressure; default: half of what "
-            "the land leaves",
-        ),
-    ] = None
-    taper: Annotated[
-        float | None,
-        Of(
-            "taper",
-            "angle between the flanks of a step ring's land and its counterface; default: 6 deg",
-        ),
-    ] = None
-    root_clearance: Annotated[
-        float | None,
-        Of("length", "gap under a U-cup's lip where it leaves the body; default: its interference"),
-    ] = None
+    __annotations__.update(  # one field for every size that some seal type has
+        {
+            size.key: Annotated[float | None, Of(size.quantity, size.help), Field(default=None)]
+            for size in SIZES
+            if size != GROOVE_WIDTH
+        }
+    )
     law: choices.SealLaw = "energised"
     hardness_model: choices.HardnessModel = "gent"
     contact: Annotated[tuple[ContactProfile, ...], Field(max_length=50)] = ()
@@ -94,7 +71,7 @@ class SealElement(Section):
     back_up_thickness: Annotated[
         float | None, Of("part_length", "axial thickness of a back-up ring with its play")
     ] = None
-    friction: choices.FrictionModel = "coefficient"
+    friction: choices.FrictionModel = coefficient.LAW.name
     friction_coefficient: Annotated[
         float | None,
         Of("friction_coefficient", "dry friction on the counterface; default: the compound's"),
@@ -112,9 +89,24 @@ class SealElement(Section):
     ] = 0.0
 
     @property
+    def kind(self) -> SealType:
+        """Its seal type."""
+        return TYPES[self.type]
+
+    @property
+    def friction_law(self) -> FrictionLaw:
+        """Its friction law."""
+        return LAWS[self.friction]
+
+    @property
     def back_ups(self) -> int:
         """Back-up rings in the groove."""
         return BACK_UPS[self.back_up]
+
+    def stated_sizes(self) -> dict[str, float]:
+        """Sizes of its type that the design states, SI."""
+        known = {size.key: getattr(self, size.key) for size in SIZES}
+        return {key: value for key, value in known.items() if value is not None}
 
 
 class Wiper(Section):

@@ -15,6 +15,7 @@ from typing import Literal
 
 from ..errors import InputError
 from ..quantities import INPUTS
+from ..seals.kinds import TYPES
 from . import standards
 from .seals import BACK_UPS
 from .structure import child_at
@@ -146,10 +147,11 @@ class _Glands(Series):
         return tuple(path.split(".")[:-1])
 
     def fault(self, view: View, path: str) -> tuple[str, str] | None:
-        kind = view.text(*self._seal(path), "type") or "o_ring"
-        if kind == "o_ring":
+        kind = TYPES.get(view.text(*self._seal(path), "type") or "")
+        if kind is None or kind.o_ring_gland:
             return None
-        return f"{self.name} has O-rings and their glands, and this is a {kind}", "list its sizes"
+        message = f"{self.name} has O-rings and their glands, and this is a {kind.name}"
+        return message, "list its sizes"
 
     def parent(self, path: str) -> str | None:
         head, _, last = path.rpartition(".")

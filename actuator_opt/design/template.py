@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ..seals import o_ring
+from ..seals.kinds import TYPES
 from .kinds import Text
 from .model import Design
 from .reader import LoadedDesign
@@ -91,7 +93,7 @@ clevis:
 
 seals:
   piston:
-    type: o_ring               # or step_ring, u_cup, compact
+    type: o_ring               # or @SEALS@
     compound: nbr_70
     section: 3.53 mm
     squeeze: 12 %
@@ -197,7 +199,8 @@ def init_text(name: str = "my actuator", from_design: LoadedDesign | Design | No
     """
     title = Text().validate(name)
     if from_design is None:
-        return _TEXT.replace("@NAME@", scalar(title))
+        others = ", ".join(name for name in TYPES if name != o_ring.TYPE.name)
+        return _TEXT.replace("@SEALS@", others).replace("@NAME@", scalar(title))
     if isinstance(from_design, Design):
         return to_yaml(from_design.model_copy(update={"name": title}))
     design = from_design.design.model_copy(update={"name": title})

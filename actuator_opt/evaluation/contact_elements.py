@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from math import tan
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..design.seals import ContactProfile
 from ..errors import ActuatorError, Diagnostic, Unsolvable
+from ..seals.contact import SealContact
+from ..seals.kinds import TYPES
+from ..suggest import article
 from .rings import Ring
-from .touch import Touch, touch
+from .seal_contact import seal_contact
 
 if TYPE_CHECKING:
     from ..finite_elements.result import Contact
@@ -23,13 +25,6 @@ SHARES = (0.25, 0.5, 0.75, 1.0)
 POINTS = 81
 """Points of a profile: those of the elements, thinned evenly."""
 
-ENERGISER = 96
-"""Elements around the ring behind a step ring: with 64 some load steps leave a dent in its contact,
-8 % of the line load, or find no balance."""
-
-EDGE = 0.15e-3
-"""Radius of the edges of a step ring's land, m (choice: broken edges of a turned PTFE ring)."""
-
 
 def room(ring: Ring) -> float:
     """Length of the groove that its back-up rings leave, along the cylinder [m]."""
@@ -37,13 +32,13 @@ def room(ring: Ring) -> float:
     return float(ring["groove_width"]) - backs
 
 
-def closed_form(ring: Ring) -> Touch:
+def closed_form(ring: Ring) -> SealContact:
     """How the ring touches by the closed form, at its pressure and the squeeze it is mounted with.
 
     The elements know neither the bore's growth nor stated profiles.
     """
     bare = replace(ring, element=ring.element.model_copy(update={"contact": ()}))
-    return touch(bare.at(squeeze_left=ring["squeeze"], pressure=abs(ring["pressure"])))
+    return seal_contact(bare.at(squeeze_left=ring["squeeze"], pressure=abs(ring["pressure"])))
 
 
 def contacts(ring: Ring, supply: float) -> tuple[Contact, ...]:
@@ -53,7 +48,7 @@ def contacts(ring: Ring, supply: float) -> tuple[Contact, ...]:
 
     Parameters
     ----------
-    ring : an O-ring, or a step ring with its energiser
+    ring : of a type that has finite elements
     supply : highest sealed pressure [Pa]
 
     Raises
@@ -61,48 +56,16 @@ def contacts(ring: Ring, supply: float) -> tuple[Contact, ...]:
     ActuatorError
         the extra is missing, the type has no elements, or they find no balance
     """
-    from ..finite_elements.material import MooneyRivlin
-
-    rubber = MooneyRivlin.of_modulus(ring["youngs_modulus"])
-    shared = {
-        "section": ring["section"],
-        "squeeze": ring["squeeze"],
-        "groove_width": room(ring),
-        "rubber": rubber,
-        "pressures": [share * supply for share in SHARES],
-        "sliding_radius": ring["diameter"] / 2,
-        "on_rod": ring.name == "rod",
-    }
-    if ring.element.type == "o_ring":
-        from ..finite_elements.o_ring import squeezed_ring
-
-        found = squeezed_ring(**shared)
-    elif ring.element.type == "step_ring":
-        from ..finite_elements.mesh import SlideRing
-        from ..finite_elements.step_ring import squeezed_step_ring
-
-        plastic = MooneyRivlin.of_modulus(
-            ring["face_modulus"], poissons_ratio=ring["face_poissons_ratio"]
-        )
-        shape = SlideRing(
-            width=ring["width"],
-            thickness=ring["thickness"],
-            land_width=ring["land"],
-            chamfer_width=ring["relief"],
-            chamfer_height=ring["relief"] * tan(ring["taper"]),
-            relief_angle=ring["taper"],
-            edge_radius=EDGE,
-        )
-        found = squeezed_step_ring(
-            **shared, plastic=plastic, shape=shape, elements_around=ENERGISER
-        )
-    else:
+    elements = ring.element.kind.elements
+    if elements is None:
+        known = " or ".join(article(one.name) for one in TYPES.values() if one.elements)
         raise ActuatorError(
             Diagnostic(
                 f"{ring.label}: there are no finite elements of a {ring.element.type}",
-                "use them for an o_ring or a step_ring, or state profiles of your own",
+                f"use them for {known}, or state profiles of your own",
             )
         )
+    found = elements.solve(ring.sizes, room(ring), [share * supply for share in SHARES])
     if found.failure:
         raise Unsolvable(
             Diagnostic(

@@ -29,7 +29,7 @@ from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..models.rough_surface import composite_roughness
 from ..numeric import STEP, Array, maximum
 from .rings import Ring
-from .touch import static_profile, touch
+from .seal_contact import seal_contact, static_profile
 
 NODES = 121
 """Nodes along the contact: within 0.3 % of finer ones."""
@@ -240,7 +240,7 @@ def solve(row: Row, last: Solved | None = None) -> Solved:
 def _opened(ring: Ring) -> str:
     """Why the sealed pressure opens the contact of a ring; empty where it does not."""
     pressure = ring["pressure"]
-    if touch(ring.at(pressure=abs(pressure))).excess > 0:
+    if seal_contact(ring.at(pressure=abs(pressure))).excess > 0:
         return ""
     return f"{pressure / 1e6:.4g} MPa opens the contact of the {ring.label}: its load is too small"
 

@@ -231,7 +231,7 @@ def _errors(
 
 def films_asked(design: Design) -> bool:
     """Whether any element asks for a film."""
-    return "film" in (design.seals.piston.friction, design.seals.rod.friction)
+    return any(seal.friction_law.film for seal in (design.seals.piston, design.seals.rod))
 
 
 def _outward(place: Place, push: bool) -> dict[Stroke, bool]:
@@ -252,7 +252,7 @@ def on_stroke(rings: Sequence[Ring], stroke: Stroke) -> tuple[Ring, ...]:
 
 def of_place(rings: Sequence[Ring], place: Place) -> tuple[Ring, ...]:
     """The rings of a place that run on a film, from the sealed side outwards."""
-    return tuple(r for r in rings if r.name == place and r.element.friction == "film")
+    return tuple(r for r in rings if r.name == place and r.element.friction_law.film)
 
 
 def floats(ring: Ring, case: int, sample: int = 0) -> Ring:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
@@ -12,9 +11,6 @@ from ..design.seals import Seal, SealElement
 from ..models import gland
 from ..numeric import Array, maximum
 from .values import Values
-
-AXIAL_PLAY = 1.1
-"""Groove over ring width where no groove is stated (choice: 10 % room to move and swell)."""
 
 
 class Piece(NamedTuple):
@@ -42,44 +38,27 @@ class Groove:
 
 
 def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
-    section = v[f"{path}section"]
-    depth = gland.gland_depth(squeeze=v[f"{path}squeeze"], section=section)
-    compound = element.compound
-    ring = Piece(compound, (0.25 * math.pi) * section * section, depth / 2)
-    if element.type == "o_ring":
-        width, default = section, gland.groove_width(section=section)
-        pieces = [ring]
-    else:
-        width = v[f"{path}width"]
-        default = AXIAL_PLAY * width
-        pieces = [Piece(compound, section * width, depth / 2)]
-    if element.type == "u_cup":  # body, and two lips as long as `width`
-        lips = (2 * v[f"{path}thickness"] - section) * width
-        pieces = [Piece(compound, section * v[f"{path}groove_width"] + lips, depth / 2)]
-    if element.type == "step_ring":
-        thickness = v[f"{path}thickness"]
-        pieces = [
-            Piece(compound, thickness * width, thickness / 2),
-            ring._replace(depth=thickness + depth / 2),
-        ]
-        depth = depth + thickness
+    sizes = {key: v[path + key] for key in ("section", "squeeze", *element.kind.needed)}
+    own = element.kind.groove(sizes)
+    default = own.width
+    pieces = [Piece(element.compound, piece.area, piece.depth) for piece in own.pieces]
     if element.back_ups:
         assert element.back_up_material is not None
         thickness = v[f"{path}back_up_thickness"]
         default = gland.back_up_groove_width(
             groove_width=default, thickness=thickness, count=element.back_ups
         )
-        area = element.back_ups * thickness * depth
-        pieces.append(Piece(element.back_up_material, area, depth / 2))
+        area = element.back_ups * thickness * own.depth
+        pieces.append(Piece(element.back_up_material, area, own.depth / 2))
     return Groove(
         place=place,
         path=path,
         role="element",
         material=element.compound,
-        section=section,
-        gland_depth=depth,
+        section=sizes["section"],
+        gland_depth=own.depth,
         width=v.get(f"{path}groove_width", default),
-        ring_width=width,
+        ring_width=own.ring_width,
         count=v[f"{path}count"],
         pieces=tuple(pieces),
     )

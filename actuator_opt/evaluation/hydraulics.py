@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from ..design.model import Design
+from ..friction.law import Friction
 from ..models import damping, elements, forces, lines, water_hammer
 from ..numeric import Array, absolute, maximum, real, where
 from .circuit import wall_compliance
 from .film_tables import Running
 from .geometry import Geometry
 from .rows import Computed
-from .sealing import Friction
 from .state import State
 from .values import Values
 

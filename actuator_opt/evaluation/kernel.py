@@ -9,6 +9,7 @@ import numpy as np
 
 from ..design.material import Material
 from ..design.model import Design
+from ..friction.law import Friction
 from ..models import forces
 from ..numeric import Array, minimum, where
 from ..quantities import METRICS, Quantity, Sense
@@ -323,7 +324,7 @@ def _manufacture(v: Values, subject: Subject, out: Computed) -> None:
             out.skip(name, f"no layer states a {limit} that can be made")
 
 
-def _forces(g: Geometry, s: State, friction: sealing.Friction, out: Computed) -> Array:
+def _forces(g: Geometry, s: State, friction: Friction, out: Computed) -> Array:
     sides = {
         "pressure_a": s.moving_a,
         "pressure_b": s.moving_b,

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
 from ..design.model import Design
 from ..design.seals import SealElement
-from ..models import elastomer, gland, lip_seal
+from ..models import elastomer, gland
 from ..numeric import Array, absolute, maximum, where
+from ..seals.kinds import SIZES
+from ..seals.seal_type import SealSizes
 from . import oil
 from .allow import Stock
 from .barrel import SEAL_STEP
@@ -41,6 +42,12 @@ class Ring:
 
     def __getitem__(self, name: str) -> Array:
         return self.numbers[name]
+
+    @property
+    def sizes(self) -> SealSizes:
+        """Its numbers and laws, as seal types and friction laws take them."""
+        own = self.element
+        return SealSizes(self.numbers, own.law, own.hardness_model, self.name == "rod")
 
     @property
     def label(self) -> str:
@@ -118,7 +125,7 @@ def rings(
             held = pressure if tail == "" else 0.0 * pressure
             own["pressure"] = held
             own["outer_pressure"] = (total - pressure) / 2
-            if elements[tail].friction == "film":
+            if elements[tail].friction_law.film:
                 own |= oiled
                 own["return_pressure"] = where(state.push, state.driven_pressure, drain)
             own["squeeze_left"] = gland.squeeze_after(
@@ -132,18 +139,16 @@ def rings(
 _OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
 """Numbers an element takes from its compound where it states none."""
 
-_FACE = ("seal_roughness", "asperity_radius", "asperity_density", "asperity_friction")
-"""Numbers of a compound's face that the oil film asks for."""
-
 
 def _numbers(
     v: Values, element: SealElement, groove: Groove, diameter: Array, temperature: Array
 ) -> dict[str, Array]:
     """What the contact of an element is computed from."""
-    at, compound = groove.path, f"materials.{element.compound}."
+    at, compound, kind = groove.path, f"materials.{element.compound}.", element.kind
+    law = element.friction_law
     face = face_modulus(v, element.compound, element.hardness_model, temperature)
     squeezed = face
-    if element.type == "step_ring":  # the energiser; the temperature law is of the sliding ring
+    if kind.modulus_by == "hardness":  # the temperature law is of the sliding ring
         squeezed = hardness_modulus(v, element.compound, element.hardness_model)
     numbers = {
         "section": groove.section,
@@ -160,55 +165,15 @@ def _numbers(
     }
     for field in _OWN:
         numbers[field] = v[at + field] if at + field in v else v[compound + field]
-    numbers |= _shape(v, element, groove)
-    by_hardness = element.type in ("o_ring", "step_ring")
-    if by_hardness or f"{compound}youngs_modulus" not in v:
+    stated = {size.key: v[at + size.key] for size in SIZES if at + size.key in v}
+    numbers |= kind.sizes(stated, section=groove.section, gland_depth=groove.gland_depth)
+    if kind.round_ring or f"{compound}youngs_modulus" not in v:
         numbers["hardness"] = v[f"{compound}hardness"]
-    if element.type != "o_ring" or element.friction == "film":
+    if kind.face or law.film:
         numbers["face_modulus"] = face
         numbers["face_poissons_ratio"] = v.get(f"{compound}poissons_ratio", INCOMPRESSIBLE)
-    if element.friction == "film":
-        numbers |= {field: v[compound + field] for field in _FACE}
-    return numbers
+    return numbers | {field: v[compound + field] for field in law.compound}
 
-
-TAPER = math.radians(6.0)
-"""Taper beside a step ring's land where none is stated: a choice."""
-
-LANDS = {"step_ring": 0.5, "compact": 1.0, "u_cup": 0.1}
-"""Land over width where none is stated: choices."""
-
-FACE = ("land", "relief", "taper", "root_clearance")
-"""Numbers of a sliding face that a design may leave to their defaults."""
 
 INCOMPRESSIBLE = 0.495
 """Poisson's ratio of rubber whose compound states none (0.49 to 0.499 in use)."""
-
-
-def _shape(v: Values, element: SealElement, groove: Groove) -> dict[str, Array]:
-    """Widths and clearances of an element that is no O-ring."""
-    at = groove.path
-    if element.type == "o_ring":
-        return {}
-    stated = {name: v[at + name] for name in FACE if at + name in v}
-    width = v[f"{at}width"]
-    shape = {"width": width} | face(
-        element.type, stated, width=width, section=groove.section, gland_depth=groove.gland_depth
-    )
-    if element.type != "compact":
-        shape["thickness"] = v[f"{at}thickness"]
-    return shape
-
-
-def face(
-    kind: str, stated: Mapping[str, Array], *, width: Array, section: Array, gland_depth: Array
-) -> dict[str, Array]:
-    """What of `FACE` a type of ring has: stated, else its default."""
-    land = stated.get("land", LANDS[kind] * width)
-    if kind == "step_ring":
-        relief = stated.get("relief", (width - land) / 2)
-        return {"land": land, "relief": relief, "taper": stated.get("taper", TAPER)}
-    if kind == "u_cup":
-        interference = lip_seal.lip_interference(section=section, gland_depth=gland_depth)
-        return {"land": land, "root_clearance": stated.get("root_clearance", interference)}
-    return {"land": land}

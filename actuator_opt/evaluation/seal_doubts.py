@@ -8,14 +8,10 @@ import numpy as np
 
 from ..design.material import compatible
 from ..models import (
-    compact_seal,
     contact_profile,
-    elastomer,
     extrusion,
-    lip_seal,
     rough_surface,
     seals,
-    step_seal,
 )
 from .film_tables import Table
 from .gland_check import extrusion_end
@@ -23,25 +19,16 @@ from .kernel import Pass, Subject
 from .provenance import describe
 from .result import ModelUse
 from .rings import Ring
-from .touch import touch
+from .seal_contact import seal_contact
 from .values import Values
 
 FILM_ERROR = 0.02
 """Relative error of a film's surrogate that is worth a word."""
 
-ON_LIMIT = 1e-6
-"""Squeeze beyond an end of a law's range that an optimum on its limit may have."""
-
 _SURROGATES = {
     "friction": "friction_running",
     "flow": "rod_leakage",
     "thickness": "film_thickness",
-}
-
-_MODELS: dict[str, Callable[..., object]] = {
-    "step_ring": step_seal.line_load,
-    "u_cup": lip_seal.line_load,
-    "compact": compact_seal.line_load,
 }
 
 
@@ -59,9 +46,10 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
 def _contact(subject: Subject, ring: Ring) -> Iterable[tuple[str, str]]:
     """Laws out of their range, a compound the fluid attacks, a contact that is lost."""
     liquid, compound = subject.design.fluid.material, ring.element.compound
-    if ring.element.type in ("o_ring", "step_ring") and not ring.element.contact:
-        yield from _law(ring)
-    if ring.element.contact:
+    if not ring.element.contact:
+        for text in ring.element.kind.warnings(ring.sizes):
+            yield "friction_running", f"{ring.label}: {text}"
+    else:
         yield (
             "friction_running",
             f"{ring.label}: stated contact profiles are taken as they are, whatever the bore's "
@@ -74,7 +62,7 @@ def _contact(subject: Subject, ring: Ring) -> Iterable[tuple[str, str]]:
             "friction_running",
             f"{ring.label}: the bore's growth takes the whole squeeze, there is no contact",
         )
-    elif not np.all(np.real(touch(ring).excess) > 0):
+    elif not np.all(np.real(seal_contact(ring).excess) > 0):
         yield (
             "friction_running",
             f"{ring.label}: the sealed pressure would open the contact; its load is too small",
@@ -110,35 +98,6 @@ def _film(name: str, table: Table) -> Iterable[tuple[str, str]]:
         yield (
             "friction_running",
             f"{name}: {count} of its points have no solution ({table.surrogate.failed[0]})",
-        )
-
-
-def _law(ring: Ring) -> Iterable[tuple[str, str]]:
-    """An O-ring law outside the squeeze and pressure it was compared with data on."""
-    law = seals.LAWS[ring.element.law]
-    by = elastomer.MODULUS_LAWS[ring.element.hardness_model]
-    hardness = float(np.max(ring["hardness"]))
-    if not by.hardness_range[0] <= hardness <= by.hardness_range[1]:
-        yield (
-            "friction_running",
-            f"{ring.label}: {hardness:g} Shore A, the {by.name} law holds from "
-            f"{by.hardness_range[0]:g} to {by.hardness_range[1]:g}",
-        )
-    ratio = float(np.max(np.abs(ring["pressure"] / ring["youngs_modulus"])))
-    low, high = law.squeeze_range
-    left, nominal = float(np.min(np.real(ring["squeeze_left"]))), ring.element.squeeze
-    if not (low - ON_LIMIT <= left and nominal <= high + ON_LIMIT):
-        squeeze = nominal if nominal > high else left
-        yield (
-            "friction_running",
-            f"{ring.label}: squeeze {100 * squeeze:.3g} % outside the "
-            f"{100 * low:.0f}-{100 * high:.0f} % the {law.name} law was compared with data on",
-        )
-    if ratio > law.pressure_range[1]:
-        yield (
-            "friction_running",
-            f"{ring.label}: pressure is {ratio:.1f} times Young's modulus, the {law.name} law "
-            f"was compared with data up to {law.pressure_range[1]:g}",
         )
 
 
@@ -196,7 +155,7 @@ def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
             f"{ring.label}, stated profiles up to {reach:.0f} bar",
             doubted=doubted,
         )
-    if element.type == "o_ring":
+    if element.kind.model is None:
         law = seals.LAWS[element.law]
         low, high = law.squeeze_range
         return ModelUse(
@@ -207,7 +166,7 @@ def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
             at,
             not doubted,
         )
-    return _use(_MODELS[element.type], f"{ring.label}, {at}", doubted=doubted)
+    return _use(element.kind.model, f"{ring.label}, {at}", doubted=doubted)
 
 
 def _use(function: Callable[..., object], used_at: str, *, doubted: bool) -> ModelUse:

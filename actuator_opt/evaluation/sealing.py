@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from ..design.model import Design
 from ..design.seals import Wiper
+from ..friction.law import Friction
 from ..models import damping, friction, gland, lip_seal, retention, wear
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array, absolute, maximum, real, where
+from ..seals.contact import SealContact
 from . import gland_check
 from .allow import Stock
 from .barrel import SEAL_STEP, Wall
@@ -22,28 +23,9 @@ from .geometry import Geometry
 from .grooves import Groove
 from .rings import INCOMPRESSIBLE, Place, Ring, face_modulus, places
 from .rows import Computed
+from .seal_contact import seal_contact
 from .state import State, side_reactions
-from .touch import Touch, touch
 from .values import Values
-
-STRIBECK_EXPONENT = 2.0
-"""Shape of the Stribeck curve where no record says otherwise ([MECE5005], [Huang2017] Table 2)."""
-
-
-@dataclass(frozen=True, slots=True)
-class Friction:
-    """Friction per case, N; `slope` is dF/dv at the case's speed, N·s/m."""
-
-    running: Array = 0.0
-    breakaway: Array = 0.0
-    slope: Array = 0.0
-
-    def __add__(self, other: Friction) -> Friction:
-        return Friction(
-            self.running + other.running,
-            self.breakaway + other.breakaway,
-            self.slope + other.slope,
-        )
 
 
 def compute(
@@ -64,7 +46,7 @@ def compute(
     moving = np.atleast_2d(real(state.speed))[:, 0] > 0
     for ring in rings:
         grown = full_growth if ring.name == "piston" else 0.0
-        contact = touch(_share(ring, films))
+        contact = seal_contact(_share(ring, films))
         rows = gland_check.metrics(v, design, stock, geometry, state, ring, grown) | {
             "contact_width": contact.width,
             "contact_pressure": contact.peak,
@@ -74,13 +56,13 @@ def compute(
                 distance=2 * geometry.stroke,
             ),
         }
-        if ring.element.friction == "film":
-            film = films.get(ring.label)
-            own = _lubricated(contact, ring, film)
-            if film is not None:
-                rows["film_thickness"] = film.thickness
+        law, film = ring.element.friction_law, films.get(ring.label)
+        if law.film is None:
+            own = law.friction(ring.sizes, contact, _row_load(ring, contact), state.speed)
         else:
-            own = _friction(_row_load(ring, contact), ring, state.speed)
+            own = law.film(ring.sizes, contact, film)
+        if film is not None:
+            rows["film_thickness"] = film.thickness
         total = total + own
         out.friction_parts[ring.label] = own.running
         for metric, value in rows.items():
@@ -146,54 +128,13 @@ def compute_film(
     out.skip("inter_seal_pressure", f"{asked} and add seals.rod.secondary")
 
 
-def _row_load(ring: Ring, contact: Touch) -> Array:
+def _row_load(ring: Ring, contact: SealContact) -> Array:
     """Line load of a whole row: one ring carries the pressure, the others only their squeeze."""
     count = ring["count"]
     if isinstance(count, float) and count == 1.0:
         return contact.line_load
-    idle = touch(ring.at(pressure=0.0 * ring["pressure"]))
+    idle = seal_contact(ring.at(pressure=0.0 * ring["pressure"]))
     return contact.line_load + (count - 1) * idle.line_load
-
-
-def _friction(load: Array, ring: Ring, speed: Array) -> Friction:
-    """Friction of one row of seals: sliding where the case moves, Coulomb where it does not."""
-    coulomb = friction.seal_friction(
-        line_load=load,
-        diameter=ring["diameter"],
-        friction_coefficient=ring["friction_coefficient"],
-    )
-    static = friction.breakaway(running=coulomb, ratio=ring["breakaway_ratio"])
-    curve = {
-        "speed": speed,
-        "coulomb": coulomb,
-        "static": static,
-        "stribeck_speed": ring["stribeck_speed"],
-        "exponent": STRIBECK_EXPONENT,
-    }
-    viscous = ring["viscous_friction"]
-    sliding = friction.stribeck_level(**curve) + viscous * speed
-    return Friction(
-        running=where(real(speed) > 0, sliding, coulomb),
-        breakaway=static,
-        slope=friction.stribeck_slope(**curve, viscous=viscous),
-    )
-
-
-def _lubricated(contact: Touch, ring: Ring, film: Running | None) -> Friction:
-    """Friction of a seal on its oil film; at rest all oil is squeezed out and the face is dry."""
-    coefficient = ring["asperity_friction"]
-    dry = friction.seal_friction(
-        line_load=contact.line_load, diameter=ring["diameter"], friction_coefficient=coefficient
-    )
-    if film is None:
-        return Friction(dry, dry, 0.0)
-    sliding = film.viscous + coefficient * film.load
-    slope = film.viscous_slope + coefficient * film.load_slope
-    moving = real(ring["speed"]) > 0
-    touching = real(ring["squeeze_left"]) > 0
-    return Friction(
-        where(touching, where(moving, sliding, dry), 0.0), dry, where(touching, slope, 0.0)
-    )
 
 
 def _share(ring: Ring, films: Films) -> Ring:

@@ -8,14 +8,16 @@ from typing import Literal
 import numpy as np
 
 from ..design import standards
-from ..design.housings import gland_deviations, housings_for
+from ..design.housings import gland_deviations, housings, housings_for
 from ..design.model import Design
 from ..errors import InputError
 from .check_list import CheckLine
 from .film_tables import floats
 from .gland_check import squeezes
 from .result import Check
-from .rings import Ring
+from .rings import Place, Ring
+
+PLACES: tuple[Place, ...] = ("piston", "rod")
 
 NEAR = 0.02
 """Relative difference of a housing's depth or length that counts as none."""
@@ -48,9 +50,9 @@ def glands(line: CheckLine, rings: Iterable[Ring]) -> Check:
 
 def _remarks(ring: Ring) -> Iterator[str]:
     """What of one groove lies outside its standard."""
-    if ring.element.type == "o_ring":
+    if ring.element.kind.o_ring_gland:
         yield from _o_ring(ring)
-    elif ring.element.type in ("step_ring", "u_cup"):
+    elif any(housings(ring.element.type, place) for place in PLACES):
         yield from _housing(ring)
     else:
         yield f"{ring.label}: no standard housing of a {ring.element.type} is known"
@@ -81,11 +83,8 @@ def _o_ring(ring: Ring) -> Iterator[str]:
 
 
 def _housing(ring: Ring) -> Iterator[str]:
-    kind: Literal["step_ring", "u_cup"] = (
-        "step_ring" if ring.element.type == "step_ring" else "u_cup"
-    )
     try:
-        known = housings_for(kind, ring.name, ring["diameter"])
+        known = housings_for(ring.element.type, ring.name, ring["diameter"])
     except InputError as error:
         yield f"{ring.label}: {error.diagnostics[0].message}"
         return

@@ -205,7 +205,7 @@ def refuse_films(design: Design) -> None:
     """
     for place in ("piston", "rod"):
         for tail, element in getattr(design.seals, place).elements().items():
-            if element.friction == "film":
+            if element.friction_law.film:
                 message = (
                     "the friction of this seal comes from an oil film: records give coefficients"
                 )

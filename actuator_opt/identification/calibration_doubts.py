@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from ..evaluation.sealing import STRIBECK_EXPONENT
 from ..evaluation.study.bench import Bench
+from ..friction.coefficient import STRIBECK_EXPONENT
 from ..least_squares import Parameter
 from ..models import friction
 from ..numeric import Array

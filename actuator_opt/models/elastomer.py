@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
+from ..kinds import kinds
 from ..numeric import Array, maximum, minimum, namespace, real, where
 
 WLF_SLOPE, WLF_SPAN = 17.44, 51.6
@@ -92,21 +93,26 @@ class ModulusFunction(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ModulusLaw:
-    """A hardness-to-modulus law with the hardness range it covers (Shore A)."""
+    """A hardness-to-modulus law: what its name means, the hardness it covers (Shore A), source."""
 
     name: str
+    help: str
     modulus: ModulusFunction
     hardness_range: tuple[float, float]
     reference: str
 
 
-MODULUS_LAWS: dict[str, ModulusLaw] = {
-    law.name: law
-    for law in (
-        ModulusLaw("gent", modulus_gent, (20.0, 90.0), "[Gent1958]"),
-        ModulusLaw("ruess", modulus_ruess, (20.0, 80.0), "[Larson2016]"),
-    )
-}
+MODULUS_LAWS = kinds(
+    "hardness law",
+    ModulusLaw("gent", "Gent's formula", modulus_gent, (20.0, 90.0), "[Gent1958]"),
+    ModulusLaw(
+        "ruess",
+        "Ruess's formula, 1.8 times as stiff at 70 Shore A",
+        modulus_ruess,
+        (20.0, 80.0),
+        "[Larson2016]",
+    ),
+)
 """Hardness-to-modulus laws by name; ``gent`` is the default."""
 
 

@@ -72,8 +72,7 @@ class Gland:
 
 def gland_sizes(ring: Ring) -> tuple[float, float]:
     """Length that the elements have in the groove, and its depth from the counterface [m]."""
-    behind = float(ring["thickness"]) if ring.element.type == "step_ring" else 0.0
-    return room(ring), float(ring["section"] * (1 - ring["squeeze"])) + behind
+    return room(ring), float(ring["gland_depth"])
 
 
 def stress_scale(study: SealStudy) -> tuple[int, int]:
@@ -241,8 +240,8 @@ def sentence(study: SealStudy) -> str:
 
     return (
         f"Contact of the {one.ring.label} by finite elements: at {bars(pressure)} width"
-        f" {beside(one.touch.width, closed.width, 'mm', 1e3)}, peak"
-        f" {beside(one.touch.peak, closed.peak, 'MPa', 1e-6)}."
+        f" {beside(one.contact.width, closed.width, 'mm', 1e3)}, peak"
+        f" {beside(one.contact.peak, closed.peak, 'MPa', 1e-6)}."
     )
 
 
@@ -263,10 +262,5 @@ def contact_note(study: SealStudy) -> str:
         "Pressures above the outer side's; both without the bore's growth. Between the points of"
         " the elements the line is straight, and so are contacts taken between two pressures."
     )
-    if study.out.rings[0].ring.element.type != "step_ring":
-        return f"{said} The last step down to the outer side depends on the mesh."
-    return (
-        f"{said} The peak stands at an end of the land and depends on the mesh and on the edge's"
-        " radius; line load and width hardly do. The fall of the peak beyond 5 MPa that Huang2017"
-        " shows is not found."
-    )
+    elements = study.out.rings[0].ring.element.kind.elements
+    return said if elements is None else f"{said} {elements.note}"

@@ -18,12 +18,13 @@ from ..evaluation.grooves import Groove, grooves
 from ..evaluation.rings import Place
 from ..evaluation.study.seal import SealStudy
 from ..evaluation.values import Values
+from ..seals.outline import Shape
 from .blocks import clean
 from .drawing import OUTLINE, THIN, choose_scale, scale_bar
 from .figures import fitted
 from .ink import BLACK, GREY, WHITE, Ink, Point, Polygon, hatch, spread_within, text_width
 from .seal_figures import stroke_names
-from .seal_shapes import Shape, element_shapes, guide_shapes, wiper_shapes
+from .seal_shapes import element_shapes, guide_shapes, wiper_shapes
 from .text import number, trimmed
 
 _METAL, _OIL, _LINES = "#eef1f3", "#dcecf7", "#9aa3ab"

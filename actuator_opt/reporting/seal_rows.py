@@ -150,9 +150,10 @@ def gland(study: SealStudy) -> list[list[str]]:
 
 def _ring_size(element: SealElement) -> str:
     """Axial and radial size of what is not round; back-up rings."""
-    words = "round" if element.width is None else trimmed(1e3 * element.width)
-    if element.thickness is not None:
-        words += f" × {trimmed(1e3 * element.thickness)}"
+    sizes = element.stated_sizes()
+    words = trimmed(1e3 * sizes["width"]) if "width" in sizes else "round"
+    if "thickness" in sizes:
+        words += f" × {trimmed(1e3 * sizes['thickness'])}"
     if element.back_ups and element.back_up_thickness is not None:
         words += f" + {element.back_ups} × {trimmed(1e3 * element.back_up_thickness)} back-up"
     return words
@@ -161,15 +162,9 @@ def _ring_size(element: SealElement) -> str:
 def law_of(one: RingPoint) -> str:
     """Which model the contact of a ring is from."""
     element = one.ring.element
-    law = element.law.replace("_", " ")
     if element.contact:
         return "stated profiles"
-    return {
-        "o_ring": f"{law} O-ring",
-        "step_ring": f"{law} O-ring behind a worn-in land",
-        "u_cup": "lip as a clamped short tube",
-        "compact": "block in plane strain",
-    }[element.type]
+    return element.kind.contact_model.format(law=element.law.replace("_", " "))
 
 
 def modulus_text(one: RingPoint) -> str:
@@ -197,9 +192,9 @@ def contacts(study: SealStudy) -> list[list[str]]:
                     point.ring.label,
                     words,
                     bars(float(f"{point.ring['pressure']:.4g}")),
-                    f"{number(1e-3 * float(point.touch.line_load))} N/mm",
-                    f"{number(1e3 * float(point.touch.width))} mm",
-                    f"{number(1e-6 * float(point.touch.peak))} MPa",
+                    f"{number(1e-3 * float(point.contact.line_load))} N/mm",
+                    f"{number(1e3 * float(point.contact.width))} mm",
+                    f"{number(1e-6 * float(point.contact.peak))} MPa",
                     modulus_text(point),
                     law_of(point) if index or not study.elements else "finite elements",
                 ]

@@ -33,7 +33,7 @@ def _seal_studies(subject: Subject) -> list[SealStudy]:
     from ..evaluation.study.seal import study
 
     places: tuple[Place, ...] = ("piston", "rod")
-    asked = [x for x in places if getattr(subject.design.seals, x).friction == "film"]
+    asked = [x for x in places if getattr(subject.design.seals, x).friction_law.film]
     moving = any(case.moves for case in subject.design.load_cases)
     return [study(subject, x, curves=True, mapped=True) for x in asked if moving]
 

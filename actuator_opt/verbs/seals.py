@@ -48,10 +48,11 @@ def seal(
         no finite elements of this seal, or no balance
     """
     from ..evaluation.study.seal import study, with_elements
+    from ..friction import film
 
     actuator = as_actuator(design)
     elements = getattr(actuator.design.seals, place).elements()
-    asked = {f"seals.{place}.{tail}friction": "film" for tail in elements}
+    asked = {f"seals.{place}.{tail}friction": film.LAW.name for tail in elements}
     subject = actuator.changed(asked).subject()
     subject, found = with_elements(subject, place) if finite_elements else (subject, ())
     return study(

@@ -2,32 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
 
 from ...design.model import Design
-from ...models import forces, friction
+from ...models import forces
 from ...numeric import Array
+from ...seals.contact import SealContact
 from .. import oil
 from ..allow import Stock
 from ..barrel import SEAL_STEP
 from ..film_tables import floats
 from ..kernel import Subject, compute
 from ..rings import Ring
-from ..sealing import STRIBECK_EXPONENT, WiperFriction, wipers
+from ..seal_contact import seal_contact
+from ..sealing import WiperFriction, wipers
 from ..springs import Springs
-from ..touch import touch
-
-_TYPES = {
-    "o_ring": "O-ring",
-    "step_ring": "step ring",
-    "u_cup": "U-cup",
-    "compact": "compact seal",
-}
-"""Types of rings in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,15 +81,20 @@ class Bench:
         The first ring of a place carries the pressure, others in the row their squeeze. Gauge
         pressures [Pa], any shape.
         """
-        found = []
+        return [(ring, force) for ring, _, force in self._rubbing(pressure_1, pressure_2)]
+
+    def _rubbing(
+        self, pressure_1: Array, pressure_2: Array
+    ) -> Iterator[tuple[Ring, SealContact, Array]]:
+        """Every ring with its contact, and the normal force of its row [N]."""
         for ring in self._held(pressure_1, pressure_2):
-            load = touch(ring).line_load
+            contact = seal_contact(ring)
+            load = contact.line_load
             count = float(ring["count"])
             if count != 1.0:
-                idle = touch(ring.at(pressure=0.0 * ring["pressure"]))
+                idle = seal_contact(ring.at(pressure=0.0 * ring["pressure"]))
                 load = load + (count - 1) * idle.line_load
-            found.append((ring, pi * ring["diameter"] * load))
-        return found
+            yield ring, contact, pi * ring["diameter"] * load
 
     def contact_forces(self, pressure_1: Array, pressure_2: Array) -> dict[str, Array]:
         """Normal force of all rings of piston and rod at chamber pressures [N]."""
@@ -107,9 +105,13 @@ class Bench:
 
     def coulomb(self, pressure_1: Array, pressure_2: Array) -> Array:
         """Coulomb friction that the design states: rings and wipers, no side load on guides [N]."""
-        rings = self.normal_forces(pressure_1, pressure_2)
         wiped = sum(float(one.friction) for one in self.wipers)
-        return sum((ring["friction_coefficient"] * force for ring, force in rings), wiped)
+        return sum((own for _, own in self._coulomb(pressure_1, pressure_2)), wiped)
+
+    def _coulomb(self, pressure_1: Array, pressure_2: Array) -> Iterator[tuple[Ring, Array]]:
+        """Every ring with the Coulomb friction of its row by its friction law [N]."""
+        for ring, contact, force in self._rubbing(pressure_1, pressure_2):
+            yield ring, ring.element.friction_law.coefficient(ring.sizes, contact) * force
 
     def sliding(self, speed: Array, pressure_1: Array, pressure_2: Array) -> tuple[Array, Array]:
         """Friction that the design states, without side load on guides: level and viscous [N].
@@ -119,22 +121,15 @@ class Bench:
         """
         level = sum((float(one.friction) for one in self.wipers), 0.0 * speed)
         viscous = 0.0 * speed
-        for ring, force in self.normal_forces(pressure_1, pressure_2):
-            coulomb = ring["friction_coefficient"] * force
-            level = level + friction.stribeck_level(
-                speed=speed,
-                coulomb=coulomb,
-                static=ring["breakaway_ratio"] * coulomb,
-                stribeck_speed=ring["stribeck_speed"],
-                exponent=STRIBECK_EXPONENT,
-            )
+        for ring, coulomb in self._coulomb(pressure_1, pressure_2):
+            level = level + ring.element.friction_law.level(ring.sizes, coulomb, speed)
             viscous = viscous + ring["viscous_friction"] * speed
         return level, viscous
 
     def contact_pressure(self, pressure_1: float, pressure_2: float) -> float:
         """Normal force of the rings that hold the pressure over their contact area [Pa]."""
         held = [ring for ring in self._held(pressure_1, pressure_2) if _leads(ring)]
-        touches = [touch(ring) for ring in held]
+        touches = [seal_contact(ring) for ring in held]
         around = [float(ring["diameter"]) for ring in held]
         force = sum(d * float(one.line_load) for d, one in zip(around, touches, strict=True))
         area = sum(d * float(one.width) for d, one in zip(around, touches, strict=True))
@@ -145,12 +140,8 @@ class Bench:
         """Contact law of the rings that hold the pressure, in words."""
         return "; ".join(
             f"{ring.label}: "
-            + ("stated profile" if ring.element.contact else _TYPES[ring.element.type])
-            + (
-                f", {ring.element.law.replace('_', ' ')}"
-                if ring.element.type in ("o_ring", "step_ring")
-                else ""
-            )
+            + ("stated profile" if ring.element.contact else ring.element.kind.title)
+            + (f", {ring.element.law.replace('_', ' ')}" if ring.element.kind.round_ring else "")
             for ring in self.rings
             if _leads(ring)
         )

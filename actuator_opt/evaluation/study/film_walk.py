@@ -11,12 +11,13 @@ import numpy as np
 
 from ...models import friction
 from ...numeric import Array
+from ...seals.contact import SealContact
 from ..barrel import SEAL_STEP
 from ..film import Row, Solved, ring_films, solve
 from ..film_tables import floats, of_place
 from ..kernel import Base
 from ..rings import Place, Ring
-from ..touch import Touch, touch
+from ..seal_contact import seal_contact
 from ..values import of_case
 
 Stroke = Literal["out", "in"]
@@ -182,10 +183,12 @@ def ring_friction(solved: Solved) -> tuple[float, ...]:
 
 def breakaway(ring: Ring) -> float:
     """Friction of a ring with all oil squeezed out [N]; 0 where the pressure lifts it off."""
-    return dry_friction(ring, touch(ring.at(pressure=abs(ring["pressure"]))), "asperity_friction")
+    return dry_friction(
+        ring, seal_contact(ring.at(pressure=abs(ring["pressure"]))), "asperity_friction"
+    )
 
 
-def dry_friction(ring: Ring, contact: Touch, coefficient: str) -> float:
+def dry_friction(ring: Ring, contact: SealContact, coefficient: str) -> float:
     """Friction of a ring's contact by one of its coefficients [N]."""
     return float(
         friction.seal_friction(

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...design.model import Design
+from ...friction import film
 from ...lubrication import Lubricant
 from ...numeric import Array
 from ..build import prepare
@@ -78,12 +79,12 @@ def sealings(design: Design) -> Sealings:
 
 def _on_films(design: Design) -> Design:
     """The design with a film under every sealing element."""
-    film: dict[str, Any] = {"friction": "film"}
+    filmed: dict[str, Any] = {"friction": film.LAW.name}
     seals = {}
     for place in ("piston", "rod"):
         seal = getattr(design.seals, place)
-        second = seal.secondary and seal.secondary.model_copy(update=film)
-        seals[place] = seal.model_copy(update=film | {"secondary": second})
+        second = seal.secondary and seal.secondary.model_copy(update=filmed)
+        seals[place] = seal.model_copy(update=filmed | {"secondary": second})
     return design.model_copy(update={"seals": design.seals.model_copy(update=seals)})
 
 

@@ -103,7 +103,7 @@ def _reliefs(
 ) -> tuple[Turn | None, tuple[Relief, ...], tuple[float, ...], tuple[float, ...]]:
     """What other reliefs of the step ring do to the trend over pressure."""
     ring = found.plunger.rings[0]
-    if ring.element.type != "step_ring":
+    if "relief" not in ring.numbers:
         return None, (), (), ()
     turn = huang_trend.turn(found)
     wanted = {*RELIEFS, ring["relief"]}

@@ -15,9 +15,10 @@ import numpy as np
 
 from ...models.friction import HUANG_TABLE_2
 from ...numeric import STEP, Array
+from ...seals import compact, u_cup
 from ..film import solve
 from ..rings import Ring
-from ..touch import touch
+from ..seal_contact import seal_contact
 from .film_walk import FilmMap, Sealing, film_map, ring_friction
 from .huang import PRESSURES, TYPICAL, Sealings
 from .huang_published import secant_of
@@ -32,7 +33,7 @@ FILM_SPEED = 5e-3
 
 def balance(ring: Ring, pressure: float) -> float:
     """Rise of a ring's load with pressure over its width, (df/dp)/b."""
-    found = touch(ring.at(pressure=complex(pressure, STEP)))
+    found = seal_contact(ring.at(pressure=complex(pressure, STEP)))
     return float(np.imag(found.line_load) / STEP / np.real(found.width))
 
 
@@ -58,12 +59,13 @@ class Kind:
 
 
 BOTH, DRAINED = "plunger, both seals", "plunger, no pressure between"
-_NAMES = {"step_ring": "step ring", "u_cup": "Yx", "compact": "compact (DAS)", "o_ring": "O-ring"}
+_NAMES = {u_cup.TYPE.name: "Yx", compact.TYPE.name: "compact (DAS)"}
+"""Names the paper has for seals of these types."""
 
 
 def kind_name(ring: Ring) -> str:
     """What a ring is called here."""
-    return _NAMES[ring.element.type]
+    return _NAMES.get(ring.element.type, ring.element.kind.title)
 
 
 def single(name: str, sealing: Sealing) -> Kind:
@@ -221,7 +223,7 @@ class Stress:
 def stress(found: Sealings) -> Stress:
     """By the closed form of `models.step_seal`."""
     pressures = np.array(STRESS_PRESSURES)
-    rows = [touch(found.plunger.rings[0].at(pressure=p)) for p in STRESS_PRESSURES]
+    rows = [seal_contact(found.plunger.rings[0].at(pressure=p)) for p in STRESS_PRESSURES]
     peak, excess, width = (
         np.array([float(getattr(row, name)) for row in rows])
         for name in ("peak", "excess", "width")

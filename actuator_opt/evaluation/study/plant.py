@@ -219,7 +219,10 @@ def plant(subject: Subject) -> Plant:
         throttle=_throttle(v, design, done),
         reducing_valve=_numbers(v, design.ports.reducing_valve, "ports.reducing_valve."),
         seals=_seals(v, own, supply),
-        films={one: getattr(design.seals, one).friction == "film" for one in ("piston", "rod")},
+        films={
+            one: getattr(design.seals, one).friction_law.film is not None
+            for one in ("piston", "rod")
+        },
         oil_damping=_one(
             done.computed.metrics["damping_pipe"][""] + done.computed.metrics["damping_annular"][""]
         ),

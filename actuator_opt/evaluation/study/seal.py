@@ -21,7 +21,7 @@ from ..film import Row, Solved, solve
 from ..film_tables import floats, of_place
 from ..kernel import Base, Subject, base
 from ..rings import Place, Ring
-from ..touch import touch
+from ..seal_contact import seal_contact
 from ..values import of_case
 from .film_walk import FilmMap, Stroke, dry_friction, film_map, sealing
 from .seal_record import RingPoint, SealPoint, SealStudy, SqueezeRow
@@ -230,21 +230,21 @@ def _bounds(solved: Solved) -> tuple[float, float]:
 
 def _face_factor(ring: Ring) -> tuple[float, float, float]:
     """Lowest, assumed and highest modulus of the sliding face, over the assumed one."""
-    if ring.element.type == "step_ring":
+    if ring.element.kind.modulus_by == "hardness":  # the face is of plastic, its modulus stated
         return 1 / STATED_FACTOR, 1.0, STATED_FACTOR
     low, value, high = modulus_range(ring)
     return low / value, 1.0, high / value
 
 
 def _ring_point(ring: Ring, solved: Solved, index: int) -> RingPoint:
-    contact = touch(ring.at(pressure=abs(ring["pressure"])))
+    contact = seal_contact(ring.at(pressure=abs(ring["pressure"])))
     diameter = ring["diameter"]
     none = np.zeros(0)
     film = solved.films[index] if solved.films else None
     sign = 1.0 if solved.row.outward else -1.0
     return RingPoint(
         ring=ring,
-        touch=contact,
+        contact=contact,
         modulus=modulus_range(ring),
         x=none if film is None else film.x,
         static=none if film is None else film.contact.static_pressure,

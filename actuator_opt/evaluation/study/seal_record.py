@@ -11,9 +11,9 @@ import numpy as np
 
 from ...design.model import Design
 from ...models import damping, lugre
+from ...seals.contact import SealContact
 from ...version import VERSION
 from ..rings import Place, Ring
-from ..touch import Touch
 from .film_walk import FilmMap, Stroke, drives
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class RingPoint:
     Parameters
     ----------
     ring : its numbers
-    touch : load per length, width and peak pressure
+    contact : load per length, width and peak pressure
     modulus : lowest, assumed and highest Young's modulus of what is squeezed [Pa]
     x : distance from the sealed side [m]
     static, oil, asperity : pressures, absolute [Pa]
@@ -39,7 +39,7 @@ class RingPoint:
     """
 
     ring: Ring
-    touch: Touch
+    contact: SealContact
     modulus: tuple[float, float, float]
     x: np.ndarray
     static: np.ndarray
@@ -274,9 +274,9 @@ def _contact_dict(point: RingPoint) -> dict[str, Any]:
         "type": ring.element.type,
         "compound": ring.element.compound,
         "squeeze": ring["squeeze_left"],
-        "line_load": float(point.touch.line_load),
-        "width": float(point.touch.width),
-        "peak_pressure": float(point.touch.peak),
+        "line_load": float(point.contact.line_load),
+        "width": float(point.contact.width),
+        "peak_pressure": float(point.contact.peak),
         "youngs_modulus": {"value": modulus, "lower": low, "upper": high},
     }
 

@@ -19,11 +19,14 @@ import numpy as np
 from ...design.model import Design
 from ...design.seals import Seal
 from ...errors import InputError, Unsolvable
+from ...friction import coefficient, film
+from ...seals import o_ring
+from ...seals.kinds import SIZES
 from ..build import prepare
 from ..film_tables import floats
 from ..kernel import Subject, base, compute
 from ..rings import Place, Ring
-from ..touch import touch
+from ..seal_contact import seal_contact
 from ..values import Values, of_case
 
 Verdict = Literal["agrees", "disagrees", "no effect", "no answer"]
@@ -140,7 +143,7 @@ class Trends:
     @property
     def contact_share(self) -> float:
         """Contact over groove width, the larger of both rings; at 1 the groove's walls hold it."""
-        return max(float(touch(ring).width / ring["groove_width"]) for ring in self.rings)
+        return max(float(seal_contact(ring).width / ring["groove_width"]) for ring in self.rings)
 
     @property
     def roughness_ratio(self) -> float:
@@ -176,7 +179,7 @@ def trends(design: Design) -> Trends | None:
     """
     numbers = prepare(design).numbers
     replaced = tuple(place for place in PLACES if not _elastomer_o_ring(design, place, numbers))
-    dry, wet = (_fitted(design, replaced, model) for model in ("coefficient", "film"))
+    dry, wet = (_fitted(design, replaced, model) for model in (coefficient.LAW.name, film.LAW.name))
     subject = prepare(dry)
     v = subject.values()
     moving = [i for i, case in enumerate(design.load_cases) if case.moves]
@@ -200,20 +203,14 @@ def _elastomer_o_ring(design: Design, place: Place, numbers: Container[str]) -> 
     """Whether a place runs on an O-ring whose modulus follows from its hardness."""
     seal: Seal = getattr(design.seals, place)
     stated = f"materials.{seal.compound}.youngs_modulus" in numbers
-    return seal.type == "o_ring" and not seal.contact and not stated
+    return seal.type == o_ring.TYPE.name and not seal.contact and not stated
 
 
 _OF_ANOTHER = (
     "friction_coefficient",
     "breakaway_ratio",
     "stribeck_speed",
-    "groove_width",
-    "thickness",
-    "width",
-    "land",
-    "relief",
-    "taper",
-    "root_clearance",
+    *(size.key for size in SIZES),
     "back_up_material",
     "back_up_thickness",
 )
@@ -224,7 +221,7 @@ def _fitted(design: Design, replaced: Sequence[Place], model: str) -> Design:
     """The design with one O-ring at piston and rod and nothing beside them."""
     alone: dict[str, Any] = {"secondary": None, "wiper": None, "guide": None, "count": 1.0}
     other: dict[str, Any] = dict.fromkeys(_OF_ANOTHER)
-    other |= {"type": "o_ring", "compound": ELASTOMER, "contact": (), "back_up": "none"}
+    other |= {"type": o_ring.TYPE.name, "compound": ELASTOMER, "contact": (), "back_up": "none"}
     other |= {"viscous_friction": 0.0}
     seals: dict[str, Any] = {}
     for place in PLACES:

@@ -279,7 +279,7 @@ def refuse(design: Design) -> None:
     for there, what in (
         (bool(design.rod.layup), "a rod of layers"),
         (design.linkage is not None, "a linkage"),
-        (any(one.friction == "film" for one in elements), "a seal on its oil film"),
+        (any(one.friction_law.film for one in elements), "a seal on its oil film"),
     ):
         if there:
             raise Unknown(f"{what} has no envelope yet")

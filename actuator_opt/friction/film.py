@@ -1,0 +1,38 @@
+"""The oil film between rough surfaces."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..models import friction
+from ..numeric import real, where
+from ..seals.contact import SealContact
+from ..seals.seal_type import SealSizes
+from . import coefficient
+from .law import Film, Friction
+
+
+def _friction(seal: SealSizes, contact: SealContact, film: Film | None) -> Friction:
+    """Friction on an oil film; at rest all oil is squeezed out and the face is dry."""
+    own = seal["asperity_friction"]
+    dry = friction.seal_friction(
+        line_load=contact.line_load, diameter=seal["diameter"], friction_coefficient=own
+    )
+    if film is None:
+        return Friction(dry, dry, 0.0)
+    sliding = film.viscous + own * film.load
+    slope = film.viscous_slope + own * film.load_slope
+    moving = real(seal["speed"]) > 0
+    touching = real(seal["squeeze_left"]) > 0
+    return Friction(
+        where(touching, where(moving, sliding, dry), 0.0), dry, where(touching, slope, 0.0)
+    )
+
+
+LAW = replace(
+    coefficient.LAW,
+    name="film",
+    help="the oil film between rough surfaces, which also tells the leakage",
+    compound=("seal_roughness", "asperity_radius", "asperity_density", "asperity_friction"),
+    film=_friction,
+)

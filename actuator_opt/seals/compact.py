@@ -1,0 +1,75 @@
+"""A compact seal: a rubber block between two guides, sealing both ways."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..models import compact_seal, gland
+from ..numeric import Array
+from .contact import SealContact, landed
+from .outline import Shape, box
+from .seal_type import (
+    AXIAL_PLAY,
+    Piece,
+    Room,
+    SealGroove,
+    SealSizes,
+    SealType,
+    no_faults,
+    no_warnings,
+)
+from .sizes import LAND, WIDTH, Field
+
+
+def contact(seal: SealSizes) -> SealContact:
+    """Contact of the face of a squeezed block."""
+    load = compact_seal.line_load(
+        squeeze=seal["squeeze_left"],
+        face_width=seal["land"],
+        youngs_modulus=seal["youngs_modulus"],
+        poissons_ratio=seal["face_poissons_ratio"],
+        pressure=seal["pressure"],
+    )
+    width = compact_seal.contact_width(
+        squeeze=seal["squeeze_left"], face_width=seal["land"], groove_width=seal["groove_width"]
+    )
+    return landed(load, width, seal["pressure"])
+
+
+def groove(sizes: Mapping[str, Array]) -> SealGroove:
+    """A block of its free section."""
+    section, width = sizes["section"], sizes["width"]
+    depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
+    return SealGroove(depth, width, AXIAL_PLAY * width, (Piece(section * width, depth / 2),))
+
+
+def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
+    """A block whose face is the land, flanked where the body is wider."""
+    width, depth, middle = sizes["width"], room.depth, room.middle
+    land = min(sizes["land"], width)
+    a, b = middle - width / 2, middle + width / 2
+    c, d = middle - land / 2, middle + land / 2
+    flank = min((width - land) / 2, depth / 2)
+    body = ((c, 0.0), (d, 0.0), (b, flank), (b, depth), (a, depth), (a, flank))
+    free = box(c, d, depth - sizes["section"], depth)
+    return Shape("elastomer", body), Shape("free", free)
+
+
+TYPE = SealType(
+    name="compact",
+    title="compact seal",
+    help="a rubber body between two guides, sealing both ways",
+    fields=(Field(WIDTH, None), Field(LAND, lambda sizes: 1.0 * sizes["width"])),
+    faults=no_faults,
+    groove=groove,
+    contact=contact,
+    outline=outline,
+    round_ring=False,
+    modulus_by="stated",
+    face=True,
+    o_ring_gland=False,
+    model=compact_seal.line_load,
+    contact_model="block in plane strain",
+    warnings=no_warnings,
+    elements=None,
+)

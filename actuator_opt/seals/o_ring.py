@@ -1,0 +1,134 @@
+"""An O-ring: a round rubber ring alone in its groove."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..models import contact_profile, elastomer, gland, seals
+from ..numeric import Array, minimum, real, where
+from .contact import SealContact, shaped
+from .outline import Shape, round_ring
+from .seal_type import Elements, Piece, Room, SealGroove, SealSizes, SealType, no_faults
+
+if TYPE_CHECKING:
+    from ..finite_elements.result import SealSolution
+
+ON_LIMIT = 1e-6
+"""Squeeze beyond an end of a law's range that an optimum on its limit may have."""
+
+
+def law_inputs(seal: SealSizes) -> dict[str, Array]:
+    """What a law of `models.seals.LAWS` reads of a round ring."""
+    return {
+        "squeeze": seal["squeeze_left"],
+        "section": seal["section"],
+        "youngs_modulus": seal["youngs_modulus"],
+        "pressure": seal["pressure"],
+    }
+
+
+def contact(seal: SealSizes) -> SealContact:
+    """Contact by the law of the ring, no wider than the groove."""
+    law, inputs, pressure = seals.LAWS[seal.law], law_inputs(seal), seal["pressure"]
+    width = gland.limited_width(
+        contact_width=law.contact_width(**inputs), groove_width=seal["groove_width"]
+    )
+    load, peak = law.line_load(**inputs), law.peak_pressure(**inputs)
+    at_rest = contact_profile.o_ring_mean(
+        excess=peak - pressure, sealed_pressure=pressure, outer_pressure=0.0
+    )
+    touching = real(at_rest) > 0
+    narrow = minimum(width, load / where(touching, at_rest, 1.0))  # a soft ring's law is too wide
+    found = shaped(
+        load,
+        narrow,
+        peak,
+        pressure,
+        excess_law=contact_profile.o_ring_excess,
+        profile_law=contact_profile.o_ring_profile,
+    )
+    return replace(found, width=width)
+
+
+def round_piece(section: Array, depth: Array) -> Piece:
+    """A round ring in a groove."""
+    return Piece((0.25 * math.pi) * section * section, depth / 2)
+
+
+def groove(sizes: Mapping[str, Array]) -> SealGroove:
+    """The standard gland of the section."""
+    section = sizes["section"]
+    depth = gland.gland_depth(squeeze=sizes["squeeze"], section=section)
+    width = gland.groove_width(section=section)
+    return SealGroove(depth, section, width, (round_piece(section, depth),))
+
+
+def outline(sizes: Mapping[str, float], room: Room) -> tuple[Shape, ...]:
+    """A round ring from the counterface to the groove's bottom."""
+    return round_ring(room.middle, 0.0, room.depth, sizes["section"])
+
+
+def law_warnings(seal: SealSizes) -> Iterable[str]:
+    """A law outside the hardness, squeeze and pressure it was compared with data on."""
+    law = seals.LAWS[seal.law]
+    by = elastomer.MODULUS_LAWS[seal.hardness_model]
+    hardness = float(np.max(seal["hardness"]))
+    if not by.hardness_range[0] <= hardness <= by.hardness_range[1]:
+        yield (
+            f"{hardness:g} Shore A, the {by.name} law holds from "
+            f"{by.hardness_range[0]:g} to {by.hardness_range[1]:g}"
+        )
+    ratio = float(np.max(np.abs(seal["pressure"] / seal["youngs_modulus"])))
+    low, high = law.squeeze_range
+    left, nominal = (float(np.min(np.real(seal[name]))) for name in ("squeeze_left", "squeeze"))
+    if not (low - ON_LIMIT <= left and nominal <= high + ON_LIMIT):
+        squeeze = nominal if nominal > high else left
+        yield (
+            f"squeeze {100 * squeeze:.3g} % outside the "
+            f"{100 * low:.0f}-{100 * high:.0f} % the {law.name} law was compared with data on"
+        )
+    if ratio > law.pressure_range[1]:
+        yield (
+            f"pressure is {ratio:.1f} times Young's modulus, the {law.name} law "
+            f"was compared with data up to {law.pressure_range[1]:g}"
+        )
+
+
+def _solve(seal: SealSizes, width: float, pressures: Sequence[float]) -> SealSolution:
+    from ..finite_elements.material import MooneyRivlin
+    from ..finite_elements.o_ring import squeezed_ring
+
+    return squeezed_ring(
+        section=seal["section"],
+        squeeze=seal["squeeze"],
+        groove_width=width,
+        rubber=MooneyRivlin.of_modulus(seal["youngs_modulus"]),
+        pressures=pressures,
+        sliding_radius=seal["diameter"] / 2,
+        on_rod=seal.on_rod,
+    )
+
+
+TYPE = SealType(
+    name="o_ring",
+    title="O-ring",
+    help="a rubber ring of round section",
+    fields=(),
+    faults=no_faults,
+    groove=groove,
+    contact=contact,
+    outline=outline,
+    round_ring=True,
+    modulus_by="stated",
+    face=False,
+    o_ring_gland=True,
+    model=None,
+    contact_model="{law} O-ring",
+    warnings=law_warnings,
+    elements=Elements(_solve, "The last step down to the outer side depends on the mesh."),
+)

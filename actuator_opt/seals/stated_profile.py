@@ -1,0 +1,82 @@
+"""Contact pressures that a design states, for any type of seal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from ..models import contact_profile
+from ..numeric import Array, maximum, minimum, real, where
+from .contact import SealContact
+
+
+class Profile(Protocol):
+    """Contact pressures over the outer one [Pa] at positions [m], at one sealed pressure [Pa]."""
+
+    @property
+    def pressure(self) -> float:
+        """Sealed pressure [Pa]."""
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """From the sealed side, from 0 upwards [m]."""
+
+    @property
+    def stresses(self) -> tuple[float, ...]:
+        """Contact pressures there [Pa]."""
+
+
+def contact(tables: Sequence[Profile], pressure: Array) -> SealContact:
+    """Stated profiles, interpolated between the two pressures around, at equal t.
+
+    Parameters
+    ----------
+    tables : in the order of their sealed pressures
+    pressure : sealed [Pa]
+    """
+    known = [table.pressure for table in tables]
+    shares = [_share(pressure, known, i) for i in range(len(tables))]
+    widths = [table.positions[-1] for table in tables]
+    width = sum(share * own for share, own in zip(shares, widths, strict=True))
+    places = [tuple(x / table.positions[-1] for x in table.positions) for table in tables]
+
+    def profile(position: Array) -> Array:
+        parts = [
+            share
+            * contact_profile.table_profile(
+                position=position, positions=place, pressures=table.stresses
+            )
+            for share, place, table in zip(shares, places, tables, strict=True)
+        ]
+        return sum(parts)
+
+    means = [
+        contact_profile.table_mean(positions=place, pressures=table.stresses)
+        for place, table in zip(places, tables, strict=True)
+    ]
+    load = width * sum(share * mean for share, mean in zip(shares, means, strict=True))
+    knots = np.array(sorted({place for row in places for place in row}))
+    at_knots = [
+        np.interp(knots, place, table.stresses) for place, table in zip(places, tables, strict=True)
+    ]
+    mixed = sum(
+        np.asarray(share)[..., None] * row for share, row in zip(shares, at_knots, strict=True)
+    )
+    highest = np.argmax(real(mixed), axis=-1)[..., None]  # straight lines peak at a knot
+    peak = np.take_along_axis(mixed, highest, axis=-1)[..., 0]
+    return SealContact(load, width, peak, profile, peak - pressure, width)
+
+
+def _share(pressure: Array, known: Sequence[float], index: int) -> Array:
+    """Weight of one table at a pressure: 1 at its own, falling to 0 at its neighbours'."""
+    own = known[index]
+    rising: Array = 1.0
+    falling: Array = 1.0
+    if index > 0:
+        rising = (pressure - known[index - 1]) / (own - known[index - 1])
+    if index < len(known) - 1:
+        falling = (known[index + 1] - pressure) / (known[index + 1] - own)
+    within = where(real(pressure) <= own, rising, falling)
+    return minimum(maximum(within, 0.0), 1.0)
