@@ -7,7 +7,7 @@ Schema, faults and tests read the registry, so that nothing else names a kind.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable
 from dataclasses import fields
 from typing import Any, Protocol, TypeVar
 
@@ -38,40 +38,30 @@ class UnknownKind(KeyError):
         return str(self.args[0])
 
 
-class Kinds(Mapping[str, K]):
+class Kinds(dict[str, K]):
     """Kinds by name, in the order given; an unknown name raises `UnknownKind`."""
 
-    def __init__(self, what: str, entries: tuple[K, ...]) -> None:
+    def __init__(self, what: str, entries: Iterable[K]) -> None:
+        super().__init__()
         self.what = what
-        self._entries: dict[str, K] = {}
         for entry in entries:
             _complete(what, entry)
-            if entry.name in self._entries:
+            if entry.name in self:
                 raise ValueError(f'{what} "{entry.name}": there are two of this name')
-            self._entries[entry.name] = entry
+            self[entry.name] = entry
 
-    def __getitem__(self, name: str) -> K:
-        try:
-            return self._entries[name]
-        except KeyError:
-            advice = remedy(str(name), self._entries)
-            raise UnknownKind(f'no {self.what} "{name}"; {advice}') from None
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._entries)
-
-    def __len__(self) -> int:
-        return len(self._entries)
+    def __missing__(self, name: str) -> K:
+        raise UnknownKind(f'no {self.what} "{name}"; {remedy(str(name), self)}')
 
     @property
     def names(self) -> tuple[str, ...]:
         """Every name, in order."""
-        return tuple(self._entries)
+        return tuple(self)
 
     @property
     def help(self) -> str:
         """Every name with its meaning, as the help of a field lists them."""
-        return "; ".join(f"{entry.name}: {entry.help}" for entry in self._entries.values())
+        return "; ".join(f"{entry.name}: {entry.help}" for entry in self.values())
 
 
 def kinds(what: str, *entries: K) -> Kinds[K]:

@@ -231,7 +231,8 @@ def _errors(
 
 def films_asked(design: Design) -> bool:
     """Whether any element asks for a film."""
-    return any(seal.friction_law.film for seal in (design.seals.piston, design.seals.rod))
+    seals = design.seals
+    return bool(seals.piston.friction_law.film or seals.rod.friction_law.film)
 
 
 def _outward(place: Place, push: bool) -> dict[Stroke, bool]:

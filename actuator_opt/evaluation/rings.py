@@ -10,7 +10,6 @@ from ..design.model import Design
 from ..design.seals import SealElement
 from ..models import elastomer, gland
 from ..numeric import Array, absolute, maximum, where
-from ..seals.kinds import SIZES
 from ..seals.seal_type import SealSizes
 from . import oil
 from .allow import Stock
@@ -165,7 +164,7 @@ def _numbers(
     }
     for field in _OWN:
         numbers[field] = v[at + field] if at + field in v else v[compound + field]
-    stated = {size.key: v[at + size.key] for size in SIZES if at + size.key in v}
+    stated = {key: v[at + key] for key in kind.keys if at + key in v}
     numbers |= kind.sizes(stated, section=groove.section, gland_depth=groove.gland_depth)
     if kind.round_ring or f"{compound}youngs_modulus" not in v:
         numbers["hardness"] = v[f"{compound}hardness"]

@@ -7,15 +7,13 @@ keeps its section: squeezed, it is a rectangle between two half circles.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 Polygon: TypeAlias = tuple[tuple[float, float], ...]
 _CORNERS = 24
 
 
-@dataclass(frozen=True, slots=True)
-class Shape:
+class Shape(NamedTuple):
     """A closed polygon of one kind; `free` is the outline before mounting."""
 
     kind: Literal["elastomer", "polymer", "back-up", "free"]

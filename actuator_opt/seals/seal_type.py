@@ -58,8 +58,7 @@ class Piece(NamedTuple):
     depth: Array
 
 
-@dataclass(frozen=True, slots=True)
-class SealGroove:
+class SealGroove(NamedTuple):
     """Groove of a seal without back-up rings.
 
     Parameters
@@ -89,8 +88,7 @@ class Room(NamedTuple):
         return (self.start + self.end) / 2
 
 
-@dataclass(frozen=True, slots=True)
-class Elements:
+class Elements(NamedTuple):
     """Finite elements of a seal type.
 
     Parameters
