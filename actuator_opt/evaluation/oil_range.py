@@ -10,7 +10,8 @@ from ..design.material import Material
 from ..design.material_laws import bulk_modulus_law, viscosity_law
 from ..design.model import FluidSection
 from ..metrics.table import OIL_FED
-from ..models import fluid, tait
+from ..models import fluid
+from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from ..numeric import minimum, real
 from . import oil as oil_laws
 from .allow import Stock
@@ -39,7 +40,7 @@ def warnings(
     law = bulk_modulus_law(section.bulk_modulus_law, oil.numbers)
     chambers = [state.moving_a, state.moving_b, state.holding_a, state.holding_b]
     highest = max(float(np.max(np.real(pressure))) for pressure in chambers)
-    limit = {"linear": fluid.LINEAR_PRESSURE, "tait": tait.TAIT_PRESSURE}.get(law, np.inf)
+    limit = BULK_MODULUS_LAWS[law].largest_pressure
     if highest > limit:
         text = (
             f"bulk modulus: {highest / 1e5:.0f} bar is beyond the {limit / 1e5:.0f} bar to which "
@@ -47,7 +48,7 @@ def warnings(
         )
         yield from ((metric, text) for metric in OIL_FED)
     law = viscosity_law(section.viscosity_pressure, oil.numbers)
-    limit = {"barus": fluid.BARUS_PRESSURE, "roelands": fluid.ROELANDS_PRESSURE}.get(law, np.inf)
+    limit = VISCOSITY_LAWS[law].largest_pressure
     if highest > limit:
         yield (
             "oil_viscosity",

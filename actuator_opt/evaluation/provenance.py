@@ -72,5 +72,5 @@ def model_of(
         if place is not None and fnmatchcase(place, pattern):
             name = other
     if name == CRITERION:
-        return describe(cast(Callable[..., object], CRITERIA[criterion]))
+        return describe(cast(Callable[..., object], CRITERIA[criterion].modes))
     return None if name is None else describe(function_of(name))
