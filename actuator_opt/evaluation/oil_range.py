@@ -9,28 +9,13 @@ import numpy as np
 from ..design.material import Material
 from ..design.material_laws import bulk_modulus_law, viscosity_law
 from ..design.model import FluidSection
+from ..metrics.table import OIL_FED
 from ..models import fluid, tait
 from ..numeric import minimum, real
 from . import oil as oil_laws
 from .allow import Stock
 from .rows import Computed
 from .state import State
-
-PRESSURE_FED = (
-    "stiffness_oil",
-    "stiffness_min",
-    "natural_frequency",
-    "damping_ratio",
-    "dynamic_stiffness",
-    "dynamic_phase",
-    "ultimate_gain",
-    "gain_margin",
-    "phase_margin",
-    "bandwidth",
-    "line_resonance",
-    "line_hammer",
-)
-"""Metrics that inherit the error of the bulk modulus."""
 
 
 def compute(section: FluidSection, stock: Stock, state: State, out: Computed) -> None:
@@ -60,7 +45,7 @@ def warnings(
             f"bulk modulus: {highest / 1e5:.0f} bar is beyond the {limit / 1e5:.0f} bar to which "
             f"the {law} law of the oil is known"
         )
-        yield from ((metric, text) for metric in PRESSURE_FED)
+        yield from ((metric, text) for metric in OIL_FED)
     law = viscosity_law(section.viscosity_pressure, oil.numbers)
     limit = {"barus": fluid.BARUS_PRESSURE, "roelands": fluid.ROELANDS_PRESSURE}.get(law, np.inf)
     if highest > limit:

@@ -10,7 +10,8 @@ from typing import Any, Literal, TypeAlias
 from ..design import choice_list
 from ..design.model import Design
 from ..evaluation.result import Evaluation
-from ..quantities import INPUTS, of_metric
+from ..metrics import of_metric
+from ..quantities import INPUTS
 from ..tables import aligned
 from . import price_words
 from .robustness import Robust
