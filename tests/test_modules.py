@@ -90,7 +90,7 @@ def local_names(part):
 
 
 def models_used(tree, name, package):
-    """Model functions that a module calls, by ``module.function``; those of its own too."""
+    """Model functions that a module calls, or the table of metrics names: ``module.function``."""
     home = name.removeprefix("actuator_opt.models.")
     models, direct = {}, {}
     if home != name:
@@ -108,6 +108,8 @@ def models_used(tree, name, package):
                 yield f"{models.get(node.value.id)}.{node.attr}"
             elif isinstance(node, ast.Name) and node.id in direct and node.id not in hidden:
                 yield direct[node.id]
+            elif isinstance(node, ast.Constant) and name.startswith("actuator_opt.metrics"):
+                yield str(node.value)
 
 
 def test_every_model_is_used_or_listed_for_scripts():
