@@ -27,16 +27,6 @@ class ControllerGains(NamedTuple):
     derivative_time: Array
     """T_d [s]; 0 without a derivative part."""
 
-    @property
-    def integral_gain(self) -> Array:
-        """K/T_i, per second."""
-        return self.proportional_gain / self.integral_time
-
-    @property
-    def derivative_gain(self) -> Array:
-        """K T_d, times second."""
-        return self.proportional_gain * self.derivative_time
-
 
 def ziegler_nichols(*, law: str, ultimate_gain: Array, ultimate_period: Array) -> ControllerGains:
     """Ziegler-Nichols rule from the ultimate point: quick, for a plant that is well damped.
