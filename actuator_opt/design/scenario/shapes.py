@@ -50,7 +50,7 @@ class Clock(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class SignalShape:
     """A shape of a part of a signal.
 
     Attributes
@@ -178,7 +178,7 @@ def _record_after(part: SignalPart, moment: float, records: Records) -> bool:
 
 SHAPES = kinds(
     "shape",
-    Shape(
+    SignalShape(
         "constant",
         "value all the time",
         ("value",),
@@ -192,7 +192,7 @@ SHAPES = kinds(
         changes_after=lambda part, moment, records: False,
         words=lambda part, value, seconds: value,
     ),
-    Shape(
+    SignalShape(
         "step",
         "value from start on",
         ("value",),
@@ -206,7 +206,7 @@ SHAPES = kinds(
         changes_after=_turns_at("start"),
         words=lambda part, value, seconds: f"step of {value} at {seconds(part.start)} s",
     ),
-    Shape(
+    SignalShape(
         "ramp",
         "from nothing at start to value at end",
         ("value", "end"),
@@ -222,7 +222,7 @@ SHAPES = kinds(
             f"ramp of {value} from {seconds(part.start)} to {seconds(_end(part))} s"
         ),
     ),
-    Shape(
+    SignalShape(
         "pulse",
         "value from start to end",
         ("value", "end"),
@@ -238,7 +238,7 @@ SHAPES = kinds(
             f"{value} from {seconds(part.start)} to {seconds(_end(part))} s"
         ),
     ),
-    Shape(
+    SignalShape(
         "sine",
         "amplitude value at frequency, from start to end",
         ("value", "frequency"),
@@ -254,7 +254,7 @@ SHAPES = kinds(
             f"sine of {value} at {seconds(part.frequency or 0.0)} Hz"
         ),
     ),
-    Shape(
+    SignalShape(
         "record",
         "a column of a CSV file, linear between its samples",
         ("file", "column"),
