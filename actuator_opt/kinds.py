@@ -7,8 +7,9 @@ Schema, faults and tests read the registry, so that nothing else names a kind.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
+from types import MappingProxyType
 from typing import Any, Protocol, TypeVar
 
 from .suggest import remedy
@@ -29,6 +30,7 @@ class Kind(Protocol):
 
 
 K = TypeVar("K", bound=Kind)
+V = TypeVar("V")
 
 
 class UnknownKind(KeyError):
@@ -93,6 +95,27 @@ def kinds(what: str, *entries: K) -> Kinds[K]:
     actuator_opt.kinds.UnknownKind: no joint "bnd"; did you mean "bond"?
     """
     return Kinds(what, entries)
+
+
+def per_kind(registry: Mapping[str, Any], functions: Mapping[str, V]) -> Mapping[str, V]:
+    """What a higher layer adds to every kind of a registry: one entry each, no other.
+
+    Raises
+    ------
+    ValueError : a kind without an entry, or an entry without a kind
+
+    Examples
+    --------
+    >>> per_kind({"p": 1, "pi": 2}, {"p": abs})
+    Traceback (most recent call last):
+    ValueError: pi: no entry
+    """
+    lacking = [name for name in registry if name not in functions]
+    unknown = [name for name in functions if name not in registry]
+    if lacking or unknown:
+        words = [f"{name}: no entry" for name in lacking] + [f"{name}: no kind" for name in unknown]
+        raise ValueError("; ".join(words))
+    return MappingProxyType(dict(functions))
 
 
 def _complete(what: str, entry: Any) -> None:
