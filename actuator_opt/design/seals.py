@@ -89,7 +89,7 @@ class SealElement(Section):
     ] = 0.0
 
     @property
-    def kind(self) -> SealType:
+    def seal_type(self) -> SealType:
         """Its seal type."""
         return TYPES[self.type]
 

@@ -56,7 +56,7 @@ def contacts(ring: Ring, supply: float) -> tuple[Contact, ...]:
     ActuatorError
         the extra is missing, the type has no elements, or they find no balance
     """
-    elements = ring.element.kind.elements
+    elements = ring.element.seal_type.elements
     if elements is None:
         known = " or ".join(article(one.name) for one in TYPES.values() if one.elements)
         raise ActuatorError(

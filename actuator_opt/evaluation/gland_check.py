@@ -47,10 +47,10 @@ def metrics(
     )
     least, most = minimum(cold, hot), maximum(cold, hot)
     found = {"extrusion_factor": _extrusion(v, stock, ring, clearance + aside + growth)}
-    if ring.element.kind.round_ring:  # limits of squeeze are of round rings
+    if ring.element.seal_type.round_ring:  # limits of squeeze are of round rings
         found["seal_squeeze"] = squeezes(ring, growth=growth, aside=0.0, ratio=least)[0]
         found["seal_squeeze_max"] = squeezes(ring, growth=0.0, aside=0.0, ratio=most)[1]
-    if ring.element.kind.o_ring_gland:
+    if ring.element.seal_type.o_ring_gland:
         found["seal_fill"] = _fill(ring) * most
         found["seal_stretch"] = ring["stretch"]
         found["seal_section"] = ring["section"]

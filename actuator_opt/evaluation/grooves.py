@@ -38,8 +38,8 @@ class Groove:
 
 
 def _element(v: Values, place: str, path: str, element: SealElement) -> Groove:
-    sizes = {key: v[path + key] for key in ("section", "squeeze", *element.kind.needed)}
-    own = element.kind.groove(sizes)
+    sizes = {key: v[path + key] for key in ("section", "squeeze", *element.seal_type.needed)}
+    own = element.seal_type.groove(sizes)
     default = own.width
     pieces = [Piece(element.compound, piece.area, piece.depth) for piece in own.pieces]
     if element.back_ups:

@@ -143,7 +143,7 @@ def _numbers(
     v: Values, element: SealElement, groove: Groove, diameter: Array, temperature: Array
 ) -> dict[str, Array]:
     """What the contact of an element is computed from."""
-    at, compound, kind = groove.path, f"materials.{element.compound}.", element.kind
+    at, compound, kind = groove.path, f"materials.{element.compound}.", element.seal_type
     law = element.friction_law
     face = face_modulus(v, element.compound, element.hardness_model, temperature)
     squeezed = face

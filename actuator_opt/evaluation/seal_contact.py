@@ -14,7 +14,7 @@ def seal_contact(ring: Ring) -> SealContact:
     """Contact of a ring at its `squeeze_left` and `pressure`."""
     if ring.element.contact:
         return stated_profile.contact(ring.element.contact, ring["pressure"])
-    return ring.element.kind.contact(ring.sizes)
+    return ring.element.seal_type.contact(ring.sizes)
 
 
 def static_profile(ring: Ring, nodes: int) -> tuple[Array, Array]:

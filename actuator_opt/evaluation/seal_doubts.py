@@ -47,7 +47,7 @@ def _contact(subject: Subject, ring: Ring) -> Iterable[tuple[str, str]]:
     """Laws out of their range, a compound the fluid attacks, a contact that is lost."""
     liquid, compound = subject.design.fluid.material, ring.element.compound
     if not ring.element.contact:
-        for text in ring.element.kind.warnings(ring.sizes):
+        for text in ring.element.seal_type.warnings(ring.sizes):
             yield "friction_running", f"{ring.label}: {text}"
     else:
         yield (
@@ -155,7 +155,7 @@ def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
             f"{ring.label}, stated profiles up to {reach:.0f} bar",
             doubted=doubted,
         )
-    if element.kind.model is None:
+    if element.seal_type.model is None:
         law = seals.LAWS[element.law]
         low, high = law.squeeze_range
         return ModelUse(
@@ -166,7 +166,7 @@ def _contact_model(ring: Ring, *, doubted: bool) -> ModelUse:
             at,
             not doubted,
         )
-    return _use(element.kind.model, f"{ring.label}, {at}", doubted=doubted)
+    return _use(element.seal_type.model, f"{ring.label}, {at}", doubted=doubted)
 
 
 def _use(function: Callable[..., object], used_at: str, *, doubted: bool) -> ModelUse:

@@ -52,7 +52,7 @@ def glands(rings: Iterable[Ring]) -> Check:
 
 def _remarks(ring: Ring) -> Iterator[str]:
     """What of one groove lies outside its standard."""
-    if ring.element.kind.o_ring_gland:
+    if ring.element.seal_type.o_ring_gland:
         yield from _o_ring(ring)
     elif any(housings(ring.element.type, place) for place in PLACES):
         yield from _housing(ring)

@@ -14,7 +14,7 @@ rod of radius 3 W the dry force is 16 % greater, in a bore of radius 7 W it is 9
 on both are within 4 %. At p = 3 E force and width of the law are still within 5 % and 8 %.
 
 A new law is three functions of (squeeze, section, youngs_modulus, pressure) and one entry in
-`LAWS`; the registry-wide tests then run on it.
+`LAWS`; a design's words, help and schema read it, and the registry-wide tests run on it.
 """
 
 from __future__ import annotations

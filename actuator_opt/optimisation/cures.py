@@ -352,7 +352,7 @@ def _vocabulary(
             for word, count in BACK_UPS.items():
                 if count > seal.back_ups and (beside := _rings(seal, here, count)) is not None:
                     yield f"{here}.back_up", word, beside
-            if seal.kind.o_ring_gland:
+            if seal.seal_type.o_ring_gland:
                 for compound in SUBSTITUTES["seal"]:
                     yield f"{here}.compound", compound, {}
     if design.retention is not None and matters("retention."):

@@ -72,7 +72,7 @@ class Gland:
 
 def gland_sizes(ring: Ring) -> tuple[float, float]:
     """Length that the elements have in the groove, and its depth from the counterface [m]."""
-    return room(ring), float(ring["gland_depth"])
+    return room(ring), float(ring.element.seal_type.groove(ring.numbers).depth)
 
 
 def stress_scale(study: SealStudy) -> tuple[int, int]:
@@ -262,5 +262,5 @@ def contact_note(study: SealStudy) -> str:
         "Pressures above the outer side's; both without the bore's growth. Between the points of"
         " the elements the line is straight, and so are contacts taken between two pressures."
     )
-    elements = study.out.rings[0].ring.element.kind.elements
+    elements = study.out.rings[0].ring.element.seal_type.elements
     return said if elements is None else f"{said} {elements.note}"

@@ -164,7 +164,7 @@ def law_of(one: RingPoint) -> str:
     element = one.ring.element
     if element.contact:
         return "stated profiles"
-    return element.kind.contact_model.format(law=element.law.replace("_", " "))
+    return element.seal_type.contact_model.format(law=element.law.replace("_", " "))
 
 
 def modulus_text(one: RingPoint) -> str:

@@ -21,8 +21,8 @@ def element_shapes(element: SealElement, *, depth: float, width: float) -> tuple
     if element.back_up == "both":
         backs += (Shape("back-up", box(0.0, back, 0.0, depth)),)
     own = {"section": element.section, "gland_depth": depth}
-    own |= element.kind.sizes(element.stated_sizes(), **own)
-    return (*backs, *element.kind.outline(own, Room(start, end, depth)))
+    own |= element.seal_type.sizes(element.stated_sizes(), **own)
+    return (*backs, *element.seal_type.outline(own, Room(start, end, depth)))
 
 
 def wiper_shapes(wiper: Wiper, *, depth: float, width: float) -> tuple[Shape, ...]:

@@ -140,8 +140,12 @@ class Bench:
         """Contact law of the rings that hold the pressure, in words."""
         return "; ".join(
             f"{ring.label}: "
-            + ("stated profile" if ring.element.contact else ring.element.kind.title)
-            + (f", {ring.element.law.replace('_', ' ')}" if ring.element.kind.round_ring else "")
+            + ("stated profile" if ring.element.contact else ring.element.seal_type.title)
+            + (
+                f", {ring.element.law.replace('_', ' ')}"
+                if ring.element.seal_type.round_ring
+                else ""
+            )
             for ring in self.rings
             if _leads(ring)
         )

@@ -65,7 +65,7 @@ _NAMES = {u_cup.TYPE.name: "Yx", compact.TYPE.name: "compact (DAS)"}
 
 def kind_name(ring: Ring) -> str:
     """What a ring is called here."""
-    return _NAMES.get(ring.element.type, ring.element.kind.title)
+    return _NAMES.get(ring.element.type, ring.element.seal_type.title)
 
 
 def single(name: str, sealing: Sealing) -> Kind:

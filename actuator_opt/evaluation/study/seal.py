@@ -230,7 +230,9 @@ def _bounds(solved: Solved) -> tuple[float, float]:
 
 def _face_factor(ring: Ring) -> tuple[float, float, float]:
     """Lowest, assumed and highest modulus of the sliding face, over the assumed one."""
-    if ring.element.kind.modulus_by == "hardness":  # the face is of plastic, its modulus stated
+    if (
+        ring.element.seal_type.modulus_by == "hardness"
+    ):  # the face is of plastic, its modulus stated
         return 1 / STATED_FACTOR, 1.0, STATED_FACTOR
     low, value, high = modulus_range(ring)
     return low / value, 1.0, high / value
