@@ -48,7 +48,7 @@ class Film(Protocol):
         """Derivative of the force by the speed [N s/m]."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class FrictionLaw:
     """A friction law; every piece must be given.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from ..numeric import Array
@@ -102,7 +103,7 @@ class Elements(NamedTuple):
     note: str
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class SealType:
     """A type of seal; every piece must be given.
 
@@ -146,12 +147,12 @@ class SealType:
     warnings: Callable[[SealSizes], Iterable[str]]
     elements: Elements | None
 
-    @property
+    @cached_property
     def keys(self) -> tuple[str, ...]:
         """Keys of its sizes."""
         return tuple(field.key for field in self.fields)
 
-    @property
+    @cached_property
     def needed(self) -> tuple[str, ...]:
         """Keys of the sizes that a design must state."""
         return tuple(field.key for field in self.fields if field.default is None)
