@@ -290,8 +290,10 @@ def _hash(content: bytes) -> str:
 
 # --- what is left out --------------------------------------------------------------------------
 
+RUN_ID = "20000101-000000-000000"
+"""Instead of the id of a run; its SVG seeds the names of its parts with the id."""
 _RULES = (
-    (re.compile(r"(?<!\d)20\d{6}-\d{6}-[0-9a-f]{6}(?![0-9a-f])"), "20000101-000000-000000"),
+    (re.compile(r"(?<!\d)20\d{6}-\d{6}-[0-9a-f]{6}(?![0-9a-f])"), RUN_ID),
     (re.compile(r"(?<!\d)20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ"), "2000-01-01T00:00:00Z"),
     (re.compile(r"^versions   .*(?:\n {11}.*)*", re.MULTILINE), "versions   ..."),
     (re.compile(r"\(\d[\d.]* (?:s|min|h)(?:, [^)]*?/s)?\)"), "(... s)"),
@@ -473,7 +475,7 @@ _DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', 
 def _file_text(path: Path, name: str, neat: Callable[[str], str], book: _Book) -> str:
     """A written file: its hash, and what can be read in it."""
     name, content = neat(name), path.read_bytes()
-    if path.suffix in (".run", ".db"):
+    if path.suffix in (".run", ".db") or (path.suffix == ".svg" and RUN_ID in name):
         return f"--- file {name}"
     text = ""
     if path.suffix in (".csv", ".yaml", ".html", ".svg"):
