@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..numeric import STEP
-from .problem import Problem, Space, Vector
+from .problem import BoxProblem, Space, Vector
 
 CHUNK = 4096
 """Most columns in one call of the model."""
@@ -62,7 +62,7 @@ class Evaluator:
 
     def __init__(
         self,
-        problem: Problem,
+        problem: BoxProblem,
         *,
         max_evaluations: int | None = None,
         max_seconds: float | None = None,

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import kkt, movement, resolving
+from . import kkt, movement
 from .evaluator import Evaluator, Point
 from .outcome import Solution
-from .parameters import Responses, responses, with_bounds
+from .parameters import Responses, perturbed, responses, with_bounds
 from .problem import ParametricProblem, Vector
+from .resolve import ladder
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,15 +86,8 @@ def prices(
         given = with_bounds(given, evaluator, found.multipliers[m:])
     moves, shifts = movement.movement(found, given)
     active = np.flatnonzero(found.margins <= kkt.ACTIVE)
-    ends = resolving.ends(
-        parametric,
-        evaluator,
-        point,
-        given,
-        moves,
-        change if resolve else 0.0,
-        known=_others(solution),
-    )
+    solved = ladder.SolvedProblem(parametric, evaluator, point, _others(evaluator, solution))
+    ends = _ends(solved, given, moves, change if resolve else 0.0)
     return _rows(
         evaluator,
         point,
@@ -107,14 +101,56 @@ def prices(
     )
 
 
-def _others(solution: Solution) -> list[Vector]:
+def _others(evaluator: Evaluator, solution: Solution) -> list[Point]:
     """Local optima of the search besides the one it chose."""
     good = [
-        one
+        one.x
         for one in solution.optima
-        if one.violation <= resolving.FEASIBLE and one.residual <= resolving.RESIDUAL
+        if one.violation <= ladder.FEASIBLE
+        and one.residual <= ladder.RESIDUAL
+        and not np.array_equal(one.x, solution.x)
     ]
-    return [one.x for one in good if not np.array_equal(one.x, solution.x)]
+    return [evaluator.point(evaluator.space.to_z(x)) for x in good]
+
+
+def _ends(
+    solved: ladder.SolvedProblem, given: Responses, moves: Vector, change: float
+) -> list[tuple[float | None, float | None]]:
+    """Re-optimised objectives at +change and -change of every parameter; None where infeasible.
+
+    Parameters
+    ----------
+    solved : the unchanged problem
+    given : the parameters, bounds of variables included
+    moves : derivative of the optimum by them (nf, q)
+    change : relative; 0 re-solves nothing
+    """
+    if change == 0:
+        return [(None, None)] * len(given.values)
+    parametric, point = solved.parametric, solved.optimum
+    objectives: dict[tuple[int, int], float | None] = {}
+    tasks: dict[tuple[int, int], ladder.Task] = {}
+    for k, value in enumerate(given.values.tolist()):
+        for sign in (1, -1):
+            if value == 0 or not given.matters(k):
+                continue
+            step = sign * change * value
+            problem = perturbed(parametric, given.names[k], k, value + step)
+            objectives[k, sign] = None
+            if problem is None:
+                continue
+            parameters = None
+            if k < len(parametric.parameters):
+                parameters = parametric.parameters.copy()
+                parameters[k] += step
+            tasks[k, sign] = ladder.Task(problem, point.z + moves[:, k] * step, parameters)
+    for pair, optimum in zip(tasks, ladder.resolve(solved, list(tasks.values())), strict=True):
+        objectives[pair] = None if optimum is None else optimum.objective
+    here = point.objective
+    return [
+        (objectives.get((k, 1), here), objectives.get((k, -1), here))
+        for k in range(len(given.values))
+    ]
 
 
 def _rows(

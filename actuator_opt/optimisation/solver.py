@@ -18,16 +18,16 @@ from . import kkt, nlopt_wrapper
 from .descents import FEASIBLE, LOCAL_EVALUATIONS, RESIDUAL, Descents, Found
 from .evaluator import Evaluator, LimitReached, Point
 from .outcome import LocalOptimum, Outcome, Solution
-from .problem import Problem, Vector
+from .problem import BoxProblem, Vector
+from .resolve.parallel_descents import precompute
 from .sampling import Sweep, distinct, sweep
-from .side_by_side import foresee
 
 LAGRANGIAN_EVALUATIONS = 1000
 """Most of one run of the augmented Lagrangian: the shipped designs take 300 to 850."""
 
 
 def solve(
-    problem: Problem,
+    problem: BoxProblem,
     *,
     algorithm: str = "auto",
     starts: int = 6,
@@ -106,7 +106,7 @@ def _default_path(search: Descents, points: list[Point]) -> None:
     missed limit is missed least, the others look for a feasible point first.
     """
     failed = []
-    foresee(search.evaluator, points, seed=search.seed, most=LOCAL_EVALUATIONS)
+    precompute(search.evaluator, points, seed=search.seed, most=LOCAL_EVALUATIONS)
     for number, point in enumerate(points):
         tell("searching for a design", number / len(points))
         if search.least and not search.feasible:
