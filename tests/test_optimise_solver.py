@@ -69,7 +69,7 @@ def test_runs_side_by_side_are_the_runs_alone(name, monkeypatch):
     found, calls = {}, {"together": 0, "alone": 0}
     for way in calls:
         if way == "alone":
-            monkeypatch.setattr(solver, "foresee", lambda *_, **__: None)
+            monkeypatch.setattr(solver, "precompute", lambda *_, **__: None)
         problem = getattr(problems, name)()
 
         def counted(x, way=way, evaluate=problem.evaluate):
