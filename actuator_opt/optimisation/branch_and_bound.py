@@ -26,6 +26,7 @@ from .problem import BoxProblem, ParametricProblem, Values, Vector
 from .resolve.boxes import EXACT, ROUGH, BoxTask, Criteria, Nearest, resolve_boxes
 from .resolve.changed import ChangedProblems, applicable
 from .resolve.hessians import ScaledHessian, hessian_at
+from .resolve.steps import valley_at
 
 MOST_SOLVES = 400
 """Most re-optimisations of one search."""
@@ -273,7 +274,7 @@ class _Run:
         values = np.stack([self.values(assignment) for assignment in chosen], axis=1)
         starts = np.repeat(point.z[:, None], len(chosen), axis=1)
         changed = ChangedProblems(parametric, evaluator, values)
-        known = changed.near_optimum(point, starts)
+        known = changed.near_optimum(valley_at(evaluator, point), starts)
         left = [k for k, optimum in enumerate(known) if optimum is None]
         near = changed.chosen(left).restore(point.z)
         for assignment, optimum in zip(chosen, known, strict=True):

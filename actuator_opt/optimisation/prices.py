@@ -18,10 +18,11 @@ from .outcome import Solution
 from .parameters import Responses, perturbed, responses, with_bounds
 from .problem import ParametricProblem, Vector
 from .resolve import ladder
+from .resolve.steps import valley_at
 
 
 @dataclass(frozen=True, slots=True)
-class Price:
+class ParameterPrice:
     """The price of one parameter at an optimum; values in the units of the model.
 
     Parameters
@@ -62,7 +63,7 @@ def prices(
     change: float = 0.1,
     resolve: bool = True,
     bounds: bool = True,
-) -> tuple[Price, ...]:
+) -> tuple[ParameterPrice, ...]:
     """Price every parameter, and every bound that costs, at the optimum.
 
     Parameters
@@ -86,8 +87,13 @@ def prices(
         given = with_bounds(given, evaluator, found.multipliers[m:])
     moves, shifts = movement.movement(found, given)
     active = np.flatnonzero(found.margins <= kkt.ACTIVE)
-    solved = ladder.SolvedProblem(parametric, evaluator, point, _others(evaluator, solution))
-    ends = _ends(solved, given, moves, change if resolve else 0.0)
+    ends: list[tuple[float | None, float | None]] = [(None, None)] * len(given.values)
+    if resolve and change:
+        valleys = [
+            valley_at(evaluator, one) for one in (point, *ladder.other_optima(evaluator, solution))
+        ]
+        solved = ladder.SolvedProblem(parametric, evaluator, valleys)
+        ends = _ends(solved, given, moves, change)
     return _rows(
         evaluator,
         point,
@@ -101,18 +107,6 @@ def prices(
     )
 
 
-def _others(evaluator: Evaluator, solution: Solution) -> list[Point]:
-    """Local optima of the search besides the one it chose."""
-    good = [
-        one.x
-        for one in solution.optima
-        if one.violation <= ladder.FEASIBLE
-        and one.residual <= ladder.RESIDUAL
-        and not np.array_equal(one.x, solution.x)
-    ]
-    return [evaluator.point(evaluator.space.to_z(x)) for x in good]
-
-
 def _ends(
     solved: ladder.SolvedProblem, given: Responses, moves: Vector, change: float
 ) -> list[tuple[float | None, float | None]]:
@@ -123,11 +117,9 @@ def _ends(
     solved : the unchanged problem
     given : the parameters, bounds of variables included
     moves : derivative of the optimum by them (nf, q)
-    change : relative; 0 re-solves nothing
+    change : relative
     """
-    if change == 0:
-        return [(None, None)] * len(given.values)
-    parametric, point = solved.parametric, solved.optimum
+    parametric, point = solved.parametric, solved.valleys[0].point
     objectives: dict[tuple[int, int], float | None] = {}
     tasks: dict[tuple[int, int], ladder.Task] = {}
     for k, value in enumerate(given.values.tolist()):
@@ -164,7 +156,7 @@ def _rows(
     moves: Vector,
     ends: list[tuple[float | None, float | None]],
     reach: list[tuple[float | None, str | None]],
-) -> tuple[Price, ...]:
+) -> tuple[ParameterPrice, ...]:
     slope = evaluator.space.slope(point.x[:, None])
     moved = np.zeros((len(point.x), len(price)))
     moved[evaluator.space.free] = slope * moves
@@ -176,7 +168,7 @@ def _rows(
         first, second = (above, below) if step >= 0 else (below, above)
         relative = float(price[k]) * value / objective if objective and value else None
         rows.append(
-            Price(
+            ParameterPrice(
                 parameter=name,
                 value=value,
                 price=float(price[k]),

@@ -110,6 +110,29 @@ def optimise(
     return _result(subject, actuator, after, choices, seed, began)
 
 
+def result_of(
+    subject: Subject,
+    actuator: ActuatorProblem,
+    solution: Solution,
+    *,
+    prices: bool,
+    seed: int,
+    began: float,
+) -> Optimisation:
+    """The optimisation of a subject whose solution is known, with or without its prices.
+
+    Parameters
+    ----------
+    subject, actuator, solution : the prepared design, its problem and the solution
+    prices : as of `optimise`
+    seed : of the search
+    began : time of `time.perf_counter` when it began
+    """
+    after = _After(solution)
+    _follow(actuator, after, prices=prices, certify=False, explain=False)
+    return _result(subject, actuator, after, None, seed, began)
+
+
 @dataclass
 class _After:
     """The solution and what follows from it."""

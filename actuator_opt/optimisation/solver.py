@@ -9,7 +9,7 @@ optimality are then checked here, whatever a solver claims.
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -37,6 +37,7 @@ def solve(
     max_seconds: float | None = None,
     more_starts: Sequence[Vector] = (),
     keep_interrupted: bool = False,
+    stop: Callable[[], bool] | None = None,
 ) -> Solution:
     """Find the best point of a problem.
 
@@ -50,6 +51,7 @@ def solve(
     max_evaluations, max_seconds : limits of the whole run; the best point so far is kept
     more_starts : further starts (n,)
     keep_interrupted : whether Ctrl-C ends the search with the best point so far, as a limit does
+    stop : asked before every evaluation of a descent; ends the search as a limit does
 
     Raises
     ------
@@ -57,7 +59,9 @@ def solve(
         Where the algorithm does not exist or does not suit the problem.
     """
     chosen = "auto" if algorithm == "auto" else nlopt_wrapper.suit(algorithm, problem)
-    evaluator = Evaluator(problem, max_evaluations=max_evaluations, max_seconds=max_seconds)
+    evaluator = Evaluator(
+        problem, max_evaluations=max_evaluations, max_seconds=max_seconds, stop=stop
+    )
     search = Descents(evaluator, seed)
     if evaluator.space.size == 0:
         return _fixed(search)

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...numeric import STEP
-from .. import newton
 from ..evaluator import Evaluator, Point
 from ..problem import ParametricProblem, Vector
 from .batch import Result, Steps, run_batch
@@ -17,8 +16,8 @@ from .steps import (
     LONGEST,
     MET,
     Descent,
+    Valley,
     full_steps,
-    margin_price,
     restoring_steps,
     trusted_steps,
 )
@@ -52,9 +51,10 @@ class ChangedProblems:
     def points(self, z: Vector, numbers: Sequence[int] | None = None) -> list[Point]:
         """Points with gradients at z (nf, k), each of the problem with this number (default: all).
 
-        One complex evaluation serves them all.
+        One complex evaluation serves them all. Raises `LimitReached` at the evaluator's limits.
         """
         evaluator, own = self.evaluator, self.parameters
+        evaluator.check_limits()
         own = own if numbers is None else own[:, list(numbers)]
         space, (nf, count) = evaluator.space, z.shape
         x = space.to_x(z)
@@ -110,27 +110,22 @@ class ChangedProblems:
         problem = self.parametric.with_columns(np.tile(self.parameters, size))
         return Evaluator.screen(problem.rows(np.repeat(x, count, axis=1))).reshape(-1, size, count)
 
-    def near_optimum(self, point: Point, starts: Vector) -> list[Point | None]:
+    def near_optimum(self, valley: Valley, starts: Vector) -> list[Point | None]:
         """Optima by full steps with the Hessian of the unchanged optimum.
 
         None where these do not converge, or where the unchanged optimum itself is better.
 
         Parameters
         ----------
-        point : the optimum of the solved problem
+        valley : the optimum of the solved problem
         starts : coordinates (nf, K)
         """
         if starts.shape[1] == 0:
             return []
-        evaluator = self.evaluator
-        state = newton.state_at(evaluator, point)
-        hessian, rows = newton.convex_hessian(evaluator, state), evaluator.constraint_count
-        descents = [
-            Descent(hessian, state.scale, rows, 1.0, radius=newton.RADIUS) for _ in starts.T
-        ]
-        optima = self.step_fully(descents, starts)
-        margins = self.margins_at([point])[:, 0]
-        unmoved = np.where(evaluator.violations(margins, "worst") <= FEASIBLE, margins[0], np.inf)
+        optima = self.step_fully([valley.full() for _ in starts.T], starts)
+        margins = self.margins_at([valley.point])[:, 0]
+        met = self.evaluator.violations(margins, "worst") <= FEASIBLE
+        unmoved = np.where(met, margins[0], np.inf)
         return [
             None  # else another valley
             if optimum is not None and least < optimum.objective - 1e-9 * abs(optimum.objective)
@@ -139,22 +134,16 @@ class ChangedProblems:
         ]
 
     def descend_from(
-        self, point: Point, starts: Vector
+        self, valley: Valley, starts: Vector
     ) -> tuple[list[Point | None], list[Point | None]]:
         """Optima by descents, and feasible designs on the way to those not reached.
 
         Parameters
         ----------
-        point : a local optimum of the solved problem, whose Hessian and prices begin each descent
+        valley : a local optimum of the solved problem
         starts : feasible coordinates (nf, K)
         """
-        if starts.shape[1] == 0:
-            return [], []
-        evaluator = self.evaluator
-        state = newton.state_at(evaluator, point)
-        hessian, rows = newton.convex_hessian(evaluator, state), evaluator.constraint_count
-        price = margin_price(state.multipliers[: len(state.near.constraint)] / state.scale)
-        descents = [Descent(hessian, state.scale, rows, price) for _ in starts.T]
+        descents = [valley.trusted() for _ in starts.T]
         optima = self.descend(descents, starts)
         stopped = [
             descent.point

@@ -24,6 +24,7 @@ from ..problem import BoxProblem, ParametricProblem, Vector
 from ..solver import solve
 from . import steps
 from .changed import ChangedProblems, applicable
+from .steps import Valley
 
 FEASIBLE = 1e-6
 """Worst missed margin that still counts as met."""
@@ -53,14 +54,12 @@ class SolvedProblem:
     ----------
     parametric : the problem with its parameters
     evaluator : of it, with checked gradients
-    optimum : its best point known
-    others : its other local optima
+    valleys : its local optima, the best first
     """
 
     parametric: ParametricProblem
     evaluator: Evaluator
-    optimum: Point
-    others: Sequence[Point] = ()
+    valleys: Sequence[Valley]
 
 
 @dataclass(frozen=True)
@@ -92,7 +91,7 @@ def resolve(solved: SolvedProblem, tasks: Sequence[Task]) -> list[Point | None]:
         starts = np.stack([tasks[k].guess for k in together], axis=1)
         columns = [p for k in together if (p := tasks[k].parameters) is not None]
         changed = ChangedProblems(solved.parametric, solved.evaluator, np.stack(columns, axis=1))
-        found = resolve_batch(changed, [solved.optimum, *solved.others], starts)
+        found = resolve_batch(changed, solved.valleys, starts)
         for k, optimum, feasible in zip(together, *found, strict=True):
             optima[k], inside[k] = optimum, feasible
         lost = [k for k in together if optima[k] is None and inside[k] is None]
@@ -100,13 +99,13 @@ def resolve(solved: SolvedProblem, tasks: Sequence[Task]) -> list[Point | None]:
     for k in alone:
         task = tasks[k]
         optima[k] = search_near(
-            task.problem, solved.evaluator, task.guess, solved.optimum, inside=inside[k]
+            task.problem, solved.evaluator, task.guess, solved.valleys[0].point, inside=inside[k]
         )
     return optima
 
 
 def resolve_batch(
-    changed: ChangedProblems, valleys: Sequence[Point], starts: Vector
+    changed: ChangedProblems, valleys: Sequence[Valley], starts: Vector
 ) -> tuple[list[Point | None], list[Vector | None]]:
     """The optimum of each changed problem, and a feasible point; None where none is in reach.
 
@@ -116,20 +115,23 @@ def resolve_batch(
     valleys : local optima of the solved problem, the best first
     starts : predicted optima (nf, K) in the first valley; the others are entered from beyond
     """
-    point, space = valleys[0], changed.evaluator.space
-    optima = changed.near_optimum(point, starts)
+    first, space = valleys[0], changed.evaluator.space
+    point = first.point
+    optima = changed.near_optimum(first, starts)
     left = [i for i, one in enumerate(optima) if one is None]
     restored = changed.chosen(left).restore(point.z)
     ends = _Ends(changed, optima, [None] * len(optima))
-    ends.descend(point, dict(zip(left, restored, strict=True)))
+    ends.descend(first, dict(zip(left, restored, strict=True)))
     for valley in valleys[1:]:
-        begin = np.clip(valley.z + BEYOND * (valley.z - point.z), space.lower, space.upper)
+        there = valley.point.z
+        begin = np.clip(there + BEYOND * (there - point.z), space.lower, space.upper)
         ends.descend(valley, dict(enumerate(changed.restore(begin))))
-    for _ in range(ROUNDS):
-        better = ends.elsewhere(valleys)
+    single = len(optima) == 1 and len(valleys) == 1  # nothing to exchange
+    for _ in range(0 if single else ROUNDS):
+        better = ends.elsewhere([valley.point for valley in valleys])
         if not better:
             break
-        ends.descend(point, better)
+        ends.descend(first, better)
     return ends.settled()
 
 
@@ -142,7 +144,7 @@ class _Ends:
     known: list[Point | None]
     feasible: dict[int, Vector] = field(default_factory=dict)
 
-    def descend(self, valley: Point, starts: Mapping[int, Vector | None]) -> None:
+    def descend(self, valley: Valley, starts: Mapping[int, Vector | None]) -> None:
         """Descend from a start of each of these problems, and keep what is better."""
         begun = {i: z for i, z in starts.items() if z is not None}
         chosen = list(begun)
@@ -192,6 +194,24 @@ def _better(one: Point | None, other: Point | None) -> Point | None:
     return other if other.objective < one.objective else one
 
 
+def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
+    """Local optima of the search besides the one it chose."""
+    good = [
+        one.x
+        for one in solution.optima
+        if one.violation <= FEASIBLE
+        and one.residual <= RESIDUAL
+        and not np.array_equal(one.x, solution.x)
+    ]
+    return [evaluator.point(evaluator.space.to_z(x)) for x in good]
+
+
+def point_of(evaluator: Evaluator, solution: Solution) -> Point:
+    """The point a search ended on."""
+    rows = np.concatenate([[solution.objective], solution.constraints, solution.equalities])
+    return Point(evaluator.space.to_z(solution.x), solution.x, rows, True, solution.violation)
+
+
 def search_near(
     problem: BoxProblem,
     evaluator: Evaluator,
@@ -238,15 +258,10 @@ def search_near(
     for samples in (0, SAMPLES):
         best = solve(problem, starts=len(more), samples=samples, more_starts=more)
         if best.feasible and best.kkt is not None and best.kkt.residual <= RESIDUAL:
-            return _point(near, best)
+            return point_of(near, best)
     if best.feasible and best.objective < first.objective:
-        return _point(near, best)
+        return point_of(near, best)
     return first
-
-
-def _point(evaluator: Evaluator, solution: Solution) -> Point:
-    rows = np.concatenate([[solution.objective], solution.constraints, solution.equalities])
-    return Point(evaluator.space.to_z(solution.x), solution.x, rows, True, solution.violation)
 
 
 def _met(point: Point) -> bool:

@@ -161,6 +161,42 @@ def margin_price(multipliers: Vector) -> float:
     return 2 * float(multipliers.max(initial=0.0)) + 1.0
 
 
+@dataclass(frozen=True)
+class Valley:
+    """A local optimum, with what new descents begin with.
+
+    Parameters
+    ----------
+    point : the local optimum
+    hessian : of the Lagrangian over `scale`, made positive definite (nf, nf)
+    scale : size of the objective's gradient
+    rows : number of constraints
+    price : of missed margins, above every multiplier
+    """
+
+    point: Point
+    hessian: Vector
+    scale: float
+    rows: int
+    price: float
+
+    def full(self) -> Descent:
+        """A descent by full steps."""
+        return Descent(self.hessian, self.scale, self.rows, 1.0, radius=newton.RADIUS)
+
+    def trusted(self) -> Descent:
+        """A descent within a trusted radius."""
+        return Descent(self.hessian, self.scale, self.rows, self.price)
+
+
+def valley_at(evaluator: Evaluator, point: Point) -> Valley:
+    """The valley of a local optimum."""
+    state = newton.state_at(evaluator, point)
+    price = margin_price(state.multipliers[: len(state.near.constraint)] / state.scale)
+    hessian = newton.convex_hessian(evaluator, state)
+    return Valley(point, hessian, state.scale, evaluator.constraint_count, price)
+
+
 def is_optimum(evaluator: Evaluator, point: Point) -> bool:
     """Whether the point is feasible to rounding and meets the optimality conditions."""
     return point.violation <= FEASIBLE and kkt.residual(evaluator, point) <= RESIDUAL
