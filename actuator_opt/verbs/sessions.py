@@ -143,7 +143,7 @@ class Curve:
             if objective is not None and shown is not None:
                 text = shown.text(objective, 6)
             rows.append([self.quantity.text(value, 6), text])
-        return "\n".join(aligned(rows, right=(0, 1)))
+        return aligned(rows, right=(0, 1))
 
 
 class Session:
@@ -330,6 +330,9 @@ class Session:
 
     def _changed(self, changes: Changes) -> tuple[Actuator, dict[str, float]]:
         """The design with the changes, and their numbers in SI by canonical PATH."""
+        if not isinstance(changes, Mapping):
+            message = f"changes: need numbers by PATH, not {type(changes).__name__}"
+            raise UsageError(Diagnostic(message, 'write e.g. {"cylinder.stroke": "112 mm"}'))
         actuator, numbers = self._actuator, {}
         for path, value in changes.items():
             name = self._path(path)
@@ -345,7 +348,7 @@ class Session:
                 raise UsageError(
                     Diagnostic(
                         "a free dimension: the session finds its value",
-                        f"change variables.{name}.lower and .upper to hold it",
+                        f"to hold it, change lower, upper and start of variables.{name}",
                         path=path,
                     )
                 )
