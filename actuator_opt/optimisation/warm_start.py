@@ -9,7 +9,7 @@ So no problem that the first search would solve is given up.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -194,16 +194,7 @@ class WarmStart:
 
     def _along(self, changes: Mapping[str, float], size: float) -> Responses:
         """The responses to one parameter that changes some numbers at once."""
-        missing = tuple(path for path in changes if path not in self._responses)
-        if missing:
-            parametric = self.actuator.parametric(missing)
-            new = responses(parametric, self.evaluator, self.point, self.optimum.weights)
-            for k, path in enumerate(missing):
-                column = slice(k, k + 1)
-                self._responses[path] = replace(
-                    new, names=(path,), values=new.values[column], rows=new.rows[:, column],
-                    mixed=new.mixed[:, column], bounds=new.bounds[:, column],
-                )  # fmt: skip
+        self.differentiate(changes)
         parts = [(self._responses[path], change) for path, change in changes.items()]
         first = parts[0][0]
         return Responses(
@@ -214,6 +205,24 @@ class WarmStart:
             np.asarray(sum(part.bounds * change for part, change in parts)),
             first.differences,
         )
+
+    def differentiate(self, paths: Iterable[str]) -> None:
+        """Calculate the derivatives by some numbers, unless known: together they cost little more.
+
+        Parameters
+        ----------
+        paths : of the numbers
+        """
+        missing = tuple(path for path in dict.fromkeys(paths) if path not in self._responses)
+        if missing:
+            parametric = self.actuator.parametric(missing)
+            new = responses(parametric, self.evaluator, self.point, self.optimum.weights)
+            for k, path in enumerate(missing):
+                column = slice(k, k + 1)
+                self._responses[path] = replace(
+                    new, names=(path,), values=new.values[column], rows=new.rows[:, column],
+                    mixed=new.mixed[:, column], bounds=new.bounds[:, column],
+                )  # fmt: skip
 
     def _near(self, problem: BoxProblem, stop: Stop | None) -> Evaluator:
         """An evaluator of a changed problem, with its gradients taken as those checked."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -204,8 +204,8 @@ class Session:
 
         Full steps from the session's optimum; where they do not converge, restoration and descent;
         then a search, which alone may find no design. The optimality conditions are checked to
-        1e-6. `samples` of the result is 0 unless a search was made; why nothing fits is for
-        `optimise` to say.
+        1e-6. `start` of the result is the session's optimum, `samples` is 0 unless a search was
+        made; why nothing fits is for `optimise` to say.
 
         Parameters
         ----------
@@ -228,7 +228,22 @@ class Session:
         actuator, _ = self._changed(changes)
         subject, problem = self._built(actuator)
         solution = self._warm.solve(problem.problem, stop)
-        return result_of(subject, problem, solution, prices=prices, seed=self._seed, began=began)
+        found = result_of(
+            subject,
+            problem,
+            solution,
+            prices=prices,
+            seed=self._seed,
+            began=began,
+            start=self.optimum.evaluation,
+        )
+        starts = self._warm.point.x.tolist()
+        return replace(
+            found,
+            variables=tuple(
+                replace(one, start=x) for one, x in zip(found.variables, starts, strict=True)
+            ),
+        )
 
     def predict(self, changes: Changes) -> Prediction:
         """The optimum with some numbers changed, by straight lines: no model is evaluated.
@@ -272,8 +287,16 @@ class Session:
         UsageError
             a free dimension, or a number without derivative (bounds of variables, say)
         """
-        path = self._path(path)
-        value = self._priced(path)
+        return self.prices([path])[0]
+
+    def prices(self, paths: Sequence[str]) -> tuple[Price, ...]:
+        """The prices of several numbers, whose derivatives are calculated together; as `price`."""
+        names = [self._path(path) for path in paths]
+        values = {path: self._priced(path) for path in names}
+        self._warm.differentiate(names)
+        return tuple(self._price(path, values[path]) for path in names)
+
+    def _price(self, path: str, value: float) -> Price:
         line = self._warm.line({path: 1.0}, value)
         low, high = self._end(line.low, value), self._end(line.high, value)
         return Price(
@@ -383,11 +406,14 @@ class Session:
         from ..optimisation.actuator import build
 
         subject = actuator.subject()
-        faults = unanswered(actuator, subject)
-        if faults:
-            raise InputError(faults)
         with located(actuator):
-            return subject, build(subject, place(actuator))
+            problem = build(subject, place(actuator))
+        answered = {row.limit_of.metric for row in (*problem.rows, *problem.fixed)}
+        if not answered.issuperset(actuator.design.requirements):
+            faults = unanswered(actuator, subject)
+            if faults:
+                raise InputError(faults)
+        return subject, problem
 
     def _priced(self, path: str) -> float:
         """The present value of a number that has a price."""

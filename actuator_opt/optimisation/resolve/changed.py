@@ -122,15 +122,22 @@ class ChangedProblems:
         """
         if starts.shape[1] == 0:
             return []
-        optima = self.step_fully([valley.full() for _ in starts.T], starts)
-        margins = self.margins_at([valley.point])[:, 0]
-        met = self.evaluator.violations(margins, "worst") <= FEASIBLE
-        unmoved = np.where(met, margins[0], np.inf)
+        evaluator, point = self.evaluator, valley.point
+        if (starts == point.z[:, None]).all():  # the unchanged optimum is evaluated once
+            points = self.points(starts)
+            least = [p.objective if p.violation <= FEASIBLE else np.inf for p in points]
+            begun: Sequence[Point | Vector] = points
+        else:
+            begun = list(starts.T)
+            margins = self.margins_at([point])[:, 0]
+            met = evaluator.violations(margins, "worst") <= FEASIBLE
+            least = np.where(met, margins[0], np.inf).tolist()
+        optima = self.run([full_steps(evaluator, valley.full(), start) for start in begun])
         return [
             None  # else another valley
-            if optimum is not None and least < optimum.objective - 1e-9 * abs(optimum.objective)
+            if optimum is not None and unmoved < optimum.objective - 1e-9 * abs(optimum.objective)
             else optimum
-            for optimum, least in zip(optima, unmoved.tolist(), strict=True)
+            for optimum, unmoved in zip(optima, least, strict=True)
         ]
 
     def descend_from(

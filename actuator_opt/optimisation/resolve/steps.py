@@ -202,20 +202,22 @@ def is_optimum(evaluator: Evaluator, point: Point) -> bool:
     return point.violation <= FEASIBLE and kkt.residual(evaluator, point) <= RESIDUAL
 
 
-def full_steps(evaluator: Evaluator, descent: Descent, start: Vector) -> Steps[Point | None]:
+def full_steps(
+    evaluator: Evaluator, descent: Descent, start: Vector | Point
+) -> Steps[Point | None]:
     """The optimum that full quadratic steps reach; None where they do not converge.
 
     Parameters
     ----------
     evaluator : of the problem, or of one with the same rows and box
     descent : a new one, with the Hessian to begin with
-    start : coordinates (nf,)
+    start : coordinates (nf,), or the evaluated point
     """
     space = evaluator.space
-    z = np.clip(start, space.lower, space.upper)
+    z = np.clip(start.z if isinstance(start, Point) else start, space.lower, space.upper)
     last, least = np.inf, np.inf
     for iteration in range(ITERATIONS):
-        trial = yield z
+        trial = start if isinstance(start, Point) and not iteration else (yield z)
         if not trial.valid:
             return None
         if last <= SETTLED and is_optimum(evaluator, trial):
