@@ -135,6 +135,18 @@ def test_a_stop_half_way_comes_at_once(steel):
     assert len(asked) == 2
 
 
+def test_a_stopped_curve_keeps_what_was_solved(steel):
+    """Nothing that was not solved counts as found, though the old optimum would do."""
+    path = "requirements.friction_running.max"
+    assert steel.curve(path, ["400 N", "410 N"], stop=lambda: True).found == (False, False)
+    asked = []
+    path = "environment.temperature_max"  # each value by itself
+    curve = steel.curve(
+        path, ["69 degC", "60 degC"], stop=lambda: bool(asked.append(1)) or len(asked) > 2
+    )
+    assert curve.found == (False, False)
+
+
 def test_prices_are_those_of_the_table(steel, priced):
     """Slopes, movement and the nearer end of what holds are those `optimise` prints."""
     for row in priced.sensitivities:

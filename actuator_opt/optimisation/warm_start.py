@@ -94,22 +94,23 @@ class WarmStart:
         stop : asked between steps; once it says True, the unchanged optimum is the result, with the
             outcome "interrupted"
         """
-        near = self._near(problem, stop)
+        near = Evaluator(problem, stop=stop)
         if near.space.size == 0:
             return solve(problem)
-        valleys = self._valleys(near)
         try:
-            optimum, inside = self._stepped(near, valleys)
+            self._take_gradients(near)
+            optimum, inside = self._stepped(near, self._valleys(near))
         except LimitReached:
             return self._interrupted(near)
         if optimum is not None:
             return _solution(near, optimum, "full steps, or restoration and descent")
-        more = [valleys[0].point.x] if inside is None else [near.space.to_x(inside[:, None])[:, 0]]
+        known = problem.inside(self.point.x)
+        more = [known if inside is None else near.space.to_x(inside[:, None])[:, 0]]
         seed = self.effort.seed
         found = solve(
             problem, starts=STARTS, samples=SAMPLES, more_starts=more, seed=seed, stop=stop
         )
-        if not found.feasible and not near.late:
+        if not found.feasible and found.outcome is not Outcome.LIMIT_INFEASIBLE:
             found = solve(
                 problem,
                 starts=self.effort.starts,
@@ -118,9 +119,9 @@ class WarmStart:
                 seed=seed,
                 stop=stop,
             )
-        if near.late:
-            return self._interrupted(near) if not found.feasible else _stopped(found)
-        return found
+        if found.outcome is Outcome.LIMIT_INFEASIBLE:
+            return self._interrupted(near)
+        return _stopped(found) if found.outcome is Outcome.LIMIT else found
 
     def solve_together(
         self, path: str, values: Sequence[float], rebuilt: Callable[[float], ActuatorProblem],
@@ -156,6 +157,8 @@ class WarmStart:
                 if stop is not None and stop():
                     return optima
                 found = self.solve(rebuilt(values[k]).problem, stop)
+                if found.interrupted:
+                    return optima
                 if not found.feasible:
                     break
                 optima[k] = ladder.point_of(self.evaluator, found)
@@ -224,15 +227,13 @@ class WarmStart:
                     mixed=new.mixed[:, column], bounds=new.bounds[:, column],
                 )  # fmt: skip
 
-    def _near(self, problem: BoxProblem, stop: Stop | None) -> Evaluator:
-        """An evaluator of a changed problem, with its gradients taken as those checked."""
-        near = Evaluator(problem, stop=stop)
-        own = self.evaluator
+    def _take_gradients(self, near: Evaluator) -> None:
+        """Take the gradients of a changed problem as those checked, or check its own."""
+        own, problem = self.evaluator, near.problem
         if tuple(problem.constraint_names) == tuple(own.problem.constraint_names):
             near.complex_works, near.difference_rows = own.complex_works, own.difference_rows
-        elif near.space.size:
+        else:
             near.check_gradients(near.point(near.space.to_z(problem.inside(self.point.x))))
-        return near
 
     def _valleys(self, near: Evaluator) -> list[Valley]:
         """The valleys as the start of descents of a changed problem."""
@@ -305,7 +306,8 @@ class WarmStart:
 
     def _curve(self, path: str, values: Sequence[float], stop: Stop | None) -> list[Point | None]:
         """The optima at values of a number that the common steps reach."""
-        near = self._near(self.actuator.problem, stop)
+        near = Evaluator(self.actuator.problem, stop=stop)
+        self._take_gradients(near)
         changed = ChangedProblems(self.actuator.parametric((path,)), near, np.array([values]))
         starts = np.repeat(self.point.z[:, None], len(values), axis=1)
         return ladder.resolve_batch(changed, self.valleys, starts)[0]

@@ -150,7 +150,8 @@ class Session:
     """A design's optimum, kept warm for what comes.
 
     Every call takes its changes as the whole difference from the design as read: nothing a call
-    does changes what a later one returns.
+    does changes what a later one returns. An objective of weighted terms divides each by its value
+    in the design as read; `solve` by that with the changes, as `optimise` would.
 
     Attributes
     ----------
