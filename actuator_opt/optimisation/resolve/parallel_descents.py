@@ -104,8 +104,9 @@ def run_together(
             for k, pair in zip(wanted, zip(wanted.values(), split, strict=True), strict=True)
         ]
 
-    batch = Batch([run.steps() for run in runs], answer)
+    solvers = [run.steps() for run in runs]
     try:
+        batch = Batch(solvers, answer)
         _share(runs, batch, set())
         for _ in range(rounds):
             for k in [k for k in batch.wanted if firsts[runs[k].task].hopeless]:
@@ -116,8 +117,8 @@ def run_together(
             batch.step()
             _share(runs, batch, ended)
     finally:
-        for k in list(batch.wanted):
-            batch.drop(k)
+        for solver in solvers:
+            solver.close()
     return [[run.best for run in runs if run.task == k] for k in range(len(tasks))]
 
 
