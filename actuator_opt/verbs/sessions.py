@@ -27,6 +27,9 @@ Changes = Mapping[str, float | str]
 STARTS, SAMPLES = 6, 2048
 """Effort of the one cold solve: that of `optimise`."""
 
+NUDGE = 1e-4
+"""Relative change of a number by which its effect on others is looked for."""
+
 ROUNDING = 1e-9
 """Share of a change, or of a number, that counts as none."""
 
@@ -191,6 +194,7 @@ class Session:
         self._actuator, self._seed = actuator, seed
         found = result_of(subject, problem, solution, prices=False, seed=seed, began=began)
         self.optimum: Optimisation = estimated(found, actuator.plugins)
+        self._differentiable: dict[str, bool] = {}
         self._warm = WarmStart(problem, solution, Effort(STARTS, SAMPLES, seed))
 
     def __repr__(self) -> str:
@@ -432,7 +436,34 @@ class Session:
                     path=path,
                 )
             )  # fmt: skip
+        if path not in self._differentiable:
+            self._differentiable[path] = self._only_read(path, float(numbers[path]))
+        if not self._differentiable[path]:
+            raise UsageError(
+                Diagnostic(
+                    "has no derivative here: it is a whole number, or decides more than what the "
+                    "models read of it",
+                    "re-solve with it instead (session.solve, session.curve)",
+                    path=path,
+                )
+            )
         return float(numbers[path])
+
+    def _only_read(self, path: str, value: float) -> bool:
+        """Whether a small change of a number changes nothing else: no other number, no factor.
+
+        Temperatures decide the factors on strengths, say.
+        """
+        own = self._warm.actuator.subject
+        for share in (NUDGE, -NUDGE):
+            try:
+                changed = self._actuator.changed({path: value + share * (abs(value) or 1.0)})
+            except InputError:
+                continue
+            subject = changed.subject()
+            others = {**subject.numbers, path: value} == dict(own.numbers)
+            return others and subject.factors == own.factors
+        return False
 
     def _shown(self, slope: float) -> float:
         """A change of the objective as the user states it."""
