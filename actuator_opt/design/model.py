@@ -349,10 +349,6 @@ def _like_the_piston(stated: dict[str, Any]) -> Head:
     return Head(material=piston.material, length=piston.length)
 
 
-LAND = 1e-3
-"""Least wall beside or under a groove or thread, least rod wall, bore of a laminated rod and room
-between rod and bore (m): a choice for turned parts in this size range."""
-
 PLAIN_CAP = 0.25
 """Thickness over bore of the end plates where the file states none."""
 

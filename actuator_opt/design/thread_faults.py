@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from ..metrics import LEAST_METAL
 from ..models import thread
-from .model import LAND
 from .paths import spell
 from .structure import Loc, child_at
 from .view import Fault, Materials, Properties, View, length_text
@@ -146,26 +146,27 @@ def _under(view: View, sizes: _Sizes) -> Iterator[Fault]:
     root = thread.root_diameter(diameter=min(sizes.diameter, sizes.outside), pitch=sizes.pitch)
     left = sizes.layer - (sizes.outside - root) / 2
     layer = _layer(view)
-    if left < LAND * (1 - ROUNDING) and not _judged_later(view, _moved(view)):
+    if left < LEAST_METAL * (1 - ROUNDING) and not _judged_later(view, _moved(view)):
         name = view.text(*layer, "material")
         rest = length_text(left) if left > 0 else "nothing"
         yield Fault(
             (*layer, "thickness"),
             f"{length_text(sizes.layer)} of {name}: the thread leaves {rest} of it, "
-            f"{length_text(LAND)} is the least",
-            f"write a thickness of at least {length_text(sizes.layer + LAND - left)}, a finer "
-            f"pitch, {OTHERWISE}",
+            f"{length_text(LEAST_METAL)} is the least",
+            f"write a thickness of at least {length_text(sizes.layer + LEAST_METAL - left)}, "
+            f"a finer pitch, {OTHERWISE}",
         )
 
 
 def _over(view: View, sizes: _Sizes) -> Iterator[Fault]:
     """Too little metal over the thread of the skirts."""
     loc = ("retention", "wall")
-    if sizes.wall < LAND * (1 - ROUNDING) and not _judged_later(view, [loc]):
+    if sizes.wall < LEAST_METAL * (1 - ROUNDING) and not _judged_later(view, [loc]):
         yield Fault(
             loc,
-            f"{length_text(sizes.wall)}: the least metal over a thread is {length_text(LAND)}",
-            f"write at least {length_text(LAND)}",
+            f"{length_text(sizes.wall)}: the least metal over a thread is "
+            f"{length_text(LEAST_METAL)}",
+            f"write at least {length_text(LEAST_METAL)}",
         )
 
 

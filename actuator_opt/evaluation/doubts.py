@@ -6,11 +6,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..design.model import LAND, PLAIN_CAP
+from ..design.model import PLAIN_CAP
 from ..design.paths import quantity_of
 from ..design.thread_faults import ROUNDING
+from ..metrics import LEAST_METAL, METRICS
+from ..metrics.table import OWN, WALL_FED
 from ..models import laminate
-from ..quantities import METRICS
 from . import joint, motion_range, oil, oil_range, proportions, seal_doubts, springs, threads
 from .barrel import LAMINATES, kind
 from .beam import NEAR
@@ -22,24 +23,6 @@ from .values import Values
 
 LONGEST_LIFE = 1e9
 """Cycles up to which stress-life lines have data [Shigley2011]."""
-
-GROWTH_FED = (
-    "bore_growth",
-    "seal_gap",
-    "seal_squeeze",
-    "extrusion_factor",
-    "friction_running",
-    "friction_breakaway",
-    "stiffness_min",
-    "stiffness_barrel",
-    "natural_frequency",
-    "yield_factor",
-    "liner_yield_factor",
-    "proof_factor",
-    "first_ply_factor",
-    "burst_factor",
-)
-"""Metrics that inherit the error of the barrel's wall model."""
 
 
 def kind_of(subject: Subject) -> str:
@@ -57,7 +40,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
             "bore growth is understated, by 10 to 25 % here, and with it gap, squeeze loss and "
             "compliance; first ply and burst of plies err to the safe side"
         )
-        for metric in GROWTH_FED:
+        for metric in WALL_FED:
             yield metric, text
     yield from (("", text) for text in proportions.warnings(subject, v, g))
     yield from _wall_warnings(subject, done)
@@ -196,17 +179,13 @@ def _thread_warnings(done: Pass) -> Iterable[tuple[str, str]]:
     for name in threads.LANDS:
         for left in done.computed.metrics.get(name, {}).values():
             least = float(np.min(np.real(left)))
-            if least < LAND * (1 - ROUNDING):
+            if least < LEAST_METAL * (1 - ROUNDING):
                 label = METRICS[name]
                 yield (
                     "retention_factor",
-                    f"{label.label}: {label.text(least)}, {label.text(LAND)} is the least: "
+                    f"{label.label}: {label.text(least)}, {label.text(LEAST_METAL)} is the least: "
                     "such a thread cannot be cut, and its factors do not count",
                 )
-
-
-SOURCES = frozenset({"bore_growth", "first_ply_factor", "burst_factor", "cycle_life"})
-"""Metrics whose own model, not one before it, is what a warning is about."""
 
 
 def models(
@@ -239,8 +218,7 @@ def models(
             model.reference,
             model.valid,
             at,
-            name not in (outside & SOURCES)
-            and (model.name not in seen or seen[model.name].in_range),
+            name not in (outside & OWN) and (model.name not in seen or seen[model.name].in_range),
         )
     yield from seen.values()
     yield from seal_doubts.models(rings, subject, said)
