@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .evaluator import Evaluator, Point
-from .nearby import NEAR
-from .problem import Problem, Vector
+from .problem import BoxProblem, Vector
+from .resolve.boxes import NEAR
 
 EQUAL = 1e-6
 """Relative difference of continuous optima that counts as none: quick looks know them so well."""
@@ -26,11 +26,11 @@ EQUAL = 1e-6
 class Evidence:
     """Where the boxes of a search of a problem ended; `optimum` is its continuous objective."""
 
-    problem: Problem
+    problem: BoxProblem
     optimum: float
     ends: Sequence[tuple[Evaluator, Point]]
 
-    def holds_for(self, other: Problem, optimum: float) -> bool:
+    def holds_for(self, other: BoxProblem, optimum: float) -> bool:
         """Whether a search of another problem would end as this one did."""
         one = self.problem
         if not self.ends or abs(optimum - self.optimum) > EQUAL * abs(self.optimum):

@@ -1,4 +1,4 @@
-"""The curvature that decides the step: along the directions that the rows in force leave free.
+"""Hessians to begin with: that of another problem's optimum, or one of the free directions.
 
 Most designs of a front are held by nearly as many limits as they have variables. What the Hessian
 does along the few free directions takes a gradient to each side of each; the rest only has to be
@@ -8,13 +8,14 @@ convex, as the rows settle it [NocedalWright2006] section 16.2.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from .. import kkt
-from ..evaluator import HESSIAN_STEP, Evaluator
-from ..lockstep import Descent
+from .. import kkt, newton
+from ..evaluator import HESSIAN_STEP, Evaluator, Point
 from ..problem import Vector
+from .steps import Descent
 
 FIRM = 1e-6
 """Multiplier, over the largest, above which a row is in force."""
@@ -26,39 +27,68 @@ LEAST = 1e-6
 """Least curvature over the largest multiplier."""
 
 
-def hessians(evaluator: Evaluator, ways: Sequence[Descent]) -> list[Vector]:
+@dataclass(frozen=True)
+class ScaledHessian:
+    """Scaled Hessian (n, n) of the Lagrangian at an optimum, per x of all variables."""
+
+    hessian: Vector
+    scale: float
+
+    def seen_by(self, evaluator: Evaluator, x: Vector) -> Vector:
+        """In the coordinates of the free variables of a problem, at a point of it (n,)."""
+        space = evaluator.space
+        slope = space.slope(x[:, None])[:, 0]
+        return np.asarray(self.hessian[np.ix_(space.free, space.free)] * np.outer(slope, slope))
+
+
+def hessian_at(evaluator: Evaluator, point: Point) -> ScaledHessian | None:
+    """The Hessian at an optimum; None where nothing is free."""
+    space = evaluator.space
+    if not space.size or not point.valid:
+        return None
+    state = newton.state_at(evaluator, point)
+    slope = space.slope(point.x[:, None])[:, 0]
+    hessian = newton.convex_hessian(evaluator, state) / np.outer(slope, slope)
+    full = np.zeros((len(point.x), len(point.x)))
+    full[np.ix_(space.free, space.free)] = hessian
+    return ScaledHessian(full, state.scale)
+
+
+def free_hessians(evaluator: Evaluator, descents: Sequence[Descent]) -> list[Vector]:
     """Convex Hessian of the Lagrangian where each descent stands, from one call of the model.
 
     Parameters
     ----------
     evaluator : of the problems, which differ in nothing that bends
-    ways : descents with a point and its multipliers
+    descents : with a point and its multipliers
     """
-    free = [_free(evaluator, one) for one in ways]
+    free = [_free(evaluator, descent) for descent in descents]
     if not any(z.shape[1] for z in free):
-        return [np.eye(evaluator.space.size) for _ in ways]
+        return [np.eye(evaluator.space.size) for _ in descents]
     moves = np.concatenate([HESSIAN_STEP * z for z in free], axis=1)
     at = np.repeat(
-        np.stack([one.known.z for one in ways], axis=1), [z.shape[1] for z in free], axis=1
+        np.stack([descent.known.z for descent in descents], axis=1),
+        [z.shape[1] for z in free],
+        axis=1,
     )
     slopes = evaluator.jacobians(np.concatenate([at + moves, at - moves], axis=1), inside=False)
     bends = np.nan_to_num(slopes[:, : at.shape[1]] - slopes[:, at.shape[1] :]) / (2 * HESSIAN_STEP)
     result, first = [], 0
-    for one, z in zip(ways, free, strict=True):
+    for descent, z in zip(descents, free, strict=True):
         part = bends[:, first : first + z.shape[1]]
         first += z.shape[1]
-        weights = -one.multipliers
+        weights = -descent.multipliers
         along = np.tensordot(weights, part[1 : 1 + len(weights)], axes=1).T
-        along += part[0].T / one.scale
+        along += part[0].T / descent.scale
         result.append(_convex(z, along, float(np.abs(weights).max(initial=0.0))))
     return result
 
 
-def _free(evaluator: Evaluator, way: Descent) -> Vector:
+def _free(evaluator: Evaluator, descent: Descent) -> Vector:
     """Orthonormal directions (nf, d) that leave the rows in force as they are."""
-    size, prices = evaluator.space.size, way.prices
+    size, prices = evaluator.space.size, descent.prices
     unit = np.eye(size)
-    rows = np.concatenate([evaluator.jacobian(way.known)[1 : 1 + way.rows], unit, -unit])
+    rows = np.concatenate([evaluator.jacobian(descent.known)[1 : 1 + descent.rows], unit, -unit])
     assert prices is not None
     weight = prices * np.sqrt((rows**2).sum(axis=1))
     return kkt.null_space(rows[weight > FIRM * weight.max(initial=0.0)], size)

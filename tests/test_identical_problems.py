@@ -8,10 +8,10 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.optimisation.branch_and_bound import search
+from actuator_opt.optimisation.identical_problems import Evidence
 from actuator_opt.optimisation.listed import Listed
-from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
-from actuator_opt.optimisation.twins import Evidence
 
 KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
 
@@ -25,7 +25,7 @@ def _plate(*, load=1.0, weight=1.0, slack=50.0):
         return Values(weight * thickness * width, np.stack([bears, (slack - width) / 10]))
 
     low, high = np.array([0.2, 0.1]), np.array([3.0, 40.0])
-    return Problem(("thickness", "width"), low, high, evaluate, ("bears", "narrow"))
+    return BoxProblem(("thickness", "width"), low, high, evaluate, ("bears", "narrow"))
 
 
 @pytest.fixture(scope="module")
