@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import least_squares
 from .errors import Diagnostic, InputError
 from .least_squares import WEAK, Parameter, known
 from .models import damping as laws
@@ -254,8 +255,6 @@ def _projected(
 
     The best few of the starts, apart from each other, are refined within +-steepest.
     """
-    from scipy.optimize import least_squares  # slow to import, rarely needed
-
     root = np.sqrt(weights / np.sum(weights))
     scale = float(np.max(np.abs(damping))) or 1.0
     target = root * damping / scale
@@ -271,15 +270,16 @@ def _projected(
     costs = [float(np.sum(misfit(np.array(one)) ** 2)) for one in starts]
     best, least = np.array(starts[int(np.argmin(costs))]), np.inf
     for start in _apart(starts, costs):
-        found = least_squares(
+        limit = np.full(start.shape, steepest)
+        found = least_squares.solve(
             misfit,
-            np.clip(start, -0.99 * steepest, 0.99 * steepest),
-            jac="3-point",
-            bounds=(-steepest, steepest),
-            x_scale=np.abs(start),
-            xtol=1e-15,
-            ftol=1e-15,
-            gtol=1e-15,
+            np.clip(start, -0.99 * limit, 0.99 * limit),
+            (-limit, limit),
+            slopes="3-point",
+            sizes=np.abs(start),
+            cost_tolerance=1e-15,
+            step_tolerance=1e-15,
+            slope_tolerance=1e-15,
         )
         if found.cost < least:
             best, least = found.x, found.cost

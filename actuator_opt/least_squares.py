@@ -1,8 +1,8 @@
-"""How well a least-squares fit knows each parameter: bounds, and a verdict."""
+"""Least squares within bounds, and how well a fit knows each parameter: bounds, and a verdict."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from math import isfinite
 from typing import Any, Literal, NamedTuple
 
@@ -24,6 +24,57 @@ SEEN = 1e-4
 """Share of a parameter's step that may lie in directions the points do not see."""
 
 Verdict = Literal["identifiable", "weakly identifiable", "not identifiable"]
+
+
+class Minimum(NamedTuple):
+    """Where a sum of squares is least, and half of it there."""
+
+    x: Array
+    cost: float
+
+
+def solve(
+    residuals: Callable[[Array], Array],
+    start: Array,
+    bounds: tuple[Array, Array],
+    *,
+    slopes: Callable[[Array], Array] | Literal["3-point"],
+    sizes: Array | Literal["jac"],
+    room: Array | float = 0.0,
+    cost_tolerance: float = 1e-8,
+    step_tolerance: float = 1e-8,
+    slope_tolerance: float = 1e-8,
+    most: int | None = None,
+) -> Minimum:
+    """Minimise sum r(x)^2/2 within bounds, by the trust-region reflective method of SciPy.
+
+    Parameters
+    ----------
+    residuals : weighted residuals (points,) of parameters (n,)
+    start : parameters (n,), moved inside the bounds
+    bounds : least and greatest parameters (n,); may be infinite
+    slopes : of the residuals (points, n), or by central differences
+    sizes : of the parameters (n,), or by the slopes
+    room : least distance of the start from the bounds, as the method starts inside
+    cost_tolerance, step_tolerance, slope_tolerance : relative change of the sum, relative step, and
+        scaled slope at which it ends
+    most : evaluations; default: 100 a parameter
+    """
+    from scipy.optimize import least_squares  # slow to import, rarely needed
+
+    low, high = bounds
+    found = least_squares(
+        residuals,
+        np.clip(start, low + room, high - room),
+        jac=slopes,
+        bounds=bounds,
+        x_scale=sizes,
+        ftol=cost_tolerance,
+        xtol=step_tolerance,
+        gtol=slope_tolerance,
+        max_nfev=most,
+    )
+    return Minimum(found.x, float(found.cost))
 
 
 class Parameter(NamedTuple):

@@ -30,7 +30,7 @@ from actuator_opt import verbs
 from actuator_opt.errors import UsageError
 from actuator_opt.optimisation import actuator, nlopt_wrapper
 from actuator_opt.optimisation.descents import FEASIBLE
-from actuator_opt.optimisation.problem import Problem, Space
+from actuator_opt.optimisation.problem import BoxProblem, Space
 from actuator_opt.optimisation.run import SAMPLES
 from actuator_opt.optimisation.solver import solve
 
@@ -52,11 +52,11 @@ class Case:
     """A problem and its optimum; None where only the best of all runs is known."""
 
     name: str
-    problem: Problem
+    problem: BoxProblem
     optimum: float | None = None
 
 
-GENERIC: dict[str, tuple[Callable[[], Problem], float]] = {
+GENERIC: dict[str, tuple[Callable[[], BoxProblem], float]] = {
     "rosen_suzuki": (problems.rosen_suzuki, -44.0),
     "hs71": (problems.hs71, 17.0140173),
     "stepped_cantilever": (lambda: problems.stepped_cantilever().problem, 1.33995636),
@@ -83,7 +83,7 @@ def case(name: str) -> Case:
     return Case(name, replace(built.problem, start=None))
 
 
-def strategies(problem: Problem) -> list[str]:
+def strategies(problem: BoxProblem) -> list[str]:
     """Every algorithm that suits the problem, within AUGLAG where it takes no constraints."""
     found = ["auto", "auto from one start"]
     for name, algorithm in nlopt_wrapper.ALGORITHMS.items():
@@ -98,7 +98,7 @@ def strategies(problem: Problem) -> list[str]:
     return list(dict.fromkeys(found))
 
 
-def starts(problem: Problem, count: int) -> list[np.ndarray]:
+def starts(problem: BoxProblem, count: int) -> list[np.ndarray]:
     """Random points of the box where the model has values, the same for every strategy."""
     random, space = np.random.default_rng(0), Space(problem)
     found: list[np.ndarray] = []
@@ -121,7 +121,7 @@ class Trial:
     fault: str = ""
 
 
-def trial(problem: Problem, strategy: str, x: np.ndarray, seed: int, most: int) -> Trial:
+def trial(problem: BoxProblem, strategy: str, x: np.ndarray, seed: int, most: int) -> Trial:
     """One run of a strategy; whatever it throws is its result."""
     began = time.process_time()
     given, more = {"samples": SAMPLES}, problem

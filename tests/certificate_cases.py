@@ -14,7 +14,7 @@ from actuator_opt.optimisation.actuator import ActuatorProblem, build
 from actuator_opt.optimisation.certificate.box import Box, Layout
 from actuator_opt.optimisation.certificate.certify import Relaxed, relax
 from actuator_opt.optimisation.certificate.trace import trace
-from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
 
 DESIGNS = Path(__file__).parent.parent / "designs"
@@ -56,7 +56,7 @@ class Case:
         return np.vstack([self.x, every[rng.permutation(len(every))[: count - 1]]])
 
 
-def _inside(problem: Problem, room: float, start) -> np.ndarray:
+def _inside(problem: BoxProblem, room: float, start) -> np.ndarray:
     """The best design with some room at every limit."""
 
     def evaluate(points) -> Values:

@@ -1,6 +1,6 @@
 """Optimisation problems with known optima, written in the form of `optimise.problem`.
 
-Each returns a `Problem`; sources and known results are in the docstrings. Inputs are
+Each returns a `BoxProblem`; sources and known results are in the docstrings. Inputs are
 (n, k) arrays, real or complex.
 """
 
@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from actuator_opt.optimisation.problem import ParametricProblem, Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
 
 
-def rosen_suzuki() -> Problem:
+def rosen_suzuki() -> BoxProblem:
     """HS43 [HockSchittkowski1981]: f* = -44 at (0, 1, 2, -1), multipliers (1, 0, 2)."""
 
     def evaluate(x):
@@ -25,10 +25,10 @@ def rosen_suzuki() -> Problem:
         return Values(f, np.stack(g))
 
     bound = np.full(4, 10.0)
-    return Problem(("x1", "x2", "x3", "x4"), -bound, bound, evaluate, ("g1", "g2", "g3"))
+    return BoxProblem(("x1", "x2", "x3", "x4"), -bound, bound, evaluate, ("g1", "g2", "g3"))
 
 
-def hs71() -> Problem:
+def hs71() -> BoxProblem:
     """HS71 [HockSchittkowski1981]: f* = 17.0140173, multiplier of the product 0.552294."""
 
     def evaluate(x):
@@ -37,7 +37,7 @@ def hs71() -> Problem:
         return Values(f, (a * b * c * d - 25)[None], (a**2 + b**2 + c**2 + d**2 - 40)[None])
 
     names = ("x1", "x2", "x3", "x4")
-    return Problem(
+    return BoxProblem(
         names,
         np.ones(4),
         5 * np.ones(4),
@@ -60,7 +60,7 @@ def stepped_cantilever() -> ParametricProblem:
 
     p = np.array([1.0, 0.0624])
     n = 5
-    problem = Problem(
+    problem = BoxProblem(
         tuple(f"x{i + 1}" for i in range(n)),
         np.full(n, 0.1),
         np.full(n, 100.0),
@@ -91,7 +91,7 @@ def pressure_vessel() -> ParametricProblem:
         return Values(f, np.stack(np.broadcast_arrays(*g)))
 
     p = np.array([0.0193, 0.00954, 1296000.0])
-    problem = Problem(
+    problem = BoxProblem(
         ("shell", "head", "radius", "length"),
         np.array([0.0625, 0.0625, 10, 10]),
         np.array([6.1875, 6.1875, 200, 200]),
@@ -101,7 +101,7 @@ def pressure_vessel() -> ParametricProblem:
     return ParametricProblem(problem, ("shell ratio", "head ratio", "volume"), p, evaluate)
 
 
-def piston_lever() -> Problem:
+def piston_lever() -> BoxProblem:
     """Hydraulic lift [Vanderplaats1984]: f* = 8.412698323, a bad local optimum at 167.47.
 
     Oil volume needed to raise a load of 10 000 on a lever by 45 degrees; published at
@@ -126,7 +126,7 @@ def piston_lever() -> Problem:
         ]
         return Values(np.pi * d**2 * travel / 4, np.stack(g))
 
-    return Problem(
+    return BoxProblem(
         ("H", "B", "D", "X"),
         np.full(4, 0.05),
         np.array([500.0, 500, 500, 120]),
@@ -135,7 +135,7 @@ def piston_lever() -> Problem:
     )
 
 
-def thrust_bearing() -> Problem:
+def thrust_bearing() -> BoxProblem:
     """Hydrostatic thrust bearing [Siddall1982]: f* = 1625.442759 (power loss / 12).
 
     Published at R 5.95578050, R0 5.38901305, mu 5.35869727e-6, Q 2.26965596.
@@ -161,7 +161,7 @@ def thrust_bearing() -> Problem:
         ]
         return Values((q * pressure / 0.7 + loss) / 12, np.stack(g))
 
-    return Problem(
+    return BoxProblem(
         ("R", "R0", "mu", "Q"),
         np.array([1, 1, 1e-6, 1.0]),
         np.array([16, 16, 16e-6, 16.0]),
@@ -170,7 +170,7 @@ def thrust_bearing() -> Problem:
     )
 
 
-def two_pieces() -> Problem:
+def two_pieces() -> BoxProblem:
     """Two discs apart: f* = 4 - 0.3 sqrt(2) in the smaller, at (2 - 0.3/sqrt(2)) twice.
 
     Minimise x + y inside the disc about (7, 7) of radius 2.5 or that about (2, 2) of radius 0.3:
@@ -183,7 +183,7 @@ def two_pieces() -> Problem:
         )
         return Values(x[0] + x[1], (-large * small)[None])
 
-    return Problem(("x", "y"), np.full(2, 0.5), np.full(2, 10.0), evaluate, ("in a disc",))
+    return BoxProblem(("x", "y"), np.full(2, 0.5), np.full(2, 10.0), evaluate, ("in a disc",))
 
 
 def geometric_programme(seed: int, n: int = 12, m: int = 24, q: int = 15) -> ParametricProblem:
@@ -205,7 +205,7 @@ def geometric_programme(seed: int, n: int = 12, m: int = 24, q: int = 15) -> Par
         limits[rows] = p
         return Values(f, 1 - used / limits)
 
-    problem = Problem(
+    problem = BoxProblem(
         tuple(f"x{i}" for i in range(n)),
         np.full(n, 0.05),
         np.full(n, 20.0),

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import curve_fit, isotonic_regression
 
+from actuator_opt import least_squares
 from actuator_opt.errors import InputError
 from actuator_opt.fits import fit_double_exponential, fit_power_law
 
@@ -252,3 +253,26 @@ def test_points_that_cannot_be_fitted_are_named(law, speed, points, weights, sai
         law(speed, points, weights)
     assert "\n" not in str(error.value)
     assert error.value.diagnostics[0].remedy
+
+
+def test_least_squares_starts_inside_its_bounds_and_keeps_to_them():
+    """A start outside is moved in; the minimum of (x - 3)^2 + (y - 1)^2 with x <= 2 is (2, 1)."""
+    asked = []
+
+    def residuals(x):
+        asked.append(x.copy())
+        return x - np.array([3.0, 1.0])
+
+    low, high = np.array([-np.inf, 0.0]), np.array([2.0, np.inf])
+    found = least_squares.solve(
+        residuals,
+        np.array([5.0, -1.0]),
+        (low, high),
+        slopes=lambda _: np.eye(2),
+        sizes="jac",
+        room=1e-3,
+    )
+    assert found.x == pytest.approx([2.0, 1.0], abs=1e-6)
+    assert found.cost == pytest.approx(0.5, rel=1e-6)
+    assert asked[0] == pytest.approx([2.0 - 1e-3, 1e-3])
+    assert all(((low <= x) & (x <= high)).all() for x in asked)

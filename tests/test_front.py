@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from actuator_opt.optimisation.front import dominance
 from actuator_opt.optimisation.front.front import Front, Settings, front
 from actuator_opt.optimisation.front.objectives import Objectives
-from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, Values
 
 
 def objectives(lower, upper, evaluate, names=("f1", "f2"), constraints=(), **more):
     """A box with objectives."""
     n = len(lower)
-    problem = Problem(
+    problem = BoxProblem(
         tuple(f"x{i}" for i in range(n)),
         np.array(lower, dtype=float),
         np.array(upper, dtype=float),

@@ -13,14 +13,14 @@ import actuator_opt as ao
 from actuator_opt import verbs
 from actuator_opt.errors import InputError
 from actuator_opt.optimisation.outcome import Outcome
-from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
 
 
 def box(evaluate, n=2, constraints=(), low=0.1, high=10.0, **others):
     """A problem in n variables with the same bounds."""
     names = tuple(f"x{i + 1}" for i in range(n))
-    return Problem(names, np.full(n, low), np.full(n, high), evaluate, constraints, **others)
+    return BoxProblem(names, np.full(n, low), np.full(n, high), evaluate, constraints, **others)
 
 
 def best(*changes, own=None, **options):

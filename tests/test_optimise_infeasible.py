@@ -8,7 +8,7 @@ import pytest
 
 from actuator_opt.optimisation.infeasibility import explain
 from actuator_opt.optimisation.outcome import Outcome
-from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
 
 
@@ -18,7 +18,7 @@ def box(margins, names, *, relaxable=None, low=0.1, high=10.0):
     def evaluate(x):
         return Values(x[0] + x[1], np.stack(margins(*x)))
 
-    return Problem(
+    return BoxProblem(
         ("a", "b"), np.full(2, low), np.full(2, high), evaluate, names, relaxable=relaxable
     )
 

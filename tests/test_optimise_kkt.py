@@ -9,7 +9,7 @@ from scipy.optimize import nnls as reference_nnls
 
 from actuator_opt.optimisation import kkt, newton
 from actuator_opt.optimisation.evaluator import Evaluator
-from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, Values
 
 
 @given(st.integers(0, 10**6), st.integers(1, 8), st.integers(1, 14), st.booleans())
@@ -101,7 +101,7 @@ def test_polish_does_not_settle_on_a_maximum():
         logs = np.log(x)
         return Values(3 - logs[0] ** 2 + 0.1 * logs[1] ** 2)
 
-    evaluator = Evaluator(Problem(("a", "b"), [0.1, 0.1], [10, 10], evaluate))
+    evaluator = Evaluator(BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate))
     start = evaluator.point(np.array([0.01, 0.3]))
     found = newton.polish(evaluator, start, iterations=40)
     assert found.objective < start.objective
@@ -115,7 +115,7 @@ def test_curvature_names_the_second_order_condition():
         a, b = np.log(x)
         return Values(10 + a**2 - b**2 + 0 * a, None)
 
-    saddle = Evaluator(Problem(("a", "b"), [0.1, 0.1], [10, 10], evaluate))
+    saddle = Evaluator(BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate))
     quality = kkt.check(saddle, saddle.point(np.zeros(2)), curvature=True)
     assert quality.residual <= 1e-12
     assert quality.curvature is kkt.Curvature.NEGATIVE
@@ -131,7 +131,7 @@ def test_residual_definition():
     def evaluate(x):
         return Values(x[0] + 2 * x[1], (x[0] * x[1] - 1)[None])
 
-    evaluator = Evaluator(Problem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, ("product",)))
+    evaluator = Evaluator(BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, ("product",)))
     quality = kkt.check(evaluator, evaluator.point(np.zeros(2)))
     assert quality.residual == pytest.approx(np.sqrt(0.1))
     assert quality.multipliers[0] == pytest.approx(1.5)
@@ -144,7 +144,7 @@ def test_rows_beyond_tolerance_are_not_active():
         one = np.ones_like(x[0])
         return Values(x[0], np.stack([5e-7 * one, 2e-6 * one]))
 
-    evaluator = Evaluator(Problem(("a",), [0.1], [10], evaluate, ("near", "far")))
+    evaluator = Evaluator(BoxProblem(("a",), [0.1], [10], evaluate, ("near", "far")))
     assert kkt.check(evaluator, evaluator.point(np.zeros(1))).active == ("near",)
 
 

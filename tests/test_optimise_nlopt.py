@@ -7,7 +7,7 @@ from actuator_opt.errors import UsageError
 from actuator_opt.optimisation import nlopt_wrapper
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.outcome import Outcome
-from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
 
 LOCAL = [
@@ -37,7 +37,7 @@ def easy(n=2, constrained=True):
 
     names = tuple(f"x{i + 1}" for i in range(n))
     rows = ("product",) if constrained else ()
-    return Problem(names, np.full(n, 0.1), np.full(n, 10.0), evaluate, rows)
+    return BoxProblem(names, np.full(n, 0.1), np.full(n, 10.0), evaluate, rows)
 
 
 def impossible():
@@ -48,7 +48,7 @@ def impossible():
         return Values(a + b, np.stack([a * b / 12 - 1, 1 - a / 2, 1 - b / 4]))
 
     names = ("product", "a max", "b max")
-    return Problem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, names)
+    return BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, names)
 
 
 @pytest.mark.parametrize("algorithm", LOCAL + GLOBAL)
@@ -87,7 +87,7 @@ def test_nan_in_the_box_is_screened(algorithm):
             np.where(x[1].real > 3 * x[0].real, np.nan, x[0] + x[1]), (x[0] * x[1] - 1)[None]
         )
 
-    problem = Problem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, ("product",))
+    problem = BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, ("product",))
     found = solve(problem, algorithm=algorithm, samples=256, starts=2)
     assert found.feasible
     np.testing.assert_allclose(found.x, [1, 1], rtol=1e-4)
@@ -124,7 +124,7 @@ def test_equalities_are_refused_where_not_taken():
     def evaluate(x):
         return Values(x[0], None, (x[0] * x[1] - 1)[None])
 
-    problem = Problem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, (), ("product",))
+    problem = BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, (), ("product",))
     with pytest.raises(UsageError, match=r"takes no equality constraints.*AUGLAG\+LD_MMA"):
         solve(problem, algorithm="LD_MMA")
     assert solve(problem, algorithm="AUGLAG+LD_MMA").objective == pytest.approx(0.1)
@@ -176,7 +176,7 @@ def impossible_from(product):
     def evaluate(x):
         return Values(x[0] + x[1], (x[0] * x[1] / product - 1)[None])
 
-    return Problem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, ("product",))
+    return BoxProblem(("a", "b"), [0.1, 0.1], [10, 10], evaluate, ("product",))
 
 
 def test_linear_and_logarithmic_variables_agree():

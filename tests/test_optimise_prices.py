@@ -7,9 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from actuator_opt.optimisation import lockstep, movement
+from actuator_opt.optimisation import movement
 from actuator_opt.optimisation.prices import prices
-from actuator_opt.optimisation.problem import ParametricProblem, Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
+from actuator_opt.optimisation.resolve.steps import Descent
 from actuator_opt.optimisation.solver import solve
 
 
@@ -22,7 +23,7 @@ def priced(parametric, **options):
 def parametric(evaluate, values, constraints, *, n=2, low=0.1, high=10.0):
     """Return a parametric problem in n variables with parameters p0, p1, ..."""
     values = np.asarray(values, dtype=float)
-    problem = Problem(
+    problem = BoxProblem(
         tuple("abcdefgh"[:n]),
         np.full(n, low),
         np.full(n, high),
@@ -272,7 +273,7 @@ def test_equality_prices():
 @settings(max_examples=60, deadline=None)
 def test_a_learnt_curvature_stays_positive(steps, changes):
     """Whatever slopes are learnt, steep, flat or bent down, the next step has a unique answer."""
-    descent = lockstep.Descent(np.eye(4), 1.0, 0, 0.0)
+    descent = Descent(np.eye(4), 1.0, 0, 0.0)
     for step, change in zip(steps, changes, strict=True):
         descent._learn(step, change)
         np.linalg.cholesky(descent.hessian)

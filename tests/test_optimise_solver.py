@@ -12,7 +12,7 @@ from actuator_opt.optimisation import solver
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.kkt import Curvature
 from actuator_opt.optimisation.outcome import Outcome
-from actuator_opt.optimisation.problem import Problem, Space, Values
+from actuator_opt.optimisation.problem import BoxProblem, Space, Values
 from actuator_opt.optimisation.sampling import Halton
 from actuator_opt.optimisation.solver import solve
 
@@ -20,7 +20,7 @@ from actuator_opt.optimisation.solver import solve
 def box(evaluate, n=2, constraints=(), low=0.1, high=10.0, **others):
     """Return a problem in n variables with the same bounds."""
     names = tuple(f"x{i + 1}" for i in range(n))
-    return Problem(names, np.full(n, low), np.full(n, high), evaluate, constraints, **others)
+    return BoxProblem(names, np.full(n, low), np.full(n, high), evaluate, constraints, **others)
 
 
 def test_every_outcome_is_a_sentence():
@@ -69,7 +69,7 @@ def test_runs_side_by_side_are_the_runs_alone(name, monkeypatch):
     found, calls = {}, {"together": 0, "alone": 0}
     for way in calls:
         if way == "alone":
-            monkeypatch.setattr(solver, "foresee", lambda *_, **__: None)
+            monkeypatch.setattr(solver, "precompute", lambda *_, **__: None)
         problem = getattr(problems, name)()
 
         def counted(x, way=way, evaluate=problem.evaluate):
@@ -273,7 +273,7 @@ def test_bad_problems_are_refused(change, message):
     """Reversed or missing bounds and a start outside them are input errors that name them."""
     fields = {"names": ("a", "b"), "lower": [1, 1], "upper": [2, 2]} | change
     with pytest.raises(InputError, match=message):
-        Problem(evaluate=lambda x: Values(x[0]), **fields)
+        BoxProblem(evaluate=lambda x: Values(x[0]), **fields)
 
 
 def test_wrong_shapes_are_refused():

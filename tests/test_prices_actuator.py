@@ -16,7 +16,7 @@ from actuator_opt.optimisation import actuator as actuator_module
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.price_table import sensitivities
 from actuator_opt.optimisation.prices import prices
-from actuator_opt.optimisation.problem import ParametricProblem, Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
 from actuator_opt.optimisation.sensitivity import ranked
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.reporting import prices as told
@@ -65,7 +65,7 @@ def test_both_sides_of_a_kink_are_what_re_solving_finds():
     def evaluate(x, p):
         return Values(x[0] + 0 * p[0], np.stack([x[0] - p[0], x[0] - 2 + 0 * p[0]]))
 
-    problem = Problem(
+    problem = BoxProblem(
         ("a",),
         np.array([0.1]),
         np.array([10.0]),
@@ -90,7 +90,7 @@ def test_another_valley_takes_over():
         near = second / (first + second)
         return Values(near * p[0] + (1 - near) * (2 + p[0] / 4) + 5 * first * second, None)
 
-    problem = Problem(
+    problem = BoxProblem(
         ("x",), np.array([0.2]), np.array([5.0]), lambda x: evaluate(x, np.array([[2.5]]))
     )
     found = solve(problem, more_starts=[np.array([3.05])])

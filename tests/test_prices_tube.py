@@ -29,7 +29,7 @@ import actuator_opt as ao
 from actuator_opt.models import barrel
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.prices import prices
-from actuator_opt.optimisation.problem import ParametricProblem, Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
 from actuator_opt.optimisation.solver import solve
 
 NAMES = ("strength", "pressure", "factor", "bore", "length", "density")
@@ -87,7 +87,7 @@ def tube(stress, values):
         return Values(mass, room[None])
 
     p = np.array(values)
-    problem = Problem(("wall",), [1e-6], [1.0], lambda x: evaluate(x, p[:, None]), ("stress",))
+    problem = BoxProblem(("wall",), [1e-6], [1.0], lambda x: evaluate(x, p[:, None]), ("stress",))
     return ParametricProblem(problem, NAMES, p, evaluate)
 
 

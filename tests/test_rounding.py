@@ -20,7 +20,7 @@ from actuator_opt.errors import InputError
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.branch_and_bound import search
 from actuator_opt.optimisation.listed import Listed
-from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.rounding import Wanted, misfits, plies, rounded, sizes_of
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.reporting import text
@@ -76,7 +76,7 @@ def quadratic(weights, middle, coupling, total):
         return Values((weights * (x - middle) ** 2).sum(axis=0) + coupling * spread**2)
 
     n = len(weights)
-    return Problem(tuple("abcdef"[:n]), np.full(n, 0.5), np.full(n, 8.5), evaluate)
+    return BoxProblem(tuple("abcdef"[:n]), np.full(n, 0.5), np.full(n, 8.5), evaluate)
 
 
 def enumerated(weights, middle, coupling, total, lists):

@@ -24,7 +24,7 @@ from actuator_opt.errors import InputError
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.branch_and_bound import search
 from actuator_opt.optimisation.listed import Listed
-from actuator_opt.optimisation.problem import Problem, Values
+from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.reporting.choices_table import terminal
 from actuator_opt.reporting.whole_plies import notes as rounding_notes
@@ -247,7 +247,7 @@ def test_gear_train():
 
     teeth = np.arange(12.0, 61.0)
     listed = [Listed((k,), teeth[:, None]) for k in range(4)]
-    problem = Problem(tuple("abcd"), np.full(4, 12.0), np.full(4, 60.0), evaluate)
+    problem = BoxProblem(tuple("abcd"), np.full(4, 12.0), np.full(4, 60.0), evaluate)
     start = solve(problem, starts=2, samples=64)
     found = search(problem, listed, start.x, most=1000)
     pairs = np.outer(teeth, teeth)  # of either shaft: every ratio there is
@@ -281,7 +281,7 @@ def test_spring_of_listed_wire():
         return Values(np.pi**2 / 4 * mean * wire**2 * (coils + 2), np.stack(margins))
 
     lower, upper = np.array([1, 0.6, 0.2]), np.array([30, 3, 0.5])
-    problem = Problem(("coils", "mean", "wire"), lower, upper, evaluate, tuple("abcdef"))
+    problem = BoxProblem(("coils", "mean", "wire"), lower, upper, evaluate, tuple("abcdef"))
     listed = [Listed((0,), np.arange(1.0, 31)[:, None]), Listed((2,), np.array(wires)[:, None])]
     found = search(problem, listed, solve(problem, samples=512).x)
     assert found.complete

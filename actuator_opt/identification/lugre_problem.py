@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .. import least_squares
 from ..least_squares import Parameter, known, quantile
 from ..numeric import Array
 from .doubtful import PARTED, agreed, hidden, opened, widened
@@ -227,21 +228,19 @@ class Problem:
 
     def descend(self, x: Array) -> Array:
         """Least squares within the limits."""
-        from scipy.optimize import least_squares  # slow to import, rarely needed
-
         low, high = self.limits()
         span = np.where(np.isfinite(high - low), high - low, self.sizes)
-        found = least_squares(
+        return least_squares.solve(
             self.one,
-            np.clip(x, low + 1e-6 * span, high - 1e-6 * span),
-            jac=self.slopes,
-            bounds=(low, high),
-            x_scale=self.sizes,
-            ftol=1e-7,
-            xtol=1e-6,
-            max_nfev=40,
-        )
-        return found.x
+            x,
+            (low, high),
+            slopes=self.slopes,
+            sizes=self.sizes,
+            room=1e-6 * span,
+            cost_tolerance=1e-7,
+            step_tolerance=1e-6,
+            most=40,
+        ).x
 
     def scatter(self, x: Array) -> float:
         """Standard deviation of the windows' residuals [N]."""

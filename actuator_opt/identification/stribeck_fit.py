@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .. import least_squares
 from ..least_squares import Parameter, known
 from ..models import friction
 from ..numeric import STEP, Array
@@ -258,8 +259,6 @@ def _held(names: Sequence[str], coulomb: float, exponent: float) -> dict[str, fl
 
 def _fit(points: Sequence[Point], names: tuple[str, ...], exponent: float) -> StribeckFit:
     """Least squares for some parameters, from the best of a grid of speeds and exponents."""
-    from scipy.optimize import least_squares  # slow to import, rarely needed
-
     data = Steady(points)
     start = _search(data, names, exponent)
     scale = _scales(data)
@@ -280,16 +279,10 @@ def _fit(points: Sequence[Point], names: tuple[str, ...], exponent: float) -> St
             columns[:, names.index("coulomb")] += rise
         return columns * [scale[name] for name in names] / data.error[:, None]
 
-    bounds = _limits(names, scale)
+    low, high = (np.array(side) for side in _limits(names, scale))
     x0 = np.array([start[name] / scale[name] for name in names])
-    x0 = np.clip(x0, np.array(bounds[0]) + 1e-9, np.array(bounds[1]) - 1e-9)
-    found = least_squares(
-        residuals,
-        x0,
-        jac=slopes,
-        bounds=bounds,
-        x_scale="jac",
-        max_nfev=400,
+    found = least_squares.solve(
+        residuals, x0, (low, high), slopes=slopes, sizes="jac", room=1e-9, most=400
     )
     best = values(found.x)
     own = {name: best[name] for name in names}

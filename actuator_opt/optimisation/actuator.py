@@ -15,7 +15,7 @@ from ..evaluation.rows import UNLIMITED, Computed, Row, rows_of
 from ..evaluation.values import Values as Numbers
 from ..numeric import Array, real, where
 from ..quantities import Sense
-from .problem import ParametricProblem, Problem, Values
+from .problem import BoxProblem, ParametricProblem, Values
 
 Fault = Callable[[str, str, str], Diagnostic]
 """Makes a Diagnostic of a variable's (path, message, remedy) at its place in the file."""
@@ -129,7 +129,7 @@ class ActuatorProblem:
     rows: tuple[Row, ...]
     fixed: tuple[Row, ...]
     """Rows no variable changes: met or missed for good."""
-    problem: Problem
+    problem: BoxProblem
     wanted: frozenset[str] | None
     """Metrics of objective and rows; None where a user's own metric may read any."""
     refusals: Refusals = field(default_factory=Refusals)
@@ -260,7 +260,7 @@ def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
     ]
     rows += tuple(missed)
     holder: list[ActuatorProblem] = []
-    problem = Problem(
+    problem = BoxProblem(
         names=paths,
         lower=lower,
         upper=upper,

@@ -19,11 +19,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..numeric import Array
-from . import lockstep, nearby
 from .descents import FEASIBLE
 from .evaluator import Evaluator, Point
 from .listed import ON, Assignment, Box, Listed, between, with_rows
-from .problem import ParametricProblem, Problem, Values, Vector
+from .problem import BoxProblem, ParametricProblem, Values, Vector
+from .resolve.boxes import EXACT, ROUGH, BoxTask, Criteria, Nearest, resolve_boxes
+from .resolve.changed import ChangedProblems, applicable
+from .resolve.hessians import ScaledHessian, hessian_at
+from .resolve.steps import valley_at
 
 MOST_SOLVES = 400
 """Most re-optimisations of one search."""
@@ -73,7 +76,7 @@ class Found:
 
 
 def search(
-    problem: Problem,
+    problem: BoxProblem,
     listed: Sequence[Listed],
     x: Vector,
     *,
@@ -94,7 +97,7 @@ def search(
     below : only a better objective than this one is of interest
     memory : of searches of problems much like this one, with the same rows; gets what this finds
     """
-    remembered = memory is not None and memory.curvature is not None
+    remembered = memory is not None and memory.hessian is not None
     run = _Run(problem, listed, x, most, until, below, memory or Memory())
     if remembered:
         run.look_ahead()
@@ -147,7 +150,7 @@ class _Boxes:
 
 
 def at(
-    problem: Problem, listed: Sequence[Listed], assignment: Assignment, x: Vector, memory: Memory
+    problem: BoxProblem, listed: Sequence[Listed], assignment: Assignment, x: Vector, memory: Memory
 ) -> float | None:
     """The objective of one assignment, re-optimised; None where it is infeasible."""
     objective = _Run(problem, listed, x, 1, None, np.inf, memory).assigned(assignment, x)
@@ -158,28 +161,28 @@ def at(
 class Memory:
     """Where the boxes of a search ended, from where those of a problem much like it are near."""
 
-    curvature: nearby.Curvature | None = None
+    hessian: ScaledHessian | None = None
     ends: dict[Box, tuple[Evaluator, Point]] = field(default_factory=dict)
-    curvatures: dict[Box, nearby.Curvature | None] = field(default_factory=dict)
+    hessians: dict[Box, ScaledHessian | None] = field(default_factory=dict)
     missed: dict[Box, Vector] = field(default_factory=dict)
     """The least violated points of boxes without a feasible one."""
     visited: tuple[Box, ...] = ()
     """The boxes whose continuous optimum the last search wanted."""
 
-    def near(self, box: Box) -> tuple[Vector, nearby.Curvature | None] | None:
-        """The optimum in a box of another problem, and its curvature."""
+    def near(self, box: Box) -> tuple[Vector, ScaledHessian | None] | None:
+        """The optimum in a box of another problem, and its Hessian."""
         end = self.ends.get(box)
         if end is None:
             return None
-        if box not in self.curvatures:
-            self.curvatures[box] = nearby.curvature_at(*end)
-        return end[1].x, self.curvatures[box]
+        if box not in self.hessians:
+            self.hessians[box] = hessian_at(*end)
+        return end[1].x, self.hessians[box]
 
-    def note(self, box: Box, evaluator: Evaluator, found: nearby.Nearest) -> None:
+    def note(self, box: Box, evaluator: Evaluator, found: Nearest) -> None:
         """Keep where a box ended, unless it was easily reached from what is known."""
         if found.optimum is not None and not (found.followed and box in self.ends):
             self.ends[box] = evaluator, found.optimum
-            self.curvatures.pop(box, None)
+            self.hessians.pop(box, None)
         elif found.optimum is None and found.missed is not None:
             self.missed.setdefault(box, found.missed.x)
 
@@ -188,7 +191,7 @@ class Memory:
 class _Run:
     """The state of one search."""
 
-    problem: Problem
+    problem: BoxProblem
     listed: Sequence[Listed]
     x: Vector
     most: int
@@ -201,7 +204,7 @@ class _Run:
     near: dict[Assignment, Vector] = field(default_factory=dict)
     ends: list[tuple[Evaluator, Point | None]] = field(default_factory=list)
     visited: list[Box] = field(default_factory=list)
-    ahead: dict[Box, tuple[nearby.Task, nearby.Nearest]] = field(default_factory=dict)
+    ahead: dict[Box, tuple[BoxTask, Nearest]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.index = np.concatenate([one.index for one in self.listed]).astype(np.intp)
@@ -211,9 +214,9 @@ class _Run:
         others = np.setdiff1d(np.arange(len(self.x)), self.index)
         self.only_listed = bool((self.problem.lower == self.problem.upper)[others].all())
         self.least = np.inf
-        if self.memory.curvature is None and start.valid and self.reference.space.size:
+        if self.memory.hessian is None and start.valid and self.reference.space.size:
             self.reference.check_gradients(start)
-            self.memory.curvature = nearby.curvature_at(self.reference, start)
+            self.memory.hessian = hessian_at(self.reference, start)
 
     @property
     def exhausted(self) -> bool:
@@ -265,14 +268,15 @@ class _Run:
             return self.problem.evaluate(full)
 
         parametric = ParametricProblem(evaluator.problem, names, here, evaluate)
-        suits = point.valid and evaluator.space.size and lockstep.applicable(parametric, evaluator)
+        suits = point.valid and evaluator.space.size and applicable(parametric, evaluator)
         if not suits or not chosen:
             return [(assignment, self.x) for assignment in chosen]
         values = np.stack([self.values(assignment) for assignment in chosen], axis=1)
         starts = np.repeat(point.z[:, None], len(chosen), axis=1)
-        known = lockstep.resolve_together(parametric, evaluator, point, starts, values)
+        changed = ChangedProblems(parametric, evaluator, values)
+        known = changed.near_optimum(valley_at(evaluator, point), starts)
         left = [k for k, optimum in enumerate(known) if optimum is None]
-        near = lockstep.restore_together(parametric, evaluator, point.z, values[:, left])
+        near = changed.chosen(left).restore(point.z)
         for assignment, optimum in zip(chosen, known, strict=True):
             self.solves += 1
             if optimum is not None:
@@ -288,7 +292,7 @@ class _Run:
         if assignment not in self.points:
             values = self.values(assignment)
             box = tuple((row,) for row in assignment)
-            (found,) = self._descended([(box, values, values)], near, nearby.EXACT)
+            (found,) = self._descended([(box, values, values)], near, EXACT)
             self.note(assignment, np.inf if found is None else found.objective)
             if found is not None:
                 self.points[assignment] = found.x
@@ -306,10 +310,8 @@ class _Run:
 
     def look_ahead(self) -> None:
         """Re-optimise the boxes of the last search at once: most of them are wanted again."""
-        tasks = [
-            self._task(box, *self._bounds(box), self.x, nearby.ROUGH) for box in self.memory.visited
-        ]
-        ends = nearby.resolve(tasks)
+        tasks = [self._task(box, *self._bounds(box), self.x, ROUGH) for box in self.memory.visited]
+        ends = resolve_boxes(tasks)
         self.ahead = dict(zip(self.memory.visited, zip(tasks, ends, strict=True), strict=True))
 
     def evaluates(self, box: Box) -> bool:
@@ -341,7 +343,7 @@ class _Run:
                 large.append(box)
         self.visited += large
         bounds = [(box, *self._bounds(box)) for box in large]
-        for box, point in zip(large, self._descended(bounds, near, nearby.ROUGH), strict=True):
+        for box, point in zip(large, self._descended(bounds, near, ROUGH), strict=True):
             if point is not None and not self.beaten(point.objective):
                 boxes.add(point.objective, box, point.x)
 
@@ -435,28 +437,28 @@ class _Run:
         return evaluator.point(evaluator.space.to_z(evaluator.problem.inside(near))), evaluator
 
     def _task(
-        self, box: Box, lower: Vector, upper: Vector, near: Vector, finish: nearby.Finish
-    ) -> nearby.Task:
+        self, box: Box, lower: Vector, upper: Vector, near: Vector, criteria: Criteria
+    ) -> BoxTask:
         """A box to re-optimise, near a point or where a like problem ended."""
         known = self.memory.near(box)
         hopeless = known is None and box in self.memory.missed
-        x, curvature = known or (self.memory.missed.get(box, near), self.memory.curvature)
+        x, hessian = known or (self.memory.missed.get(box, near), self.memory.hessian)
         evaluator = self._within(lower, upper)
-        above = self.best if finish is nearby.ROUGH else np.inf
+        above = self.best if criteria is ROUGH else np.inf
         x = evaluator.problem.inside(x)
-        return nearby.Task(evaluator, x, curvature, finish, hopeless, above)
+        return BoxTask(evaluator, x, hessian, criteria, hopeless, above)
 
     def _descended(
-        self, bounds: Sequence[tuple[Box, Vector, Vector]], near: Vector, finish: nearby.Finish
+        self, bounds: Sequence[tuple[Box, Vector, Vector]], near: Vector, criteria: Criteria
     ) -> list[Point | None]:
         """The optimum in boxes, near a point or where a like problem ended; None without."""
-        known = self.ahead if finish is nearby.ROUGH else {}
+        known = self.ahead if criteria is ROUGH else {}
         tasks = {
-            box: self._task(box, lower, upper, near, finish)
+            box: self._task(box, lower, upper, near, criteria)
             for box, lower, upper in bounds
             if box not in known
         }
-        ends = nearby.resolve(list(tasks.values()))
+        ends = resolve_boxes(list(tasks.values()))
         done = known | dict(zip(tasks, zip(tasks.values(), ends, strict=True), strict=True))
         self.solves += len(bounds)
         found = []

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from ..errors import InputError
 from .branch_and_bound import Found, Memory, at, search
 from .choices import Search, Settings, many_starts
+from .identical_problems import Evidence
 from .quick_look import Look
 from .rounding import RUNNERS_UP, Sizes, Wanted, sizes_of
-from .twins import Evidence
 
 _NOTHING_BETTER = Found(None, None, None, {}, 0, complete=True)
 """Of a combination whose sizes come to what those of another one came to."""

@@ -25,7 +25,7 @@ from ..evaluation.limits import all_limits
 from ..evaluation.rows import Row, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of
 from .descents import FEASIBLE
-from .quick_look import DOUBTFUL, Look, Start, curvature_of, look_quickly
+from .quick_look import DOUBTFUL, Look, Start, hessian_of, look_quickly
 from .solver import solve
 
 NEAR = 0.05
@@ -235,8 +235,8 @@ def _look_at_all(found: Search, settings: Settings) -> None:
             look_quickly(look, _starts(found, look), settings.seed, left)
         except InputError as error:
             _give_up(look, error)
-        if look.curvature is None and look.feasible:
-            look.curvature = curvature_of(look)
+        if look.hessian is None and look.feasible:
+            look.hessian = hessian_of(look)
 
 
 def _any(found: Search) -> bool:
@@ -264,12 +264,12 @@ def _starts(found: Search, look: Look) -> list[Start]:
     if good is not None and good.x is not None:
         starts.append(Start(good.x, descend=True))
     last = min(
-        (other for other in known if other.curvature is not None),
+        (other for other in known if other.hessian is not None),
         key=lambda other: (distance(other)[0], -other.order),
         default=None,
     )
     if last is not None and last.x is not None:
-        starts.append(Start(last.x, descend=True, curvature=last.curvature))
+        starts.append(Start(last.x, descend=True, hessian=last.hessian))
     own = None if look.actuator is None else look.actuator.problem.start
     return starts or ([] if own is None else [Start(own, descend=True)])
 

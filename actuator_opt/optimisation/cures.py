@@ -32,7 +32,7 @@ from . import elastic, repairs
 from .actuator import ActuatorProblem, build
 from .evaluator import Evaluator
 from .infeasibility import Infeasibility
-from .problem import Problem, Values, Vector
+from .problem import BoxProblem, Values, Vector
 
 DIMENSIONS = (
     "bore", "wall_thickness", "winding_angle", "rod_diameter", "rod_inner_diameter", "part_length",
@@ -184,7 +184,7 @@ def _limit(quantity: Quantity, now: float, gain: float) -> float:
 
 
 def freed(
-    problem: Problem,
+    problem: BoxProblem,
     start: Vector,
     limits: Mapping[int, float],
     paths: Mapping[int, str],
@@ -245,7 +245,7 @@ def _least_first(enough: Sequence[Cure]) -> tuple[Cure, ...]:
     )
 
 
-def opened(actuator: ActuatorProblem, paths: Sequence[str]) -> Problem:
+def opened(actuator: ActuatorProblem, paths: Sequence[str]) -> BoxProblem:
     """The problem with more variables, each still at its value.
 
     Rows that only these move count too, but for checks that were missed for good before.
@@ -260,7 +260,7 @@ def opened(actuator: ActuatorProblem, paths: Sequence[str]) -> Problem:
     return _kept(wider, _lost(actuator))
 
 
-def _kept(actuator: ActuatorProblem, lost: frozenset[str]) -> Problem:
+def _kept(actuator: ActuatorProblem, lost: frozenset[str]) -> BoxProblem:
     """The problem without the rows of some checks."""
     rows = np.array([row.label not in lost for row in actuator.rows], dtype=bool)
 
@@ -305,7 +305,7 @@ def _choices(
     """Choices that alone are enough, those that miss least first; those not tried."""
     subject, library = actuator.subject, load_library()
     before = _missed(actuator.problem, found.x)
-    offered: list[tuple[float, Cure, Problem]] = []
+    offered: list[tuple[float, Cure, BoxProblem]] = []
     margins = np.ravel(actuator.evaluate(found.x[:, None]).constraints)
     rows = zip(actuator.rows, margins.tolist(), strict=True)
     places = {row.place for row, margin in rows if not margin >= -repairs.NOTHING}
@@ -327,7 +327,7 @@ def _choices(
     return tuple(enough), []
 
 
-def _missed(problem: Problem, x: Vector) -> float:
+def _missed(problem: BoxProblem, x: Vector) -> float:
     """Sum of the margins missed at a point; infinite where the models have no answer."""
     rows = Evaluator.screen(problem.rows(x[:, None]))[1:, 0]
     return float(np.maximum(-rows, 0.0).sum()) if np.isfinite(rows).all() else math.inf
@@ -395,7 +395,7 @@ def _word(design: Design, path: str) -> str:
 
 def _chosen(
     actuator: ActuatorProblem, values: Mapping[str, str], library: Library
-) -> Problem | None:
+) -> BoxProblem | None:
     """The problem with another choice; None where it contradicts the design, or costs a check."""
     subject = actuator.subject
     try:

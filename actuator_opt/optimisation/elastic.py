@@ -13,7 +13,7 @@ from ..numeric import Array
 from .evaluator import Evaluator, Point
 from .newton import polish
 from .nlopt_wrapper import run
-from .problem import Problem, Values, Vector
+from .problem import BoxProblem, Values, Vector
 
 Indices: TypeAlias = npt.NDArray[np.intp]
 
@@ -33,7 +33,7 @@ ROUGH = 1e-5
 """Relative tolerance of a descent that only has to tell whether it leads anywhere."""
 
 
-def common(problem: Problem, room: float) -> Problem:
+def common(problem: BoxProblem, room: float) -> BoxProblem:
     """Minimise one slack that every constraint and equality may be missed by."""
     m, e = len(problem.constraint_names), len(problem.equality_names)
     n = len(problem.names)
@@ -50,7 +50,7 @@ def common(problem: Problem, room: float) -> Problem:
     return _extended(problem, evaluate, ["slack"], room, names, ())
 
 
-def separate(problem: Problem, groups: Sequence[Indices], room: Sequence[float]) -> Problem:
+def separate(problem: BoxProblem, groups: Sequence[Indices], room: Sequence[float]) -> BoxProblem:
     """Minimise the sum of one slack per group of constraints; the others hold."""
     n, m = len(problem.names), len(problem.constraint_names)
 
@@ -67,7 +67,7 @@ def separate(problem: Problem, groups: Sequence[Indices], room: Sequence[float])
     )
 
 
-def _rows_once(problem: Problem, points: Array) -> npt.NDArray[np.generic]:
+def _rows_once(problem: BoxProblem, points: Array) -> npt.NDArray[np.generic]:
     """Rows of points (n, k) of which many differ in slacks only: the model sees each once."""
     columns = np.ascontiguousarray(points.T)
     first: dict[bytes, int] = {}
@@ -79,13 +79,13 @@ def _rows_once(problem: Problem, points: Array) -> npt.NDArray[np.generic]:
 
 
 def _extended(
-    problem: Problem,
+    problem: BoxProblem,
     evaluate: Callable[[Array], Values],
     names: Sequence[str],
     room: float | Sequence[float],
     constraint_names: Sequence[str],
     equality_names: Sequence[str],
-) -> Problem:
+) -> BoxProblem:
     count = len(names)
     return replace(
         problem,
@@ -136,7 +136,7 @@ def _miss(point: Point) -> float:
 
 
 def descend(
-    problem: Problem, x: Vector, slack: Sequence[float], known: Sequence[Point] = ()
+    problem: BoxProblem, x: Vector, slack: Sequence[float], known: Sequence[Point] = ()
 ) -> Point:
     """Solve an elastic problem from a point and slacks, unless it arrives at a known end."""
     inner = Evaluator(problem)

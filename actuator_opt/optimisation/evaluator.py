@@ -8,14 +8,14 @@ finite-difference check fall back to central differences.
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from ..numeric import STEP
-from .problem import Problem, Space, Vector
+from .problem import BoxProblem, Space, Vector
 
 CHUNK = 4096
 """Most columns in one call of the model."""
@@ -58,16 +58,19 @@ class Evaluator:
     ----------
     problem : the problem
     max_evaluations, max_seconds : limits after which `point` raises `LimitReached`
+    stop : asked before every evaluation; `point` raises `LimitReached` once it says True
     """
 
     def __init__(
         self,
-        problem: Problem,
+        problem: BoxProblem,
         *,
         max_evaluations: int | None = None,
         max_seconds: float | None = None,
+        stop: Callable[[], bool] | None = None,
     ) -> None:
         self.problem = problem
+        self.stop = stop
         self.space = Space(problem)
         self.constraint_count = len(problem.constraint_names)
         self.max_evaluations = max_evaluations
@@ -92,9 +95,10 @@ class Evaluator:
 
     @property
     def late(self) -> bool:
-        """Whether the time is used up."""
+        """Whether the time is used up, or a stop is asked for."""
         used = time.perf_counter() - self.began
-        return self.max_seconds is not None and used >= self.max_seconds
+        over = self.max_seconds is not None and used >= self.max_seconds
+        return over or (self.stop is not None and self.stop())
 
     def check_limits(self) -> None:
         """Raise `LimitReached` if the run has used up its evaluations or its time."""

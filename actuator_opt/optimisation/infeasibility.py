@@ -18,7 +18,7 @@ import numpy.typing as npt
 from ..progress import tell
 from . import elastic, kkt, repairs
 from .evaluator import Evaluator, Point
-from .problem import Problem, Vector
+from .problem import BoxProblem, Vector
 from .repairs import NOTHING, Opening, Relaxation
 
 STARTS = 2
@@ -54,7 +54,7 @@ class Infeasibility:
     multipliers: Vector
 
 
-def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
+def explain(problem: BoxProblem, points: Sequence[Vector]) -> Infeasibility:
     """Explain why a problem has no feasible point.
 
     Parameters
@@ -101,7 +101,7 @@ def explain(problem: Problem, points: Sequence[Vector]) -> Infeasibility:
 
 
 def _joint(
-    problem: Problem,
+    problem: BoxProblem,
     groups: list[elastic.Indices],
     mask: npt.NDArray[np.bool_],
     found: Point,
@@ -117,7 +117,7 @@ def _joint(
 
 
 def _less(
-    problem: Problem,
+    problem: BoxProblem,
     evaluator: Evaluator,
     groups: list[elastic.Indices],
     candidates: list[elastic.Indices],
@@ -150,7 +150,7 @@ def _taking_part(evaluator: Evaluator, found: Point, quality: kkt.Kkt) -> npt.ND
     return found.rows[1 : 1 + evaluator.constraint_count] <= kkt.ACTIVE
 
 
-def _groups(problem: Problem) -> list[elastic.Indices]:
+def _groups(problem: BoxProblem) -> list[elastic.Indices]:
     """Rows of the constraints that are relaxed together."""
     m = len(problem.constraint_names)
     numbers = np.arange(m) if problem.groups is None else np.asarray(problem.groups)
@@ -158,7 +158,7 @@ def _groups(problem: Problem) -> list[elastic.Indices]:
 
 
 def _smallest(
-    problem: Problem, groups: list[elastic.Indices], points: Sequence[Vector]
+    problem: BoxProblem, groups: list[elastic.Indices], points: Sequence[Vector]
 ) -> tuple[Point, Evaluator]:
     """Return the smallest sum of slacks of the groups, from the best of several points."""
     judge = Evaluator(problem)
@@ -178,7 +178,7 @@ def _smallest(
 
 
 def _binding_bounds(
-    problem: Problem, evaluator: Evaluator, quality: kkt.Kkt
+    problem: BoxProblem, evaluator: Evaluator, quality: kkt.Kkt
 ) -> tuple[Opening, ...]:
     """Bounds that hold back the joint relaxation, the most gainful first."""
     found = []

@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -132,11 +134,53 @@ def reach(
 
     None where that is beyond -100 % and +100 % of the parameter.
     """
+    result: list[tuple[float | None, str | None]] = []
+    for value, changes in zip(given.values, _changes(found, given, moves, shifts), strict=True):
+        nearest = min(changes, key=lambda change: abs(change.distance), default=None)
+        if nearest is None or abs(nearest.distance) > (abs(value) if value else 1.0):
+            result.append((None, None))
+        else:
+            result.append((float(value + nearest.distance), nearest.text))
+    return result
+
+
+class ActiveSetChange(NamedTuple):
+    """Where the active set changes: distance of the parameter, direction there, and what changes.
+
+    The direction counts where the distance is 0: a margin that is used up already but holds nothing
+    becomes active on one side only.
+    """
+
+    distance: float
+    direction: int
+    text: str
+
+
+def ends(
+    found: Optimum, given: Responses, moves: Vector, shifts: Vector
+) -> list[tuple[ActiveSetChange | None, ActiveSetChange | None]]:
+    """For each parameter the nearest change of the active set below and above its value."""
+    return [
+        (
+            min((one for one in changes if one.direction < 0), key=_size, default=None),
+            min((one for one in changes if one.direction > 0), key=_size, default=None),
+        )
+        for changes in _changes(found, given, moves, shifts)
+    ]
+
+
+def _size(change: ActiveSetChange) -> float:
+    return abs(change.distance)
+
+
+def _changes(
+    found: Optimum, given: Responses, moves: Vector, shifts: Vector
+) -> Iterator[list[ActiveSetChange]]:
+    """For each parameter where each margin or multiplier vanishes along its straight line."""
     rates = margin_slopes(found, given) + found.gradients @ moves
     held = found.held
-    result: list[tuple[float | None, str | None]] = []
     for k, value in enumerate(given.values):
-        events: list[tuple[float, str]] = []
+        changes: list[ActiveSetChange] = []
         reference = abs(value) if value else 1.0
         for i, label in enumerate(found.labels):
             if i in held:
@@ -145,13 +189,9 @@ def reach(
                 level, rate, event = max(found.margins[i], 0.0), rates[i, k], "becomes active"
             if abs(rate) * reference <= INSTANT * max(level, 1.0 if i not in held else 0.0):
                 continue
-            events.append((-level / rate, f"{label} {event}"))
-        distance, event = min(events, key=lambda e: abs(e[0]), default=(np.inf, ""))
-        if abs(distance) > reference:
-            result.append((None, None))
-        else:
-            result.append((float(value + distance), event))
-    return result
+            direction = -1 if rate > 0 else 1
+            changes.append(ActiveSetChange(-level / rate, direction, f"{label} {event}"))
+        yield changes
 
 
 def one_sided(found: Optimum, given: Responses, active: npt.NDArray[np.intp]) -> Vector:

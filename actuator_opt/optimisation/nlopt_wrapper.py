@@ -19,7 +19,7 @@ import numpy as np
 
 from ..errors import Diagnostic, UsageError
 from .evaluator import Evaluator, LimitReached, Point
-from .problem import Problem, Vector
+from .problem import BoxProblem, Vector
 
 FEASIBLE = 1e-8
 """Violation below which an iterate counts as feasible when the best one is kept."""
@@ -151,7 +151,7 @@ def _refusal(message: str, remedy: str) -> UsageError:
     return UsageError(Diagnostic(message, remedy, path="--algorithm"))
 
 
-def suit(text: str, problem: Problem) -> str:
+def suit(text: str, problem: BoxProblem) -> str:
     """Return the full name of an algorithm that suits the problem.
 
     Raises

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from .kkt import Kkt
-from .problem import Problem, Vector
+from .problem import BoxProblem, Vector
 
 MET = 1e-6
 """Worst violation that counts as met (contract)."""
@@ -152,7 +152,7 @@ class Solution:
     seed, seconds : of the run
     """
 
-    problem: Problem
+    problem: BoxProblem
     outcome: Outcome
     x: Vector
     objective: float

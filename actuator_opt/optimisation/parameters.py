@@ -13,7 +13,7 @@ import numpy as np
 
 from ..numeric import STEP
 from .evaluator import Evaluator, Point
-from .problem import ParametricProblem, Problem, Vector
+from .problem import BoxProblem, ParametricProblem, Vector
 
 RELATIVE_STEP = 1e-5
 """Step of central differences, relative to the parameter (absolute where it is 0)."""
@@ -89,7 +89,7 @@ def with_bounds(found: Responses, evaluator: Evaluator, multipliers: Vector) -> 
     )
 
 
-def perturbed(parametric: ParametricProblem, name: str, k: int, value: float) -> Problem | None:
+def perturbed(parametric: ParametricProblem, name: str, k: int, value: float) -> BoxProblem | None:
     """Return the problem with parameter k (a bound beyond the parameters) at `value`.
 
     None where the bounds would cross.

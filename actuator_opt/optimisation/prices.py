@@ -12,15 +12,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import kkt, movement, resolving
+from . import kkt, movement
 from .evaluator import Evaluator, Point
 from .outcome import Solution
-from .parameters import Responses, responses, with_bounds
+from .parameters import Responses, perturbed, responses, with_bounds
 from .problem import ParametricProblem, Vector
+from .resolve import ladder
+from .resolve.steps import valley_at
 
 
 @dataclass(frozen=True, slots=True)
-class Price:
+class ParameterPrice:
     """The price of one parameter at an optimum; values in the units of the model.
 
     Parameters
@@ -61,7 +63,7 @@ def prices(
     change: float = 0.1,
     resolve: bool = True,
     bounds: bool = True,
-) -> tuple[Price, ...]:
+) -> tuple[ParameterPrice, ...]:
     """Price every parameter, and every bound that costs, at the optimum.
 
     Parameters
@@ -85,15 +87,13 @@ def prices(
         given = with_bounds(given, evaluator, found.multipliers[m:])
     moves, shifts = movement.movement(found, given)
     active = np.flatnonzero(found.margins <= kkt.ACTIVE)
-    ends = resolving.ends(
-        parametric,
-        evaluator,
-        point,
-        given,
-        moves,
-        change if resolve else 0.0,
-        known=_others(solution),
-    )
+    ends: list[tuple[float | None, float | None]] = [(None, None)] * len(given.values)
+    if resolve and change:
+        valleys = [
+            valley_at(evaluator, one) for one in (point, *ladder.other_optima(evaluator, solution))
+        ]
+        solved = ladder.SolvedProblem(parametric, evaluator, valleys)
+        ends = _ends(solved, given, moves, change)
     return _rows(
         evaluator,
         point,
@@ -107,14 +107,42 @@ def prices(
     )
 
 
-def _others(solution: Solution) -> list[Vector]:
-    """Local optima of the search besides the one it chose."""
-    good = [
-        one
-        for one in solution.optima
-        if one.violation <= resolving.FEASIBLE and one.residual <= resolving.RESIDUAL
+def _ends(
+    solved: ladder.SolvedProblem, given: Responses, moves: Vector, change: float
+) -> list[tuple[float | None, float | None]]:
+    """Re-optimised objectives at +change and -change of every parameter; None where infeasible.
+
+    Parameters
+    ----------
+    solved : the unchanged problem
+    given : the parameters, bounds of variables included
+    moves : derivative of the optimum by them (nf, q)
+    change : relative
+    """
+    parametric, point = solved.parametric, solved.valleys[0].point
+    objectives: dict[tuple[int, int], float | None] = {}
+    tasks: dict[tuple[int, int], ladder.Task] = {}
+    for k, value in enumerate(given.values.tolist()):
+        for sign in (1, -1):
+            if value == 0 or not given.matters(k):
+                continue
+            step = sign * change * value
+            problem = perturbed(parametric, given.names[k], k, value + step)
+            objectives[k, sign] = None
+            if problem is None:
+                continue
+            parameters = None
+            if k < len(parametric.parameters):
+                parameters = parametric.parameters.copy()
+                parameters[k] += step
+            tasks[k, sign] = ladder.Task(problem, point.z + moves[:, k] * step, parameters)
+    for pair, optimum in zip(tasks, ladder.resolve(solved, list(tasks.values())), strict=True):
+        objectives[pair] = None if optimum is None else optimum.objective
+    here = point.objective
+    return [
+        (objectives.get((k, 1), here), objectives.get((k, -1), here))
+        for k in range(len(given.values))
     ]
-    return [one.x for one in good if not np.array_equal(one.x, solution.x)]
 
 
 def _rows(
@@ -128,7 +156,7 @@ def _rows(
     moves: Vector,
     ends: list[tuple[float | None, float | None]],
     reach: list[tuple[float | None, str | None]],
-) -> tuple[Price, ...]:
+) -> tuple[ParameterPrice, ...]:
     slope = evaluator.space.slope(point.x[:, None])
     moved = np.zeros((len(point.x), len(price)))
     moved[evaluator.space.free] = slope * moves
@@ -140,7 +168,7 @@ def _rows(
         first, second = (above, below) if step >= 0 else (below, above)
         relative = float(price[k]) * value / objective if objective and value else None
         rows.append(
-            Price(
+            ParameterPrice(
                 parameter=name,
                 value=value,
                 price=float(price[k]),

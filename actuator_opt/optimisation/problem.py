@@ -37,7 +37,7 @@ class Values:
 
 
 @dataclass(frozen=True)
-class Problem:
+class BoxProblem:
     """Minimise an objective over a box, subject to margins >= 0 and equalities = 0.
 
     Parameters
@@ -142,7 +142,7 @@ class ParametricProblem:
     evaluate : maps points (n, k) and parameters (q, k) or (q, 1), real or complex, to `Values`
     """
 
-    problem: Problem
+    problem: BoxProblem
     parameter_names: Sequence[str]
     parameters: Vector
     evaluate: Callable[[Array, Array], Values]
@@ -153,11 +153,11 @@ class ParametricProblem:
             raise InputError(f"{len(self.parameter_names)} parameters need as many values")
         object.__setattr__(self, "parameters", values)
 
-    def at(self, parameters: Array) -> Problem:
+    def at(self, parameters: Array) -> BoxProblem:
         """Return the problem at other parameter values (q,)."""
         return self.with_columns(np.asarray(parameters)[:, None])
 
-    def with_columns(self, parameters: Array) -> Problem:
+    def with_columns(self, parameters: Array) -> BoxProblem:
         """The problem with parameter values (q, k) of their own for each of k points."""
         return replace(self.problem, evaluate=lambda x: self.evaluate(x, parameters))
 
@@ -170,7 +170,7 @@ ON_BOUND = 1e-12
 class Space:
     """The solver's coordinates of a problem: its free variables, logarithmic where positive."""
 
-    problem: Problem
+    problem: BoxProblem
     free: npt.NDArray[np.intp] = field(init=False)
     logarithmic: npt.NDArray[np.bool_] = field(init=False)
     scale: Vector = field(init=False)

@@ -20,9 +20,10 @@ from . import elastic, kkt, nlopt_wrapper
 from .actuator import ActuatorProblem
 from .descents import FEASIBLE
 from .evaluator import Evaluator, LimitReached, Point
-from .nearby import ROUGH, Curvature, curvature_at, stepped
 from .outcome import Solution
 from .problem import Vector
+from .resolve.boxes import ROUGH, stepped
+from .resolve.hessians import ScaledHessian, hessian_at
 from .result import How
 from .sampling import sweep
 from .solver import solve
@@ -67,7 +68,7 @@ class Look:
     checks: frozenset[str] = frozenset()
     """Missed checks that no variable can mend."""
     solution: Solution | None = None
-    curvature: Curvature | None = None
+    hessian: ScaledHessian | None = None
     """At its optimum, or at the one it was followed from."""
     sizing: str = ""
     """What the search for listed sizes came to, where there was one."""
@@ -85,7 +86,7 @@ class Start(NamedTuple):
 
     x: Vector
     descend: bool
-    curvature: Curvature | None = None
+    hessian: ScaledHessian | None = None
     """At the optimum that the point is, which mostly serves its neighbours too."""
 
 
@@ -133,20 +134,20 @@ def look_quickly(
 
 def _followed(look: Look, evaluator: Evaluator, starts: Sequence[Start]) -> bool:
     """Whether steps from a neighbour's optimum settle on the optimum of this combination."""
-    near = next((start for start in starts if start.curvature is not None), None)
-    if near is None or near.curvature is None or not evaluator.space.size:
+    near = next((start for start in starts if start.hessian is not None), None)
+    if near is None or near.hessian is None or not evaluator.space.size:
         return False
     evaluator.eager = True
     point = evaluator.point(evaluator.space.to_z(near.x))
-    found = stepped(evaluator, point, near.curvature, ROUGH) if point.valid else None
+    found = stepped(evaluator, point, near.hessian, ROUGH) if point.valid else None
     if found is not None:
         _keep(look, evaluator, found)
-        look.curvature = near.curvature
+        look.hessian = near.hessian
     return found is not None
 
 
-def curvature_of(look: Look) -> Curvature | None:
-    """The curvature at the optimum of a combination; None where it ended on none."""
+def hessian_of(look: Look) -> ScaledHessian | None:
+    """The Hessian at the optimum of a combination; None where it ended on none."""
     if look.actuator is None or look.x is None:
         return None
     evaluator = Evaluator(look.actuator.problem)
@@ -154,7 +155,7 @@ def curvature_of(look: Look) -> Curvature | None:
     if not point.valid or not evaluator.space.size:
         return None
     settled = kkt.check(evaluator, point).residual <= SETTLED
-    return curvature_at(evaluator, point) if settled else None
+    return hessian_at(evaluator, point) if settled else None
 
 
 def _settle(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:

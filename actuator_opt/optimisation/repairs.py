@@ -14,9 +14,10 @@ import numpy as np
 
 from ..numeric import Array
 from ..progress import tell
-from . import elastic, kkt, lockstep
+from . import elastic, kkt
 from .evaluator import Evaluator
-from .problem import ParametricProblem, Problem, Values, Vector
+from .problem import BoxProblem, ParametricProblem, Values, Vector
+from .resolve.changed import ChangedProblems, applicable
 
 NOTHING = 1e-6
 """A relaxation below this is none."""
@@ -79,7 +80,7 @@ def missed(evaluator: Evaluator, x: Vector, groups: Sequence[elastic.Indices]) -
 
 
 def by_limits(
-    problem: Problem,
+    problem: BoxProblem,
     groups: Sequence[elastic.Indices],
     named: set[int],
     points: Sequence[Vector],
@@ -108,7 +109,7 @@ def by_limits(
 
 
 def _challenged(
-    problem: Problem,
+    problem: BoxProblem,
     groups: Sequence[elastic.Indices],
     amounts: Sequence[float | None],
     points: Sequence[Vector],
@@ -140,7 +141,7 @@ def _challenged(
 
 
 def without_each(
-    problem: Problem,
+    problem: BoxProblem,
     groups: Sequence[elastic.Indices],
     x: Vector,
     granted: Sequence[float] | None = None,
@@ -160,18 +161,20 @@ def without_each(
     labels = problem.constraint_names
     parametric = ParametricProblem(problem, labels, np.zeros(len(labels)), evaluate)
     evaluator.check_gradients(point)
-    if not groups or not lockstep.applicable(parametric, evaluator):
+    if not groups or not applicable(parametric, evaluator):
         return [None] * len(groups)
-    found = lockstep.restore_together(parametric, evaluator, point.z, freed)
+    found = ChangedProblems(parametric, evaluator, freed).restore(point.z)
     return [None if z is None else evaluator.space.to_x(z[:, None])[:, 0] for z in found]
 
 
-def near(problem: Problem, x: Vector) -> Vector | None:
+def near(problem: BoxProblem, x: Vector) -> Vector | None:
     """A point near another that meets everything; None where none was found."""
     return without_each(problem, [np.empty(0, dtype=np.intp)], x)[0]
 
 
-def _without(problem: Problem, group: elastic.Indices, points: Sequence[Vector]) -> Vector | None:
+def _without(
+    problem: BoxProblem, group: elastic.Indices, points: Sequence[Vector]
+) -> Vector | None:
     """A point that meets everything but one group, None where none was found."""
     m = len(problem.constraint_names)
     kept = np.setdiff1d(np.arange(m), group)
@@ -192,7 +195,7 @@ def _without(problem: Problem, group: elastic.Indices, points: Sequence[Vector])
 
 
 def _least_of_all(
-    problem: Problem, group: elastic.Indices, x: Vector, others: Sequence[Vector]
+    problem: BoxProblem, group: elastic.Indices, x: Vector, others: Sequence[Vector]
 ) -> float | None:
     """The least that one group must give up; from other points too where a descent got stuck."""
     amount, settled = _least(problem, group, x)
@@ -206,12 +209,12 @@ def _least_of_all(
     return amount
 
 
-def least(problem: Problem, group: elastic.Indices, x: Vector) -> float | None:
+def least(problem: BoxProblem, group: elastic.Indices, x: Vector) -> float | None:
     """The least one group must give up, near a point that meets the others; None without any."""
     return _least(problem, group, x)[0]
 
 
-def _least(problem: Problem, group: elastic.Indices, x: Vector) -> tuple[float | None, bool]:
+def _least(problem: BoxProblem, group: elastic.Indices, x: Vector) -> tuple[float | None, bool]:
     """The least one group must give up, near a point that meets the others; whether optimal."""
     lacks = missed(Evaluator(problem), x, [group])
     stretched = elastic.separate(problem, [group], [2.0 * max(*lacks, 0.5)])
@@ -222,7 +225,7 @@ def _least(problem: Problem, group: elastic.Indices, x: Vector) -> tuple[float |
     return float(found.objective), residual <= SETTLED
 
 
-def by_bounds(problem: Problem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
+def by_bounds(problem: BoxProblem, bounds: Sequence[Opening], x: Vector) -> tuple[Opening, ...]:
     """The bounds again, each with the value that alone would do."""
     found = []
     for number, bound in enumerate(bounds):
@@ -231,7 +234,7 @@ def by_bounds(problem: Problem, bounds: Sequence[Opening], x: Vector) -> tuple[O
     return tuple(found)
 
 
-def _opened(problem: Problem, bound: Opening, x: Vector) -> float | None:
+def _opened(problem: BoxProblem, bound: Opening, x: Vector) -> float | None:
     """The value nearest to a bound at which a variable beyond it meets every requirement."""
     j, upper = bound.index, bound.side == "upper"
     if bound.value <= 0:

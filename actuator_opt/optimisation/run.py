@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass, replace
 
 from ..design import quantity_of
-from ..evaluation import Subject, evaluate
+from ..evaluation import Evaluation, Subject, evaluate
 from .actuator import ActuatorProblem, Fault, build, idle_metrics, require_movable_objective
 from .certified import certified, enumerated
 from .choice_record import record
@@ -110,6 +110,31 @@ def optimise(
     return _result(subject, actuator, after, choices, seed, began)
 
 
+def result_of(
+    subject: Subject,
+    actuator: ActuatorProblem,
+    solution: Solution,
+    *,
+    prices: bool,
+    seed: int,
+    began: float,
+    start: Evaluation | None = None,
+) -> Optimisation:
+    """The optimisation of a subject whose solution is known, with or without its prices.
+
+    Parameters
+    ----------
+    subject, actuator, solution : the prepared design, its problem and the solution
+    prices : as of `optimise`
+    seed : of the search
+    began : time of `time.perf_counter` when it began
+    start : where the search started; default: the design as it is
+    """
+    after = _After(solution)
+    _follow(actuator, after, prices=prices, certify=False, explain=False)
+    return _result(subject, actuator, after, None, seed, began, start)
+
+
 @dataclass
 class _After:
     """The solution and what follows from it."""
@@ -142,6 +167,7 @@ def _result(
     choices: Choices | None,
     seed: int,
     began: float,
+    start: Evaluation | None = None,
 ) -> Optimisation:
     """Everything put together."""
     solution = after.solution
@@ -154,7 +180,7 @@ def _result(
         objective_value=actuator.goal.shown(solution.objective),
         design=design,
         evaluation=evaluation,
-        start=evaluate(subject),
+        start=evaluate(subject) if start is None else start,
         variables=_variables(actuator, solution),
         kkt=_kkt(solution),
         sensitivities=after.rows,

@@ -27,7 +27,7 @@ from .evaluator import Evaluator
 from .infeasibility_card import change_text, entry_of
 from .listed import Assignment, Listed
 from .outcome import Solution
-from .problem import Problem, Values, Vector
+from .problem import BoxProblem, Values, Vector
 from .repairs import Relaxation
 from .result import SizeRemedy
 
@@ -129,7 +129,7 @@ class _Held:
             i: float(v) for one, row in pairs for i, v in zip(one.index, one.rows[row], strict=True)
         }
 
-    def held(self, problem: Problem) -> Problem:
+    def held(self, problem: BoxProblem) -> BoxProblem:
         """A problem with the sizes held."""
         lower, upper = problem.lower.copy(), problem.upper.copy()
         for place, value in self.sizes.items():
@@ -187,7 +187,7 @@ class _Held:
                 yield from self.remedy(fixed, np.append(self.x, value), entry)
 
     def remedy(
-        self, eased: Problem, near: Vector, entry: Mapping[str, Any]
+        self, eased: BoxProblem, near: Vector, entry: Mapping[str, Any]
     ) -> Iterator[SizeRemedy]:
         """The best design of the sizes at the changed number, where it is better than without."""
         point = repairs.near(eased, near)

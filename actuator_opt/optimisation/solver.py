@@ -9,7 +9,7 @@ optimality are then checked here, whatever a solver claims.
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -18,16 +18,16 @@ from . import kkt, nlopt_wrapper
 from .descents import FEASIBLE, LOCAL_EVALUATIONS, RESIDUAL, Descents, Found
 from .evaluator import Evaluator, LimitReached, Point
 from .outcome import LocalOptimum, Outcome, Solution
-from .problem import Problem, Vector
+from .problem import BoxProblem, Vector
+from .resolve.parallel_descents import precompute
 from .sampling import Sweep, distinct, sweep
-from .side_by_side import foresee
 
 LAGRANGIAN_EVALUATIONS = 1000
 """Most of one run of the augmented Lagrangian: the shipped designs take 300 to 850."""
 
 
 def solve(
-    problem: Problem,
+    problem: BoxProblem,
     *,
     algorithm: str = "auto",
     starts: int = 6,
@@ -37,6 +37,7 @@ def solve(
     max_seconds: float | None = None,
     more_starts: Sequence[Vector] = (),
     keep_interrupted: bool = False,
+    stop: Callable[[], bool] | None = None,
 ) -> Solution:
     """Find the best point of a problem.
 
@@ -50,6 +51,7 @@ def solve(
     max_evaluations, max_seconds : limits of the whole run; the best point so far is kept
     more_starts : further starts (n,)
     keep_interrupted : whether Ctrl-C ends the search with the best point so far, as a limit does
+    stop : asked before every evaluation of a descent; ends the search as a limit does
 
     Raises
     ------
@@ -57,7 +59,9 @@ def solve(
         Where the algorithm does not exist or does not suit the problem.
     """
     chosen = "auto" if algorithm == "auto" else nlopt_wrapper.suit(algorithm, problem)
-    evaluator = Evaluator(problem, max_evaluations=max_evaluations, max_seconds=max_seconds)
+    evaluator = Evaluator(
+        problem, max_evaluations=max_evaluations, max_seconds=max_seconds, stop=stop
+    )
     search = Descents(evaluator, seed)
     if evaluator.space.size == 0:
         return _fixed(search)
@@ -106,7 +110,7 @@ def _default_path(search: Descents, points: list[Point]) -> None:
     missed limit is missed least, the others look for a feasible point first.
     """
     failed = []
-    foresee(search.evaluator, points, seed=search.seed, most=LOCAL_EVALUATIONS)
+    precompute(search.evaluator, points, seed=search.seed, most=LOCAL_EVALUATIONS)
     for number, point in enumerate(points):
         tell("searching for a design", number / len(points))
         if search.least and not search.feasible:

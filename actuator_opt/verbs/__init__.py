@@ -25,6 +25,7 @@ from .repeating import Rerun, rerun
 from .reports import date_from_environment, is_date, report, save
 from .restoring import Restored, draw_run, report_run, restore
 from .seals import seal, with_contact, write_seal
+from .sessions import Curve, Prediction, Price, Session, session
 from .simulations import (
     Compared,
     Trial,
@@ -46,10 +47,14 @@ __all__ = [
     "Calibrated",
     "Compared",
     "Comparison",
+    "Curve",
     "Installation",
+    "Prediction",
+    "Price",
     "Rerun",
     "Restored",
     "Run",
+    "Session",
     "Trial",
     "bending",
     "calibrate",
@@ -90,6 +95,7 @@ __all__ = [
     "seal",
     "sensitivity",
     "servo_sensitivities",
+    "session",
     "simulate",
     "sound",
     "sweep",

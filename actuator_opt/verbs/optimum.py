@@ -88,13 +88,13 @@ def optimise(
 
     with located(actuator):
         if yield_target is None:
-            return _estimated(search(subject, True), actuator.plugins)
+            return estimated(search(subject, True), actuator.plugins)
         from ..scatter.robust import robust
 
-        return _estimated(robust(subject, yield_target, search, seed=seed), actuator.plugins)
+        return estimated(robust(subject, yield_target, search, seed=seed), actuator.plugins)
 
 
-def _estimated(found: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
+def estimated(found: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
     """An optimum whose evaluation has its yield: of its own sample, else a quick estimate."""
     best, sample = found.best_evaluation, found.robust
     if sample is not None:

@@ -17,10 +17,10 @@ from ..descents import FEASIBLE, RESIDUAL
 from ..evaluator import Evaluator, Point
 from ..outcome import Solution
 from ..problem import Values, Vector
+from ..resolve.parallel_descents import converged_from, descents_from, distinct_ends
 from ..sampling import Sweep, distinct, sweep
 from ..solver import solve
 from .objectives import Objectives
-from .searches import apart, runs_from, settled_from
 from .tracer import Start, Tracer
 
 HOLD = 1e-10
@@ -34,7 +34,7 @@ CONFLICT = 1e-6
 
 
 ROUGH = 16
-"""Points of a run of SLSQP after which steps with the curvature there go on."""
+"""Points of a run of SLSQP after which steps with the Hessian there go on."""
 
 
 @dataclass(frozen=True)
@@ -94,9 +94,9 @@ def _together(objectives: Objectives, checked: Evaluator, effort: Effort) -> lis
     starts = [_starts(*pair, effort.starts) for pair in zip(evaluators, swept, strict=True)]
     which = np.arange(objectives.count, dtype=float)[None]
     picked = objectives.picked()
-    ended = runs_from(picked, evaluators, which, starts, effort.seed, rounds=ROUGH)
-    ended = [apart(points) for points in ended]
-    settled = settled_from(picked, evaluators, which, ended)
+    ended = descents_from(picked, evaluators, which, starts, effort.seed, rounds=ROUGH)
+    ended = [distinct_ends(points) for points in ended]
+    settled = converged_from(picked, evaluators, which, ended)
     return [_optima(*pair) for pair in zip(ended, settled, strict=True)]
 
 
@@ -133,7 +133,7 @@ def _optima(ended: Sequence[Point], settled: Sequence[Point | None]) -> list[Vec
     ]  # fmt: skip
     if not good or min(open_, default=np.inf) < good[0].objective:
         return []
-    return [one.x for one in apart(good)]
+    return [one.x for one in distinct_ends(good)]
 
 
 def normalised(objectives: Objectives, checked: Evaluator, found: Ends) -> tuple[Tracer, Vector]:

@@ -18,7 +18,7 @@ from ...numeric import Array
 from ..descents import RESIDUAL
 from ..evaluator import Evaluator, Point
 from ..kkt import residual
-from ..problem import ParametricProblem, Problem, Values, Vector
+from ..problem import BoxProblem, ParametricProblem, Values, Vector
 
 LEVEL = "level of the objectives"
 """Name of the variable t."""
@@ -39,7 +39,7 @@ class Objectives:
     """
 
     names: Sequence[str]
-    problem: Problem
+    problem: BoxProblem
     evaluate: Callable[[Array], Values]
 
     @property
@@ -58,7 +58,7 @@ class Objectives:
 
         return ParametricProblem(self.problem, ["objective"], np.zeros(1), evaluate)
 
-    def alone(self, index: int) -> Problem:
+    def alone(self, index: int) -> BoxProblem:
         """One of the objectives by itself."""
         return self.picked().at(np.array([index]))
 

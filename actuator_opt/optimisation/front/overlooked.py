@@ -9,10 +9,10 @@ import numpy as np
 from ..descents import FEASIBLE
 from ..evaluator import Evaluator, Point
 from ..problem import Vector
+from ..resolve.parallel_descents import converged_from, descents_from, distinct_ends
 from ..sampling import KEEP, Halton, distinct
 from ..solver import solve
 from .ends import Effort
-from .searches import apart, runs_from, settled_from
 from .tracer import Design, Tracer
 
 OVERLOOKED = 1e-6
@@ -51,10 +51,10 @@ def _reached(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[
     parameters = np.stack([np.concatenate([one.level, one.way]) for one in designs], axis=1)
     given = tracer.parametric, evaluators, parameters
     starts = _starts(tracer, designs, effort)
-    ended = runs_from(*given, starts, effort.seed, tolerance=TOLERANCE, rounds=ROUNDS)
+    ended = descents_from(*given, starts, effort.seed, tolerance=TOLERANCE, rounds=ROUNDS)
     met = [[point for point in points if point.violation <= FEASIBLE] for points in ended]
-    rest = [[] if good else apart(points) for good, points in zip(met, ended, strict=True)]
-    settled = settled_from(*given, rest)
+    rest = [[] if good else distinct_ends(points) for good, points in zip(met, ended, strict=True)]
+    settled = converged_from(*given, rest)
     return [
         [*good, *(point for point in more if point is not None)]
         for good, more in zip(met, settled, strict=True)

@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .. import kkt, lockstep
+from .. import kkt, newton
 from ..descents import FEASIBLE
 from ..evaluator import Evaluator, Point
-from ..newton import polish
-from ..problem import Problem, Vector
+from ..problem import BoxProblem, Vector
+from ..resolve.changed import ChangedProblems, applicable
+from ..resolve.hessians import free_hessians
+from ..resolve.steps import RADIUS, Descent
 from ..solver import solve
-from .curvature import hessians as hessians_at
 from .dominance import distances
 from .objectives import Objectives
 
@@ -82,7 +83,7 @@ class Tracer:
         self._checked = checked
         self.rescale(ideal, width)
         self.scale = float(self.evaluator.space.scale[-1])
-        self.exact = lockstep.applicable(self.parametric, self.evaluator)
+        self.exact = applicable(self.parametric, self.evaluator)
 
     def rescale(self, ideal: Vector, width: Vector) -> None:
         """Normalise otherwise; the designs found until then are of no more use."""
@@ -111,7 +112,7 @@ class Tracer:
         """Objectives (objectives, k) of normalised ones."""
         return units * self.width[:, None] + self.ideal[:, None]
 
-    def at(self, level: Vector, way: Vector) -> Problem:
+    def at(self, level: Vector, way: Vector) -> BoxProblem:
         """The problem at some levels."""
         return self.parametric.at(np.concatenate([level, way]))
 
@@ -144,7 +145,7 @@ class Tracer:
         if not self.exact:
             x = self.evaluator.space.to_x(z)
             return [self.located(start, one) for start, one in zip(starts, x.T, strict=True)]
-        points = lockstep.points_at(self.parametric, self.evaluator, z, self._parameters(starts))
+        points = self._changed(starts).points(z)
         return [self._design(s, p, s.hessian) for s, p in zip(starts, points, strict=True)]
 
     def prices(self, one: Design) -> Vector:
@@ -233,8 +234,15 @@ class Tracer:
             return [self._alone(start) for start in starts]
         return self._follow(starts)
 
-    def _parameters(self, starts: Sequence[Start]) -> Vector:
-        return np.stack([np.concatenate([one.level, one.way]) for one in starts], axis=1)
+    def _changed(self, starts: Sequence[Start]) -> ChangedProblems:
+        """The problems at the levels of some starts."""
+        levels = np.stack([np.concatenate([one.level, one.way]) for one in starts], axis=1)
+        return ChangedProblems(self.parametric, self.evaluator, levels)
+
+    def _descent(self, hessian: Vector, radius: float = RADIUS) -> Descent:
+        """A descent that begins with a Hessian."""
+        rows = self.evaluator.constraint_count
+        return Descent(hessian, self.scale, rows, 1.0, radius=radius)
 
     def _follow(self, starts: Sequence[Start]) -> list[Design | None]:
         """Full steps, and where they do not settle again with the curvature where they stood."""
@@ -242,10 +250,8 @@ class Tracer:
         left, begun = list(range(len(starts))), list(starts)
         for again in range(1 + CURVED):
             z = np.stack([one.z for one in begun], axis=1)
-            hessians = [one.hessian for one in begun]
-            found, ways = lockstep.follow(
-                self.parametric, self.evaluator, hessians, self.scale, z, self._parameters(begun)
-            )
+            ways = [self._descent(one.hessian, radius=newton.RADIUS) for one in begun]
+            found = self._changed(begun).step_fully(ways, z)
             for k, one, point, way in zip(left, begun, found, ways, strict=True):
                 if point is not None:
                     designs[k] = self._design(one, point, way.hessian)
@@ -255,7 +261,7 @@ class Tracer:
             ]  # fmt: skip
             if again == CURVED or not lost:
                 break
-            bent = hessians_at(self.evaluator, [ways[i] for i in lost])
+            bent = free_hessians(self.evaluator, [ways[i] for i in lost])
             begun = [
                 replace(begun[i], z=ways[i].known.z, hessian=hessian)
                 for i, hessian in zip(lost, bent, strict=True)
@@ -279,13 +285,9 @@ class Tracer:
             t = ((units[moving] - level) / slope).max(axis=0)
             best = known[int(np.argmin(t))]
             begun.append(self.to_t(best.point.z, float(t.min())))
-            ways.append(
-                lockstep.Descent(best.hessian, self.scale, self.evaluator.constraint_count, 1.0)
-            )
+            ways.append(self._descent(best.hessian))
         chosen = [starts[k] for k in left]
-        points = lockstep.descend(
-            self.parametric, self.evaluator, ways, np.stack(begun, axis=1), self._parameters(chosen)
-        )
+        points = self._changed(chosen).descend(ways, np.stack(begun, axis=1))
         for k, point, way in zip(left, points, ways, strict=True):
             if point is not None:
                 found[k] = self._design(starts[k], point, way.hessian)
@@ -302,7 +304,7 @@ class Tracer:
     def polished(self, one: Design) -> Design:
         """The design after exact Newton steps."""
         own = self.like(self.at(one.level, one.way))
-        point = polish(own, own.point(one.point.z))
+        point = newton.polish(own, own.point(one.point.z))
         own.jacobian(point)
         return self._design(Start(one.level, one.way, point.z, one.hessian), point, one.hessian)
 
@@ -319,7 +321,7 @@ class Tracer:
         unit = start.level + start.way * point.objective - rows
         return Design(start.level, start.way, point, unit, hessian)
 
-    def like(self, problem: Problem) -> Evaluator:
+    def like(self, problem: BoxProblem) -> Evaluator:
         """An evaluator of a problem whose gradients are taken as those checked."""
         own = Evaluator(problem)
         own.complex_works = self._checked.complex_works

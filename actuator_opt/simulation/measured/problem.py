@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from ... import least_squares
 from ...design.scenario.model import Scenario
 from ...errors import Unsolvable
 from ...evaluation.study.plant import Plant
@@ -280,21 +281,17 @@ class Problem:
 
     def _descended(self, x: Array, tolerance: float) -> Array:
         """Least squares within the range."""
-        from scipy.optimize import least_squares  # slow to import, rarely needed
-
-        room = 1e-6 * (self.high - self.low)
-        found = least_squares(
+        return least_squares.solve(
             self.rest,
-            np.clip(x, self.low + room, self.high - room),
-            jac=self.slopes_on_the_way,
-            bounds=(self.low, self.high),
-            x_scale=self.sizes,
-            ftol=tolerance,
-            xtol=tolerance,
-            max_nfev=PASSES,
-        )
-        best: Array = found.x
-        return best
+            x,
+            (self.low, self.high),
+            slopes=self.slopes_on_the_way,
+            sizes=self.sizes,
+            room=1e-6 * (self.high - self.low),
+            cost_tolerance=tolerance,
+            step_tolerance=tolerance,
+            most=PASSES,
+        ).x
 
 
 def _scaled(entry: Entry, value: float) -> float:

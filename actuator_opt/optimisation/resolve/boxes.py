@@ -1,0 +1,187 @@
+"""Re-optimise a problem near a known optimum of another one much like it: other bounds, materials.
+
+Quadratic steps with the Hessian of that optimum, one evaluation each, reach most optima. Where they
+do not, a restoration finds the nearest feasible point, and SLSQP goes on from it. The Hessian does
+not learn here: the ends are compared to seven digits only, and equalities are allowed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import elastic, kkt, newton, nlopt_wrapper
+from ..descents import FEASIBLE, RESIDUAL
+from ..evaluator import Evaluator, Point, points_together
+from ..problem import Vector
+from .batch import Steps, run_batch
+from .hessians import ScaledHessian
+from .steps import PATIENCE, SETTLED, restoring_steps
+
+STEPS = 14
+"""Most steps with the Hessian of the other optimum."""
+
+MOST_STEPS = 100
+"""Most evaluations of SLSQP where these do not settle."""
+
+DOUBTFUL = 0.01
+"""Violation left up to which shortest steps may have overlooked a feasible point."""
+
+
+class Criteria(NamedTuple):
+    """Convergence criteria: length of the last step, violation, residual."""
+
+    step: float
+    violation: float
+    residual: float
+
+
+EXACT = Criteria(SETTLED, 1e-11, RESIDUAL)
+"""For what is kept: the objective is first order in the violation, second in the others."""
+
+ROUGH = Criteria(1e-4, 1e-7, 1e-3)
+"""For what is compared: to seven digits."""
+
+NEAR = Criteria(0.02, 1e-3, np.inf)
+"""For what is clearly worse than what is known, by `WORSE`."""
+
+WORSE = 0.02
+"""Relative loss of the objective that is more than what `NEAR` leaves open."""
+
+
+class Nearest(NamedTuple):
+    """The nearby optimum, or None and the least infeasible point.
+
+    `followed` : whether steps with the other optimum's Hessian converged to it
+    """
+
+    optimum: Point | None
+    missed: Point | None = None
+    followed: bool = False
+
+
+@dataclass(frozen=True)
+class BoxTask:
+    """A problem to re-optimise near a known optimum of another.
+
+    Parameters
+    ----------
+    evaluator : of the problem
+    x : a point (n,), as near as is known
+    hessian : at the optimum of the other problem
+    criteria : of convergence
+    hopeless : whether the other problem has no feasible point, and `x` misses least of it
+    above : an optimum clearly worse than this objective need not be reached
+    """
+
+    evaluator: Evaluator
+    x: Vector
+    hessian: ScaledHessian | None
+    criteria: Criteria = EXACT
+    hopeless: bool = False
+    above: float = np.inf
+
+
+def resolve_boxes(tasks: Sequence[BoxTask]) -> list[Nearest]:
+    """The optimum of every task; none where no feasible point is found near it.
+
+    Their problems differ in nothing but their bounds, so that one model call serves a step of all.
+    """
+
+    def answer(wanted: Mapping[int, Vector]) -> list[Point]:
+        return points_together([(tasks[k].evaluator, z) for k, z in wanted.items()])
+
+    ends = run_batch([_approach(task) for task in tasks], answer)
+    return [_finished(*pair) for pair in zip(tasks, ends, strict=True)]
+
+
+def _finished(task: BoxTask, end: Nearest) -> Nearest:
+    """Go on by SLSQP from a point that only meets every requirement."""
+    if end.optimum is None or end.followed:
+        return end
+    found = nlopt_wrapper.run(task.evaluator, end.optimum, "LD_SLSQP", most=MOST_STEPS).point
+    found = newton.polish(task.evaluator, found, iterations=8, tolerance=1e-10)
+    return Nearest(found if _met(found) else end.optimum)
+
+
+def _approach(task: BoxTask) -> Steps[Nearest]:
+    """Steps with the other's Hessian, else to a feasible point."""
+    evaluator = task.evaluator
+    start = yield evaluator.space.to_z(task.x)
+    if evaluator.space.size == 0:
+        return Nearest(start, followed=True) if _met(start) else Nearest(None, start)
+    if not start.valid:
+        return Nearest(None)
+    if task.hessian is not None and not task.hopeless:
+        found = yield from fixed_hessian_steps(
+            evaluator, start, task.hessian, task.criteria, task.above
+        )
+        if found is not None:
+            return Nearest(found, followed=True)
+    return (yield from _restored(evaluator, start, 1 if task.hopeless else PATIENCE))
+
+
+def fixed_hessian_steps(
+    evaluator: Evaluator,
+    start: Point,
+    known: ScaledHessian,
+    criteria: Criteria,
+    above: float = np.inf,
+) -> Steps[Point | None]:
+    """The optimum that steps with another's Hessian converge to; None where they do not.
+
+    Steps that come near an optimum clearly worse than `above` end there.
+    """
+    clearly = above + WORSE * abs(above) if above < np.inf else np.inf
+    space = evaluator.space
+    hessian = known.seen_by(evaluator, start.x)
+    if not (np.diag(hessian) > 0).all():  # what is free here was fixed there
+        return None
+    free = np.zeros(len(evaluator.problem.equality_names))
+    last, point, least = np.inf, start, np.inf
+    for iteration in range(STEPS):
+        stuck = iteration > PATIENCE and point.violation > max(0.98 * least, FEASIBLE)
+        if not point.valid or stuck:
+            return None
+        if iteration % PATIENCE == 0:
+            least = point.violation
+        if last <= criteria.step and point.violation <= criteria.violation:
+            return point if kkt.check(evaluator, point).residual <= criteria.residual else None
+        if last <= NEAR.step and point.violation <= NEAR.violation and point.objective > clearly:
+            return point
+        step, _ = newton.quadratic_step(evaluator, point, known.scale, hessian, free)
+        longest = float(np.abs(step).max(initial=0.0))
+        if not np.isfinite(longest) or longest > 4 * max(last, 1e-3):
+            return None
+        last = longest
+        share = min(1.0, newton.RADIUS / max(longest, 1e-300))
+        point = yield np.clip(point.z + share * step, space.lower, space.upper)
+    return None
+
+
+def stepped(
+    evaluator: Evaluator, start: Point, known: ScaledHessian, criteria: Criteria
+) -> Point | None:
+    """`fixed_hessian_steps` of one problem alone."""
+    solver = fixed_hessian_steps(evaluator, start, known, criteria)
+    (found,) = run_batch([solver], lambda wanted: [evaluator.point(z) for z in wanted.values()])
+    return found
+
+
+def _restored(evaluator: Evaluator, start: Point, patience: int) -> Steps[Nearest]:
+    """A feasible point near another; None, and the least infeasible point, where none is found."""
+    best = start
+    if not evaluator.problem.equality_names:
+        feasible, least = yield from restoring_steps(evaluator, start, patience)
+        if feasible is not None:
+            return Nearest(feasible)
+        best = least or start
+    doubtful = best.violation <= DOUBTFUL or bool(evaluator.problem.equality_names)
+    return Nearest(elastic.feasible_point(evaluator, best) if doubtful else None, best)
+
+
+def _met(point: Point) -> bool:
+    return point.valid and point.violation <= FEASIBLE

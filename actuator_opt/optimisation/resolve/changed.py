@@ -1,0 +1,161 @@
+"""Problems that differ from a solved one in the values of their parameters, solved together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...numeric import STEP
+from ..evaluator import Evaluator, Point
+from ..problem import ParametricProblem, Vector
+from .batch import Result, Steps, run_batch
+from .steps import (
+    FEASIBLE,
+    LONGEST,
+    MET,
+    Descent,
+    Valley,
+    full_steps,
+    restoring_steps,
+    trusted_steps,
+)
+
+
+def applicable(parametric: ParametricProblem, evaluator: Evaluator) -> bool:
+    """Whether exact gradients of every row come from one complex evaluation."""
+    exact = evaluator.complex_works and not evaluator.difference_rows.any()
+    return exact and not parametric.problem.equality_names
+
+
+@dataclass(frozen=True)
+class ChangedProblems:
+    """A solved problem at K other values of its parameters.
+
+    Parameters
+    ----------
+    parametric : the problem with its parameters
+    evaluator : of the solved problem, with exact gradients
+    parameters : values of the parameters of each changed problem (q, K)
+    """
+
+    parametric: ParametricProblem
+    evaluator: Evaluator
+    parameters: Vector
+
+    def chosen(self, numbers: Sequence[int]) -> ChangedProblems:
+        """Only the problems with these numbers."""
+        return replace(self, parameters=self.parameters[:, list(numbers)])
+
+    def points(self, z: Vector, numbers: Sequence[int] | None = None) -> list[Point]:
+        """Points with gradients at z (nf, k), each of the problem with this number (default: all).
+
+        One complex evaluation serves them all. Raises `LimitReached` at the evaluator's limits.
+        """
+        evaluator, own = self.evaluator, self.parameters
+        evaluator.check_limits()
+        own = own if numbers is None else own[:, list(numbers)]
+        space, (nf, count) = evaluator.space, z.shape
+        x = space.to_x(z)
+        batch = np.repeat(x.astype(complex), nf, axis=1)
+        columns = np.arange(count * nf).reshape(count, nf)
+        batch[space.free[None, :], columns] += 1j * STEP * space.slope(x).T
+        problem = self.parametric.with_columns(np.repeat(own, nf, axis=1))
+        rows = problem.rows(batch).reshape(-1, count, nf)
+        values, slopes = rows.real[:, :, 0], np.asarray(rows.imag / STEP, dtype=float)
+        values = Evaluator.screen(values)
+        violation = evaluator.violations(values, "worst")
+        valid = np.isfinite(values).all(axis=0) & np.isfinite(slopes).all(axis=(0, 2))
+        return [
+            Point(z[:, k], x[:, k], values[:, k], bool(valid[k]), float(violation[k]), slopes[:, k])
+            for k in range(count)
+        ]
+
+    def run(self, solvers: Sequence[Steps[Result]]) -> list[Result]:
+        """The result of a solver for each problem."""
+
+        def answer(wanted: Mapping[int, Vector]) -> list[Point]:
+            return self.points(np.stack(list(wanted.values()), axis=1), list(wanted))
+
+        return run_batch(solvers, answer)
+
+    def step_fully(self, descents: Sequence[Descent], starts: Vector) -> list[Point | None]:
+        """The optimum of each by `full_steps` from starts (nf, K)."""
+        return self.run(
+            [full_steps(self.evaluator, *pair) for pair in zip(descents, starts.T, strict=True)]
+        )
+
+    def descend(
+        self, descents: Sequence[Descent], starts: Vector, most: int = LONGEST
+    ) -> list[Point | None]:
+        """The optimum of each by `trusted_steps` from starts (nf, K)."""
+        return self.run(
+            [
+                trusted_steps(self.evaluator, *pair, most)
+                for pair in zip(descents, starts.T, strict=True)
+            ]
+        )
+
+    def restore(self, start: Vector) -> list[Vector | None]:
+        """A feasible point (nf,) of each near one start (nf,); None where there is none."""
+        count = self.parameters.shape[1]
+        found = self.run([restoring_steps(self.evaluator, start) for _ in range(count)])
+        return [None if one.feasible is None else one.feasible.z for one in found]
+
+    def margins_at(self, points: Sequence[Point]) -> Vector:
+        """Rows (rows, points, K) of points under each problem."""
+        count, size = self.parameters.shape[1], len(points)
+        x = np.stack([p.x for p in points], axis=1)
+        problem = self.parametric.with_columns(np.tile(self.parameters, size))
+        return Evaluator.screen(problem.rows(np.repeat(x, count, axis=1))).reshape(-1, size, count)
+
+    def near_optimum(self, valley: Valley, starts: Vector) -> list[Point | None]:
+        """Optima by full steps with the Hessian of the unchanged optimum.
+
+        None where these do not converge, or where the unchanged optimum itself is better.
+
+        Parameters
+        ----------
+        valley : the optimum of the solved problem
+        starts : coordinates (nf, K)
+        """
+        if starts.shape[1] == 0:
+            return []
+        evaluator, point = self.evaluator, valley.point
+        if (starts == point.z[:, None]).all():  # the unchanged optimum is evaluated once
+            points = self.points(starts)
+            least = [p.objective if p.violation <= FEASIBLE else np.inf for p in points]
+            begun: Sequence[Point | Vector] = points
+        else:
+            begun = list(starts.T)
+            margins = self.margins_at([point])[:, 0]
+            met = evaluator.violations(margins, "worst") <= FEASIBLE
+            least = np.where(met, margins[0], np.inf).tolist()
+        optima = self.run([full_steps(evaluator, valley.full(), start) for start in begun])
+        return [
+            None  # else another valley
+            if optimum is not None and unmoved < optimum.objective - 1e-9 * abs(optimum.objective)
+            else optimum
+            for optimum, unmoved in zip(optima, least, strict=True)
+        ]
+
+    def descend_from(
+        self, valley: Valley, starts: Vector
+    ) -> tuple[list[Point | None], list[Point | None]]:
+        """Optima by descents, and feasible designs on the way to those not reached.
+
+        Parameters
+        ----------
+        valley : a local optimum of the solved problem
+        starts : feasible coordinates (nf, K)
+        """
+        descents = [valley.trusted() for _ in starts.T]
+        optima = self.descend(descents, starts)
+        stopped = [
+            descent.point
+            if optimum is None and descent.point is not None and descent.point.violation <= MET
+            else None
+            for optimum, descent in zip(optima, descents, strict=True)
+        ]
+        return optima, stopped

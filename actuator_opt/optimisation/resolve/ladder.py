@@ -1,0 +1,272 @@
+"""Re-solve many problems near a solved one, sturdier step by step, up to a search.
+
+1. Full steps from the predicted optima, all problems together.
+2. For the others a restoration and a descent. Every other local optimum known is followed too, and
+   the optimum of each problem is a start for every other: a small change may make another valley
+   the best.
+3. For what is left Newton's method and SLSQP from the points at hand, then a search with a sweep.
+
+Only the last step may end without a design.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .. import elastic, kkt
+from ..evaluator import Evaluator, Point
+from ..newton import polish
+from ..outcome import Solution
+from ..problem import BoxProblem, ParametricProblem, Vector
+from ..solver import solve
+from . import steps
+from .changed import ChangedProblems, applicable
+from .steps import Valley
+
+FEASIBLE = 1e-6
+"""Worst missed margin that still counts as met."""
+
+RESIDUAL = 1e-6
+"""Residual of the optimality conditions that a re-solved optimum must reach."""
+
+BETTER = 1e-8
+"""Share of the objective by which another design must be better to be another valley."""
+
+ROUNDS = 3
+"""Most exchanges of optima; each goes on only where the last one gained."""
+
+BEYOND = 1.0
+"""How far past another valley its descents start, as a share of the way there from the best: what
+lies between the two often moves as fast as they do."""
+
+SAMPLES = 1024
+"""Points of the sweep where a feasible problem has no optimum in reach."""
+
+
+@dataclass(frozen=True)
+class SolvedProblem:
+    """A problem with its optimum.
+
+    Parameters
+    ----------
+    parametric : the problem with its parameters
+    evaluator : of it, with checked gradients
+    valleys : its local optima, the best first
+    """
+
+    parametric: ParametricProblem
+    evaluator: Evaluator
+    valleys: Sequence[Valley]
+
+
+@dataclass(frozen=True)
+class Task:
+    """A problem to solve near a solved one.
+
+    Parameters
+    ----------
+    problem : the changed problem
+    guess : predicted optimum, in coordinates of the solved problem (nf,)
+    parameters : values of the parameters (q,) that make the problem; None where its bounds differ
+    """
+
+    problem: BoxProblem
+    guess: Vector
+    parameters: Vector | None = None
+
+
+def resolve(solved: SolvedProblem, tasks: Sequence[Task]) -> list[Point | None]:
+    """The optimum of every task; None where no feasible point is found.
+
+    Where no optimum is reached, the best feasible point.
+    """
+    optima: list[Point | None] = [None] * len(tasks)
+    inside: list[Vector | None] = [None] * len(tasks)
+    alone = list(range(len(tasks)))
+    together = [k for k, task in enumerate(tasks) if task.parameters is not None]
+    if together and applicable(solved.parametric, solved.evaluator):
+        starts = np.stack([tasks[k].guess for k in together], axis=1)
+        columns = [p for k in together if (p := tasks[k].parameters) is not None]
+        changed = ChangedProblems(solved.parametric, solved.evaluator, np.stack(columns, axis=1))
+        found = resolve_batch(changed, solved.valleys, starts)
+        for k, optimum, feasible in zip(together, *found, strict=True):
+            optima[k], inside[k] = optimum, feasible
+        lost = [k for k in together if optima[k] is None and inside[k] is None]
+        alone = [k for k in alone if optima[k] is None and k not in lost]
+    for k in alone:
+        task = tasks[k]
+        optima[k] = search_near(
+            task.problem, solved.evaluator, task.guess, solved.valleys[0].point, inside=inside[k]
+        )
+    return optima
+
+
+def resolve_batch(
+    changed: ChangedProblems, valleys: Sequence[Valley], starts: Vector
+) -> tuple[list[Point | None], list[Vector | None]]:
+    """The optimum of each changed problem, and a feasible point; None where none is in reach.
+
+    Parameters
+    ----------
+    changed : the problems
+    valleys : local optima of the solved problem, the best first
+    starts : predicted optima (nf, K) in the first valley; the others are entered from beyond
+    """
+    first, space = valleys[0], changed.evaluator.space
+    point = first.point
+    optima = changed.near_optimum(first, starts)
+    left = [i for i, one in enumerate(optima) if one is None]
+    restored = changed.chosen(left).restore(point.z)
+    ends = _Ends(changed, optima, [None] * len(optima))
+    ends.descend(first, dict(zip(left, restored, strict=True)))
+    for valley in valleys[1:]:
+        there = valley.point.z
+        begin = np.clip(there + BEYOND * (there - point.z), space.lower, space.upper)
+        ends.descend(valley, dict(enumerate(changed.restore(begin))))
+    single = len(optima) == 1 and len(valleys) == 1  # nothing to exchange
+    for _ in range(0 if single else ROUNDS):
+        better = ends.elsewhere([valley.point for valley in valleys])
+        if not better:
+            break
+        ends.descend(first, better)
+    return ends.settled()
+
+
+@dataclass
+class _Ends:
+    """The best optimum of each changed problem, and the best feasible design."""
+
+    changed: ChangedProblems
+    optima: list[Point | None]
+    known: list[Point | None]
+    feasible: dict[int, Vector] = field(default_factory=dict)
+
+    def descend(self, valley: Valley, starts: Mapping[int, Vector | None]) -> None:
+        """Descend from a start of each of these problems, and keep what is better."""
+        begun = {i: z for i, z in starts.items() if z is not None}
+        chosen = list(begun)
+        if not chosen:
+            return
+        self.feasible = begun | self.feasible
+        z = np.stack(list(begun.values()), axis=1)
+        reached, stopped = self.changed.chosen(chosen).descend_from(valley, z)
+        for i, optimum, stop in zip(chosen, reached, stopped, strict=True):
+            self.optima[i] = _better(self.optima[i], optimum)
+            self.known[i] = _better(self.known[i], stop)
+
+    def elsewhere(self, valleys: Sequence[Point]) -> dict[int, Vector]:
+        """For each problem the best of the others' designs, where it is better than its own."""
+        points = [*valleys, *(one for one in self.optima if one is not None)]
+        rows = self.changed.margins_at(points)
+        missed = self.changed.evaluator.violations(rows.reshape(len(rows), -1), "worst")
+        missed = missed.reshape(rows.shape[1:])
+        objectives = np.where(missed <= steps.FEASIBLE, rows[0], np.inf)
+        best = np.argmin(objectives, axis=0)
+        better = {}
+        for i, one in enumerate(self.optima):
+            least = float(objectives[best[i], i])
+            if least < _beaten(one):
+                better[i] = points[int(best[i])].z
+        return better
+
+    def settled(self) -> tuple[list[Point | None], list[Vector | None]]:
+        """The optima, None where a better design is known than the optimum; and those designs."""
+        inside: list[Vector | None] = [None] * len(self.optima)
+        for i, at in enumerate(self.known):
+            if at is not None and at.objective < _beaten(self.optima[i]):
+                self.optima[i], inside[i] = None, at.z
+            elif self.optima[i] is None:
+                inside[i] = self.feasible.get(i)
+        return self.optima, inside
+
+
+def _beaten(one: Point | None) -> float:
+    """Objective below which another design is really better."""
+    return np.inf if one is None else one.objective - BETTER * abs(one.objective)
+
+
+def _better(one: Point | None, other: Point | None) -> Point | None:
+    if one is None or other is None:
+        return one or other
+    return other if other.objective < one.objective else one
+
+
+def other_optima(evaluator: Evaluator, solution: Solution) -> list[Point]:
+    """Local optima of the search besides the one it chose."""
+    good = [
+        one.x
+        for one in solution.optima
+        if one.violation <= FEASIBLE
+        and one.residual <= RESIDUAL
+        and not np.array_equal(one.x, solution.x)
+    ]
+    return [evaluator.point(evaluator.space.to_z(x)) for x in good]
+
+
+def point_of(evaluator: Evaluator, solution: Solution) -> Point:
+    """The point a search ended on."""
+    rows = np.concatenate([[solution.objective], solution.constraints, solution.equalities])
+    return Point(evaluator.space.to_z(solution.x), solution.x, rows, True, solution.violation)
+
+
+def search_near(
+    problem: BoxProblem,
+    evaluator: Evaluator,
+    guess: Vector,
+    point: Point,
+    *,
+    inside: Vector | None = None,
+) -> Point | None:
+    """The best point of a slightly changed problem, by itself; None if infeasible.
+
+    Newton first; where the active set changes too much for it, a search from the points at hand.
+
+    Parameters
+    ----------
+    problem : the changed problem
+    evaluator, point : of the unchanged problem, and its optimum
+    guess : predicted optimum (nf,)
+    inside : coordinates of a feasible point, where one is known; without it and without a feasible
+        point near the unchanged optimum there is taken to be none
+    """
+    near = Evaluator(problem)
+    if near.space.size != len(guess):  # the changed bound fixes a variable
+        guess = near.space.to_z(near.space.to_x(near.space.lower[:, None])[:, 0])
+    near.complex_works = evaluator.complex_works
+    near.difference_rows = evaluator.difference_rows
+    here = near.point(near.space.to_z(np.clip(point.x, problem.lower, problem.upper)))
+    start = near.point(np.clip(guess, near.space.lower, near.space.upper))
+    tried = [p for p in (start, here) if p.valid]
+    if inside is None:
+        for one in tried:
+            found = polish(near, one, iterations=8, tolerance=1e-10)
+            uphill = _met(here) and here.objective < found.objective
+            if _optimal(near, found) and not uphill:
+                return found
+        restored = elastic.feasible_point(near, tried[0]) if tried else None
+        if restored is None:
+            return None
+        inside = restored.z
+    first = near.point(inside)
+    found = polish(near, first, iterations=8, tolerance=1e-10)
+    if _optimal(near, found) and found.objective <= first.objective:
+        return found
+    more = [p.x for p in (first, *tried)]
+    for samples in (0, SAMPLES):
+        best = solve(problem, starts=len(more), samples=samples, more_starts=more)
+        if best.feasible and best.kkt is not None and best.kkt.residual <= RESIDUAL:
+            return point_of(near, best)
+    if best.feasible and best.objective < first.objective:
+        return point_of(near, best)
+    return first
+
+
+def _met(point: Point) -> bool:
+    return point.valid and point.violation <= FEASIBLE
+
+
+def _optimal(near: Evaluator, point: Point) -> bool:
+    return _met(point) and kkt.check(near, point).residual <= RESIDUAL

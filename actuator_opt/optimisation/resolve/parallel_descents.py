@@ -1,0 +1,321 @@
+"""Runs of SLSQP from several starts side by side: one model call evaluates a step of them all.
+
+A call costs little more for many points than for one, but NLopt asks for one point at a time. So
+every run has a thread, which waits for its point until the others have asked for theirs. What each
+run reaches, and every decision on the way, is that of the run alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from queue import SimpleQueue
+from threading import Thread
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import kkt, nlopt_wrapper
+from ..descents import FEASIBLE, LOCAL_EVALUATIONS
+from ..evaluator import Evaluator, LimitReached, Point
+from ..nlopt_wrapper import ARRIVAL
+from ..problem import ParametricProblem, Vector
+from .batch import Batch, Steps
+from .changed import ChangedProblems
+from .hessians import free_hessians
+from .steps import Descent
+
+ROUNDS = 60
+"""Most points of a run computed in advance: from a start of the sweep 10 to 60 do."""
+
+FIRST = 14
+"""Most steps with the Hessian of the free directions, where none has led to an optimum yet."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """Runs of one problem: its evaluator, and the points with slopes that they start from."""
+
+    evaluator: Evaluator
+    starts: list[Point]
+
+
+Rows = Callable[[npt.NDArray[np.complex128], npt.NDArray[np.intp]], npt.NDArray[np.generic]]
+"""Rows (rows, k) of points (n, k), each of the task with this index (k,)."""
+
+
+def precompute(evaluator: Evaluator, starts: Sequence[Point], *, seed: int, most: int) -> None:
+    """Precompute the points SLSQP visits from some starts.
+
+    Ends early where the first run meets no requirement, as then the others are not made, and at
+    the evaluator's time limit.
+
+    Parameters
+    ----------
+    evaluator : of the problem; without exact gradients, or with a limit of points, nothing is done
+    starts : evaluated points
+    seed, most : of the runs
+    """
+    if len(starts) < 2 or not evaluator.exact or evaluator.max_evaluations is not None:
+        return
+    evaluator.take_slopes(starts)
+    task = Task(evaluator, list(starts))
+    run_together([task], lambda batch, _: evaluator.problem.rows(batch), seed=seed, most=most)
+
+
+def run_together(
+    tasks: Sequence[Task],
+    rows: Rows,
+    *,
+    seed: int,
+    most: int,
+    tolerance: float = 1e-9,
+    rounds: int = ROUNDS,
+) -> list[list[Point]]:
+    """The best points of runs of SLSQP, for each task and start.
+
+    The evaluators keep every point visited. Of a task whose first run meets no requirement the
+    others are ended there, as all are at the time limit of the first evaluator.
+
+    Parameters
+    ----------
+    tasks : with exact gradients
+    rows : of all of them in one call
+    seed, most, tolerance : of the runs
+    rounds : most points of a run
+    """
+    runs: list[SlsqpRun] = []
+    for number, task in enumerate(tasks):
+        known: list[Point] = []
+        runs += [
+            SlsqpRun(number, start, task.evaluator, known, seed, most, tolerance)
+            for start in task.starts
+        ]
+    firsts = {run.task: run for run in reversed(runs)}
+
+    def answer(wanted: Mapping[int, Vector]) -> list[Point]:
+        parts = [runs[k].evaluator.columns(z[:, None]) for k, z in wanted.items()]
+        sizes = [part.shape[1] for part in parts]
+        owners = np.repeat([runs[k].task for k in wanted], sizes).astype(np.intp)
+        values = rows(np.concatenate(parts, axis=1), owners)
+        split = np.split(values, np.cumsum(sizes)[:-1], axis=1)
+        return [
+            runs[k].entered(*pair)
+            for k, pair in zip(wanted, zip(wanted.values(), split, strict=True), strict=True)
+        ]
+
+    solvers = [run.steps() for run in runs]
+    try:
+        batch = Batch(solvers, answer)
+        _share(runs, batch, set())
+        for _ in range(rounds):
+            for k in [k for k in batch.wanted if firsts[runs[k].task].hopeless]:
+                batch.drop(k)
+            if not batch.wanted or tasks[0].evaluator.late:
+                break
+            ended = set(batch.results)
+            batch.step()
+            _share(runs, batch, ended)
+    finally:
+        for solver in solvers:
+            solver.close()
+    return [[run.best for run in runs if run.task == k] for k in range(len(tasks))]
+
+
+def _share(runs: Sequence[SlsqpRun], batch: Batch[None], before: set[int]) -> None:
+    """Let the other runs of a task know the optima of those that just ended, in their order."""
+    for number in sorted(set(batch.results) - before):
+        if runs[number].new:
+            runs[number].known.append(runs[number].best)
+
+
+@dataclass
+class SlsqpRun:
+    """One run of SLSQP in its thread.
+
+    Parameters
+    ----------
+    task : number of its task
+    start : where it starts
+    evaluator : of the task, which keeps the points visited
+    known : optima of the task that end a run
+    seed, most, tolerance : of the run
+    """
+
+    task: int
+    start: Point
+    evaluator: Evaluator
+    known: list[Point]
+    seed: int
+    most: int
+    tolerance: float
+    hopeless: bool = False
+    """Whether it ended on a point that misses a requirement."""
+    new: bool = False
+    """Whether it ended on one that misses none, and is not known."""
+    best: Point = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.best = self.start
+        self._asked: SimpleQueue[Vector | None] = SimpleQueue()
+        self._answers: SimpleQueue[Point | None] = SimpleQueue()
+        self._own = _Asking(self.evaluator, self.start, self._asked, self._answers)
+
+    def steps(self) -> Steps[None]:
+        """The run as a solver; closed early, it stops with the best point so far."""
+        thread = Thread(target=self._go, daemon=True)
+        thread.start()
+        try:
+            while (z := self._asked.get()) is not None:
+                self._answers.put((yield z))
+        finally:
+            self._answers.put(None)
+            thread.join()
+
+    def entered(self, z: Vector, rows: npt.NDArray[np.generic]) -> Point:
+        """The point at z (nf,) from the rows of its columns, which the task's evaluator keeps."""
+        self.evaluator.foreseen[z.tobytes()] = rows
+        return self._own.entered(z, rows)
+
+    def _go(self) -> None:
+        try:
+            run = nlopt_wrapper.run(
+                self._own, self.start, "LD_SLSQP", most=self.most, seed=self.seed,
+                known=self.known, tolerance=self.tolerance,
+            )  # fmt: skip
+            self.best = run.point
+            self.hopeless = run.point.violation > FEASIBLE
+            self.new = not self.hopeless and run.arrived is None
+        finally:
+            self._asked.put(None)
+
+
+class _Asking(Evaluator):
+    """An evaluator whose points the solver's batch evaluates."""
+
+    def __init__(
+        self,
+        evaluator: Evaluator,
+        start: Point,
+        asked: SimpleQueue[Vector | None],
+        answers: SimpleQueue[Point | None],
+    ) -> None:
+        super().__init__(evaluator.problem)
+        self.complex_works = evaluator.complex_works
+        self.difference_rows = evaluator.difference_rows
+        self._asked, self._answers = asked, answers
+        self._cache[start.z.tobytes()] = start
+
+    def point(self, z: Vector) -> Point:
+        """The evaluated point at z (nf,), once the others have asked for theirs too."""
+        known = self._cache.get(z.tobytes())
+        if known is not None:
+            return known
+        self._asked.put(z)
+        point = self._answers.get()
+        if point is None:
+            raise LimitReached
+        return point
+
+
+def descents_from(
+    parametric: ParametricProblem,
+    evaluators: Sequence[Evaluator],
+    parameters: Vector,
+    starts: Sequence[Sequence[Vector]],
+    seed: int,
+    *,
+    tolerance: float = 1e-9,
+    rounds: int = ROUNDS,
+) -> list[list[Point]]:
+    """Where runs of SLSQP lead, for each problem from each of its starts.
+
+    Parameters
+    ----------
+    parametric : the problems
+    evaluators : one of each problem, with exact gradients
+    parameters : of each problem (q, k)
+    starts : coordinates (nf,) for each problem
+    seed, tolerance, rounds : of the runs, see `run_together`
+    """
+
+    def rows(
+        batch: npt.NDArray[np.complex128], owners: npt.NDArray[np.intp]
+    ) -> npt.NDArray[np.generic]:
+        return parametric.with_columns(parameters[:, owners]).rows(batch)
+
+    if not any(starts):
+        return [[] for _ in evaluators]
+    places = [(k, z) for k, some in enumerate(starts) for z in some]
+    parts = [evaluators[k].columns(z[:, None]) for k, z in places]
+    owners = np.repeat([k for k, _ in places], parts[0].shape[1]).astype(np.intp)
+    values = np.split(rows(np.concatenate(parts, axis=1), owners), len(parts), axis=1)
+    tasks = [Task(one, []) for one in evaluators]
+    for (k, z), part in zip(places, values, strict=True):
+        point = evaluators[k].entered(z, part)
+        if point.valid:
+            tasks[k].starts.append(point)
+    return run_together(
+        tasks, rows, seed=seed, most=LOCAL_EVALUATIONS, tolerance=tolerance, rounds=rounds
+    )
+
+
+def converged_from(
+    parametric: ParametricProblem,
+    evaluators: Sequence[Evaluator],
+    parameters: Vector,
+    begun: Sequence[Sequence[Point]],
+) -> list[list[Point | None]]:
+    """The optimum that steps with the Hessian reach from each point; None where they reach none.
+
+    Parameters
+    ----------
+    parametric, evaluators, parameters : as of `descents_from`
+    begun : points of each problem with their gradients
+    """
+    descents: list[Descent] = []
+    for evaluator, points in zip(evaluators, begun, strict=True):
+        first = [_descent(evaluator, point, np.eye(evaluator.space.size)) for point in points]
+        for descent, point in zip(first, points, strict=True):
+            descent.go_on(evaluator, point)
+        hessians = free_hessians(evaluator, first)
+        descents += [_descent(evaluator, *pair) for pair in zip(points, hessians, strict=True)]
+    if not descents:
+        return [[] for _ in begun]
+    owners = np.repeat(np.arange(len(begun)), [len(points) for points in begun])
+    changed = ChangedProblems(parametric, evaluators[0], parameters[:, owners])
+    z = np.stack([point.z for points in begun for point in points], axis=1)
+    optima = changed.descend(descents, z, FIRST)
+    done = {owner for owner, point in zip(owners, optima, strict=True) if point is not None}
+    left = [
+        k for k, owner in enumerate(owners) if owner not in done and descents[k].point is not None
+    ]
+    if left:
+        z = np.stack([descents[k].known.z + descents[k].step for k in left], axis=1)
+        more = changed.chosen(left).descend([descents[k] for k in left], z)
+        for k, reached in zip(left, more, strict=True):
+            optima[k] = reached
+    every = iter(optima)
+    return [[next(every) for _ in points] for points in begun]
+
+
+def _descent(evaluator: Evaluator, point: Point, hessian: Vector) -> Descent:
+    """A descent from a point, with a Hessian of its own."""
+    scale = kkt.slope_scale(evaluator, point)
+    return Descent(hessian, scale, evaluator.constraint_count, 1.0)
+
+
+def distinct_ends(points: Sequence[Point]) -> list[Point]:
+    """Those ends of runs that are not near a better one, the best first."""
+    kept: list[Point] = []
+    for one in sorted(points, key=lambda p: (p.violation > ARRIVAL[2], p.objective)):
+        if not any(_near(one, known) for known in kept):
+            kept.append(one)
+    return kept
+
+
+def _near(point: Point, known: Point) -> bool:
+    """Whether a run would count as arrived there."""
+    reach, share, _ = ARRIVAL
+    alike = abs(point.objective - known.objective) <= share * abs(known.objective)
+    return alike and bool(np.abs(point.z - known.z).max(initial=0.0) <= reach)

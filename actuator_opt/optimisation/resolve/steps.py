@@ -1,0 +1,306 @@
+"""Steps towards an optimum of a problem near a solved one, for `batch.run_batch`.
+
+Full quadratic steps with the Hessian of the unchanged optimum, which learns on the way, reach most.
+A descent within a trusted radius reaches what these do not, from a feasible point. A restoration
+finds such a point.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import kkt, newton
+from ..evaluator import Evaluator, Point
+from ..problem import Vector
+from .batch import Steps
+
+ITERATIONS = 10
+"""Most full steps; 10 % changes mostly take three to five."""
+
+LONGEST = 60
+"""Most evaluations of a descent within a trusted radius."""
+
+MEMORY = 3
+"""Merits, the worst of which a trial must beat."""
+
+RADIUS = 0.1
+"""First radius trusted, in solver coordinates: 10 % in a logarithmic variable."""
+
+LEAST_RADIUS = 1e-4
+"""Radius at which a descent gives up."""
+
+RESTORATIONS = 24
+"""Most steps towards a feasible point."""
+
+PATIENCE = 4
+"""Steps within which the violation must fall by 2 %, or the problem counts as infeasible."""
+
+SETTLED = 1e-6
+"""Length of the last step below which the optimality conditions are worth checking."""
+
+FEASIBLE = 1e-11
+"""Violation left: the objective is first order in it."""
+
+MET = 1e-6
+"""Violation of a design that still counts as feasible."""
+
+RESIDUAL = 1e-6
+"""Residual of the optimality conditions left: the objective is second order in it."""
+
+LEAST_CURVATURE = 1e-10
+"""Least ratio of the smallest to the largest curvature of a learnt Hessian: well above rounding."""
+
+
+@dataclass
+class Descent:
+    """One problem on its way down: the last accepted point and the step tried from it.
+
+    The merit is the objective plus the violations at more than their price; a trial need only
+    beat the worst of the last `MEMORY` merits, so that curved constraints do not shorten good
+    steps [NocedalWright2006] ch. 15. Steps stay within a radius that follows their success.
+    """
+
+    hessian: Vector
+    scale: float
+    rows: int
+    price: float
+    point: Point | None = None
+    step: Vector = field(default_factory=lambda: np.zeros(0))
+    radius: float = RADIUS
+    prices: Vector | None = None
+    multipliers: Vector = field(default_factory=lambda: np.zeros(0))
+    corrected: bool = False
+    """Whether the step tried is one corrected for the constraints' curvature."""
+    past: list[tuple[float, float]] = field(default_factory=list)
+
+    @property
+    def known(self) -> Point:
+        """The last accepted point, which there must be."""
+        assert self.point is not None
+        return self.point
+
+    @property
+    def length(self) -> float:
+        """Length of the step now tried, infinite before the first."""
+        return np.inf if self.point is None else float(np.abs(self.step).max(initial=0.0))
+
+    def accepts(self, trial: Point) -> bool:
+        """Whether the trial is good enough to go on from."""
+        if self.point is None or self.length <= SETTLED:
+            return True
+        value, missed = self._measures(trial)
+        merits = [v + self.price * m for v, m in self.past[-MEMORY:]]
+        return value + self.price * missed < max(merits)
+
+    def go_on(self, evaluator: Evaluator, trial: Point) -> None:
+        """Learn from an accepted trial and choose the next step."""
+        jacobian = evaluator.jacobian(trial)
+        if self.point is not None:
+            change = jacobian - evaluator.jacobian(self.point)
+            slopes = change[0] / self.scale - self.multipliers @ change[1 : 1 + self.rows]
+            self._learn(trial.z - self.point.z, slopes)
+        if self.point is not None and self.length > 0.9 * self.radius:
+            self.radius = min(2 * self.radius, newton.RADIUS)
+        self.point = trial
+        self.past.append(self._measures(trial))
+        self.choose(evaluator)
+
+    def choose(self, evaluator: Evaluator, trial: Point | None = None) -> None:
+        """Choose the step from the accepted point, within the radius.
+
+        With a trial that curved constraints spoilt, their curvature on the way to it is taken off
+        [NocedalWright2006] section 18.3.
+        """
+        space, point, unit = evaluator.space, self.known, np.eye(len(self.hessian))
+        jacobian = evaluator.jacobian(point)
+        down = np.minimum(point.z - space.lower, self.radius)
+        up = np.minimum(space.upper - point.z, self.radius)
+        constraints = slice(1, 1 + self.rows)
+        margins, self.corrected = point.rows[constraints], trial is not None
+        if trial is not None:
+            margins = trial.rows[constraints] - jacobian[constraints] @ self.step
+        self.step, self.prices = newton.quadratic_programme(
+            self.hessian,
+            jacobian[0] / self.scale,
+            np.concatenate([jacobian[constraints], unit, -unit]),
+            np.concatenate([margins, down, up]),
+            self.prices,
+        )
+        self.multipliers = self.prices[: self.rows]
+        self.price = max(self.price, margin_price(self.multipliers))
+        self.step = self.step * min(1.0, self.radius / max(self.length, 1e-300))
+
+    def _measures(self, trial: Point) -> tuple[float, float]:
+        missed = np.maximum(-trial.rows[1 : 1 + self.rows], 0.0).sum()
+        return trial.objective / self.scale, float(missed)
+
+    def _learn(self, step: Vector, change: Vector) -> None:
+        """Damped update that keeps the Hessian positive [NocedalWright2006] procedure 18.2."""
+        turned = self.hessian @ step
+        bent, straight = float(step @ turned), float(step @ change)
+        if bent <= 1e-20:
+            return
+        if straight < 0.2 * bent:
+            share = 0.8 * bent / (bent - straight)
+            change = share * change + (1 - share) * turned
+        learnt = (
+            self.hessian
+            - np.outer(turned, turned) / bent
+            + np.outer(change, change) / float(step @ change)
+        )
+        curvatures = np.linalg.eigvalsh(learnt)
+        if curvatures[0] > LEAST_CURVATURE * curvatures[-1]:  # else rounding has eaten it
+            self.hessian = learnt
+
+
+def margin_price(multipliers: Vector) -> float:
+    """A price of missed margins above every multiplier."""
+    return 2 * float(multipliers.max(initial=0.0)) + 1.0
+
+
+@dataclass(frozen=True)
+class Valley:
+    """A local optimum, with what new descents begin with.
+
+    Parameters
+    ----------
+    point : the local optimum
+    hessian : of the Lagrangian over `scale`, made positive definite (nf, nf)
+    scale : size of the objective's gradient
+    rows : number of constraints
+    price : of missed margins, above every multiplier
+    """
+
+    point: Point
+    hessian: Vector
+    scale: float
+    rows: int
+    price: float
+
+    def full(self) -> Descent:
+        """A descent by full steps."""
+        return Descent(self.hessian, self.scale, self.rows, 1.0, radius=newton.RADIUS)
+
+    def trusted(self) -> Descent:
+        """A descent within a trusted radius."""
+        return Descent(self.hessian, self.scale, self.rows, self.price)
+
+
+def valley_at(evaluator: Evaluator, point: Point) -> Valley:
+    """The valley of a local optimum."""
+    state = newton.state_at(evaluator, point)
+    price = margin_price(state.multipliers[: len(state.near.constraint)] / state.scale)
+    hessian = newton.convex_hessian(evaluator, state)
+    return Valley(point, hessian, state.scale, evaluator.constraint_count, price)
+
+
+def is_optimum(evaluator: Evaluator, point: Point) -> bool:
+    """Whether the point is feasible to rounding and meets the optimality conditions."""
+    return point.violation <= FEASIBLE and kkt.residual(evaluator, point) <= RESIDUAL
+
+
+def full_steps(
+    evaluator: Evaluator, descent: Descent, start: Vector | Point
+) -> Steps[Point | None]:
+    """The optimum that full quadratic steps reach; None where they do not converge.
+
+    Parameters
+    ----------
+    evaluator : of the problem, or of one with the same rows and box
+    descent : a new one, with the Hessian to begin with
+    start : coordinates (nf,), or the evaluated point
+    """
+    space = evaluator.space
+    z = np.clip(start.z if isinstance(start, Point) else start, space.lower, space.upper)
+    last, least = np.inf, np.inf
+    for iteration in range(ITERATIONS):
+        trial = start if isinstance(start, Point) and not iteration else (yield z)
+        if not trial.valid:
+            return None
+        if last <= SETTLED and is_optimum(evaluator, trial):
+            return trial
+        if iteration > PATIENCE and trial.violation > max(0.98 * least, MET):
+            return None
+        if iteration % PATIENCE == 0:
+            least = trial.violation
+        descent.go_on(evaluator, trial)
+        if not np.isfinite(descent.length) or descent.length > 4 * max(last, 1e-3):
+            return None
+        last = descent.length
+        z = np.clip(z + descent.step, space.lower, space.upper)
+    return None
+
+
+def trusted_steps(
+    evaluator: Evaluator, descent: Descent, start: Vector, most: int = LONGEST
+) -> Steps[Point | None]:
+    """The optimum that a descent within a trusted radius reaches; None where it reaches none.
+
+    Parameters
+    ----------
+    evaluator, descent, start : as of `full_steps`
+    most : evaluations
+    """
+    space = evaluator.space
+    z = np.clip(start, space.lower, space.upper)
+    for _ in range(most):
+        trial = yield z
+        if trial.valid and descent.accepts(trial):
+            if descent.length <= SETTLED and is_optimum(evaluator, trial):
+                return trial
+            descent.go_on(evaluator, trial)
+        elif descent.point is None or descent.length <= LEAST_RADIUS:
+            return None
+        elif trial.valid and not descent.corrected:
+            descent.choose(evaluator, trial)
+        else:
+            descent.radius = descent.length / 2
+            descent.choose(evaluator)
+        z = np.clip(descent.known.z + descent.step, space.lower, space.upper)
+    return None
+
+
+class Restored(NamedTuple):
+    """A feasible point, None where none was reached, and the least infeasible one on the way."""
+
+    feasible: Point | None
+    least: Point | None
+
+
+def restoring_steps(
+    evaluator: Evaluator, start: Vector | Point, patience: int = PATIENCE
+) -> Steps[Restored]:
+    """A feasible point near a start.
+
+    Every step is the shortest that meets the linearised rows, or misses them least. The problem
+    has no equalities.
+
+    Parameters
+    ----------
+    evaluator : of the problem, or of one with the same rows and box
+    start : coordinates (nf,), or the evaluated point
+    patience : steps within which the violation must fall by 2 %
+    """
+    space, least, best = evaluator.space, np.inf, None
+    trial = start if isinstance(start, Point) else (yield start)
+    for iteration in range(RESTORATIONS):
+        if not trial.valid:
+            break
+        if trial.violation <= MET:
+            return Restored(trial, trial)
+        if best is None or trial.violation < best.violation:
+            best = trial
+        if iteration > patience and trial.violation > 0.98 * least:
+            break
+        if iteration % patience == 0:
+            least = trial.violation
+        rows = kkt.active_set(evaluator, trial, width=1.0)
+        step, _ = newton.quadratic_programme(
+            np.eye(space.size), np.zeros(space.size), rows.gradients, rows.margins - 1e-7
+        )
+        share = min(1.0, newton.RADIUS / max(float(np.abs(step).max(initial=0.0)), 1e-300))
+        trial = yield np.clip(trial.z + share * step, space.lower, space.upper)
+    return Restored(None, best)
