@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
+from ..joints.kinds import JOINTS
 from .kinds import Choice
+
+if TYPE_CHECKING:
+    JointName: TypeAlias = str
+else:
+    JointName = Literal[JOINTS.names]
 
 Paper: TypeAlias = Annotated[
     Literal["ElAsswad2018", "AaltoThesis", "Huang2017"] | None,
@@ -66,11 +72,7 @@ Criterion: TypeAlias = Annotated[
     ),
 ]
 RetentionType: TypeAlias = Annotated[
-    Literal["bond", "thread", "tie_rods"],
-    Choice(
-        "what holds cap and head to the barrel; bond: skirts glued over it; "
-        "thread: skirts screwed over it; tie_rods: rods outside clamp it between cap and head"
-    ),
+    JointName, Choice(f"what holds cap and head to the barrel; {JOINTS.help}")
 ]
 SealType: TypeAlias = Annotated[
     Literal["o_ring", "step_ring", "u_cup", "compact"],

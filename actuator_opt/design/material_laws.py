@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Container, Iterator, Mapping
 from typing import Any, Final
 
-from ..errors import InputError
+from ..errors import Fault, InputError
 from .structure import child_at
-from .view import Fault, Materials, Properties, View
+from .view import Materials, Properties, View
 
 BULK_MODULUS_LAWS: Final[Mapping[str, tuple[str, ...]]] = {
     "constant": (),

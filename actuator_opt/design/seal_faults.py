@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ..errors import InputError
+from ..errors import Fault, InputError
 from ..models.elastomer import modulus_gent
 from ..suggest import article
 from . import profile_faults
 from .profile_faults import elements
 from .seals import BACK_UPS
 from .structure import Loc, child_at
-from .view import Fault, Materials, Properties, View, length_text
+from .view import Materials, Properties, View, length_text
 
 SQUEEZE_RANGE = {
     "energised": (0.02, 0.40),

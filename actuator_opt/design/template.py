@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..joints.kinds import JOINTS
 from .kinds import Text
 from .model import Design
 from .reader import LoadedDesign
@@ -80,7 +81,7 @@ caps:
   thickness: 6 mm
 
 retention:                     # how caps and head are held to the barrel
-  type: bond                   # or thread, tie_rods
+  type: bond                   # or @JOINTS@
   material: epoxy_structural
   length: 20 mm
   wall: 1.5 mm
@@ -197,7 +198,8 @@ def init_text(name: str = "my actuator", from_design: LoadedDesign | Design | No
     """
     title = Text().validate(name)
     if from_design is None:
-        return _TEXT.replace("@NAME@", scalar(title))
+        joints = ", ".join(name for name in JOINTS.names if name != "bond")
+        return _TEXT.replace("@JOINTS@", joints).replace("@NAME@", scalar(title))
     if isinstance(from_design, Design):
         return to_yaml(from_design.model_copy(update={"name": title}))
     design = from_design.design.model_copy(update={"name": title})

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..joints.joint import judged_on
+from ..joints.kinds import JOINTS
 from ..quantities import Sense
 
 
@@ -100,14 +102,14 @@ CHECK_LIST: tuple[CheckLine, ...] = (
         "retention_factor",
         "min",
         1.5,
-        "choice: 1.5 on the elastic peak shear of a bond, on yield of threads or tie rods",
+        f"choice: 1.5 on {judged_on(JOINTS.values(), 0)}",
     ),
     CheckLine(
         "cap retention at burst pressure",
         "retention_burst_factor",
         "min",
         4.0,
-        "as barrel burst: 4:1 on mean bond shear, rupture of threads and skirt, or of tie rods",
+        f"as barrel burst: 4:1 on {judged_on(JOINTS.values(), 1)}",
     ),
     CheckLine("end plate bending", "cap_factor", "min", 1.5, "choice: 1.5 on yield"),
     CheckLine("clevis pins", "pin_factor", "min", 2.0, "choice: 2 on shear yield"),

@@ -11,8 +11,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from ..design.model import LAND, Design, LoadCase
-from ..models.thread import LEAST_OVERLAP
+from ..design.model import Design, LoadCase
+from ..joints.joint import LAND
+from ..joints.kinds import JOINTS
 from ..numeric import Array, absolute, real, where
 from ..quantities import Sense
 from .check_list import CHECK_LIST
@@ -55,9 +56,8 @@ GEOMETRY: tuple[str, ...] = (
     "geometry_head_groove",
     "geometry_head_wall",
     "geometry_skirts",
-    "geometry_barrel_thread",
-    "geometry_skirt_thread",
 )
+"""Walls and rooms of every actuator; a joint may add its own."""
 ENDS = ("retracted", "extended")
 OWN_PLACE = "position of the case"
 """Places of a joint torque: both stops, and where a load case says it stands."""
@@ -65,7 +65,6 @@ OWN_PLACE = "position of the case"
 OTHER_GEOMETRY: tuple[tuple[str, float, str], ...] = (
     ("geometry_dead_point", LAND, "choice: 1 mm before a dead point, where no force turns"),
     ("geometry_joint_angle", 0.0, "the joint reaches the angle of the load case"),
-    ("geometry_thread_crest", LEAST_OVERLAP, "choice: crests within the tolerance 6g"),
 )
 
 
@@ -146,12 +145,19 @@ def default_limits() -> dict[str, float]:
 
 def geometry_limits() -> list[Limit]:
     """Walls and rooms that must exist for the parts to be parts."""
+    joined = [
+        (name, metric.least, metric.source)
+        for joint in JOINTS.values()
+        for name, metric in joint.metrics.items()
+        if metric.least is not None
+    ]
+    rows = [(name, LAND, "choice: 1 mm least wall") for name in GEOMETRY]
+    rows += [row for row in joined if row[1] == LAND]  # walls first
+    rows += OTHER_GEOMETRY
+    rows += [row for row in joined if row[1] != LAND]
     return [
-        Limit(name, name, "min", constant=LAND, origin="geometry", source="choice: 1 mm least wall")
-        for name in GEOMETRY
-    ] + [
         Limit(name, name, "min", constant=least, origin="geometry", source=source)
-        for name, least, source in OTHER_GEOMETRY
+        for name, least, source in rows
     ]
 
 

@@ -9,6 +9,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import cast
 
+from ..joints.kinds import JOINTS
 from ..models import (
     autofrettage,
     barrel,
@@ -44,7 +45,6 @@ from ..models import (
     stepped,
     stiffness,
     strength_modes,
-    thread,
     tube_burst,
     water_hammer,
     wear,
@@ -139,7 +139,6 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "thread_factor": rod.thread_stress_area,
         "fitting_factor": lap_joint.bond_edge_shear,
         "bond_thermal_factor": lap_joint.bond_thermal_shear,
-        "retention_factor": lap_joint.bond_edge_shear,
         "cap_factor": end_plate.hub_plate_stress,
         "pin_factor": retention.pin_shear_stress,
         "bearing_overlap": retention.guide_forces,
@@ -154,7 +153,6 @@ METRIC_MODELS: MappingProxyType[str, Callable[..., object]] = MappingProxyType(
         "trapped_pressure": oil_density.thermal_pressure_slope,
         "trapped_factor": oil_density.thermal_pressure_slope,
         "liner_mismatch_factor": laminate.thermal_line_forces,
-        "joint_factor": barrel_ends.tie_rod_forces,
         "reverse_yield_factor": autofrettage.autofrettage,
         "flow": forces.chamber_flow,
         "port_velocity": lines.port_velocity,
@@ -200,25 +198,20 @@ WALL_MODELS: MappingProxyType[str, MappingProxyType[str, Callable[..., object]]]
 )
 """What replaces it where the barrel is a laminate, by wall model."""
 
+_OF_JOINTS: dict[tuple[str, str], Callable[..., object]] = {
+    place: model for joint in JOINTS.values() for place, model in joint.models.items()
+}
 
 AT_PLACE: MappingProxyType[tuple[str, str], Callable[..., object]] = MappingProxyType(
     {
+        **_OF_JOINTS,
         ("cap_factor", "cap, hung on its skirt"): end_plate.hung_plate_stress,
         ("cap_factor", "head"): end_plate.end_plate_stress,
-        ("retention_factor", "barrel thread"): thread.male_strip_area,
-        ("retention_factor", "skirt thread"): thread.female_strip_area,
-        ("retention_factor", "thread flanks"): thread.flank_area,
-        ("retention_burst_factor", "barrel thread"): thread.stripping_reductions,
-        ("retention_burst_factor", "skirt thread"): thread.stripping_reductions,
-        ("retention_burst_factor", "skirt under the thread"): rod.section_area,
-        ("retention_burst_factor", "skirt spread by the thread"): thread.spread_stress,
-        ("yield_factor", "skirt under the thread"): rod.section_area,
-        ("retention_factor", "tie rods"): retention.tie_rod_stress,
         ("yield_factor", "rod"): beam_column.amplified_moment,
         ("stiffness_rod", "layered tube"): layered_tube.tube_state,
     }
 )
-"""What replaces both where another part of the actuator governs."""
+"""What replaces both where another part of the actuator governs, and what is of a joint alone."""
 
 
 def model_of(

@@ -8,10 +8,11 @@ from functools import cache
 from typing import NamedTuple
 
 from ... import quantities
+from ...errors import Fault
 from ..build import how_to_add
 from ..section import Section
 from ..structure import Loc, entries
-from ..view import Fault, View, without_effect
+from ..view import View, without_effect
 from .model import FEWEST_SAMPLES, MOST_SAMPLES, SAMPLES, Scenario
 from .signals import Part
 

@@ -1,0 +1,167 @@
+"""Rods outside the barrel that clamp it between cap and head."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi
+
+import numpy as np
+
+from ..models import barrel_ends, endurance, mass, retention
+from ..numeric import Array
+from .joint import (
+    Box,
+    Drawn,
+    End,
+    Field,
+    Fit,
+    Joint,
+    Judged,
+    Life,
+    Loaded,
+    Materials,
+    OwnMetric,
+    Span,
+    Strength,
+    nothing,
+)
+
+
+def _fit(end: End) -> Fit:
+    """Plates two rods wider than the barrel."""
+    radius = end.outer_radius
+    return Fit(plate_radius=radius + 2 * end.sizes["thread.diameter"], radius=radius)
+
+
+def _length(end: End) -> Array:
+    """From plate to plate."""
+    return end.barrel_length + 2 * end.plate
+
+
+def _stiffness(end: End, materials: Materials) -> Array:
+    """Of all rods: n E (pi d^2/4)/L."""
+    assert end.material is not None
+    modulus = materials.get(end.material, "youngs_modulus")
+    diameter = end.sizes["thread.diameter"]
+    return end.sizes["count"] * modulus * pi * diameter * diameter / 4 / _length(end)
+
+
+def _mass(end: End, materials: Materials) -> dict[str, Array]:
+    """Half of the rods at either end."""
+    assert end.material is not None
+    rods = mass.tie_rod_mass(
+        density=materials.get(end.material, "density"),
+        diameter=end.sizes["thread.diameter"],
+        length=_length(end),
+        count=end.sizes["count"],
+    )
+    return {"fastening": rods / 2}
+
+
+def _outline(end: End, fit: Fit, span: Span) -> Iterator[Drawn]:
+    """One rod in the plane of the section, between the outer faces of both plates."""
+    if span.inwards < 0 or end.material is None:
+        return
+    low, size = float(fit.radius), (float(fit.plate_radius) - float(fit.radius)) / 2
+    box = Box(span.outside, span.opposite, low + size / 2, low + 3 * size / 2)
+    yield Drawn("tie rods", end.material, box, bars=round(float(end.sizes["count"])))
+
+
+def _notes(end: End) -> Iterator[str]:
+    yield "Tie rods pass the plates; their holes are not drawn."
+
+
+def _stress(end: End, force: Array) -> Array:
+    """Tension in the threads under the force of all rods."""
+    return retention.tie_rod_stress(
+        force=force,
+        count=end.sizes["count"],
+        diameter=end.sizes["thread.diameter"],
+        pitch=end.sizes["thread.pitch"],
+    )
+
+
+def _strength(loaded: Loaded) -> Strength:
+    end, clamp = loaded.end, loaded.clamp
+    assert clamp is not None
+    assert end.material is not None
+    working, burst, why = {}, {}, ""
+    strength = loaded.materials.allowable(end.material, "yield_strength")
+    ultimate = loaded.materials.allowable(end.material, "ultimate_strength")
+    if strength is None or ultimate is None:
+        why = "tie rods need a thread and a material with yield and ultimate strength"
+    else:
+        stress = _stress(end, clamp.largest)
+        working, burst = {"tie rods": strength / stress}, {"": ultimate / stress}
+    diameter = end.sizes["thread.diameter"]
+    amplitude = _stress(end, (clamp.largest - clamp.preload) / 2)
+    life = Life(
+        endurance.bolt_cycles(amplitude=amplitude, diameter=diameter),
+        endurance.bolt_endurance_amplitude(diameter=diameter) / amplitude,
+    )
+    return Strength(
+        working=working,
+        burst=burst,
+        why=why,
+        yields={},
+        wall_yields={},
+        wall_bursts={},
+        pulsed=(),
+        lives={"tie rods": life},
+        thermal="the caps are not bonded",
+        own={"joint_factor": {"": clamp.closed}},
+    )
+
+
+def _warnings(loaded: Loaded, strength: Strength) -> Iterator[tuple[str, str]]:
+    if loaded.clamp is not None and "preload" not in loaded.end.sizes:
+        force = float(np.max(np.real(loaded.clamp.preload)))
+        yield (
+            "joint_factor",
+            f"no tie-rod preload stated: taken {force / 1e3:.1f} kN, which keeps the joint closed "
+            "at proof pressure",
+        )
+
+
+JOINT = Joint(
+    name="tie_rods",
+    help="rods outside clamp it between cap and head",
+    noun="tie rods",
+    fields=(
+        Field("length"),
+        Field(
+            "material",
+            "missing: tie rods need their material",
+            'add e.g. "material: steel_bolt_10_9"',
+        ),
+        Field("count"),
+        Field(
+            "thread",
+            "missing: tie_rods needs it",
+            'add a block "thread:" with diameter, pitch',
+        ),
+        Field("thread.diameter", "missing: tie rods need it", 'add e.g. "diameter: 6 mm"'),
+        Field("thread.pitch"),
+        Field("preload"),
+    ),
+    kinds=("metal",),
+    without={},
+    faults=nothing,
+    material_faults=nothing,
+    skirts=False,
+    fit=_fit,
+    stiffness=_stiffness,
+    mass=_mass,
+    outline=_outline,
+    notes=_notes,
+    strength=_strength,
+    envelope=None,
+    metrics={"joint_factor": OwnMetric("no tie rods")},
+    judged=(Judged("on yield", "tie rods"), Judged("rupture", "tie rods")),
+    models={
+        ("retention_factor", "tie rods"): retention.tie_rod_stress,
+        ("joint_factor", ""): barrel_ends.tie_rod_forces,
+    },
+    usual=(),
+    warnings=_warnings,
+)

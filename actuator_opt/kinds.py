@@ -1,0 +1,121 @@
+"""A registry of kinds: seal types, friction laws and whatever else a design file names by a word.
+
+Each kind is one module with one frozen dataclass; the registry lists them. Words, help, JSON
+Schema, faults and tests read the registry, so that nothing else names a kind.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from typing import Any, Protocol, TypeVar
+
+from .suggest import remedy
+
+_WORD = re.compile(r"[a-z][a-z0-9_]*")
+
+
+class Kind(Protocol):
+    """What the registry reads of a kind; every kind is a frozen dataclass."""
+
+    @property
+    def name(self) -> str:
+        """Word in a design file."""
+
+    @property
+    def help(self) -> str:
+        """Meaning of the word, in half a sentence."""
+
+
+K = TypeVar("K", bound=Kind)
+
+
+class UnknownKind(KeyError):
+    """A word that names no kind."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class Kinds(Mapping[str, K]):
+    """Kinds by name, in the order given; an unknown name raises `UnknownKind`."""
+
+    def __init__(self, what: str, entries: tuple[K, ...]) -> None:
+        self.what = what
+        self._entries: dict[str, K] = {}
+        for entry in entries:
+            _complete(what, entry)
+            if entry.name in self._entries:
+                raise ValueError(f'{what} "{entry.name}": there are two of this name')
+            self._entries[entry.name] = entry
+
+    def __getitem__(self, name: str) -> K:
+        try:
+            return self._entries[name]
+        except KeyError:
+            advice = remedy(str(name), self._entries)
+            raise UnknownKind(f'no {self.what} "{name}"; {advice}') from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Every name, in order."""
+        return tuple(self._entries)
+
+    @property
+    def help(self) -> str:
+        """Every name with its meaning, as the help of a field lists them."""
+        return "; ".join(f"{entry.name}: {entry.help}" for entry in self._entries.values())
+
+
+def kinds(what: str, *entries: K) -> Kinds[K]:
+    """A registry of complete kinds.
+
+    Parameters
+    ----------
+    what : what they are, in the singular
+    entries : frozen dataclasses with `name` and `help`
+
+    Raises
+    ------
+    ValueError
+        two of one name, a name that is no word in lower case, a piece that is None, empty text or
+        no function where its annotation has none of these
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True)
+    ... class Joint:
+    ...     name: str
+    ...     help: str
+    >>> joints = kinds("joint", Joint("bond", "skirts glued over it"), Joint("thread", "screwed"))
+    >>> joints.names, joints.help
+    (('bond', 'thread'), 'bond: skirts glued over it; thread: screwed')
+    >>> joints["bnd"]
+    Traceback (most recent call last):
+    actuator_opt.kinds.UnknownKind: no joint "bnd"; did you mean "bond"?
+    """
+    return Kinds(what, entries)
+
+
+def _complete(what: str, entry: Any) -> None:
+    """Refuse an entry that lacks a piece."""
+    label = f'{what} "{getattr(entry, "name", "")}"'
+    if not _WORD.fullmatch(entry.name):
+        raise ValueError(f"{label}: its name is no word of small letters, digits and _")
+    for field in fields(entry):
+        value, kind = getattr(entry, field.name), str(field.type)
+        optional = "None" in kind
+        if value is None and not optional:
+            raise ValueError(f"{label}: {field.name} is missing")
+        if isinstance(value, str) and not value.strip():
+            raise ValueError(f"{label}: {field.name} is empty")
+        if kind.startswith("Callable") and not (callable(value) or (optional and value is None)):
+            raise ValueError(f"{label}: {field.name} is no function")
