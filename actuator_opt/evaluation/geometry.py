@@ -80,7 +80,7 @@ def derive(v: Values, design: Design) -> Geometry:
             Numbers(v),
             inner_radius=inner_radius,
             outer_radius=outer_radius,
-            layer=thicknesses[-1],
+            thicknesses=thicknesses,
             barrel_length=barrel_length,
             plate=plate,
         )
@@ -126,7 +126,7 @@ def end_at(design: Design, sizes: Sizes, g: Geometry) -> End:
         sizes,
         inner_radius=g.inner_radius,
         outer_radius=g.outer_radius,
-        layer=g.thicknesses[-1],
+        thicknesses=g.thicknesses,
         barrel_length=g.barrel_length,
         plate=g.plate,
     )

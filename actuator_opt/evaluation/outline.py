@@ -9,22 +9,17 @@ from typing import Literal, TypeAlias
 
 from ..design.material import Material
 from ..design.model import Design
-from ..joints.joint import Span
+from ..joints.joint import Polygon, Span, rectangle
 from .geometry import Geometry, end_at
 from .grooves import Groove, taken
 from .result import Outline
 from .retention import Stated, end_of, joint_of
 from .rods import end_material
 
-_Polygon: TypeAlias = tuple[tuple[float, float], ...]
-_Part: TypeAlias = tuple[str, str, list[_Polygon], int]
+_Part: TypeAlias = tuple[str, str, list[Polygon], int]
 """Part, material, polygons, and of round bars how many."""
 
 _Kind: TypeAlias = Literal["metal", "composite", "polymer", "seal", "oil"]
-
-
-def _rectangle(x0: float, x1: float, r0: float, r1: float) -> _Polygon:
-    return ((x0, r0), (x1, r0), (x1, r1), (x0, r1))
 
 
 def _grooves(
@@ -49,7 +44,7 @@ def _grooved(
     counterface: float,
     *,
     outside: bool,
-) -> _Polygon:
+) -> Polygon:
     """A ring with rectangular grooves cut from outside or from inside.
 
     A groove is as deep as its gland, from the counterface on.
@@ -65,14 +60,14 @@ def _grooved(
     return (*edge, (x1, other), (x0, other))
 
 
-def _eye(centre: float, pin: float, side: int) -> list[_Polygon]:
+def _eye(centre: float, pin: float, side: int) -> list[Polygon]:
     """Half of an eye seen from the side: lug of radius `pin` around the pin hole, and its neck."""
     angles = [pi * k / 24 for k in range(25)]
     rim = [(centre + pin * cos(a), pin * sin(a)) for a in angles]
     hole = [(centre + pin / 2 * cos(a), pin / 2 * sin(a)) for a in reversed(angles)]
     foot = 0.75**0.5 * pin  # where a neck of this diameter meets the rim
     neck = sorted((centre + side * foot, centre + side * 2 * pin))
-    return [(*rim, *hole), _rectangle(neck[0], neck[1], 0.0, pin / 2)]
+    return [(*rim, *hole), rectangle(neck[0], neck[1], 0.0, pin / 2)]
 
 
 def _kind(material: Material) -> _Kind:
@@ -117,14 +112,14 @@ def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     radius, turned = at.bore, float(g.fit.radius)
     for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
         outer = radius + float(thickness)
-        shape = _rectangle(at.start, at.end, radius, outer)
+        shape = rectangle(at.start, at.end, radius, outer)
         if i == len(g.thicknesses) - 1 and turned < min(outer, float(g.outer_radius)):
             shape = _turned_down(shape, turned, float(g.fit.length))
         yield f"layup[{i}]", ply.material, [shape], 0
         radius = outer
 
 
-def _turned_down(shape: _Polygon, radius: float, length: float) -> _Polygon:
+def _turned_down(shape: Polygon, radius: float, length: float) -> Polygon:
     """A ring whose outside is smaller at both ends, under the skirts."""
     (x0, r0), _, (x1, r1), _ = shape
     left, right = x0 + length, x1 - length
@@ -136,10 +131,10 @@ def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     """Caps, with what their joint adds to them, and what else holds them."""
     plate, radius = float(g.plate), float(g.fit.plate_radius)
     caps = [
-        _rectangle(at.face, at.start, 0.0, radius),
-        _rectangle(at.end, at.end + plate, at.hole, radius),
+        rectangle(at.face, at.start, 0.0, radius),
+        rectangle(at.end, at.end + plate, at.hole, radius),
     ]
-    others: list[_Part] = []
+    others: dict[tuple[str, str, int], list[Polygon]] = {}
     joint = joint_of(design)
     if joint is not None and design.retention is not None:
         end = end_at(design, Stated(design.retention), g)
@@ -147,13 +142,13 @@ def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
         for span in (Span(at.start, 1, face, back), Span(at.end, -1, back, face)):
             for piece in joint.outline(end, g.fit, span):
                 if piece.part == "caps":
-                    caps.append(_rectangle(*piece.box))
+                    caps.append(piece.shape)
                 else:
-                    others.append(
-                        (piece.part, piece.material, [_rectangle(*piece.box)], piece.bars)
-                    )
+                    key = (piece.part, piece.material, piece.bars)
+                    others.setdefault(key, []).append(piece.shape)
     yield "caps", design.caps.material, caps, 0
-    yield from others
+    for (part, material, bars), shapes in others.items():
+        yield part, material, shapes, bars
 
 
 def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
@@ -172,13 +167,13 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     """The rod: a bar or tube, or its layers with the fittings inside both ends."""
     bore = float(g.rod_inner_diameter) / 2
     if not design.rod.layup:
-        bar = _rectangle(at.piston_end, at.tip, bore, at.rod)
+        bar = rectangle(at.piston_end, at.tip, bore, at.rod)
         yield "rod", design.rod.material, [bar], 0
         return
     radius = bore
     for i, (ply, thickness) in enumerate(zip(design.rod.layup, g.rod_thicknesses, strict=True)):
         outer = radius + float(thickness)
-        shape = _rectangle(at.piston_end, at.tip, radius, outer)
+        shape = rectangle(at.piston_end, at.tip, radius, outer)
         yield f"rod.layup[{i}]", ply.material, [shape], 0
         radius = outer
     fitting = design.rod.fitting
@@ -188,8 +183,8 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
             "rod.fitting",
             end_material(design),
             [
-                _rectangle(at.piston_end, at.piston_end + fitting.length, hole, bore),
-                _rectangle(at.tip - fitting.length, at.tip, hole, bore),
+                rectangle(at.piston_end, at.piston_end + fitting.length, hole, bore),
+                rectangle(at.tip - fitting.length, at.tip, hole, bore),
             ],
             0,
         )
@@ -199,11 +194,11 @@ def _rings(
     start: float, length: float, grooves: Sequence[Groove], counterface: float, side: int
 ) -> Iterator[_Part]:
     """What lies in every groove: round rings as wide as their section, others fill it."""
-    shapes: dict[tuple[str, str], list[_Polygon]] = {}
+    shapes: dict[tuple[str, str], list[Polygon]] = {}
     for groove, left, right in _grooves(start, length, grooves):
         middle, half = (left + right) / 2, min(float(groove.ring_width), right - left) / 2
         near, far = counterface, counterface + side * float(groove.gland_depth)
-        shape = _rectangle(middle - half, middle + half, min(near, far), max(near, far))
+        shape = rectangle(middle - half, middle + half, min(near, far), max(near, far))
         shapes.setdefault((groove.place, groove.material), []).append(shape)
     for (place, material), polygons in shapes.items():
         yield place, material, polygons, 0
@@ -222,7 +217,7 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
     oil = Outline(
         "oil",
         design.fluid.material,
-        (_rectangle(at.piston_end, at.head, at.rod, at.bore),),
+        (rectangle(at.piston_end, at.head, at.rod, at.bore),),
         "oil",
     )
     groups = (_barrel, _ends, _inside, _eyes)
@@ -270,7 +265,7 @@ def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
         Stated(design.retention),
         inner_radius=lengths["bore"] / 2,
         outer_radius=lengths["barrel_outer_diameter"] / 2,
-        layer=design.barrel.layup[-1].thickness,
+        thicknesses=[ply.thickness for ply in design.barrel.layup],
         barrel_length=lengths["barrel_length"],
         plate=lengths["plate"],
     )

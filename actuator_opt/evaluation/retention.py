@@ -5,8 +5,10 @@ Both ends have the same joint, so one `End` stands for both.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ..design.model import Design, Retention
-from ..joints.joint import End, Joint, Sizes
+from ..joints.joint import End, Joint, Layer, Sizes
 from ..joints.kinds import JOINTS
 from ..numeric import Array
 from .values import Values
@@ -66,19 +68,19 @@ def end_of(
     *,
     inner_radius: Array,
     outer_radius: Array,
-    layer: Array,
+    thicknesses: Sequence[Array],
     barrel_length: Array,
     plate: Array,
 ) -> End:
-    """The end of a design's barrel; `layer` is the thickness of its outermost layer."""
+    """The end of a design's barrel; `thicknesses` are those of its layers."""
+    layers = zip(design.barrel.layup, thicknesses, strict=True)
     return End(
         sizes=sizes,
         material=None if design.retention is None else design.retention.material,
         cap=design.caps.material,
-        barrel=design.barrel.layup[-1].material,
+        layers=tuple(Layer(ply.material, thickness) for ply, thickness in layers),
         inner_radius=inner_radius,
         outer_radius=outer_radius,
-        layer=layer,
         barrel_length=barrel_length,
         plate=plate,
     )

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from ..errors import Fault
 from ..numeric import Array
@@ -120,21 +120,27 @@ class Usual(NamedTuple):
     number: Callable[[End], Array]
 
 
+class Layer(NamedTuple):
+    """A layer of the barrel."""
+
+    material: str
+    thickness: Array
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class End:
     """An end of the barrel and what is joined there.
 
-    `material` is the one named beside the joint, `cap` the cap's, `barrel` that of the barrel's
-    outermost layer, whose thickness is `layer`.
+    `material` is the one named beside the joint, `cap` the cap's; `layers` are those of the barrel,
+    from the bore outwards.
     """
 
     sizes: Sizes
     material: str | None
     cap: str
-    barrel: str
+    layers: tuple[Layer, ...]
     inner_radius: Array
     outer_radius: Array
-    layer: Array
     barrel_length: Array
     plate: Array
     """Thickness of the end plate."""
@@ -166,19 +172,19 @@ class Span(NamedTuple):
     outside: float
     opposite: float
 
-    def box(self, length: float, low: float, high: float) -> Box:
+    def over(self, length: float, low: float, high: float) -> Polygon:
         """A rectangle over the barrel's first `length`, between two radii."""
         start, stop = sorted((self.face, self.face + self.inwards * length))
-        return Box(start, stop, low, high)
+        return rectangle(start, stop, low, high)
 
 
-class Box(NamedTuple):
-    """A rectangle of the half-section: from and to along the axis, then radially [m]."""
+Polygon: TypeAlias = tuple[tuple[float, float], ...]
+"""Corners of a closed shape of the half-section: (axial position, radius) [m]."""
 
-    start: float
-    stop: float
-    low: float
-    high: float
+
+def rectangle(start: float, stop: float, low: float, high: float) -> Polygon:
+    """A rectangle of the half-section, along the axis and radially."""
+    return ((start, low), (stop, low), (stop, high), (start, high))
 
 
 class Drawn(NamedTuple):
@@ -186,7 +192,7 @@ class Drawn(NamedTuple):
 
     part: str
     material: str
-    box: Box
+    shape: Polygon
     bars: int = 0
 
 

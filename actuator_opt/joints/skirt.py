@@ -27,7 +27,7 @@ def outline(end: End, fit: Fit, span: Span) -> Iterator[Drawn]:
     """The skirt of one end."""
     length, inner = float(fit.length), float(fit.radius)
     if length > 0:
-        yield Drawn("caps", end.cap, span.box(length, inner, inner + float(fit.wall)))
+        yield Drawn("caps", end.cap, span.over(length, inner, inner + float(fit.wall)))
 
 
 def yields(loaded: Loaded) -> dict[str, Array]:

@@ -231,7 +231,7 @@ def _mass(end: End, materials: Materials) -> dict[str, Array]:
     if radius is end.outer_radius:
         return caps
     turned = mass.layer_area(inner_radius=radius, thickness=end.outer_radius - radius)
-    ring = materials.get(end.barrel, "density") * turned * end.sizes["length"]
+    ring = materials.get(end.layers[-1].material, "density") * turned * end.sizes["length"]
     return caps | {"barrel": -ring}
 
 
@@ -278,10 +278,10 @@ def derive(end: End) -> Thread:
     engagement = thread.engaged_length(length=end.sizes["length"], pitch=pitch)
     crested = {"engagement": engagement, "crest_diameter": 2 * radius}
     root = thread.root_diameter(**size)
-    layer = end.outer_radius - end.layer
+    layer = end.outer_radius - end.layers[-1].thickness
     outer = 2 * (radius + wall)
     return Thread(
-        male=end.barrel,
+        male=end.layers[-1].material,
         female=end.cap,
         diameter=diameter,
         root_diameter=root,

@@ -10,7 +10,6 @@ import numpy as np
 from ..models import barrel_ends, endurance, mass, retention
 from ..numeric import Array
 from .joint import (
-    Box,
     Drawn,
     End,
     Field,
@@ -24,6 +23,7 @@ from .joint import (
     Span,
     Strength,
     nothing,
+    rectangle,
 )
 
 
@@ -63,8 +63,8 @@ def _outline(end: End, fit: Fit, span: Span) -> Iterator[Drawn]:
     if span.inwards < 0 or end.material is None:
         return
     low, size = float(fit.radius), (float(fit.plate_radius) - float(fit.radius)) / 2
-    box = Box(span.outside, span.opposite, low + size / 2, low + 3 * size / 2)
-    yield Drawn("tie rods", end.material, box, bars=round(float(end.sizes["count"])))
+    shape = rectangle(span.outside, span.opposite, low + size / 2, low + 3 * size / 2)
+    yield Drawn("tie rods", end.material, shape, bars=round(float(end.sizes["count"])))
 
 
 def _notes(end: End) -> Iterator[str]:
