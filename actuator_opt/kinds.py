@@ -7,8 +7,9 @@ Schema, faults and tests read the registry, so that nothing else names a kind.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
+from types import MappingProxyType
 from typing import Any, Protocol, TypeVar
 
 from .suggest import remedy
@@ -29,6 +30,7 @@ class Kind(Protocol):
 
 
 K = TypeVar("K", bound=Kind)
+V = TypeVar("V")
 
 
 class UnknownKind(KeyError):
@@ -38,40 +40,30 @@ class UnknownKind(KeyError):
         return str(self.args[0])
 
 
-class Kinds(Mapping[str, K]):
+class Kinds(dict[str, K]):
     """Kinds by name, in the order given; an unknown name raises `UnknownKind`."""
 
-    def __init__(self, what: str, entries: tuple[K, ...]) -> None:
+    def __init__(self, what: str, entries: Iterable[K]) -> None:
+        super().__init__()
         self.what = what
-        self._entries: dict[str, K] = {}
         for entry in entries:
             _complete(what, entry)
-            if entry.name in self._entries:
+            if entry.name in self:
                 raise ValueError(f'{what} "{entry.name}": there are two of this name')
-            self._entries[entry.name] = entry
+            self[entry.name] = entry
 
-    def __getitem__(self, name: str) -> K:
-        try:
-            return self._entries[name]
-        except KeyError:
-            advice = remedy(str(name), self._entries)
-            raise UnknownKind(f'no {self.what} "{name}"; {advice}') from None
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._entries)
-
-    def __len__(self) -> int:
-        return len(self._entries)
+    def __missing__(self, name: str) -> K:
+        raise UnknownKind(f'no {self.what} "{name}"; {remedy(str(name), self)}')
 
     @property
     def names(self) -> tuple[str, ...]:
         """Every name, in order."""
-        return tuple(self._entries)
+        return tuple(self)
 
     @property
     def help(self) -> str:
         """Every name with its meaning, as the help of a field lists them."""
-        return "; ".join(f"{entry.name}: {entry.help}" for entry in self._entries.values())
+        return "; ".join(f"{entry.name}: {entry.help}" for entry in self.values())
 
 
 def kinds(what: str, *entries: K) -> Kinds[K]:
@@ -103,6 +95,27 @@ def kinds(what: str, *entries: K) -> Kinds[K]:
     actuator_opt.kinds.UnknownKind: no joint "bnd"; did you mean "bond"?
     """
     return Kinds(what, entries)
+
+
+def per_kind(registry: Mapping[str, Any], functions: Mapping[str, V]) -> Mapping[str, V]:
+    """What a higher layer adds to every kind of a registry: one entry each, no other.
+
+    Raises
+    ------
+    ValueError : a kind without an entry, or an entry without a kind
+
+    Examples
+    --------
+    >>> per_kind({"p": 1, "pi": 2}, {"p": abs})
+    Traceback (most recent call last):
+    ValueError: pi: no entry
+    """
+    lacking = [name for name in registry if name not in functions]
+    unknown = [name for name in functions if name not in registry]
+    if lacking or unknown:
+        words = [f"{name}: no entry" for name in lacking] + [f"{name}: no kind" for name in unknown]
+        raise ValueError("; ".join(words))
+    return MappingProxyType(dict(functions))
 
 
 def _complete(what: str, entry: Any) -> None:

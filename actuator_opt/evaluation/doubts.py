@@ -60,7 +60,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
     yield from (("", text) for text in proportions.warnings(subject, v, g))
     yield from _wall_warnings(subject, done)
     if done.held is not None:
-        yield from done.held.joint.warnings(done.held.loaded, done.held.strength)
+        yield from done.held.joint.warnings(done.held.loaded)
     yield from _rod_warnings(subject, done)
     yield from _bond_warnings(done)
     for part, what in (

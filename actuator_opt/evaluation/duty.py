@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..design.model import Design
+from ..joints.joint import Fatigue
 from ..models import density, end_stop, endurance, rod
 from ..numeric import Array, maximum, where
 from . import rod_strength
@@ -65,8 +66,8 @@ def _endurance(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
         )
         loads.append(("rod thread", section.end_material, stress, stress / 2))
-    if held is not None:
-        loads.extend(held.strength.pulsed)
+    joined = Fatigue() if held is None else held.joint.fatigue(held.loaded)
+    loads.extend(joined.pulsed)
     life, factor, lacking = {}, {}, []
     for place, name, span, mean in loads:
         ultimate = stock.allowable(name, "ultimate_strength")
@@ -90,7 +91,7 @@ def _endurance(
             amplitude_strength=limit,
             stress_ratio=ratio,
         )
-    for place, known in ({} if held is None else held.strength.lives).items():
+    for place, known in joined.lives.items():
         life[place], factor[place] = known
     for metric, values in (("cycle_life", life), ("fatigue_factor", factor)):
         if values:

@@ -195,6 +195,7 @@ def statics(subject: Subject, v: Values, out: Computed, implicit: Implicit = IMP
     thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
     for name, value in geometry_module.lands(g, thread / 2).items():
         out.put(name, value)
+    strength.own(held, out)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
     _manufacture(v, subject, out)

@@ -37,11 +37,10 @@ NO_RETENTION = "no retention stated: add retention"
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """The joint of caps and head under load, and its strength."""
+    """The joint of caps and head under load."""
 
     joint: Joint
     loaded: Loaded
-    strength: Strength
 
 
 def held(v: Values, design: Design, stock: Stock, g: Geometry, wall: Wall) -> Held | None:
@@ -58,7 +57,7 @@ def held(v: Values, design: Design, stock: Stock, g: Geometry, wall: Wall) -> He
         expansion=None if wall.expansion is None else wall.expansion[0],
         clamp=wall.path.clamp,
     )
-    return Held(joint, loaded, joint.strength(loaded))
+    return Held(joint, loaded)
 
 
 def compute(
@@ -78,22 +77,23 @@ def compute(
     push, pull = supply * g.area_a, supply * g.area_b
     yields, bursts = wall.yield_pressure, wall.burst_pressure
     if held is not None:
-        yields = yields | dict(held.strength.wall_yields)
-        bursts = bursts | dict(held.strength.wall_bursts)
+        beside = held.joint.wall(held.loaded)
+        yields, bursts = {**yields, **beside.yields}, {**bursts, **beside.bursts}
     _pressure_factors(v, wall, supply, yields, bursts, out)
     parts = {place: p / supply for place, p in yields.items()}
     parts |= rod_strength.yields(stock, design, g, state, section, beam)
-    parts |= {} if held is None else held.strength.yields
+    parts |= {} if held is None else held.joint.yields(held.loaded)
     parts |= _fitting_yield(v, stock, design, section, push)
     out.put("yield_factor", parts)
     out.put("buckling_factor", beam.critical / push)
     rod_strength.compute(design, section, beam, supply, push, pull, out)
     _rod_end(v, stock, design, section, pull, out)
-    _retention(held, out)
+    found = NO_RETENTION if held is None else held.joint.strength(held.loaded)
+    _retention(found, out)
     fittings = bonds.fittings(v, stock, design, section)
     _fittings(stock, fittings, push, out)
     thermal = {
-        "caps": NO_RETENTION if held is None else held.strength.thermal,
+        "caps": found if isinstance(found, str) else found.thermal,
         "rod fittings": fittings if isinstance(fittings, str) else fittings.thermal(stock),
     }
     bonds.thermal(v, design, thermal, out)
@@ -161,20 +161,23 @@ def _rod_end(
     out.put("thread_factor", strength / stress)
 
 
-def _retention(held: Held | None, out: Computed) -> None:
+def _retention(found: Strength | str, out: Computed) -> None:
     """What holds caps and head: elastic limit and breaking load over the largest axial force."""
-    why = NO_RETENTION if held is None else held.strength.why
-    if held is None or why:
-        out.skip("retention_factor", why)
-        out.skip("retention_burst_factor", why)
+    if isinstance(found, str):
+        out.skip("retention_factor", found)
+        out.skip("retention_burst_factor", found)
     else:
-        out.put("retention_factor", dict(held.strength.working))
-        out.put("retention_burst_factor", dict(held.strength.burst))
-    own = {} if held is None else held.strength.own
+        out.put("retention_factor", dict(found.working))
+        out.put("retention_burst_factor", dict(found.burst))
+
+
+def own(held: Held | None, out: Computed) -> None:
+    """The joint's own metrics; those of other joints have a reason."""
+    found = {} if held is None else held.joint.own(held.loaded)
     for joint in JOINTS.values():
         for name, metric in joint.metrics.items():
-            if name in own:
-                out.put(name, dict(own[name]))
+            if name in found:
+                out.put(name, found[name])
             else:
                 out.skip(name, metric.absent)
 

@@ -105,33 +105,31 @@ def parts(
 ) -> dict[str, Array]:
     """Mass of every dry part, kg."""
     g = geometry
-    joint = joint_of(design)
-    joined = {} if joint is None else joint.mass(end_at(design, Numbers(v), g), stock)
     caps = v[f"materials.{design.caps.material}.density"]
-    hole = g.rod_diameter + 2 * g.head_clearance
     clevises: Array = 0.0
     if design.clevis is not None:
         density = v[f"materials.{design.clevis.material}.density"]
         clevises = 2 * density * mass.eye_volume(pin_diameter=g.pin_diameter)
-    barrel, fastening = _barrel(v, design, g), _rod_ends(v, design, rod)
-    cap, head = _plate(caps, g, 0.0), _plate(caps, g, hole)
-    if "barrel" in joined:
-        barrel = barrel + 2 * joined["barrel"]
-    if "fastening" in joined:
-        fastening = fastening + 2 * joined["fastening"]
-    if "caps" in joined:
-        cap, head = cap + joined["caps"], head + joined["caps"]
-    values = (
-        barrel,
-        rod.mass_per_length * g.rod_length,
-        _piston(v, design, g),
-        cap + head,
-        _gland(v, design, g),
-        _seals(v, g),
-        fastening,
-        clevises,
-    )
-    return dict(zip(PARTS, values, strict=True))
+    found = {
+        "barrel": _barrel(v, design, g),
+        "rod": rod.mass_per_length * g.rod_length,
+        "piston": _piston(v, design, g),
+        "cap": _plate(caps, g, 0.0),
+        "head": _plate(caps, g, g.rod_diameter + 2 * g.head_clearance),
+        "glands": _gland(v, design, g),
+        "seals": _seals(v, g),
+        "fastening": _rod_ends(v, design, rod),
+        "clevises": clevises,
+    }
+    joint = joint_of(design)
+    joined = {} if joint is None else joint.mass(end_at(design, Numbers(v), g), stock)
+    for part, added in joined.items():
+        if part == "caps":
+            found["cap"], found["head"] = found["cap"] + added, found["head"] + added
+        else:
+            found[part] = found[part] + 2 * added
+    found["caps"] = found.pop("cap") + found.pop("head")
+    return {part: found[part] for part in PARTS}
 
 
 def oil(v: Values, design: Design, geometry: Geometry, position: Array = 0.0) -> Array:

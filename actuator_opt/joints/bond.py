@@ -7,7 +7,19 @@ from collections.abc import Mapping
 from ..models import lap_joint
 from ..numeric import Array
 from . import skirt
-from .joint import End, Field, Fit, Joint, Judged, Loaded, Materials, Strength, nothing
+from .joint import (
+    End,
+    Fatigue,
+    Field,
+    Fit,
+    Joint,
+    Judged,
+    Loaded,
+    Materials,
+    Strength,
+    WallPressures,
+    nothing,
+)
 from .overlap import Overlap, mismatch
 
 
@@ -39,24 +51,14 @@ def _overlap(loaded: Loaded) -> Overlap | str:
     )
 
 
-def _strength(loaded: Loaded) -> Strength:
+def _strength(loaded: Loaded) -> Strength | str:
     overlap = _overlap(loaded)
-    working: Mapping[str, Array] = {}
-    burst: Mapping[str, Array] = {}
-    if isinstance(overlap, Overlap):
-        working = overlap.edge_factors(loaded.materials, loaded.force)
-        burst = {"": overlap.mean_factor(loaded.materials, loaded.force)}
+    if isinstance(overlap, str):
+        return overlap
     return Strength(
-        working=working,
-        burst=burst,
-        why=overlap if isinstance(overlap, str) else "",
-        yields=skirt.yields(loaded),
-        wall_yields={},
-        wall_bursts={},
-        pulsed=(),
-        lives={},
-        thermal=overlap if isinstance(overlap, str) else overlap.thermal(loaded.materials),
-        own={},
+        overlap.edge_factors(loaded.materials, loaded.force),
+        {"": overlap.mean_factor(loaded.materials, loaded.force)},
+        overlap.thermal(loaded.materials),
     )
 
 
@@ -96,6 +98,10 @@ JOINT = Joint(
     outline=skirt.outline,
     notes=nothing,
     strength=_strength,
+    yields=skirt.yields,
+    wall=lambda loaded: WallPressures(),
+    fatigue=lambda loaded: Fatigue(),
+    own=lambda loaded: {},
     envelope=_envelope,
     metrics={},
     judged=(Judged("the elastic peak shear", "a bond"), Judged("mean bond shear")),

@@ -16,6 +16,8 @@ LAND = 1e-3
 """Least wall beside or under a groove or thread, least rod wall, bore of a laminated rod and room
 between rod and bore (m): a choice for turned parts in this size range."""
 
+NOT_BONDED = "the caps are not bonded"
+
 ROUNDING = 1e-5
 """Relative room for an optimum that stands on the limit."""
 
@@ -246,28 +248,31 @@ Thermal = Callable[[Array, bool], Array]
 """Strength over load by a warming [K] alone, at the coldest (True) or the hottest."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+class Fatigue(NamedTuple):
+    """What pulsates, judged by the metals' own data, and places with an endurance of their own."""
+
+    pulsed: tuple[Pulsed, ...] = ()
+    lives: Mapping[str, Life] = {}
+
+
+class WallPressures(NamedTuple):
+    """Pressures at which the barrel yields and bursts beside the joint, by place [Pa]."""
+
+    yields: Mapping[str, Array] = {}
+    bursts: Mapping[str, Array] = {}
+
+
+@dataclass(frozen=True, slots=True)
 class Strength:
     """Strength over load of an end, by place.
 
-    `working` are elastic limits and `burst` breaking loads over the largest force; both empty where
-    the reason `why` prevents them. `yields` are further elastic limits over working stress,
-    `wall_yields` and `wall_bursts` pressures that the barrel bears beside the joint [Pa].
+    `working` are elastic limits and `burst` breaking loads over the largest force, `thermal` is
+    strength over load by temperature, or why there is none.
     """
 
     working: Mapping[str, Array]
     burst: Mapping[str, Array]
-    why: str = ""
-    yields: Mapping[str, Array]
-    wall_yields: Mapping[str, Array]
-    wall_bursts: Mapping[str, Array]
-    pulsed: tuple[Pulsed, ...]
-    lives: Mapping[str, Life]
-    """Of places with an endurance of their own."""
     thermal: Thermal | str
-    """Or why there is none."""
-    own: Mapping[str, Mapping[str, Array]]
-    """The joint's own metrics by name and place."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -303,7 +308,15 @@ class Joint:
     """What it adds to the half-section at one end."""
     notes: Callable[[End], Iterable[str]]
     """Sentences on what the section does not show."""
-    strength: Callable[[Loaded], Strength]
+    strength: Callable[[Loaded], Strength | str]
+    """Or why it cannot be judged."""
+    yields: Callable[[Loaded], Mapping[str, Array]]
+    """Further elastic limits over working stress, by place."""
+    wall: Callable[[Loaded], WallPressures]
+    """What the barrel itself bears beside the joint."""
+    fatigue: Callable[[Loaded], Fatigue]
+    own: Callable[[Loaded], Mapping[str, Array]]
+    """Its own metrics by name: the keys of `metrics`."""
     envelope: Callable[[Loaded, Mapping[str, Array]], Mapping[str, Array]] | None
     """`Strength.working` from above, from `burst`, where itself is not convex; None: not needed."""
     metrics: Mapping[str, OwnMetric]
@@ -313,7 +326,7 @@ class Joint:
     models: Mapping[tuple[str, str], Callable[..., object]]
     """Leading model behind a metric at a place."""
     usual: tuple[Usual, ...]
-    warnings: Callable[[Loaded, Strength], Iterable[tuple[str, str]]]
+    warnings: Callable[[Loaded], Iterable[tuple[str, str]]]
     """Metric and sentence for what is doubtful."""
 
     @property

@@ -8,7 +8,7 @@ leaves metal under it: other files are refused.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
 
@@ -22,8 +22,10 @@ from ..quantities import INPUTS, METRICS
 from . import skirt
 from .joint import (
     LAND,
+    NOT_BONDED,
     ROUNDING,
     End,
+    Fatigue,
     Field,
     Fit,
     Joint,
@@ -36,6 +38,7 @@ from .joint import (
     Stated,
     Strength,
     Usual,
+    WallPressures,
     judged_later,
 )
 
@@ -305,51 +308,37 @@ def _strengths(materials: Materials, name: str) -> tuple[Array, Array]:
     )
 
 
-def _why_not(materials: Materials, cut: Thread) -> str:
-    """Why the thread has no factor; "" where it has."""
+def _judged(loaded: Loaded) -> Thread | str:
+    """The thread of an end, or why it has no factor."""
+    cut, materials = derive(loaded.end), loaded.materials
     for name in (cut.male, cut.female):
         if materials.kind(name) != "metal":
             return f"{name} is no metal: a thread is cut into metal only"
         if any(strength is None for strength in _strengths(materials, name)):
             return f"{name} states no yield or ultimate strength"
-    return ""
+    return cut
 
 
-def _strength(loaded: Loaded) -> Strength:
-    cut, materials, force = derive(loaded.end), loaded.materials, loaded.force
-    own = {
-        LANDS[0]: {"": cut.root_diameter / 2 - cut.layer_radius},
-        LANDS[1]: {"": cut.skirt_wall},
-        CREST: {"": cut.overlap},
-    }
-    not_bonded = "the caps are not bonded"
-    why = _why_not(materials, cut)
-    if why:
-        return Strength(
-            working={},
-            burst={},
-            why=why,
-            yields=skirt.yields(loaded),
-            wall_yields={},
-            wall_bursts={},
-            pulsed=(),
-            lives={},
-            thermal=not_bonded,
-            own=own,
-        )
-    wall_yields, wall_bursts = _wall(materials, cut, loaded.paths)
-    female = materials.allowable(cut.female, "yield_strength")
-    return Strength(
-        working=_working(materials, cut, force),
-        burst=_burst(materials, cut, force),
-        yields={"skirt under the thread": female * cut.skirt_section / force},
-        wall_yields=wall_yields,
-        wall_bursts=wall_bursts,
-        pulsed=tuple(_roots(materials, cut, force)),
-        lives={},
-        thermal=not_bonded,
-        own=own,
-    )
+def _strength(loaded: Loaded) -> Strength | str:
+    cut, materials, force = _judged(loaded), loaded.materials, loaded.force
+    if isinstance(cut, str):
+        return cut
+    return Strength(_working(materials, cut, force), _burst(materials, cut, force), NOT_BONDED)
+
+
+def _yields(loaded: Loaded) -> dict[str, Array]:
+    cut = _judged(loaded)
+    if isinstance(cut, str):
+        return skirt.yields(loaded)
+    strength = loaded.materials.allowable(cut.female, "yield_strength")
+    return {"skirt under the thread": strength * cut.skirt_section / loaded.force}
+
+
+def _own(loaded: Loaded) -> dict[str, Array]:
+    """Metal left under either root and overlap of the flanks, limits that no search gives up."""
+    cut = derive(loaded.end)
+    walls = (cut.root_diameter / 2 - cut.layer_radius, cut.skirt_wall)
+    return dict(zip(LANDS, walls, strict=True)) | {CREST: cut.overlap}
 
 
 def _working(materials: Materials, cut: Thread, force: Array) -> dict[str, Array]:
@@ -376,18 +365,19 @@ def _burst(materials: Materials, cut: Thread, force: Array) -> dict[str, Array]:
     }
 
 
-def _wall(
-    materials: Materials, cut: Thread, paths: Mapping[str, Array]
-) -> tuple[dict[str, Array], dict[str, Array]]:
+def _wall(loaded: Loaded) -> WallPressures:
     """Pressures at which the barrel yields and bursts under its thread, by load path.
 
-    `paths` are axial forces per pressure. The layer carries them alone, with the pressure
-    p r_i/r_l on its inner radius r_l that inner layers without hoop stress would leave.
+    The layer carries the axial forces alone, with the pressure p r_i/r_l on its inner radius r_l
+    that inner layers without hoop stress would leave.
 
     It yields as if the skirt were not there. At burst both are plastic, and the skirt adds the
     pressure p_s that it would burst at: the turns, cut through, carry no hoop stress and pass it
     on as p_s d/d_3 (balance of forces; no axial force is taken in the skirt, which lowers p_s).
     """
+    cut, materials = _judged(loaded), loaded.materials
+    if isinstance(cut, str):
+        return WallPressures()
     yields, bursts = {}, {}
     size = {"inner_radius": cut.layer_radius, "outer_radius": cut.root_diameter / 2}
     inside = cut.bore_radius / cut.layer_radius
@@ -404,7 +394,7 @@ def _wall(
         * cut.diameter
         / cut.root_diameter
     )
-    for path, axial in paths.items():
+    for path, axial in loaded.paths.items():
         hoop, radial, along = barrel.bore_stresses(pressure=inside, axial_force=axial, **size)
         stress = (hoop, radial, along, 0.0 * hoop)
         place = f"barrel under the thread, {path}"
@@ -414,24 +404,30 @@ def _wall(
             **size, yield_strength=strength, ultimate_strength=ultimate, axial_force_ratio=ratio
         )
         bursts[place] = (alone + support) / inside
-    return yields, bursts
+    return WallPressures(yields, bursts)
 
 
-def _roots(materials: Materials, cut: Thread, force: Array) -> Iterator[Pulsed]:
+def _fatigue(loaded: Loaded) -> Fatigue:
     """Axial stress at either root while the force pulsates; the notch raises the range alone."""
+    cut = _judged(loaded)
+    if isinstance(cut, str):
+        return Fatigue()
+    pulsed = []
     for place, name, section in (
         ("barrel thread root", cut.male, cut.barrel_section),
         ("skirt thread root", cut.female, cut.skirt_section),
     ):
-        stress = force / section
-        hard = real(materials.get(name, "ultimate_strength", default=0.0)) >= HARD
-        yield Pulsed(place, name, where(hard, CUT_HARD, CUT) * stress, stress / 2)
+        stress = loaded.force / section
+        hard = real(loaded.materials.get(name, "ultimate_strength", default=0.0)) >= HARD
+        pulsed.append(Pulsed(place, name, where(hard, CUT_HARD, CUT) * stress, stress / 2))
+    return Fatigue(tuple(pulsed))
 
 
-def _warnings(loaded: Loaded, strength: Strength) -> Iterator[tuple[str, str]]:
+def _warnings(loaded: Loaded) -> Iterator[tuple[str, str]]:
     """A thread that leaves too little metal: free sizes may start there, no search ends there."""
+    own = _own(loaded)
     for name in LANDS:
-        least = float(np.min(np.real(strength.own[name][""])))
+        least = float(np.min(np.real(own[name])))
         if least < LAND * (1 - ROUNDING):
             label = METRICS[name]
             yield (
@@ -470,6 +466,10 @@ JOINT = Joint(
     outline=skirt.outline,
     notes=_notes,
     strength=_strength,
+    yields=_yields,
+    wall=_wall,
+    fatigue=_fatigue,
+    own=_own,
     envelope=None,
     metrics={
         LANDS[0]: OwnMetric(_ABSENT, LAND, "choice: 1 mm least wall"),

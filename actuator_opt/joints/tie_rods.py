@@ -10,8 +10,11 @@ import numpy as np
 from ..models import barrel_ends, endurance, mass, retention
 from ..numeric import Array
 from .joint import (
+    NOT_BONDED,
+    Clamp,
     Drawn,
     End,
+    Fatigue,
     Field,
     Fit,
     Joint,
@@ -22,6 +25,7 @@ from .joint import (
     OwnMetric,
     Span,
     Strength,
+    WallPressures,
     nothing,
     rectangle,
 )
@@ -81,41 +85,41 @@ def _stress(end: End, force: Array) -> Array:
     )
 
 
-def _strength(loaded: Loaded) -> Strength:
-    end, clamp = loaded.end, loaded.clamp
-    assert clamp is not None
+def _clamp(loaded: Loaded) -> Clamp:
+    assert loaded.clamp is not None
+    return loaded.clamp
+
+
+def _strength(loaded: Loaded) -> Strength | str:
+    end, materials = loaded.end, loaded.materials
     assert end.material is not None
-    working, burst, why = {}, {}, ""
-    strength = loaded.materials.allowable(end.material, "yield_strength")
-    ultimate = loaded.materials.allowable(end.material, "ultimate_strength")
+    strength = materials.allowable(end.material, "yield_strength")
+    ultimate = materials.allowable(end.material, "ultimate_strength")
     if strength is None or ultimate is None:
-        why = "tie rods need a thread and a material with yield and ultimate strength"
-    else:
-        stress = _stress(end, clamp.largest)
-        working, burst = {"tie rods": strength / stress}, {"": ultimate / stress}
+        return "tie rods need a thread and a material with yield and ultimate strength"
+    stress = _stress(end, _clamp(loaded).largest)
+    return Strength({"tie rods": strength / stress}, {"": ultimate / stress}, NOT_BONDED)
+
+
+def _fatigue(loaded: Loaded) -> Fatigue:
+    """Of the rods' threads while the pressure comes and goes."""
+    end, clamp = loaded.end, _clamp(loaded)
     diameter = end.sizes["thread.diameter"]
     amplitude = _stress(end, (clamp.largest - clamp.preload) / 2)
     life = Life(
         endurance.bolt_cycles(amplitude=amplitude, diameter=diameter),
         endurance.bolt_endurance_amplitude(diameter=diameter) / amplitude,
     )
-    return Strength(
-        working=working,
-        burst=burst,
-        why=why,
-        yields={},
-        wall_yields={},
-        wall_bursts={},
-        pulsed=(),
-        lives={"tie rods": life},
-        thermal="the caps are not bonded",
-        own={"joint_factor": {"": clamp.closed}},
-    )
+    return Fatigue(lives={"tie rods": life})
 
 
-def _warnings(loaded: Loaded, strength: Strength) -> Iterator[tuple[str, str]]:
-    if loaded.clamp is not None and "preload" not in loaded.end.sizes:
-        force = float(np.max(np.real(loaded.clamp.preload)))
+def _own(loaded: Loaded) -> dict[str, Array]:
+    return {"joint_factor": _clamp(loaded).closed}
+
+
+def _warnings(loaded: Loaded) -> Iterator[tuple[str, str]]:
+    if "preload" not in loaded.end.sizes:
+        force = float(np.max(np.real(_clamp(loaded).preload)))
         yield (
             "joint_factor",
             f"no tie-rod preload stated: taken {force / 1e3:.1f} kN, which keeps the joint closed "
@@ -155,6 +159,10 @@ JOINT = Joint(
     outline=_outline,
     notes=_notes,
     strength=_strength,
+    yields=lambda loaded: {},
+    wall=lambda loaded: WallPressures(),
+    fatigue=_fatigue,
+    own=_own,
     envelope=None,
     metrics={"joint_factor": OwnMetric("no tie rods")},
     judged=(Judged("on yield", "tie rods"), Judged("rupture", "tie rods")),
