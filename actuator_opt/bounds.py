@@ -1,4 +1,4 @@
-"""Bounds of numbers that a command takes, wherever the command comes from."""
+"""What commands take, wherever they come from: bounds of numbers, words of figures."""
 
 from __future__ import annotations
 
@@ -20,3 +20,11 @@ SEED = Bounds(0, 2**32 - 1)
 """What every generator takes: NLopt's is an unsigned long, which may have 32 bits."""
 FRONT = Bounds(3, 2000)
 """Designs of a front."""
+
+SWEEP_FIGURES = {
+    "parallel": "sweep_parallel",
+    "scatter": "sweep_scatter",
+    "contour": "sweep_contour",
+    "ucurves": "sweep_ucurves",
+}
+"""Figures of a sweep by their word, with the module of `reporting` that draws each."""

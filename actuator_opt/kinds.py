@@ -7,7 +7,7 @@ Schema, faults and tests read the registry, so that nothing else names a kind.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from types import MappingProxyType
 from typing import Any, Protocol, TypeVar
@@ -40,30 +40,40 @@ class UnknownKind(KeyError):
         return str(self.args[0])
 
 
-class Kinds(dict[str, K]):
+class Kinds(Mapping[str, K]):
     """Kinds by name, in the order given; an unknown name raises `UnknownKind`."""
 
-    def __init__(self, what: str, entries: Iterable[K]) -> None:
-        super().__init__()
+    def __init__(self, what: str, entries: tuple[K, ...]) -> None:
         self.what = what
+        self._entries: dict[str, K] = {}
         for entry in entries:
             _complete(what, entry)
-            if entry.name in self:
+            if entry.name in self._entries:
                 raise ValueError(f'{what} "{entry.name}": there are two of this name')
-            self[entry.name] = entry
+            self._entries[entry.name] = entry
 
-    def __missing__(self, name: str) -> K:
-        raise UnknownKind(f'no {self.what} "{name}"; {remedy(str(name), self)}')
+    def __getitem__(self, name: str) -> K:
+        try:
+            return self._entries[name]
+        except KeyError:
+            advice = remedy(str(name), self._entries)
+            raise UnknownKind(f'no {self.what} "{name}"; {advice}') from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
 
     @property
     def names(self) -> tuple[str, ...]:
         """Every name, in order."""
-        return tuple(self)
+        return tuple(self._entries)
 
     @property
     def help(self) -> str:
         """Every name with its meaning, as the help of a field lists them."""
-        return "; ".join(f"{entry.name}: {entry.help}" for entry in self.values())
+        return "; ".join(f"{entry.name}: {entry.help}" for entry in self._entries.values())
 
 
 def kinds(what: str, *entries: K) -> Kinds[K]:

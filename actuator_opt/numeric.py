@@ -8,7 +8,7 @@ refuse complex input; every comparison is made on real parts.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -145,22 +145,3 @@ def lifted(value: Array, dims: int) -> Array:
     if type(value) is np.ndarray:
         return value.reshape(shape)
     return namespace(value).reshape(value, shape)
-
-
-def jacobian(function: Callable[[Array], Array], point: Array) -> tuple[Array, Array]:
-    """Value and Jacobian of a function of a vector, by one batched complex-step evaluation.
-
-    Parameters
-    ----------
-    function : maps an array (n, k) of k points, real or complex, to an array (m, k)
-    point : array (n,)
-
-    Returns
-    -------
-    value (m,), jacobian (m, n)
-    """
-    n = len(point)
-    batch = np.repeat(np.asarray(point, dtype=complex)[:, None], n, axis=1)
-    batch[np.arange(n), np.arange(n)] += 1j * STEP
-    result = np.asarray(function(batch))
-    return result[:, 0].real.copy(), result.imag / STEP

@@ -1,13 +1,14 @@
 """Every quantity of the project, declared once: name, symbol, dimension, display unit, label, range.
 
 The parser, the help, tables, JSON, reports and the JSON Schema all read this table. `INPUTS` are
-what a person writes in a design or a materials file; `METRICS` are what an evaluation computes.
+what a person writes in a design or a materials file. What an evaluation computes stands in
+`metrics.table`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Literal, cast, get_args
+from dataclasses import dataclass
+from typing import Literal
 
 from . import units
 
@@ -74,20 +75,6 @@ def _table(rows: str) -> dict[str, Quantity]:
         )
         table[name] = Quantity(name, symbol, dimension, unit, label, low, high)
     return table
-
-
-def _metrics(rows: str) -> dict[str, Quantity]:
-    """Metrics: a column after the unit states which value is the worst, and must not be empty."""
-    plain, worst = [], {}
-    for line in rows.strip().splitlines():
-        cells = [cell.strip() for cell in line.split("|")]
-        name, sense = cells[0], cells.pop(4)
-        if sense not in get_args(Sense):
-            raise ValueError(f"metric {name}: state which value is the worst, min or max")
-        worst[name] = cast("Sense", sense)
-        plain.append(" | ".join(cells))
-    table = _table("\n".join(plain))
-    return {name: replace(table[name], worst=sense) for name, sense in worst.items()}
 
 
 INPUTS = _table("""
@@ -233,114 +220,6 @@ MATERIAL_PROPERTIES = _table("""
  asperity_density     | n_a    | per_area    | 1/m^2  | 1e9    | 1e17 | asperities per area
 """)
 
-METRICS = _metrics("""
- mass                 | m      | mass        | g    | max | | | mass of the dry actuator
- mass_oil             | m_oil  | mass        | g    | max | | | oil inside, piston at the cap end
- push_force           | F_+    | force       | kN   | min | | | push force, net of friction and back-pressure
- pull_force           | F_-    | force       | kN   | min | | | pull force, net of friction and back-pressure
- stiffness_min        | k_min  | stiffness   | kN/mm| min | | | axial stiffness at the weakest stroke position
- stiffness_oil        | k_oil  | stiffness   | kN/mm| min | | | stiffness of oil alone at the weakest position
- stiffness_rod        | k_rod  | stiffness   | kN/mm| min | | | axial stiffness of the rod
- stiffness_barrel     | k_bar  | stiffness   | kN/mm| min | | | stiffness of barrel swelling at the weakest position
- stiffness_seals      | k_s    | stiffness   | kN/mm| min | | | stiffness of sticking seals, beside the oil
- bore_growth          | u_i    | length      | um   | max | | | radial bore growth at supply pressure
- seal_gap             | g      | length      | um   | max | | | radial extrusion gap at the piston seal
- seal_squeeze         | C_min  | ratio       | %    | min | | | smallest seal squeeze after growth and tolerance
- seal_squeeze_max     | C_max  | ratio       | %    | max | | | largest seal squeeze at assembly
- seal_fill            | phi    | ratio       | %    | max | | | largest groove fill
- seal_stretch         | e      | ratio       | %    | max | | | seal stretch
- seal_section         | W      | length      | mm   | min | | | seal cross-section
- contact_width        | b      | length      | mm   | max | | | seal contact width
- contact_pressure     | p_0    | pressure    | MPa  | max | | | peak seal contact pressure
- film_thickness       | h      | length      | um   | min | | | mean oil film under the running seal
- seal_wear            | pL     | line_load   | N/mm | max | | | contact pressure times sliding distance, a double stroke
- rod_leakage          | V_l    | volume      | mm^3 | max | | | oil the rod leaves outside, a double stroke
- inter_seal_pressure  | p_i    | pressure    | bar  | max | | | pressure between the seals of a pair
- friction_running     | F_C    | force       | N    | max | | | running friction of seals, wipers and guides
- friction_breakaway   | F_S    | force       | N    | max | | | breakaway friction of seals, wipers and guides
- damping_pipe         | c      | damping     | N*s/m| max | | | viscous damping of the oil by pipe flow
- damping_annular      | c_a    | damping     | N*s/m| max | | | viscous damping of the annular gaps
- damping_seal         | B      | damping     | kN*s/m| max | | | secant damping of the seals at the stated speed
- damping_ratio        | zeta   | ratio       | -    | min | | | damping ratio of the load on the actuator
- natural_frequency    | f_0    | frequency   | Hz   | min | | | lowest natural frequency at the load mass over the stroke
- dynamic_stiffness    | k_dyn  | stiffness   | kN/mm| min | | | dynamic stiffness at the frequency of the load case
- dynamic_phase        | phi    | angle       | deg  | max | -180 | 180 | phase by which the force leads at that frequency
- ultimate_gain        | K_u    | signal_gain | V/m  | min | | | gain at which the position loop begins to swing
- position_gain        | K_p    | signal_gain | V/m  | min | | | gain of the position loop
- gain_margin          | K_u/K_p| ratio       | -    | min | | | ultimate over present gain of the position loop
- phase_margin         | phi_m  | angle       | deg  | min | -180 | 180 | phase margin of the position loop
- bandwidth            | f_b    | frequency   | Hz   | min | | | -3 dB bandwidth of the position loop
- efficiency           | eta    | ratio       | %    | min | | | force efficiency
- proof_factor         | S_p    | ratio       | -    | min | | | yield or first-ply pressure over proof pressure
- burst_factor         | S_b    | ratio       | -    | min | | | barrel burst pressure over working pressure
- first_ply_factor     | S_fpf  | ratio       | -    | min | | | first-ply pressure over working pressure
- yield_factor         | S_y    | ratio       | -    | min | | | yield over working stress of metal parts
- fatigue_factor       | S_f    | ratio       | -    | min | | | fatigue strength over stress amplitude
- ply_fatigue_factor   | S_pf   | ratio       | -    | min | | | fatigue strength of the wall's fibres over their stress amplitude
- cycle_life           | N      | ratio       | -    | min | | | pressure cycles to failure
- buckling_factor      | S_k    | ratio       | -    | min | | | buckling load over largest push load
- thread_factor        | S_t    | ratio       | -    | min | | | yield over stress at the rod thread root
- retention_factor     | S_r    | ratio       | -    | min | | | strength of cap retention over its load
- retention_burst_factor| S_rb  | ratio       | -    | min | | | ultimate strength of cap retention over its load
- cap_factor           | S_c    | ratio       | -    | min | | | yield over bending stress of the end caps
- pin_factor           | S_pin  | ratio       | -    | min | | | shear yield over shear stress of the clevis pins
- bearing_overlap      | L/d    | ratio       | -    | min | | | bearing span at full extension over rod diameter
- bearing_pressure     | p_g    | pressure    | MPa  | max | | | largest guide pressure under side load
- bearing_factor       | S_g    | ratio       | -    | min | | | allowable over largest guide pressure
- port_velocity        | v_p    | speed       | m/s  | max | | | oil speed in the port
- line_velocity        | v_l    | speed       | m/s  | max | | | oil speed in the line
- line_pressure_drop   | dp     | pressure    | bar  | max | | | pressure drop of the lines
- line_hammer          | dp_J   | pressure    | bar  | max | | | pressure rise when the line's flow is stopped at once
- line_resonance       | f_l    | frequency   | Hz   | min | | | quarter-wave resonance of the line
- flow                 | q      | flow        | l/min| max | | | largest flow
- piston_speed         | v      | speed       | m/s  | max | | | piston speed
- power                | P      | power       | W    | min | | | mechanical output power
- end_stop_energy      | E_end  | energy      | J    | max | | | energy to absorb at the end of stroke
- end_stop_pressure    | p_end  | pressure    | bar  | max | | | peak pressure at the end stop
- trapped_pressure     | p_tr   | pressure    | bar  | max | | | pressure rise of trapped oil over the temperature range
- liner_mismatch_factor| S_th   | ratio       | -    | min | | | liner yield over thermal mismatch stress
- liner_bond_factor    | S_bd   | ratio       | -    | min | | | strength over the pull of the liner on its plies after cool-down
- liner_range_factor   | S_dl   | ratio       | -    | min | | | twice yield over the liner's stress range
- reverse_yield_factor | S_rev  | ratio       | -    | min | | | yield over the liner's residual stress after autofrettage
- liner_strain_range   | d_eps  | ratio       | %    | max | | | equivalent elastic strain range of the liner under a pressure pulse
- joint_factor         | S_j    | ratio       | -    | min | | | tie-rod preload over its loss at proof pressure
- local_buckling_factor| S_w    | ratio       | -    | min | | | wall buckling load of the rod over largest push load
- rod_factor           | S_ro   | ratio       | -    | min | | | strength of the rod's plies over their stress
- fitting_factor       | S_ft   | ratio       | -    | min | | | strength of the bonded rod fittings over their load
- bond_thermal_factor  | S_bt   | ratio       | -    | min | | | bond strength over thermal edge shear without load
- winding_margin       | -      | angle       | deg  | min | | | winding angle less the smallest that can be wound
- ply_thickness_margin | -      | ratio       | %    | min | | | layer thickness over the least that can be laid, less one
- growth_at_seal       | u_s    | length      | um   | max | | | radial bore growth at the piston seal
- clearance_min        | c_min  | length      | um   | min | | | smallest radial clearance of piston and head over the temperature range
- blocked_port_factor  | S_bl   | ratio       | -    | min | | | proof pressure over rod-side pressure with its port blocked
- temperature_margin   | dT     | temperature_difference | K | min | | | distance to the service limits of every material
- oil_viscosity        | nu     | kinematic_viscosity | mm^2/s | max | | | oil viscosity at the case temperature
- cavitation_margin    | p-p_v  | pressure    | bar  | min | | | lowest absolute chamber pressure less the vapour pressure of the oil
- extrusion_factor     | g_max/g| ratio       | -    | min | | | allowed over present extrusion gap
- end_stop_factor      | S_end  | ratio       | -    | min | | | proof pressure over peak end-stop pressure
- trapped_factor       | S_tr   | ratio       | -    | min | | | proof pressure over trapped-oil pressure
- line_drop_ratio      | dp/p   | ratio       | %    | max | | | line pressure drop over supply pressure
- liner_yield_factor   | S_l    | ratio       | -    | min | | | liner yield pressure over working pressure
- leakage              | q_l    | flow        | ml/min | max | | | leakage across the piston
- barrel_length        | L_b    | length      | mm   | max | | | barrel length
- closed_length        | L_0    | length      | mm   | max | | | length pin to pin, retracted
- joint_torque_min     | M_min  | torque      | N*m  | min | | | least joint torque the actuator delivers over its stroke
- joint_range          | d_theta| angle       | deg  | min | | | angle the joint turns over the stroke
- geometry_rod_in_bore | -      | length      | mm   | min | | | radial room between rod and bore
- geometry_rod_wall    | -      | length      | mm   | min | | | rod wall thickness
- geometry_rod_bore    | -      | length      | mm   | min | | | bore left inside the layers of the rod
- geometry_piston_groove | -    | length      | mm   | min | | | wall left beside the grooves of the piston
- geometry_piston_core | -      | length      | mm   | min | | | wall left under the piston groove
- geometry_head_groove | -      | length      | mm   | min | | | wall left beside the grooves of the head
- geometry_head_wall   | -      | length      | mm   | min | | | wall left over the rod seal groove
- geometry_skirts      | -      | length      | mm   | min | | | barrel left between the skirts of both ends
- geometry_barrel_thread | -    | length      | mm   | min | | | metal left under the barrel's thread, in the layer it is cut into
- geometry_skirt_thread | -     | length      | mm   | min | | | metal left over the thread of the caps' skirts
- geometry_thread_crest | -     | ratio       | %    | min | | | overlap of the caps' threads over that of full crests
- geometry_dead_point  | -      | length      | mm   | min | | | actuator length left to the dead points of the linkage
- geometry_joint_angle | -      | ratio       | %    | min | | | stroke left beyond the joint angle of a load case
-""")
-
 RECORDS = _table("""
  cutoff               | f_c    | frequency   | Hz     | 0.01  | 100000 | cut-off frequency of the filter
  moving_mass          | m      | mass        | kg     | 0     | 1e6    | mass moving inside the force sensor
@@ -412,8 +291,3 @@ RESULTS = _table("""
  dynamic_phase        | phi    | angle       | deg    | -180 | 180 | phase by which the force leads
 """)
 """What a simulation tells; a scenario's requirements name them."""
-
-
-def of_metric(name: str) -> Quantity:
-    """The declared quantity of a metric; an undeclared one (a user's own) is a plain ratio."""
-    return METRICS.get(name) or Quantity(name, "", "ratio", "", name.replace("_", " "))

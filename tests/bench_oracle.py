@@ -86,10 +86,6 @@ class Sensors:
     outliers: float = 0.05
 
 
-PERFECT = Sensors(pressure_noise=10.0, position_step=0.0, force_noise=0.01, lag=0.0, outliers=0.0)
-"""Nearly: a channel that repeats one value to the last digit counts as clipped."""
-
-
 @dataclass(frozen=True)
 class Way:
     """A motion on fine steps: velocity, position, acceleration, all (fine samples)."""

@@ -28,12 +28,31 @@ SENSORS = synthetic.Sensors(pressure_lag=4e-3, spikes=0.01)
 SPEEDS = (0.001, 0.002, 0.003, 0.006, 0.02, 0.05, 0.2)
 COURSES = {
     "plateaus": lambda: synthetic.plateaus(SPEEDS, travel=0.05, begin=0.02, longest=0.8),
-    "sine": lambda: synthetic.sine(amplitude=0.04, frequency=0.4, periods=4, middle=0.055),
-    "ramp": lambda: synthetic.ramps(fastest=0.05, duration=2.0, begin=0.02, repeats=2),
-    "pre-sliding": lambda: synthetic.sine(amplitude=1.2e-4, frequency=0.5, periods=4, middle=0.055),
+    "sine": lambda: sine(amplitude=0.04, frequency=0.4, periods=4, middle=0.055),
+    "ramp": lambda: ramps(fastest=0.05, duration=2.0, begin=0.02, repeats=2),
+    "pre-sliding": lambda: sine(amplitude=1.2e-4, frequency=0.5, periods=4, middle=0.055),
     "one speed": lambda: synthetic.plateaus([0.05] * 2, travel=0.05, begin=0.015),
 }
 KINDS = (*COURSES, "gaps", "outside", "levels", "plunger", "one way", "bare")
+
+
+def sine(*, amplitude, frequency, periods, middle, step=1e-3):
+    """A sine of position about its middle, SI."""
+    time = step * np.arange(round(periods / frequency / step))
+    turn = 2 * np.pi * frequency
+    return synthetic.Course(
+        time,
+        middle - amplitude * np.cos(turn * time),
+        amplitude * turn * np.sin(turn * time),
+        amplitude * turn**2 * np.cos(turn * time),
+    )
+
+
+def ramps(*, fastest, duration, begin, step=1e-3, repeats=2):
+    """Velocity up to `fastest` and back to rest along straight lines, out and back, SI."""
+    up = np.linspace(0.0, fastest, round(duration / 2 / step))
+    once = np.concatenate([up, up[::-1]])
+    return synthetic.course(np.concatenate([once, -once] * repeats), begin=begin, step=step)
 
 
 @cache

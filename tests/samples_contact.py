@@ -50,9 +50,6 @@ SAMPLES: dict = {
     "step_seal.line_load": {
         "energiser_load": 15e3, "pressure": 5e6, "wetted_back": 1.6e-3, "wetted_front": 2.4e-3,
     },
-    "step_seal.pressure_balance": {
-        "energiser_slope": 1.9e-3, "wetted_back": 1.6e-3, "wetted_front": 2.4e-3, "land": 0.9e-3,
-    },
     "step_seal.contact_width": {
         "line_load": 20e3, "land": 0.8e-3, "taper": 0.09, "ring_width": 3.9e-3,
         "youngs_modulus": 600e6, "poissons_ratio": 0.46,
@@ -77,7 +74,6 @@ SAMPLES: dict = {
     "contact_profile.table_profile": {"position": 0.35, **TABLE},
     "contact_profile.table_mean": TABLE,
     "contact_land.land_profile": {"position": 0.3, "excess": 2e6, **ENDS},
-    "contact_land.land_mean": {"excess": 2e6, **ENDS},
     "contact_land.land_excess": CARRIED,
     # a peak inside; one at the sealed end
     "contact_land.land_peak": [CARRIED, {**CARRIED, "line_load": 7e3}],

@@ -16,10 +16,8 @@ RELIEF = {"cracking_pressure": 1.4e7, "override": 1e6, "rated_flow": 6e-4}
 SAMPLES = {
     "wilson.motor_flow": SLIP,
     "wilson.motor_torque": [FRICTION, BRAKING],
-    "wilson.motor_efficiency": {**SHAFT, "flow": 3e-4, "torque": 18.0},
     "wilson.pump_flow": SLIP,
     "wilson.pump_torque": [FRICTION, BRAKING],
-    "wilson.pump_efficiency": {**SHAFT, "flow": 4e-5, "torque": 30.0},
     "supply.relief_flow": [
         {**RELIEF, "pressure_difference": p} for p in (-1e6, 1e7, 1.45e7, 1.7e7)
     ],

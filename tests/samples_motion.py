@@ -13,13 +13,8 @@ SAMPLES = {
         {"pressure": 2e7, "bulk_modulus": 1.4e9, "slope": 0.0},
     ],
     "cavity.cavity": [{"pressure": p, "content": 1e-6} for p in (-5e4, 2e5)],
-    "chamber.reference_volume": {"volume": 1e-4, "pressure": 2e5, **AIRY},
     "chamber.mixture_bulk_modulus": [
         {"pressure": 2e7, **OIL}, {"pressure": 2e5, **AIRY}, {"pressure": -5e4, **AIRY},
-    ],
-    "chamber.chamber_pressure": [
-        {"density_ratio": 1.04, **OIL}, {"density_ratio": 1.04, **AIRY},
-        {"density_ratio": 0.9, **AIRY}, {"density_ratio": 0.3, **AIRY},
     ],
     "chamber.pressure_rate": {
         "flow": 1e-4, "volume": 1e-4, "volume_rate": 4e-5, "bulk_modulus": 1.4e9,
@@ -27,13 +22,6 @@ SAMPLES = {
     },
     "end_stop.stop_stiffness": {"area": 8e-4, "pressure": 1.4e7},
     "end_stop.stop_damping": {"stiffness": 5e7, "mass": 30.0},
-    "end_stop.stop_force": [
-        {"position": position, "velocity": velocity, "stroke": 0.16, **STOP}
-        for position, velocity in ((-1e-4, -0.1), (-1e-4, 0.5), (0.08, 0.1), (0.18, 0.1))
-    ],
-    "end_stop.stop_restitution": [
-        {"stiffness": 4e6, "damping": damping, "mass": 25.0} for damping in (5e3, 3e4)
-    ],
     "end_stop.cushion_flow_area": [
         {
             "remaining": remaining, "length": 0.02, "open_area": 3e-5, "end_area": 1e-6,
@@ -56,7 +44,6 @@ SAMPLES = {
     },
     "linkage.linkage": {**BOTH, "joint_angle": 1.1},
     "linkage.linkage_angle": {**BOTH, "length": 0.29},
-    "linkage.linkage_range": {**BOTH, "least_lever_arm": 0.03},
     "linkage.joint_torque": {"force": 3e3, "lever_arm": -0.04},
     "linkage.actuator_force": {"torque": 120.0, "lever_arm": -0.04},
     "linkage.reflected_inertia": {"inertia": 0.8, "lever_arm": 0.04, "lever_slope": 0.01},

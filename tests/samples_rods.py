@@ -79,16 +79,9 @@ SAMPLES: dict = {
         "bending_moment": 20.0, "radius": 8e-3, "axial_stiffness": 9.3e6,
         "bending_stiffness": 215.0,
     },
-    "beam_column.push_capacity": {
-        "strength_force": 68e3, "force_per_moment": 500.0, "critical_load": 30e3,
-        "bending_moment": 12.0, "offset": 5e-4, "shape": 0.27,
-    },
     "lap_joint.bond_thermal_shear": {
         "strain_difference": -2e-3, "length": 20e-3, "shear_modulus": 1e9,
         "bond_thickness": 0.2e-3, "membrane_stiffness_1": 1e8, "membrane_stiffness_2": 5e7,
-    },
-    "bending_test.bending_modulus_as_published": {
-        "slope": 1.5e5, "span": 0.3, "second_moment": 7e-9,
     },
     "bending_test.bending_modulus": {"slope": 1.5e5, **FLEXURE},
     "bending_test.bending_slope": {"youngs_modulus": 6e10, **FLEXURE},

@@ -18,6 +18,7 @@ from actuator_opt.design.structure import entries
 from actuator_opt.design.template import init_text
 from actuator_opt.design.yaml_source import parse
 from actuator_opt.errors import InputError
+from actuator_opt.metrics import METRICS
 
 jsonschema = pytest.importorskip("jsonschema")
 SCHEMA = json_schema()
@@ -196,7 +197,7 @@ def test_hover_and_completion():
     assert "2 mm to 1000 mm" in bore["description"]
     assert "cylinder.bore" in SCHEMA["properties"]["variables"]["properties"]
     mass = SCHEMA["properties"]["requirements"]["properties"]["mass"]
-    assert mass["title"] == quantities.METRICS["mass"].label
+    assert mass["title"] == METRICS["mass"].label
 
 
 def test_every_key_of_the_model_is_in_the_schema():

@@ -81,7 +81,7 @@ def test_every_layer_fails_where_the_scalar_models_say(tmp_path, criterion):
             for i, layer in enumerate(layers[1:], 1):
                 worst = 0.0
                 for face in (0, 1):
-                    modes = CRITERIA[criterion](
+                    modes = CRITERIA[criterion].modes(
                         stress=tuple(float(s[face, i]) for s in load),
                         strength=layer.strengths[t],
                         residual=tuple(float(s[face, i]) for s in held),

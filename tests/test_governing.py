@@ -15,12 +15,11 @@ from cli_runner import run
 from test_sweep import NEAR
 
 import actuator_opt as ao
-from actuator_opt import quantities
 from actuator_opt.design.model import Limit, Objective
 from actuator_opt.evaluation import compute, evaluate, prepare
-from actuator_opt.evaluation.check_list import CHECK_LIST
 from actuator_opt.evaluation.many import evaluate_many
 from actuator_opt.evaluation.plugin import collect
+from actuator_opt.metrics.table import METRICS, ROWS
 from actuator_opt.optimisation import pareto
 from actuator_opt.optimisation.actuator import build, goal_of
 from actuator_opt.optimisation.pareto_result import ParetoFront
@@ -91,17 +90,6 @@ def table_rows(evaluation):
     return {row[0]: row[1] for row in cells if len(row) > 2}
 
 
-def test_every_metric_states_its_worst_value():
-    """102 metrics, none silent; a check is against the worst; one that says nothing is refused."""
-    assert len(quantities.METRICS) >= 102
-    assert {one.worst for one in quantities.METRICS.values()} == {"min", "max"}
-    checked = [line for line in CHECK_LIST if line.metric in quantities.METRICS]
-    assert len(checked) > 50
-    assert all(quantities.METRICS[line.metric].worst == line.sense for line in checked)
-    with pytest.raises(ValueError, match="metric mass: state which value is the worst"):
-        quantities._metrics(" mass | m | mass | g | | | | mass of the dry actuator")
-
-
 @pytest.mark.parametrize("sense", SENSES)
 @pytest.mark.parametrize("name", DESIGNS)
 def test_a_limited_metric_is_governed_by_its_limit(name, sense):
@@ -122,7 +110,7 @@ def test_a_limited_metric_is_governed_by_its_limit(name, sense):
     actuator = build(one) if one.design.variables else None
     assert len(known) > 50
     for metric, values in known.items():
-        quantity = quantities.METRICS[metric]
+        quantity = METRICS[metric]
         worst, limit = pick(values), between(values)
         own = margin(worst, limit, sense)
         assert as_json["metrics"][metric]["value"] == worst, metric
@@ -140,12 +128,12 @@ def test_a_limited_metric_is_governed_by_its_limit(name, sense):
             row = min(own_rows, key=lambda r: r.margin[0])
             assert float(row.value[0]) == pytest.approx(worst, rel=1e-9), metric
             assert float(row.margin[0]) == pytest.approx(own, rel=1e-6, abs=1e-9), metric
-    labels = {page.short(page._SHORT.get(m, quantities.METRICS[m].label), 30): m for m in known}
+    labels = {page.short(ROWS[m].short or METRICS[m].label, 30): m for m in known}
     assert len(tiles) == 5
     for tile in tiles:
         metric = labels[tile["label"]]
         row = page._limited(evaluation, metric)
-        assert tile["value"] == text.number(quantities.METRICS[metric].to_display(row.value))
+        assert tile["value"] == text.number(METRICS[metric].to_display(row.value))
 
 
 @pytest.mark.parametrize("name", DESIGNS)
@@ -236,7 +224,7 @@ def test_an_optimum_shows_its_objective():
 def test_the_knee_of_a_front_shows_what_is_wanted():
     """A metric wanted large stands with its smallest value, in the points and in the evaluation."""
     known = everything("knee")["end_stop_pressure"]
-    wished = pareto.wishes(["mass:min", "end_stop_pressure:max"], quantities.METRICS)
+    wished = pareto.wishes(["mass:min", "end_stop_pressure:max"], METRICS)
     many = pareto._problem(subject("knee"), wished, None)
     start = many.actuator.problem.start
     _, evaluation = design_at(many.actuator, start)

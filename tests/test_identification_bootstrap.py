@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from identification_case import sine
 from scipy.optimize import least_squares
 
 import actuator_opt as ao
@@ -195,7 +196,7 @@ def measured():
     """Twenty seconds of a sine with known friction, identified."""
     test = bench(ao.read(KNEE).subject())
     truth = synthetic.Truth(150.0, 300.0, 4e-3, 2.0, 200.0, 5e6, 1e3)
-    course = synthetic.sine(amplitude=0.04, frequency=0.2, periods=4, middle=0.055)
+    course = sine(amplitude=0.04, frequency=0.2, periods=4, middle=0.055)
     force = synthetic.friction_along(truth, course, 0 * course.time)
     record = synthetic.record(test, course, force, mass=test.mass, sensors=synthetic.Sensors())
     return identify(record, test)

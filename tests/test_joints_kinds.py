@@ -18,10 +18,10 @@ from actuator_opt.design.schema import json_schema
 from actuator_opt.design.template import init_text
 from actuator_opt.errors import InputError
 from actuator_opt.evaluation import compute
-from actuator_opt.evaluation.provenance import describe
+from actuator_opt.evaluation.provenance import describe, function_of
 from actuator_opt.joints.joint import Joint, check
 from actuator_opt.joints.kinds import JOINTS
-from actuator_opt.quantities import METRICS
+from actuator_opt.metrics import METRICS
 
 DESIGNS = Path(__file__).parent.parent / "designs"
 STEEL = (DESIGNS / "steel_baseline.yaml").read_text("utf-8").partition("\nvariables:")[0] + "\n"
@@ -158,10 +158,10 @@ def test_its_metrics(joint):
         assert all(np.isfinite(np.real(value)).all() for value in values)
         assert metric in METRICS
     for other in JOINTS.values():
-        for metric, own in other.metrics.items():
+        for metric, absent in other.metrics.items():
             if other is not joint:
                 assert metric not in computed.metrics
-                assert computed.why[metric] == own.absent
+                assert computed.why[metric] == absent
 
 
 @each
@@ -211,7 +211,7 @@ def test_its_outline(joint):
 def test_its_models(joint):
     """Each model behind its places has a source, and each place of its factors a model."""
     for model in joint.models.values():
-        assert describe(model).reference
+        assert describe(function_of(model)).reference
     subject = ao.read(text_of(BLOCKS[joint.name])).subject()
     computed = compute(subject, subject.values()).computed
     for place in computed.metrics["retention_factor"]:

@@ -98,7 +98,7 @@ PLAIN = {
 
 def _used(name, stress, ply=PLY, residual=None):
     """Largest utilisation of the modes."""
-    modes = CRITERIA[name](stress=stress, strength=ply, residual=residual, elastic=RATIOS)
+    modes = CRITERIA[name].modes(stress=stress, strength=ply, residual=residual, elastic=RATIOS)
     return reduce(np.maximum, modes.values())
 
 
@@ -169,7 +169,7 @@ def test_hashin_fibre_fails_as_it_is_pulled():
     With S23 = 40 the matrix reaches only 0.12 of its limit at sigma_2 = -61, tau = 86.
     """
     stress, residual = (100.0, -1.0, 0.0, 86.0), (-100.0, -60.0, 0.0, 0.0)
-    modes = CRITERIA["hashin"](
+    modes = CRITERIA["hashin"].modes(
         stress=stress, strength=PLIES["weak across"], residual=residual, elastic=None
     )
     assert modes["fibre tension"] == pytest.approx(1.0, rel=1e-12)
@@ -198,7 +198,7 @@ def test_residual_that_fails_alone_is_infinite(name, kind, residual):
     """A ply broken by its residual stress has SR = 0, whatever the load; nothing is NaN."""
     for load in ((0.0, 0.0, 0.0, 0.0), (-90.0, 20.0, -5.0, 10.0), (90.0, -20.0, 5.0, -10.0)):
         arrays = tuple(np.array([value, value], dtype=kind) for value in load)
-        used = CRITERIA[name](stress=arrays, strength=PLY, residual=residual, elastic=RATIOS)
+        used = CRITERIA[name].modes(stress=arrays, strength=PLY, residual=residual, elastic=RATIOS)
         assert not any(np.any(np.isnan(value)) for value in used.values())
         largest = reduce(maximum, used.values())
         assert np.all(np.real(largest) == inf)

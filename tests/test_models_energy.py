@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
-from actuator_opt.models import accumulator, chamber, end_stop, lugre, oil_energy
+from actuator_opt.models import accumulator, chamber, lugre, oil_energy
 
 LAWS = [
     {"bulk_modulus": 1.4e9, "slope": 0.0, "air_content": 0.0, "polytropic_index": 1.4},
@@ -66,16 +66,6 @@ def test_bristles_move_as_the_exact_step_says(speed, deflection):
         bristle_stiffness=1e7, bristle_damping=2e3, viscous=50.0,
     )  # fmt: skip
     assert force == pytest.approx(step.force, rel=1e-6, abs=1e-3)
-
-
-@given(st.floats(1e-9, 1e-3), st.floats(-2.0, 2.0))
-def test_contact_is_one_end_of_the_stops(compression, closing):
-    """At the retracted end compression is -x and the closing speed -v; the force is the same."""
-    law = {"stiffness": 5.63e7, "damping": 2.05e4}
-    one = end_stop.contact_force(compression=compression, closing_speed=closing, **law)
-    both = end_stop.stop_force(position=-compression, velocity=-closing, stroke=0.1, **law)
-    assert one == pytest.approx(both, rel=1e-12)
-    assert one >= 0
 
 
 @given(st.floats(6e6, 3e7), st.floats(1.0, 1.6))

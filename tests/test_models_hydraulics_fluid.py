@@ -186,13 +186,6 @@ def test_density_tait(celsius, bar, expected):
     assert rho == pytest.approx(expected, abs=0.06)
 
 
-def test_density_dowson_higginson_limits():
-    """The slope at zero is rho0 a; the ceiling is rho0 (1 + a/b)."""
-    rho = density.density_dowson_higginson(reference_density=870.0, pressure=np.array([1.0, 1e15]))
-    assert rho[0] - 870.0 == pytest.approx(870 * 0.6e-9, rel=1e-5)
-    assert rho[1] == pytest.approx(870 * (1 + 0.6 / 1.7), rel=1e-5)
-
-
 @pytest.mark.parametrize(
     ("celsius", "bar", "expected"),
     [
@@ -206,14 +199,12 @@ def test_bulk_modulus_tait(celsius, bar, expected):
     assert modulus / 1e6 == pytest.approx(expected, abs=0.55 if expected % 1 == 0 else 0.06)
 
 
-def test_tait_density_and_moduli_agree():
-    """K = rho dp/drho by central differences; secant = p/(1 - rho0/rho)."""
+def test_tait_density_and_modulus_agree():
+    """K = rho dp/drho by central differences."""
     t, p, h = 313.15, 200e5, 1e3
     rho = [tait.density_tait(temperature=t, pressure=q) for q in (0.0, p - h, p, p + h)]
     tangent = rho[2] * 2 * h / (rho[3] - rho[1])
     assert tait.bulk_modulus_tait(temperature=t, pressure=p) == pytest.approx(tangent, rel=1e-6)
-    secant = p / (1 - rho[0] / rho[2])
-    assert tait.secant_bulk_modulus_tait(temperature=t, pressure=p) == pytest.approx(secant)
 
 
 def test_warm_bulk_modulus_falls_as_tait_does():
@@ -222,13 +213,6 @@ def test_warm_bulk_modulus_falls_as_tait_does():
         bulk_modulus=1367e6, decay=0.0058, temperature=333.15, reference_temperature=313.15
     )
     assert warm / 1e6 == pytest.approx(1218, abs=1.0)
-
-
-def test_secant_tait_starts_at_the_tangent():
-    """At zero pressure secant and tangent are the same K0."""
-    assert tait.secant_bulk_modulus_tait(temperature=313.15, pressure=0.0) == pytest.approx(
-        tait.bulk_modulus_tait(temperature=313.15, pressure=0.0)
-    )
 
 
 @pytest.mark.parametrize(

@@ -24,19 +24,22 @@ def cylinder(pressure_a, pressure_b):
     """32/18 with one 3.53 mm ring each, C 0.13, E 7 MPa, mu 0.2, default law (k_p = 0.72)."""
     ring = {"squeeze": 0.13, "section": 3.53e-3, "youngs_modulus": 7e6}
     load = seals.LAWS["plane_strain"].line_load
-    return friction.cylinder_friction(
-        piston_line_load=load(pressure=abs(pressure_a - pressure_b), **ring),
-        bore=0.032,
-        piston_friction_coefficient=0.2,
-        rod_line_load=load(pressure=max(pressure_b, 0.0), **ring),
-        rod_diameter=0.018,
-        rod_friction_coefficient=0.2,
+    return sum(
+        friction.seal_friction(
+            line_load=load(pressure=pressure, **ring), diameter=diameter, friction_coefficient=0.2
+        )
+        for pressure, diameter in ((abs(pressure_a - pressure_b), 0.032), (pressure_b, 0.018))
     )
 
 
 def test_cylinder_friction_without_pressure():
     """60.894 N of squeeze preload at zero pressure."""
     assert cylinder(0.0, 0.0) == pytest.approx(60.894, abs=6e-4)
+
+
+def test_breakaway_is_a_multiple_of_running_friction():
+    """1.8 times 100 N."""
+    assert friction.breakaway(running=100.0, ratio=1.8) == pytest.approx(180.0)
 
 
 def test_cylinder_friction_with_pressure():
@@ -59,24 +62,6 @@ def test_cylinder_friction_reference_value_is_the_full_pressure():
     piston, rod = 10e6 * 0.032, 2e6 * 0.018
     force = 60.894 + 0.2 * math.pi * 0.72 * 3.53e-3 * (piston + rod)
     assert force == pytest.approx(629.40, abs=0.02)
-
-
-def test_cylinder_friction_is_the_sum_of_its_seals():
-    """Piston and rod seals add; back-to-back rings multiply by their count."""
-    arguments = {"friction_coefficient": 0.15}
-    piston = friction.seal_friction(line_load=2e3, diameter=0.03, count=2.0, **arguments)
-    rod = friction.seal_friction(line_load=1e3, diameter=0.02, **arguments)
-    total = friction.cylinder_friction(
-        piston_line_load=2e3,
-        bore=0.03,
-        piston_friction_coefficient=0.15,
-        piston_count=2.0,
-        rod_line_load=1e3,
-        rod_diameter=0.02,
-        rod_friction_coefficient=0.15,
-    )
-    assert total == pytest.approx(piston + rod)
-    assert friction.breakaway(running=total, ratio=1.8) == pytest.approx(1.8 * total)
 
 
 def test_stribeck_check_values():

@@ -16,7 +16,6 @@ from actuator_opt.models import damping, forces, friction, lines, seals, stiffne
 # [ElAsswad2018] Table 1 and text
 BORE, PISTON, ROD, STROKE = 0.025, 0.020, 0.012, 0.110
 AREA = forces.piston_area(bore=BORE)
-ANNULUS = forces.annulus_area(bore=BORE, rod_diameter=ROD)
 OIL = 800e6
 
 
@@ -133,13 +132,9 @@ def test_elasswad_friction_coefficient_is_not_identifiable(pressure, coefficient
     load = seals.LAWS["plane_strain"].line_load(
         squeeze=0.15, section=2e-3, youngs_modulus=5.52e6, pressure=pressure
     )
-    force = friction.cylinder_friction(
-        piston_line_load=load,
-        bore=BORE,
-        piston_friction_coefficient=coefficient,
-        rod_line_load=load,
-        rod_diameter=ROD,
-        rod_friction_coefficient=coefficient,
+    force = sum(
+        friction.seal_friction(line_load=load, diameter=diameter, friction_coefficient=coefficient)
+        for diameter in (BORE, ROD)
     )
     assert force == pytest.approx(166.0, rel=2e-3)
 

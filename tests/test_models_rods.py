@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_bvp
-from scipy.optimize import brentq
 
 from actuator_opt.models import beam_column, lap_joint, rod, solid_ply, stepped
 
@@ -203,78 +202,6 @@ def test_amplification_of_the_stepped_cylinder(ratio, low, high, off):
     exact = moments_by_integration(load, bending, length, (0.0, 0.0), 1.0)
     assert off < error(load, exact).min() < error(load, exact).max() < 0
     assert error(load, exact, SAFE).min() > -0.005
-
-
-@given(st.floats(1e3, 1e6), st.floats(1e3, 1e6))
-@settings(max_examples=30, deadline=None)
-def test_straight_rod_yields_or_buckles(strength, critical):
-    """Without moment and offset the push is the less of squash and critical load."""
-    value = beam_column.push_capacity(
-        strength_force=strength, force_per_moment=500.0, critical_load=critical
-    )
-    assert value == pytest.approx(min(strength, critical), rel=1e-6)
-
-
-@given(
-    st.floats(1e4, 1e6), st.floats(1e3, 1e6), st.floats(0.0, 0.9), st.floats(0.0, 3e-3),
-    st.floats(-0.18, 0.27),
-)  # fmt: skip
-@settings(max_examples=60, deadline=None)
-def test_push_capacity_meets_its_condition(strength, critical, bent, offset, shape):
-    """At the push, axial force and amplified moment use the strength up; any more is too much."""
-    moment = bent * strength / 500.0
-    given_ = {"force_per_moment": 500.0, "critical_load": critical, "bending_moment": moment}
-    push = beam_column.push_capacity(strength_force=strength, offset=offset, shape=shape, **given_)
-    assert 0 < push <= min(strength, critical) * (1 + 1e-9)
-
-    def used(load):
-        total = beam_column.amplified_moment(
-            bending_moment=moment + load * offset,
-            axial_force=load,
-            critical_load=critical,
-            shape=shape,
-        )
-        return load + 500.0 * total
-
-    if push < 0.999 * critical:
-        assert used(push) == pytest.approx(strength, rel=1e-6)
-
-
-def test_push_capacity_against_the_secant_formula():
-    """Uniform bar pushed off-centre: safe and within 2 % of s = (P/A)(1 + (e c/i^2) sec u), exact.
-
-    Diameter 16 mm, 600 MPa, E 210 GPa, 0.2 to 1.2 m, offset 0.1 to 4 mm (Timoshenko and Gere).
-    """
-    tube = {"outer_diameter": 16e-3}
-    area, inertia = rod.section_area(**tube), rod.second_moment(**tube)
-    for length in (0.2, 0.6, 1.2):
-        for offset in (1e-4, 1e-3, 4e-3):
-            euler = pi**2 * 210e9 * inertia / length**2
-
-            def excess(p, euler=euler, offset=offset):
-                bent = offset * 8e-3 * area / inertia / np.cos(pi / 2 * sqrt(p / euler))
-                return p / area * (1 + bent) - 600e6
-
-            exact = brentq(excess, 1.0, min(euler * (1 - 1e-12), 600e6 * area))
-            value = beam_column.push_capacity(
-                strength_force=600e6 * area,
-                force_per_moment=8e-3 * area / inertia,
-                critical_load=euler,
-                offset=offset,
-                shape=SAFE,
-            )
-            assert 0.98 * exact < value <= exact * (1 + 1e-9)
-
-
-def test_too_much_moment_leaves_a_negative_push():
-    """A moment that alone exceeds the strength gives a negative number, which an optimiser can use.
-
-    c M = 1.2 N_s.
-    """
-    value = beam_column.push_capacity(
-        strength_force=1e4, force_per_moment=500.0, critical_load=3e4, bending_moment=24.0
-    )
-    assert value < 0
 
 
 BOND = {"length": 20e-3, "shear_modulus": 1e9, "bond_thickness": 0.2e-3}

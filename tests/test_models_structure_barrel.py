@@ -165,16 +165,8 @@ def test_unreachable_strain_raises():
 
 @pytest.mark.parametrize(("distance", "factor"), [(-3e-3, 0.167744), (0.0, 0.5), (3e-3, 0.832256)])
 def test_pressure_step_check_values(distance, factor):
-    """R 16.75, t 1.5, nu 0.33: decay length 3.92005 mm; the factor at -3, 0, +3 mm."""
-    length = barrel_ends.decay_length(
-        radius=16.75e-3,
-        thickness=1.5e-3,
-        hoop_modulus=71.7e9,
-        axial_modulus=71.7e9,
-        poissons_product=0.33**2,
-    )
-    assert length == pytest.approx(3.92005e-3, rel=2e-6)
-    value = barrel_ends.pressure_step_factor(distance=distance, decay_length=length)
+    """The factor at -3, 0, +3 mm with a decay length of 3.92005 mm (R 16.75, t 1.5, nu 0.33)."""
+    value = barrel_ends.pressure_step_factor(distance=distance, decay_length=3.92005e-3)
     assert value == pytest.approx(factor, abs=1e-6)
 
 
@@ -187,19 +179,6 @@ def test_decay_of_a_layered_wall_of_one_layer():
         bending_stiffness=71.7e9 * thickness**3 / (12 * (1 - product)),
     )
     assert value == pytest.approx(sqrt(radius * thickness) / (3 * (1 - product)) ** 0.25, rel=1e-12)
-
-
-def test_decay_lengths_of_a_25_mm_bore():
-    """Metal and woven walls settle in 2.7 to 4.5 mm, hoop-wound UD in 1.4 to 2.3 mm."""
-    for thickness in (0.7e-3, 1.6e-3):
-        radius = 12.5e-3 + thickness / 2
-        shape = {"radius": radius, "thickness": thickness}
-        metal = barrel_ends.decay_length(
-            hoop_modulus=1.0, axial_modulus=1.0, poissons_product=0.09, **shape
-        )
-        hoop = barrel_ends.decay_length(hoop_modulus=125e9, axial_modulus=8.5e9, **shape)
-        assert 2.2e-3 < metal < 4.5e-3
-        assert hoop == pytest.approx(metal * (8.5 / 125 * 0.91) ** 0.25, rel=1e-12)
 
 
 @given(st.floats(-0.2, 0.2))

@@ -1,16 +1,16 @@
-"""Rod and column: stiffness, threads, Euler and Johnson, shear, shell, stepped columns."""
+"""Rod and column: stiffness, threads, Euler, shear, shell, stepped columns."""
 
 from __future__ import annotations
 
-from math import cos, inf, pi, sqrt, tan
+from math import cos, pi, sqrt, tan
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import brentq
+from transfer_matrices import column_load
 
-from actuator_opt.models import column, rod, stepped, stepped_segments
+from actuator_opt.models import column, rod, stepped
 
 SEGMENTS = {
     "bending_stiffness_1": 5000.0,
@@ -61,41 +61,6 @@ def test_thread_check_value():
     assert stress == pytest.approx(1e4 / area)
 
 
-@pytest.mark.parametrize(("length", "load"), [(0.2, 98.810e3), (0.6, 18.521e3)])
-def test_johnson_and_euler_check_values(length, load):
-    """Solid 16 mm, E 210 GPa, yield 600 MPa: 98.810 kN at 200 mm, Euler's 18.521 kN at 600 mm."""
-    area, moment = pi * 16e-3**2 / 4, pi * 16e-3**4 / 64
-    value = column.johnson_load(
-        area=area,
-        second_moment=moment,
-        youngs_modulus=210e9,
-        yield_strength=600e6,
-        effective_length=length,
-    )
-    assert value == pytest.approx(load, rel=3e-5)
-
-
-def test_johnson_meets_euler_smoothly():
-    """At the slenderness 83.12 both give half the squash load, with one slope."""
-    area, moment = pi * 16e-3**2 / 4, pi * 16e-3**4 / 64
-    slender = sqrt(2 * pi**2 * 210e9 / 600e6)
-    assert slender == pytest.approx(83.12, abs=0.005)
-    length = slender * sqrt(moment / area)
-
-    def load(factor):
-        return column.johnson_load(
-            area=area,
-            second_moment=moment,
-            youngs_modulus=210e9,
-            yield_strength=600e6,
-            effective_length=length * factor,
-        )
-
-    assert load(1.0) == pytest.approx(area * 600e6 / 2, rel=1e-12)
-    below, above = load(1.0) - load(1 - 1e-5), load(1 + 1e-5) - load(1.0)
-    assert below == pytest.approx(above, rel=1e-4)
-
-
 def test_shear_and_shell_check_values():
     """Cowper 0.546147 at nu 0.28, m 0.75; shell 3389.3 and 2783.8 MPa at t 1.2, R 15."""
     assert column.cowper_tube(poissons_ratio=0.28, radius_ratio=0.75) == pytest.approx(
@@ -126,9 +91,7 @@ def test_engesser_limits():
 def test_stepped_column_check_values(ends, load):
     """EI 5000/1200 N m^2, L 0.20/0.18 m, five fixities (independent check), by both methods."""
     assert stepped.stepped_column_load(ends=ends, **SEGMENTS) == pytest.approx(load, rel=2.5e-6)
-    segments = stepped_segments.stepped_column_load_segments(
-        bending_stiffness=[5000.0, 1200.0], length=[0.20, 0.18], ends=ends
-    )
+    segments = column_load(bending_stiffness=[5000.0, 1200.0], length=[0.20, 0.18], ends=ends)
     assert segments == pytest.approx(load, rel=2.5e-6)
 
 
@@ -201,9 +164,7 @@ def test_two_segments_agree_with_transfer_matrices(ends, decades, share):
         length_2=1 - share,
         ends=ends,
     )
-    segments = stepped_segments.stepped_column_load_segments(
-        bending_stiffness=[1.0, ratio], length=[share, 1 - share], ends=ends
-    )
+    segments = column_load(bending_stiffness=[1.0, ratio], length=[share, 1 - share], ends=ends)
     assert value == pytest.approx(segments, rel=1e-9)
 
 
@@ -250,31 +211,10 @@ def test_mechanisms_raise_and_bad_designs_are_nan():
 def test_segments_of_one_section_change_nothing():
     """A segment cut into three, or a third of equal stiffness added, keeps the load."""
     whole = stepped.stepped_column_load(**SEGMENTS)
-    cut = stepped_segments.stepped_column_load_segments(
+    cut = column_load(
         bending_stiffness=[5000.0, 5000.0, 1200.0, 1200.0], length=[0.05, 0.15, 0.1, 0.08]
     )
     assert cut == pytest.approx(whole, rel=1e-10)
-
-
-def test_elastic_ends_span_pinned_to_fixed():
-    """A soft spring is a pin, a stiff one a clamp; between, tan(kL) = kL/(1 + (kL)^2 EI/(k_phi L)).
-
-    Uniform beam pinned at the far end: w = M_0 [...]: equilibrium Q = -M_0/L and slope
-    M_0/k_phi at the spring give that condition [derived].
-    """
-
-    def load(spring):
-        return stepped_segments.stepped_column_load_segments(
-            bending_stiffness=[100.0],
-            length=[1.0],
-            ends=("elastic", "pinned"),
-            rotational_stiffness=(spring, inf),
-        )
-
-    assert load(1e-6) == pytest.approx(100 * pi**2, rel=1e-6)
-    assert load(1e12) == pytest.approx(100 * pi**2 * 2.045748, rel=1e-6)
-    z = brentq(lambda u: tan(u) - u / (1 + u * u * 100 / 300), 3.2, 4.49)
-    assert load(300.0) == pytest.approx(100 * z * z, rel=1e-9)
 
 
 def test_pin_pin_form_is_the_tangent_condition():

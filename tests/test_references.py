@@ -14,7 +14,9 @@ import pytest
 import yaml
 from model_samples import public_functions
 
-from actuator_opt.evaluation.provenance import METRIC_MODELS, WALL_MODELS, describe
+from actuator_opt.evaluation.provenance import describe, function_of
+from actuator_opt.metrics.metric import CRITERION
+from actuator_opt.metrics.table import ROWS
 from actuator_opt.models import elastomer, seals
 
 ROOT = Path(__file__).parent.parent
@@ -116,15 +118,16 @@ def test_every_law_of_a_registry_has_a_source(law):
     assert keys(law.reference) <= set(REFERENCES)
 
 
-@pytest.mark.parametrize("metric", METRIC_MODELS)
+@pytest.mark.parametrize("metric", ROWS)
 def test_metrics_find_their_source(metric):
     """What the evaluation reads from a docstring is there: source and valid range."""
-    for table in (METRIC_MODELS, *WALL_MODELS.values()):
-        if metric in table:
-            model = describe(table[metric])
-            assert model.name in FUNCTIONS
-            assert model.reference
-            assert 0 < len(model.valid) <= LONGEST_RANGE
+    row = ROWS[metric]
+    for name in {row.model, *row.by_wall.values(), *row.at.values()} - {None, CRITERION}:
+        model = describe(function_of(name))
+        assert model.name == name
+        assert model.name in FUNCTIONS
+        assert model.reference
+        assert 0 < len(model.valid) <= LONGEST_RANGE
 
 
 def names_used(text):

@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +15,9 @@ from hypothesis import strategies as st
 from test_sweep import KNEE, NEAR, STEEL, WAYS
 
 import actuator_opt as ao
+from actuator_opt.bounds import SWEEP_FIGURES
 from actuator_opt.errors import InputError, UsageError
+from actuator_opt.reporting import sweep_figure
 from actuator_opt.reporting.ink import Ink
 from actuator_opt.reporting.sweep_contour import contour_figure
 from actuator_opt.reporting.sweep_figures import sweep_figures
@@ -312,3 +315,22 @@ def test_differences_of_curves_are_read_off_their_own_axis():
     assert {y for _, y in first} == {ticks["0"]}
     assert {y for _, y in second} == {ticks["10"]}
     assert len(second) == 2  # at 0 and 20 mm: at 40 mm the first curve has ended
+
+
+@pytest.mark.parametrize("kind", SWEEP_FIGURES)
+def test_every_figure_of_a_sweep_is_whole(kind):
+    """Its module states a complete figure; modules with a figure are listed."""
+    own = sweep_figure.figure(kind)
+    assert callable(own.check)
+    assert callable(own.draw)
+    folder = Path(sweep_figure.__file__).parent
+    modules = {
+        file.stem for file in folder.glob("*.py") if "\nFIGURE = " in file.read_text("utf-8")
+    }
+    assert modules == {*SWEEP_FIGURES.values()}
+
+
+def test_a_figure_that_forgets_a_piece_is_refused():
+    """At import of its module."""
+    with pytest.raises(TypeError, match="draw"):
+        sweep_figure.SweepFigure(every=True, lines=False, check=sweep_figure.fits)

@@ -20,7 +20,6 @@ from actuator_opt.symbolic import Graph, Namespace, Symbol, function, jacobian, 
 NOT_TRACED = {
     "autofrettage.autofrettage": "chooses by its numbers",
     "barrel.wall_ratio_for_strain": "chooses by its numbers",
-    "chamber.chamber_pressure": "iterates where there is air",
     "layered_tube.ply_stresses_at_faces": "a matrix of layers",
     "layered_tube.tube_state": "a matrix of layers",
     "layered_tube.tube_stresses": "a matrix of layers",
@@ -31,8 +30,6 @@ NOT_TRACED = {
     "loop.load_mode": "eigenvalues",
     "loop.margins": "eigenvalues",
     "loop.ultimate_gain": "eigenvalues",
-    "netting.netting": "tangent",
-    "netting.netting_angle": "arc tangent",
     "one_way_valve.one_way_pressure_drop": "iterates",
     "ply_discount.burst_by_ply_discount": "a matrix of layers",
     "rough_surface.asperity_integral": "a table",
@@ -43,8 +40,6 @@ NOT_TRACED = {
     "tube_elements.layered_tube": "a matrix of layers",
 }
 """Models beyond what symbols are for: formulas of the elementary functions."""
-TRACED_EVEN_SO = {"chamber.chamber_pressure-0"}
-"""Samples of those models that need nothing of the kind: oil without air."""
 CASES = [
     pytest.param(model, sample, id=label)
     for label, model, sample in cases()
@@ -106,21 +101,16 @@ def test_models_of_the_parts_are_traced():
 
 
 def test_models_that_cannot_be_traced_say_so():
-    """Just the models listed fail, at once; a sample of theirs that does not is their numbers."""
-    raised, done = set(), set()
+    """Every sample of the models listed fails, at once, and no other."""
+    raised = set()
     for label, model, sample in cases():
-        name = label.rsplit("-", 1)[0]
         try:
-            inputs, numbers, outputs = traced(model, sample)
+            traced(model, sample)
         except (TypeError, AttributeError):
-            raised.add(name)
-            continue
-        if name in NOT_TRACED:
-            done.add(label)
-            found = function("f", "x", unpacked(inputs), outputs)(numbers)
-            assert found == pytest.approx(called(model, sample, numbers, 0), rel=1e-12), label
-    assert raised == set(NOT_TRACED)
-    assert done == TRACED_EVEN_SO
+            raised.add(label)
+    listed = {label for label, *_ in cases() if label.rsplit("-", 1)[0] in NOT_TRACED}
+    assert raised == listed
+    assert {label.rsplit("-", 1)[0] for label in listed} == set(NOT_TRACED)
 
 
 @pytest.mark.parametrize(("model", "sample"), CASES)

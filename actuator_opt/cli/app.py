@@ -19,6 +19,7 @@ from typer.exceptions import TyperException
 
 from .. import run_store
 from ..errors import EXIT_CODES, ActuatorError, Diagnostic, ExitCode, UsageError
+from ..metrics import METRICS
 from ..suggest import shown
 from ..version import VERSION
 from . import faults, materials, runs, streams
@@ -287,7 +288,7 @@ def schema(
     """Print the JSON Schema of design or scenario files."""
     from ..design.materials import load_library
     from ..design.schema import json_schema
-    from ..quantities import METRICS, RESULTS
+    from ..quantities import RESULTS
 
     if scenario:
         from ..design.scenario import Scenario

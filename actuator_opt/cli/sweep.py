@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..bounds import SWEEP_FIGURES
 from ..errors import ActuatorError, Diagnostic, ExitCode, InputError, UsageError
 from ..suggest import shown
 from ..units import whole
@@ -59,7 +60,8 @@ Figures = Annotated[
     typer.Option(
         "--figure",
         metavar="KIND",
-        help="Draw parallel, scatter, contour or ucurves as PNG and SVG. Repeatable.",
+        help=f"Draw {', '.join([*SWEEP_FIGURES][:-1])} or {[*SWEEP_FIGURES][-1]} "
+        "as PNG and SVG. Repeatable.",
     ),
 ]
 Show = Annotated[

@@ -8,8 +8,9 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import ValidationError
 
-from .. import quantities, suggest
+from .. import suggest
 from ..errors import Diagnostic, Fault, InputError
+from ..metrics import METRICS
 from ..quantities import Quantity
 from . import choice_list, wishes
 from .faults import cross_field, material_faults
@@ -68,10 +69,10 @@ def build(
     ----------
     tree : dicts, lists, texts with units and SI numbers, in the shape of the design file
     materials : names and kinds of the library; None leaves material names unchecked
-    metrics : metrics that requirements and the objective may name; default: `quantities.METRICS`
+    metrics : metrics that requirements and the objective may name; default: `metrics.METRICS`
     contradictions : whether values that contradict each other are faults
     """
-    metrics = quantities.METRICS if metrics is None else metrics
+    metrics = METRICS if metrics is None else metrics
     checked = check(tree, Design, metrics, cross_field if contradictions else None)
     faults = list(checked.faults)
     if materials is not None:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from ..joints.kinds import JOINTS
-from .kinds import Choice
-
-if TYPE_CHECKING:
-    JointName: TypeAlias = str
-else:
-    JointName = Literal[JOINTS.names]
+from ..models.criteria import CRITERIA
+from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
+from .kinds import Choice, choice_of
 
 Paper: TypeAlias = Annotated[
     Literal["ElAsswad2018", "AaltoThesis", "Huang2017"] | None,
@@ -22,19 +19,19 @@ Paper: TypeAlias = Annotated[
     ),
 ]
 BulkModulusLaw: TypeAlias = Annotated[
-    Literal["constant", "linear", "tait"] | None,
-    Choice(
+    str | None,
+    choice_of(
         "how the oil stiffens with pressure (default: linear where the oil states its slope, "
-        "else constant); constant: not at all; linear: by the oil's slope; "
-        "tait: by the Tait equation with its three constants"
+        "else constant)",
+        BULK_MODULUS_LAWS,
     ),
 ]
 ViscosityLaw: TypeAlias = Annotated[
-    Literal["none", "barus", "roelands"] | None,
-    Choice(
+    str | None,
+    choice_of(
         "how the oil thickens with pressure (default: roelands where the oil states its "
-        "coefficient, else none); none: not at all; barus: exponentially; "
-        "roelands: less than exponentially at high pressure"
+        "coefficient, else none)",
+        VISCOSITY_LAWS,
     ),
 ]
 Mount: TypeAlias = Annotated[
@@ -62,17 +59,9 @@ WallModel: TypeAlias = Annotated[
         "as_published: isotropic, but the bore grows as [ElAsswad2018] prints it"
     ),
 ]
-Criterion: TypeAlias = Annotated[
-    Literal["max_stress", "max_strain", "tsai_wu", "hashin", "puck"],
-    Choice(
-        "when a ply of barrel or rod fails; max_stress: one stress reaches its strength; "
-        "max_strain: one strain reaches its limit; tsai_wu: all stresses together, in one formula; "
-        "hashin: fibre or matrix, each by its own formula; "
-        "puck: fibre, or matrix pulled open (mode A), sheared (B) or crushed at a slant (C)"
-    ),
-]
+Criterion: TypeAlias = Annotated[str, choice_of("when a ply of barrel or rod fails", CRITERIA)]
 RetentionType: TypeAlias = Annotated[
-    JointName, Choice(f"what holds cap and head to the barrel; {JOINTS.help}")
+    str, choice_of("what holds cap and head to the barrel", JOINTS)
 ]
 SealType: TypeAlias = Annotated[
     Literal["o_ring", "step_ring", "u_cup", "compact"],

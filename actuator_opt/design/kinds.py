@@ -15,7 +15,7 @@ from typing import Any, Final, Literal, TypeAlias, get_args
 from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from .. import quantities, units
+from .. import kinds, quantities, units
 from ..numeric import Array
 from ..quantities import Quantity
 from ..suggest import article, shown
@@ -299,19 +299,34 @@ class Flag(Kind):
 
 
 class Choice(Kind):
-    """One of a few words; `help` says what each means, the field's `Literal` which there are."""
+    """One of a few words; `help` says what each means.
 
-    def __init__(self, help: str) -> None:
+    Parameters
+    ----------
+    help : for the JSON Schema
+    words : those there are; none: those of the field's `Literal`
+    """
+
+    def __init__(self, help: str, words: tuple[str, ...] = ()) -> None:
         self.help = help
+        self.words = words
 
     def validate(self, value: Any) -> Any:
-        """The value itself: the `Literal` refuses other words."""
+        """The value itself: `words` or the `Literal` refuse others."""
         return value
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        return handler(source)
+        if not self.words:
+            return handler(source)
+        schema = core_schema.literal_schema(list(self.words))
+        return core_schema.nullable_schema(schema) if type(None) in get_args(source) else schema
+
+
+def choice_of(help: str, registry: kinds.Kinds[Any]) -> Choice:
+    """One word of a registry of kinds, with the meaning of each."""
+    return Choice(f"{help}; {registry.help}", registry.names)
 
 
 class CaseName(Text):

@@ -3,24 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Mapping
-from typing import Any, Final
+from typing import Any
 
 from ..errors import Fault, InputError
+from ..kinds import Kinds
+from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from .structure import child_at
 from .view import Materials, Properties, View
 
-BULK_MODULUS_LAWS: Final[Mapping[str, tuple[str, ...]]] = {
-    "constant": (),
-    "linear": ("bulk_modulus_slope",),
-    "tait": ("tait_modulus", "tait_decay", "tait_coefficient"),
-}
-"""Bulk modulus over pressure, and the properties each law needs."""
-VISCOSITY_LAWS: Final[Mapping[str, tuple[str, ...]]] = {
-    "none": (),
-    "barus": ("pressure_viscosity",),
-    "roelands": ("pressure_viscosity",),
-}
-"""Viscosity over pressure, and the properties each law needs."""
 _GOOD = {
     "bulk_modulus_slope": "6", "pressure_viscosity": "18 1/GPa", "tait_modulus": "8.4 GPa",
     "tait_decay": "0.0058 1/K", "tait_coefficient": "11.9",
@@ -54,7 +44,7 @@ def of_fluid(tree: Any, materials: Materials) -> Iterator[Fault]:
         ("viscosity_pressure", VISCOSITY_LAWS, viscosity_law(None, known)),
     ):
         law = view.text("fluid", key)
-        missing = [needed for needed in laws.get(law or "", ()) if needed not in known]
+        missing = [needed for needed in _needs(laws, law) if needed not in known]
         if missing:
             stated = f'"{missing[0]}: {_GOOD[missing[0]]}"'
             yield Fault(
@@ -62,3 +52,8 @@ def of_fluid(tree: Any, materials: Materials) -> Iterator[Fault]:
                 f"{law}: {name} states no {', '.join(missing)}",
                 f"write {instead}, or add e.g. {stated} under materials.{name}",
             )
+
+
+def _needs(laws: Kinds[Any], law: str | None) -> tuple[str, ...]:
+    """Properties that a stated law needs."""
+    return laws[law].needs if law is not None and law in laws else ()

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 from .. import quantities, suggest, units
 from ..errors import Diagnostic, InputError, UsageError
+from ..metrics import METRICS
 from ..quantities import Quantity
 from .distributions import NUMBERS, quantity_of_entry
 from .kinds import Fraction, ValueFault
@@ -103,7 +104,7 @@ def resolve(
     if rest and head == "choices" and head in entries(root):
         raise ValueFault(f"{path}: is a list, not a value", "change the list in the file")
     if rest and head in _TABLES and head in entries(root):
-        return _resolve_table(head, rest, tree, quantities.METRICS if metrics is None else metrics)
+        return _resolve_table(head, rest, tree, METRICS if metrics is None else metrics)
     tokens = [_Token(m[1] or m[2], m[1] is not None) for m in _TOKEN.finditer(path)]
     return _resolve_section(path, tokens, (tree, root), tree, root, ())
 

@@ -57,7 +57,7 @@ class Source:
     root: type[Section] = Design
     """What the file describes."""
     metrics: Mapping[str, Quantity] | None = None
-    """Metrics its requirements may name; default: `quantities.METRICS`."""
+    """Metrics its requirements may name; default: `metrics.METRICS`."""
 
     @property
     def file(self) -> str:
@@ -138,7 +138,7 @@ def read_design(
     overrides : (PATH, value) pairs that replace values before anything is checked; a bare
         number is SI, but for those that another file states
     materials : names and kinds of materials; default: the library
-    metrics : metrics that may be named; default: `quantities.METRICS`
+    metrics : metrics that may be named; default: `metrics.METRICS`
 
     Raises
     ------
@@ -183,7 +183,7 @@ def load(
     root : the section a whole file of this kind makes
     made : makes it of a tree, or finds the tree's faults
     overrides : values that replace the document's, as of `read_design`
-    metrics : metrics that may be named; default: `quantities.METRICS`
+    metrics : metrics that may be named; default: `metrics.METRICS`
 
     Raises
     ------

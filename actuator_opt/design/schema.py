@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from .. import quantities
+from ..metrics import METRICS
 from ..quantities import Quantity
 from . import choice_list, wishes
 from .distributions import NUMBERS, quantity_of_entry
@@ -46,9 +47,9 @@ def json_schema(
     ----------
     root : what the file describes
     materials : library whose names are offered; None takes any name
-    metrics : metrics that may be named; default: `quantities.METRICS`
+    metrics : metrics that may be named; default: `metrics.METRICS`
     """
-    metrics = quantities.METRICS if metrics is None else metrics
+    metrics = METRICS if metrics is None else metrics
     definitions: Schema = {}
     schema = section_schema(root, materials)
     tables: dict[str, Callable[[], Schema]] = {

@@ -63,6 +63,8 @@ def _entry(name: str, info: Any) -> Entry:
         return Entry(name, "value", required, default, kind)
     least = next((m.min_length for m in info.metadata if hasattr(m, "min_length")), 0)
     most = next((m.max_length for m in info.metadata if hasattr(m, "max_length")), None)
+    if kind is not None and kind.words:
+        return Entry(name, "choice", required, default, kind, choices=kind.words)
     options = [a for a in _options(info.annotation) if a is not type(None)]
     annotation = options[0]
     origin, arguments = get_origin(annotation), get_args(annotation)

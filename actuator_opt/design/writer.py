@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from .. import quantities, units
 from ..errors import InputError
+from ..metrics import METRICS
 from ..quantities import Quantity
 from . import layup
 from .build import build, to_tree
@@ -88,9 +89,9 @@ def to_yaml(
     ----------
     design : what to write
     source : text it was read from, to keep its comments
-    metrics : metrics it may name; default: `quantities.METRICS`
+    metrics : metrics it may name; default: `metrics.METRICS`
     """
-    metrics = quantities.METRICS if metrics is None else metrics
+    metrics = METRICS if metrics is None else metrics
     if source is not None:
         text = _kept(design, source.document, metrics)
         text = text or _kept(design, _in_list_form(source.document), metrics)

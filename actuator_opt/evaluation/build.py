@@ -15,10 +15,11 @@ from ..design import paths
 from ..design.material import Material
 from ..design.materials import Library, load_library
 from ..design.model import Design
+from ..metrics import METRICS, MetricRow
+from ..metrics.table import CHECKS
 from ..version import VERSION
 from . import doubts, outline, standard_parts, study
 from .allow import allowances, extremes
-from .check_list import CHECK_LIST, CheckLine
 from .governing import governing
 from .kernel import Pass, Subject, compute
 from .limits import Limit, all_limits, check_limits, default_limits
@@ -35,6 +36,8 @@ from .rings import Ring
 from .rows import ALL_CASES, Computed, Row, by_case, rows_of
 from .study import dynamics
 from .values import Values, of_case
+
+NO_ANSWER = "the models have no finite answer for these dimensions"
 
 TOLERANCE = 1e-6
 """A margin of at least −TOLERANCE counts as met (CONTRACT)."""
@@ -170,10 +173,10 @@ def _metric(
             rows.append((float(value[0]), case, place))
     value = float(governing(name, computed, v, subject)[0])
     if not _finite(value):
-        why = computed.why.get(name, "the models have no finite answer for these dimensions")
+        why = computed.why.get(name, NO_ANSWER)
         if value == math.inf:
             why = computed.why.get(name, "nothing loads it: the factor is unlimited")
-        definition = None if name in quantities.METRICS else subject.quantities[name]
+        definition = None if name in METRICS else subject.quantities[name]
         return Metric(name=name, value=None, why=why, definition=definition)
     _, case, place = next(row for row in rows if row[0] == value)
     extremes = min(row[0] for row in rows), max(row[0] for row in rows)
@@ -199,7 +202,7 @@ def _metric(
         model="" if model is None else model.name,
         reference="" if model is None else model.reference,
         in_range=name not in outside,
-        definition=None if name in quantities.METRICS else subject.quantities[name],
+        definition=None if name in METRICS else subject.quantities[name],
     )
 
 
@@ -251,51 +254,48 @@ def _checks(
     rings: tuple[Ring, ...],
 ) -> Iterable[Check]:
     limits = {limit.metric: limit for limit in check_limits(design)}
-    for line in CHECK_LIST:
-        if line.metric == "standard_sizes":
-            yield standard_parts.sizes(line, design)
-        elif line.metric == "standard_glands":
-            yield standard_parts.glands(line, rings)
-        elif line.metric is None:
-            yield Check(line.name, "not_checked", line.why_not)
-        elif line.metric in design.waivers:
-            yield Check(
-                line.name, "not_checked", f"waived: {design.waivers[line.metric]}", line.metric
-            )
+    for metric, check in CHECKS:
+        name = metric.name
+        if name in design.waivers:
+            reason = f"waived: {design.waivers[name]}"
+            yield Check(check.name, "not_checked", reason, name)
         else:
-            yield _check(line, limits.get(line.metric), computed, v, requirements)
+            yield _check(check.name, metric, limits.get(name), computed, v, requirements)
+    yield standard_parts.sizes(design)
+    yield standard_parts.glands(rings)
 
 
 def _check(
-    line: CheckLine,
+    name: str,
+    metric: MetricRow,
     limit: Limit | None,
     computed: Computed,
     v: Values,
     requirements: tuple[Requirement, ...],
 ) -> Check:
-    own = [r for r in requirements if r.metric == line.metric and r.sense == line.sense]
+    sense = metric.worst
+    own = [r for r in requirements if r.metric == metric.name and r.sense == sense]
     if limit is not None:
         result, source = _requirement(limit, computed, v), limit.source
     elif own:
         result = min(own, key=lambda r: -math.inf if r.margin is None else r.margin)
         source = "requirement of the design"
     else:
-        value = computed.why.get(line.metric or "")
-        reason = value or f"no limit stated: add requirements.{line.metric}.{line.sense}"
-        return Check(line.name, "not_checked", reason, line.metric, line.sense)
-    if result.value is None and not result.met:
         reason = computed.why.get(
-            line.metric or "", "the models have no finite answer for these dimensions"
+            metric.name, f"no limit stated: add requirements.{metric.name}.{sense}"
         )
+        return Check(name, "not_checked", reason, metric.name, sense)
+    if result.value is None and not result.met:
         known: Literal["missed", "not_checked"] = (
-            "not_checked" if line.metric in computed.why else "missed"
+            "not_checked" if metric.name in computed.why else "missed"
         )
-        return Check(line.name, known, reason, line.metric, line.sense, result.limit)
+        reason = computed.why.get(metric.name, NO_ANSWER)
+        return Check(name, known, reason, metric.name, sense, result.limit)
     return Check(
-        name=line.name,
+        name=name,
         status="met" if result.met else "missed",
-        metric=line.metric,
-        sense=line.sense,
+        metric=metric.name,
+        sense=sense,
         limit=result.limit,
         value=result.value,
         margin=result.margin,
@@ -308,7 +308,7 @@ def _check(
 def _against(check: Check) -> str:
     if check.value is None or check.limit is None or check.metric is None:
         return check.reason
-    quantity = quantities.METRICS[check.metric]
+    quantity = METRICS[check.metric]
     word = "at least" if check.sense == "min" else "at most"
     return f"{quantity.text(check.value)}, should be {word} {quantity.text(check.limit)}"
 

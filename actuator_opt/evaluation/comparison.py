@@ -18,7 +18,8 @@ from ..design.build import to_tree
 from ..design.kinds import Fraction
 from ..design.paths import quantity_of
 from ..errors import InputError
-from ..quantities import METRICS, Quantity, Sense
+from ..metrics import METRICS
+from ..quantities import Quantity, Sense
 from .result import Evaluation
 
 Value: TypeAlias = float | bool | str | Fraction | None

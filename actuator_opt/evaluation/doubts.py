@@ -8,6 +8,8 @@ import numpy as np
 
 from ..design.model import PLAIN_CAP
 from ..design.paths import quantity_of
+from ..metrics import METRICS
+from ..metrics.table import OWN, WALL_FED
 from ..models import laminate
 from . import joint, motion_range, oil, oil_range, proportions, seal_doubts, springs
 from .barrel import LAMINATES, kind
@@ -20,24 +22,6 @@ from .values import Values
 
 LONGEST_LIFE = 1e9
 """Cycles up to which stress-life lines have data [Shigley2011]."""
-
-GROWTH_FED = (
-    "bore_growth",
-    "seal_gap",
-    "seal_squeeze",
-    "extrusion_factor",
-    "friction_running",
-    "friction_breakaway",
-    "stiffness_min",
-    "stiffness_barrel",
-    "natural_frequency",
-    "yield_factor",
-    "liner_yield_factor",
-    "proof_factor",
-    "first_ply_factor",
-    "burst_factor",
-)
-"""Metrics that inherit the error of the barrel's wall model."""
 
 
 def kind_of(subject: Subject) -> str:
@@ -55,12 +39,12 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
             "bore growth is understated, by 10 to 25 % here, and with it gap, squeeze loss and "
             "compliance; first ply and burst of plies err to the safe side"
         )
-        for metric in GROWTH_FED:
+        for metric in WALL_FED:
             yield metric, text
     yield from (("", text) for text in proportions.warnings(subject, v, g))
     yield from _wall_warnings(subject, done)
     if done.held is not None:
-        yield from done.held.joint.warnings(done.held.loaded)
+        yield from done.held.joint.warnings(done.held.loaded, METRICS)
     yield from _rod_warnings(subject, done)
     yield from _bond_warnings(done)
     for part, what in (
@@ -182,10 +166,6 @@ def _bond_warnings(done: Pass) -> Iterable[tuple[str, str]]:
         )
 
 
-SOURCES = frozenset({"bore_growth", "first_ply_factor", "burst_factor", "cycle_life"})
-"""Metrics whose own model, not one before it, is what a warning is about."""
-
-
 def models(
     metrics: dict[str, Metric],
     subject: Subject,
@@ -216,8 +196,7 @@ def models(
             model.reference,
             model.valid,
             at,
-            name not in (outside & SOURCES)
-            and (model.name not in seen or seen[model.name].in_range),
+            name not in (outside & OWN) and (model.name not in seen or seen[model.name].in_range),
         )
     yield from seen.values()
     yield from seal_doubts.models(rings, subject, said)

@@ -31,7 +31,7 @@ def sense_of(metric: str, subject: Subject) -> Sense | None:
     1. The worst value of an objective governs: the largest where it is minimised.
     2. A metric with a required limit is governed in the sense of that limit. Limited both ways it
        has no sense of its own (None): the value with the smaller margin governs.
-    3. Any other metric is governed by its worst value as `quantities.METRICS` states it.
+    3. Any other metric is governed by its worst value as `metrics.METRICS` states it.
     """
     objective = subject.design.objective
     aims = subject.aims or dict.fromkeys(objective.metrics, objective.aim)

@@ -9,9 +9,10 @@ import numpy as np
 
 from ..design.material import Material
 from ..design.model import Design
+from ..metrics.table import AT_STOPS
 from ..models import forces
 from ..numeric import Array, minimum, where
-from ..quantities import METRICS, Quantity, Sense
+from ..quantities import Quantity, Sense
 from . import barrel as barrel_module
 from . import beam as beam_module
 from . import (
@@ -37,7 +38,7 @@ from .beam import Beam
 from .film_tables import Key, Table
 from .geometry import Geometry
 from .limits import ENDS
-from .plugin import Plugin
+from .plugin import Plugin, with_own
 from .rings import Ring
 from .rods import Rod
 from .rows import Computed
@@ -72,7 +73,7 @@ class Subject:
     @property
     def quantities(self) -> Mapping[str, Quantity]:
         """Every metric of this design, the user's own included."""
-        return METRICS | {plugin.name: plugin.quantity for plugin in self.plugins}
+        return with_own(self.plugins)
 
     @property
     def cases(self) -> tuple[str, ...]:
@@ -198,6 +199,8 @@ def statics(subject: Subject, v: Values, out: Computed, implicit: Implicit = IMP
     strength.own(held, out)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
+    if not g.has_skirts:
+        out.skip("geometry_skirts", "the ends have no skirts")
     _manufacture(v, subject, out)
     out.put("barrel_length", g.barrel_length)
     out.put("closed_length", g.closed_length)
@@ -234,7 +237,7 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         places = motion.compute(v, design, linear, wanted, out)
         for plugin in subject.plugins:
             answer = plugin.call(v, out.metrics, lenient=subject.lenient)
-            out.put(plugin.name, answer.value)
+            out.metrics[plugin.name] = {"": answer.value}
             if answer.raised:
                 out.skip(plugin.name, answer.raised)
     return Pass(
@@ -281,7 +284,7 @@ def _at_stops(
         )
         own = Computed()
         springs.compute(budget, _moving(s.asked[end].mass, parts), own)
-        for name in springs.LOADED:
+        for name in AT_STOPS:
             out.metrics[name][f"loaded as {end}"] = own.metrics[name][""]
             out.applies_at[name, f"loaded as {end}"] = both
             out.applies_at[name, ""] = ~both

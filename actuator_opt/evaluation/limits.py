@@ -12,11 +12,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ..design.model import Design, LoadCase
-from ..joints.joint import LAND
-from ..joints.kinds import JOINTS
+from ..metrics.table import CHECKS, ROWS
 from ..numeric import Array, absolute, real, where
 from ..quantities import Sense
-from .check_list import CHECK_LIST
 from .plugin import Plugin
 from .values import Values
 
@@ -47,25 +45,9 @@ class Limit:
         return v[self.path] if self.lever is None else v[self.path] / v[self.lever]
 
 
-GEOMETRY: tuple[str, ...] = (
-    "geometry_rod_in_bore",
-    "geometry_rod_wall",
-    "geometry_rod_bore",
-    "geometry_piston_groove",
-    "geometry_piston_core",
-    "geometry_head_groove",
-    "geometry_head_wall",
-    "geometry_skirts",
-)
-"""Walls and rooms of every actuator; a joint may add its own."""
 ENDS = ("retracted", "extended")
 OWN_PLACE = "position of the case"
 """Places of a joint torque: both stops, and where a load case says it stands."""
-
-OTHER_GEOMETRY: tuple[tuple[str, float, str], ...] = (
-    ("geometry_dead_point", LAND, "choice: 1 mm before a dead point, where no force turns"),
-    ("geometry_joint_angle", 0.0, "the joint reaches the angle of the load case"),
-)
 
 
 def requirement_limits(design: Design) -> list[Limit]:
@@ -114,21 +96,20 @@ def _case_limit(case: LoadCase) -> Limit:
 def check_limits(design: Design) -> list[Limit]:
     """The check list's own limits, where the design neither replaces nor waives them."""
     limits = []
-    for line in CHECK_LIST:
-        if line.metric is None or line.limit is None or line.metric in design.waivers:
+    for metric, check in CHECKS:
+        if check.limit is None or metric.name in design.waivers:
             continue
-        requirement = design.requirements.get(line.metric)
-        if requirement is not None and getattr(requirement, line.sense) is not None:
+        requirement = design.requirements.get(metric.name)
+        if requirement is not None and getattr(requirement, metric.worst) is not None:
             continue
-        path = f"requirements.{line.metric}.{line.sense}"
         limits.append(
             Limit(
-                name=line.name,
-                metric=line.metric,
-                sense=line.sense,
-                path=path,
-                origin="advice" if line.advice else "check",
-                source=line.source,
+                name=check.name,
+                metric=metric.name,
+                sense=metric.worst,
+                path=f"requirements.{metric.name}.{metric.worst}",
+                origin="advice" if check.advice else "check",
+                source=check.source,
             )
         )
     return limits
@@ -137,27 +118,25 @@ def check_limits(design: Design) -> list[Limit]:
 def default_limits() -> dict[str, float]:
     """The check list's limits by PATH, so that they can be studied like any other number."""
     return {
-        f"requirements.{line.metric}.{line.sense}": line.limit
-        for line in CHECK_LIST
-        if line.metric is not None and line.limit is not None
+        f"requirements.{metric.name}.{metric.worst}": check.limit
+        for metric, check in CHECKS
+        if check.limit is not None
     }
 
 
 def geometry_limits() -> list[Limit]:
     """Walls and rooms that must exist for the parts to be parts."""
-    joined = [
-        (name, metric.least, metric.source)
-        for joint in JOINTS.values()
-        for name, metric in joint.metrics.items()
-        if metric.least is not None
-    ]
-    rows = [(name, LAND, "choice: 1 mm least wall") for name in GEOMETRY]
-    rows += [row for row in joined if row[1] == LAND]  # walls first
-    rows += OTHER_GEOMETRY
-    rows += [row for row in joined if row[1] != LAND]
     return [
-        Limit(name, name, "min", constant=least, origin="geometry", source=source)
-        for name, least, source in rows
+        Limit(
+            name,
+            name,
+            "min",
+            constant=row.least.value,
+            origin="geometry",
+            source=row.least.source,
+        )
+        for name, row in ROWS.items()
+        if row.least is not None
     ]
 
 

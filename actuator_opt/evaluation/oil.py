@@ -7,24 +7,20 @@ counts the entrained air.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from typing import TypeAlias
 
 from ..design.material import Material
 from ..design.material_laws import bulk_modulus_law, viscosity_law
 from ..design.model import FluidSection
 from ..models import density as density_models
-from ..models import fluid, tait
+from ..models import fluid
+from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from ..numeric import Array
 from .allow import Stock
 from .values import Values
 
 Law: TypeAlias = Callable[..., Array]
-_BULK_MODULUS: Mapping[str, Law] = {
-    "linear": fluid.bulk_modulus_linear,
-    "tait": tait.bulk_modulus_tait,
-}
-_VISCOSITY: Mapping[str, Law] = {"barus": fluid.barus, "roelands": fluid.roelands}
 
 
 def alone(material: Material, **choices: object) -> tuple[Values, FluidSection, Stock]:
@@ -49,37 +45,14 @@ def pure_bulk_modulus(
     v: Values, section: FluidSection, stock: Stock, temperature: Array, pressure: Array
 ) -> Array:
     """Tangent bulk modulus of the oil without air."""
-    name = section.material
-    law = bulk_modulus_law(section.bulk_modulus_law, stock.material(name).numbers)
-    if law == "tait":
-        return tait.bulk_modulus_tait(
-            temperature=temperature, pressure=pressure, **_tait(stock, name)
-        )
-    modulus = stock.get(name, "bulk_modulus")
-    decay = stock.get(name, "bulk_modulus_decay")
-    if decay is not None:
-        modulus = fluid.bulk_modulus_warm(
-            bulk_modulus=modulus,
-            decay=decay,
-            temperature=temperature,
-            reference_temperature=stock.get(name, "bulk_modulus_temperature"),
-        )
-    if law == "constant":
-        return modulus
-    return fluid.bulk_modulus_linear(
-        bulk_modulus=modulus,
-        slope=stock.get(name, "bulk_modulus_slope"),
-        pressure=pressure - stock.get(name, "bulk_modulus_pressure", default=0.0),
-    )
+    oil = stock.material(section.material)
+    law = BULK_MODULUS_LAWS[bulk_modulus_law(section.bulk_modulus_law, oil.numbers)]
+    return law.modulus(_properties(stock, oil.name), temperature, pressure)
 
 
-def _tait(stock: Stock, name: str) -> dict[str, Array]:
-    """Constants of the Tait law of an oil."""
-    return {
-        "zero_modulus": stock.get(name, "tait_modulus"),
-        "temperature_coefficient": stock.get(name, "tait_decay"),
-        "pressure_coefficient": stock.get(name, "tait_coefficient"),
-    }
+def _properties(stock: Stock, name: str) -> Callable[[str], Array]:
+    """Properties of an oil by their name."""
+    return lambda key: stock.get(name, key)
 
 
 def bulk_modulus(
@@ -115,21 +88,8 @@ def density(
         )
     if pressure is None:
         return rho
-    law = bulk_modulus_law(section.bulk_modulus_law, known)
-    if law == "tait":
-        return tait.density_tait(
-            temperature=temperature,
-            pressure=pressure,
-            reference_density=rho,
-            volume_expansion=0.0,
-            **_tait(stock, name),
-        )
-    return density_models.density_compressed(
-        reference_density=rho,
-        pressure=pressure,
-        bulk_modulus=pure_bulk_modulus(v, section, stock, temperature, 0.0 * pressure),
-        slope=stock.get(name, "bulk_modulus_slope") if law == "linear" else 0.0,
-    )
+    law = BULK_MODULUS_LAWS[bulk_modulus_law(section.bulk_modulus_law, known)]
+    return law.density(_properties(stock, name), rho, temperature, pressure)
 
 
 def kinematic_viscosity(
@@ -164,13 +124,11 @@ def pressure_law(section: FluidSection, stock: Stock, temperature: Array) -> tup
     """Name of the law of viscosity over pressure, and its coefficient at a temperature."""
     name = section.material
     oil = stock.material(name)
-    law = viscosity_law(section.viscosity_pressure, oil.numbers)
-    if law == "none":
-        return law, 0.0
-    coefficient = oil.properties["pressure_viscosity"].at(
-        temperature, value=stock.get(name, "pressure_viscosity")
-    )
-    return law, coefficient
+    law = VISCOSITY_LAWS[viscosity_law(section.viscosity_pressure, oil.numbers)]
+    if not law.needs:
+        return law.name, 0.0
+    key = law.needs[0]
+    return law.name, oil.properties[key].at(temperature, value=stock.get(name, key))
 
 
 def under_pressure(
@@ -178,9 +136,9 @@ def under_pressure(
 ) -> Array:
     """Dynamic viscosity at a pressure, from the one at zero gauge pressure."""
     law, coefficient = pressure_law(section, stock, temperature)
-    if law == "none":
-        return viscosity + 0 * pressure
-    return _VISCOSITY[law](viscosity=viscosity, pressure=pressure, coefficient=coefficient)
+    return VISCOSITY_LAWS[law].viscosity(
+        viscosity=viscosity, pressure=pressure, coefficient=coefficient
+    )
 
 
 def vapour_pressure(stock: Stock, name: str, temperature: Array) -> Array | None:
@@ -200,10 +158,10 @@ def vapour_pressure(stock: Stock, name: str, temperature: Array) -> Array | None
 
 def laws(section: FluidSection, oil: Material) -> Iterable[tuple[Law, str]]:
     """(function, quantity) of every law of the oil over pressure that an evaluation uses."""
-    law = bulk_modulus_law(section.bulk_modulus_law, oil.numbers)
-    if law in _BULK_MODULUS:
-        yield _BULK_MODULUS[law], "bulk modulus"
+    modulus = BULK_MODULUS_LAWS[bulk_modulus_law(section.bulk_modulus_law, oil.numbers)]
+    if modulus.model is not None:
+        yield modulus.model, "bulk modulus"
     yield fluid.effective_bulk_modulus, "air"
-    law = viscosity_law(section.viscosity_pressure, oil.numbers)
-    if law in _VISCOSITY:
-        yield _VISCOSITY[law], "viscosity"
+    viscosity = VISCOSITY_LAWS[viscosity_law(section.viscosity_pressure, oil.numbers)]
+    if viscosity.model is not None:
+        yield viscosity.model, "viscosity"

@@ -9,28 +9,14 @@ import numpy as np
 from ..design.material import Material
 from ..design.material_laws import bulk_modulus_law, viscosity_law
 from ..design.model import FluidSection
-from ..models import fluid, tait
+from ..metrics.table import OIL_FED
+from ..models import fluid
+from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from ..numeric import minimum, real
 from . import oil as oil_laws
 from .allow import Stock
 from .rows import Computed
 from .state import State
-
-PRESSURE_FED = (
-    "stiffness_oil",
-    "stiffness_min",
-    "natural_frequency",
-    "damping_ratio",
-    "dynamic_stiffness",
-    "dynamic_phase",
-    "ultimate_gain",
-    "gain_margin",
-    "phase_margin",
-    "bandwidth",
-    "line_resonance",
-    "line_hammer",
-)
-"""Metrics that inherit the error of the bulk modulus."""
 
 
 def compute(section: FluidSection, stock: Stock, state: State, out: Computed) -> None:
@@ -54,15 +40,15 @@ def warnings(
     law = bulk_modulus_law(section.bulk_modulus_law, oil.numbers)
     chambers = [state.moving_a, state.moving_b, state.holding_a, state.holding_b]
     highest = max(float(np.max(np.real(pressure))) for pressure in chambers)
-    limit = {"linear": fluid.LINEAR_PRESSURE, "tait": tait.TAIT_PRESSURE}.get(law, np.inf)
+    limit = BULK_MODULUS_LAWS[law].largest_pressure
     if highest > limit:
         text = (
             f"bulk modulus: {highest / 1e5:.0f} bar is beyond the {limit / 1e5:.0f} bar to which "
             f"the {law} law of the oil is known"
         )
-        yield from ((metric, text) for metric in PRESSURE_FED)
+        yield from ((metric, text) for metric in OIL_FED)
     law = viscosity_law(section.viscosity_pressure, oil.numbers)
-    limit = {"barus": fluid.BARUS_PRESSURE, "roelands": fluid.ROELANDS_PRESSURE}.get(law, np.inf)
+    limit = VISCOSITY_LAWS[law].largest_pressure
     if highest > limit:
         yield (
             "oil_viscosity",

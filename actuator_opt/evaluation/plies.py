@@ -258,14 +258,15 @@ def utilisations(
         shear_23=_strengths(plies, "shear_23", extra) if across else None,
     )
     elastic = None
-    if criterion == "max_strain":
+    own = CRITERIA[criterion]
+    if own.by_strain:
         elastic = PlyRatios(
             poissons_ratio_12=column("poissons_ratio_12"),
             poissons_ratio_13=column("poissons_ratio_13"),
             poissons_ratio_23=column("poissons_ratio_23"),
             modulus_ratio=column("youngs_modulus_2") / column("youngs_modulus_1"),
         )
-    return CRITERIA[criterion](stress=stress, strength=strength, residual=residual, elastic=elastic)
+    return own.modes(stress=stress, strength=strength, residual=residual, elastic=elastic)
 
 
 def _strengths(plies: Sequence[Layer], name: str, extra: int) -> Array:

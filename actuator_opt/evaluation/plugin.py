@@ -20,8 +20,9 @@ from typing import Literal
 import numpy as np
 
 from ..errors import Diagnostic, InputError
+from ..metrics import METRICS
 from ..numeric import Array, maximum, minimum
-from ..quantities import METRICS, Quantity
+from ..quantities import Quantity
 from ..suggest import shown
 from ..units import BASE, UnitError, unit
 from .values import Values
@@ -146,6 +147,11 @@ class Plugin:
             raised = [first]
         value = np.concatenate(np.broadcast_arrays(*(columns or [nothing])), axis=-1)
         return Answer(value, str(raised[0].diagnostics[0]) if raised else "")
+
+
+def with_own(plugins: Iterable[Plugin]) -> dict[str, Quantity]:
+    """Every metric by name: the project's, and the user's own."""
+    return {**METRICS, **{plugin.name: plugin.quantity for plugin in plugins}}
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from typing import Any, Literal, TypeAlias
 
 from .. import quantities
 from ..design.model import Design
+from ..metrics import METRICS
 from ..numeric import Array
 from ..tables import aligned
 from . import reserve
@@ -42,7 +43,7 @@ class Metric:
     @property
     def quantity(self) -> quantities.Quantity:
         """Symbol, unit and label."""
-        return self.definition or quantities.METRICS[self.name]
+        return self.definition or METRICS[self.name]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..metrics import METRICS
 from ..numeric import Array, real, where
 from .limits import Limit, margin
 from .values import Values
@@ -33,7 +34,14 @@ class Computed:
     """Running friction of each seal; the parts sum to `friction_running`."""
 
     def put(self, name: str, value: Array | dict[str, Array], cases: Array = None) -> None:
-        """Record a metric: one array, or one per place; `cases` marks where it applies."""
+        """Record a metric: one array, or one per place; `cases` marks where it applies.
+
+        Raises
+        ------
+        KeyError : `metrics.table` has no row of that name
+        """
+        if name not in METRICS:
+            raise KeyError(f"metric {name}: add its row to metrics/table.py")
         self.metrics[name] = value if isinstance(value, dict) else {"": value}
         if cases is not None:
             self.applies[name] = cases

@@ -287,10 +287,6 @@ def _softest(curve: Callable[[Array], Array], stroke: Array) -> Array:
     return middle
 
 
-LOADED = ("stiffness_min", "stiffness_oil", "stiffness_barrel", "natural_frequency")
-"""Metrics that follow the held force or the moving mass."""
-
-
 def compute(s: Springs, moving_mass: Array, out: Computed) -> Array:
     """Stiffness and frequency metrics; returns the position of least stiffness."""
     position = weakest(s)

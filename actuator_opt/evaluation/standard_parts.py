@@ -11,7 +11,6 @@ from ..design import standards
 from ..design.housings import gland_deviations, housings_for
 from ..design.model import Design
 from ..errors import InputError
-from .check_list import CheckLine
 from .film_tables import floats
 from .gland_check import squeezes
 from .result import Check
@@ -21,7 +20,10 @@ NEAR = 0.02
 """Relative difference of a housing's depth or length that counts as none."""
 
 
-def sizes(line: CheckLine, design: Design) -> Check:
+_SIZES, _GLANDS, _SECTIONS = "standard sizes", "standard glands", "ISO 3601-2 sections (AS568)"
+
+
+def sizes(design: Design) -> Check:
     """Whether bore and rod are ISO 3320 sizes; says the nearest ones where not."""
     odd = []
     asked: tuple[tuple[Literal["bore", "rod"], float], ...] = (
@@ -34,16 +36,16 @@ def sizes(line: CheckLine, design: Design) -> Check:
             odd.append(f"{what} {1e3 * value:.4g} mm (nearest {1e3 * near:g} mm)")
     if odd:
         reason = "free sizes: " + ", ".join(odd)
-        return Check(line.name, "not_checked", reason, source=line.source)
-    return Check(line.name, "met", "bore and rod are standard sizes", source=line.source)
+        return Check(_SIZES, "not_checked", reason, source="ISO 3320")
+    return Check(_SIZES, "met", "bore and rod are standard sizes", source="ISO 3320")
 
 
-def glands(line: CheckLine, rings: Iterable[Ring]) -> Check:
+def glands(rings: Iterable[Ring]) -> Check:
     """Whether every groove is that of a standard; says what differs where not."""
     odd = [text for ring in rings for text in _remarks(floats(ring, 0))]
     if odd:
-        return Check(line.name, "not_checked", "free glands: " + "; ".join(odd), source=line.source)
-    return Check(line.name, "met", "every gland is a standard one", source=line.source)
+        return Check(_GLANDS, "not_checked", "free glands: " + "; ".join(odd), source=_SECTIONS)
+    return Check(_GLANDS, "met", "every gland is a standard one", source=_SECTIONS)
 
 
 def _remarks(ring: Ring) -> Iterator[str]:

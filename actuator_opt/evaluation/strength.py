@@ -175,11 +175,11 @@ def own(held: Held | None, out: Computed) -> None:
     """The joint's own metrics; those of other joints have a reason."""
     found = {} if held is None else held.joint.own(held.loaded)
     for joint in JOINTS.values():
-        for name, metric in joint.metrics.items():
+        for name, absent in joint.metrics.items():
             if name in found:
                 out.put(name, found[name])
             else:
-                out.skip(name, metric.absent)
+                out.skip(name, absent)
 
 
 def _fittings(stock: Stock, bond: Overlap | str, push: Array, out: Computed) -> None:

@@ -17,13 +17,6 @@ from .solids import Profile
 LAYER = "dimensions"
 STYLE = "TRUE"
 _COLOUR = 5
-_ACROSS = (
-    ("rod_inner", "rod bore"),
-    ("rod", "rod"),
-    ("bore", "bore"),
-    ("barrel_outer_diameter", "barrel"),
-)
-"""Diameters dimensioned across the chamber, and what they are called."""
 
 _SMALLEST = 1e-6
 """Lengths below this (mm) are not dimensioned."""

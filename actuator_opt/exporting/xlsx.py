@@ -16,11 +16,12 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from .. import quantities, units
+from .. import units
 from ..design.paths import get, quantity_of
 from ..evaluation.reserve import NO_RESERVE, NO_ROOM
 from ..evaluation.result import Check, Evaluation, Requirement
 from ..extras import library
+from ..metrics import METRICS
 from ..quantities import Quantity
 from .words import plain
 
@@ -233,7 +234,7 @@ def _variables(book: Any, evaluation: Evaluation) -> None:
 
 def _mass(book: Any, evaluation: Evaluation) -> None:
     """Masses of the parts, adding up, with a chart; the oil below."""
-    quantity = quantities.METRICS["mass"]
+    quantity = METRICS["mass"]
     sheet = _Sheet(book, "Mass", (24, 14, 12))
     sheet.put("A1", f"{evaluation.name}: mass", bold=True)
     sheet.head(3, ("part", f"mass [{quantity.unit}]", "share [%]"))

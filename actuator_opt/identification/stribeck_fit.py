@@ -28,16 +28,6 @@ OTHER = 0.5
 others [ArmstrongHelouvry1994]."""
 DIFFERENT = 0.05
 """Speeds further apart than this share are different (a choice: more than `points.STEADY`)."""
-SYMBOLS = {
-    "coulomb": "F_C",
-    "static": "F_S",
-    "stribeck_speed": "v_s",
-    "exponent": "δ",
-    "viscous": "σ₂",
-    "pressure_slope": "dF_C/dp",
-    "offset": "F_0",
-}
-"""Parameters with their symbols: N, N, m/s, -, N s/m, N/Pa, N."""
 MODEL = 1e-3
 """Error of a point over the largest friction beside its scatter (a choice: no curve is better)."""
 _LEVELS = (("coulomb", "viscous"), ("static", "stribeck_speed"), ("exponent",))

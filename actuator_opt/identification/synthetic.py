@@ -98,34 +98,6 @@ def plateaus(
     return course(np.concatenate(parts), begin=begin, step=step)
 
 
-def sine(
-    *,
-    amplitude: float,
-    frequency: float,
-    periods: float,
-    middle: float,
-    step: float = 1e-3,
-) -> Course:
-    """A sine of position about its middle, SI."""
-    time = step * np.arange(round(periods / frequency / step))
-    turn = 2 * np.pi * frequency
-    return Course(
-        time,
-        middle - amplitude * np.cos(turn * time),
-        amplitude * turn * np.sin(turn * time),
-        amplitude * turn**2 * np.cos(turn * time),
-    )
-
-
-def ramps(
-    *, fastest: float, duration: float, begin: float, step: float = 1e-3, repeats: int = 2
-) -> Course:
-    """Velocity up to `fastest` and back to rest along straight lines, out and back, SI."""
-    up = np.linspace(0.0, fastest, round(duration / 2 / step))
-    once = np.concatenate([up, up[::-1]])
-    return course(np.concatenate([once, -once] * repeats), begin=begin, step=step)
-
-
 def course(velocity: Array, *, begin: float, step: float) -> Course:
     """The motion of a velocity from a first position, SI."""
     time = step * np.arange(velocity.size)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..models import lap_joint
 from ..numeric import Array
 from . import skirt
 from .joint import (
@@ -106,8 +105,8 @@ JOINT = Joint(
     metrics={},
     judged=(Judged("the elastic peak shear", "a bond"), Judged("mean bond shear")),
     models={
-        ("retention_factor", "bond at the skirt's edge"): lap_joint.bond_edge_shear,
-        ("retention_factor", "bond at the barrel's edge"): lap_joint.bond_edge_shear,
+        ("retention_factor", "bond at the skirt's edge"): "lap_joint.bond_edge_shear",
+        ("retention_factor", "bond at the barrel's edge"): "lap_joint.bond_edge_shear",
     },
     usual=(),
     warnings=nothing,

@@ -11,8 +11,9 @@ from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from ..errors import Fault
 from ..numeric import Array
+from ..quantities import Quantity
 
-LAND = 1e-3
+LEAST_METAL = 1e-3
 """Least wall beside or under a groove or thread, least rod wall, bore of a laminated rod and room
 between rod and bore (m): a choice for turned parts in this size range."""
 
@@ -101,14 +102,6 @@ class Judged(NamedTuple):
 
     measure: str
     of: str = ""
-
-
-class OwnMetric(NamedTuple):
-    """A metric that this joint computes: why others have none, and its limit as a geometry."""
-
-    absent: str
-    least: float | None = None
-    source: str = ""
 
 
 class Usual(NamedTuple):
@@ -319,15 +312,15 @@ class Joint:
     """Its own metrics by name: the keys of `metrics`."""
     envelope: Callable[[Loaded, Mapping[str, Array]], Mapping[str, Array]] | None
     """`Strength.working` from above, from `burst`, where itself is not convex; None: not needed."""
-    metrics: Mapping[str, OwnMetric]
-    """Its own metrics; all joints give the factors of retention."""
+    metrics: Mapping[str, str]
+    """Its own metrics, with the reason why other joints have none; all give the factors."""
     judged: tuple[Judged, Judged]
     """What the working and the burst factor are on."""
-    models: Mapping[tuple[str, str], Callable[..., object]]
-    """Leading model behind a metric at a place."""
+    models: Mapping[tuple[str, str], str]
+    """Leading model behind a metric at a place, such as `rod.section_area`."""
     usual: tuple[Usual, ...]
-    warnings: Callable[[Loaded], Iterable[tuple[str, str]]]
-    """Metric and sentence for what is doubtful."""
+    warnings: Callable[[Loaded, Mapping[str, Quantity]], Iterable[tuple[str, str]]]
+    """Metric and sentence for what is doubtful; given every metric by name."""
 
     @property
     def plural(self) -> bool:
@@ -367,6 +360,16 @@ def judged_later(stated: Stated, moved: Iterable[str]) -> bool:
     paths = tuple(moved)
     free = any(stated.has("variables", path) for path in paths)
     return free and any(chosen(stated, path) for path in (*paths, "retention.type"))
+
+
+def models_at(joints: Iterable[Joint], metric: str) -> dict[str, str]:
+    """Leading models of a metric by place, of all joints."""
+    return {
+        place: model
+        for joint in joints
+        for (name, place), model in joint.models.items()
+        if name == metric
+    }
 
 
 def judged_on(joints: Iterable[Joint], index: int) -> str:

@@ -8,20 +8,20 @@ leaves metal under it: other files are refused.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
 
 from ..errors import Fault
-from ..models import barrel, mass, rod, thread, yielding
+from ..models import barrel, mass, thread, yielding
 from ..models.rod import section_area
 from ..numeric import Array, minimum, real, where
-from ..quantities import INPUTS, METRICS
+from ..quantities import INPUTS, Quantity
 from . import skirt
 from .joint import (
-    LAND,
+    LEAST_METAL,
     NOT_BONDED,
     ROUNDING,
     End,
@@ -33,7 +33,6 @@ from .joint import (
     Known,
     Loaded,
     Materials,
-    OwnMetric,
     Pulsed,
     Stated,
     Strength,
@@ -179,25 +178,25 @@ def _under(view: Stated, sizes: _Stated) -> Iterator[Fault]:
     root = thread.root_diameter(diameter=min(sizes.diameter, sizes.outside), pitch=sizes.pitch)
     left = sizes.layer - (sizes.outside - root) / 2
     layer = _layer(view)
-    if left < LAND * (1 - ROUNDING) and not judged_later(view, _moved(view)):
+    if left < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, _moved(view)):
         name = view.text(*layer, "material")
         rest = _text(left) if left > 0 else "nothing"
         yield Fault(
             (*layer, "thickness"),
             f"{_text(sizes.layer)} of {name}: the thread leaves {rest} of it, "
-            f"{_text(LAND)} is the least",
-            f"write a thickness of at least {_text(sizes.layer + LAND - left)}, a finer "
+            f"{_text(LEAST_METAL)} is the least",
+            f"write a thickness of at least {_text(sizes.layer + LEAST_METAL - left)}, a finer "
             f"pitch, {OTHERWISE}",
         )
 
 
 def _over(view: Stated, sizes: _Stated) -> Iterator[Fault]:
     """Too little metal over the thread of the skirts."""
-    if sizes.wall < LAND * (1 - ROUNDING) and not judged_later(view, ["retention.wall"]):
+    if sizes.wall < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, ["retention.wall"]):
         yield Fault(
             ("retention", "wall"),
-            f"{_text(sizes.wall)}: the least metal over a thread is {_text(LAND)}",
-            f"write at least {_text(LAND)}",
+            f"{_text(sizes.wall)}: the least metal over a thread is {_text(LEAST_METAL)}",
+            f"write at least {_text(LEAST_METAL)}",
         )
 
 
@@ -423,16 +422,16 @@ def _fatigue(loaded: Loaded) -> Fatigue:
     return Fatigue(tuple(pulsed))
 
 
-def _warnings(loaded: Loaded) -> Iterator[tuple[str, str]]:
+def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
     """A thread that leaves too little metal: free sizes may start there, no search ends there."""
     own = _own(loaded)
     for name in LANDS:
         least = float(np.min(np.real(own[name])))
-        if least < LAND * (1 - ROUNDING):
-            label = METRICS[name]
+        if least < LEAST_METAL * (1 - ROUNDING):
+            label = quantities[name]
             yield (
                 "retention_factor",
-                f"{label.label}: {label.text(least)}, {label.text(LAND)} is the least: "
+                f"{label.label}: {label.text(least)}, {label.text(LEAST_METAL)} is the least: "
                 "such a thread cannot be cut, and its factors do not count",
             )
 
@@ -472,20 +471,20 @@ JOINT = Joint(
     own=_own,
     envelope=None,
     metrics={
-        LANDS[0]: OwnMetric(_ABSENT, LAND, "choice: 1 mm least wall"),
-        LANDS[1]: OwnMetric(_ABSENT, LAND, "choice: 1 mm least wall"),
-        CREST: OwnMetric(_ABSENT, thread.LEAST_OVERLAP, "choice: crests within the tolerance 6g"),
+        LANDS[0]: _ABSENT,
+        LANDS[1]: _ABSENT,
+        CREST: _ABSENT,
     },
     judged=(Judged("on yield", "threads"), Judged("rupture", "threads and skirt")),
     models={
-        ("retention_factor", "barrel thread"): thread.male_strip_area,
-        ("retention_factor", "skirt thread"): thread.female_strip_area,
-        ("retention_factor", "thread flanks"): thread.flank_area,
-        ("retention_burst_factor", "barrel thread"): thread.stripping_reductions,
-        ("retention_burst_factor", "skirt thread"): thread.stripping_reductions,
-        ("retention_burst_factor", "skirt under the thread"): rod.section_area,
-        ("retention_burst_factor", "skirt spread by the thread"): thread.spread_stress,
-        ("yield_factor", "skirt under the thread"): rod.section_area,
+        ("retention_factor", "barrel thread"): "thread.male_strip_area",
+        ("retention_factor", "skirt thread"): "thread.female_strip_area",
+        ("retention_factor", "thread flanks"): "thread.flank_area",
+        ("retention_burst_factor", "barrel thread"): "thread.stripping_reductions",
+        ("retention_burst_factor", "skirt thread"): "thread.stripping_reductions",
+        ("retention_burst_factor", "skirt under the thread"): "rod.section_area",
+        ("retention_burst_factor", "skirt spread by the thread"): "thread.spread_stress",
+        ("yield_factor", "skirt under the thread"): "rod.section_area",
     },
     usual=(
         Usual(

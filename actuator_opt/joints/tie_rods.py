@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import pi
 
 import numpy as np
 
-from ..models import barrel_ends, endurance, mass, retention
+from ..models import endurance, mass, retention
 from ..numeric import Array
+from ..quantities import Quantity
 from .joint import (
     NOT_BONDED,
     Clamp,
@@ -22,7 +23,6 @@ from .joint import (
     Life,
     Loaded,
     Materials,
-    OwnMetric,
     Span,
     Strength,
     WallPressures,
@@ -117,7 +117,7 @@ def _own(loaded: Loaded) -> dict[str, Array]:
     return {"joint_factor": _clamp(loaded).closed}
 
 
-def _warnings(loaded: Loaded) -> Iterator[tuple[str, str]]:
+def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
     if "preload" not in loaded.end.sizes:
         force = float(np.max(np.real(_clamp(loaded).preload)))
         yield (
@@ -164,11 +164,10 @@ JOINT = Joint(
     fatigue=_fatigue,
     own=_own,
     envelope=None,
-    metrics={"joint_factor": OwnMetric("no tie rods")},
+    metrics={"joint_factor": "no tie rods"},
     judged=(Judged("on yield", "tie rods"), Judged("rupture", "tie rods")),
     models={
-        ("retention_factor", "tie rods"): retention.tie_rod_stress,
-        ("joint_factor", ""): barrel_ends.tie_rod_forces,
+        ("retention_factor", "tie rods"): "retention.tie_rod_stress",
     },
     usual=(),
     warnings=_warnings,

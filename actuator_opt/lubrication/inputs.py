@@ -10,11 +10,10 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..models.fluid import barus, roelands
+from ..models.oil_laws import VISCOSITY_LAWS
 from ..models.rough_surface import asperity_stiffness
 from ..numeric import Array
 
-PRESSURE_LAWS = ("none", "barus", "roelands")
 FLAT = 0.43
 """F_3/2 at film ratio 0, where the mean planes of both surfaces meet."""
 
@@ -26,7 +25,7 @@ class Lubricant:
     Parameters
     ----------
     dynamic_viscosity : at zero pressure [Pa s]
-    pressure_law : of the viscosity: "none", "barus" or "roelands"
+    pressure_law : of the viscosity, a word of `oil_laws.VISCOSITY_LAWS`
     pressure_coefficient : of that law at zero pressure [1/Pa]
     density_c_a, density_c_b : rho = rho_0 [1 + c_a p/(1 + c_b p)] ([Huang2017] eq. 3) [1/Pa];
         both 0 for an incompressible oil
@@ -40,9 +39,9 @@ class Lubricant:
 
     def viscosity_ratio(self, pressure: Array) -> Array:
         """Viscosity at a pressure over that at zero pressure."""
-        if self.pressure_law == "none":
+        law = VISCOSITY_LAWS[self.pressure_law].model
+        if law is None:
             return 1.0 + 0.0 * pressure
-        law = barus if self.pressure_law == "barus" else roelands
         viscosity = self.dynamic_viscosity
         value = law(viscosity=viscosity, pressure=pressure, coefficient=self.pressure_coefficient)
         return value / viscosity
@@ -131,10 +130,10 @@ class Contact:
 
 def fault(contact: Contact) -> str:
     """Why a contact cannot be solved as stated, in one line; empty when it can."""
-    if contact.lubricant.pressure_law not in PRESSURE_LAWS:
+    if contact.lubricant.pressure_law not in VISCOSITY_LAWS:
         return (
             f"pressure law {contact.lubricant.pressure_law!r} of the lubricant: "
-            f"use one of {', '.join(PRESSURE_LAWS)}"
+            f"use one of {', '.join(VISCOSITY_LAWS)}"
         )
     nodes = np.shape(contact.static_pressure)
     if len(nodes) != 1 or nodes[0] < 5:

@@ -4,4 +4,21 @@ A number outside a model's domain gives NaN, and the other elements of an array 
 So does geometry that cannot be: a negative length, area or volume, an outer radius not above the
 inner one, a rod not inside its bore (`actuator_opt.geometry`). A search without a solution, a word
 that is no choice, and lists of unequal lengths raise ValueError where the docstring says so.
+
+Every module is open to scripts: all arguments by name, and `help` has formula, range and source.
+
+>>> from actuator_opt.models import rod
+>>> print(f"{rod.thread_stress_area(diameter=10e-3, pitch=1.5e-3) * 1e6:.2f} mm2")
+57.99 mm2
+
+Some functions are for scripts alone; no part of the program calls them:
+
+- `end_stop.cushion_mean_pressure`, `end_stop.cushion_open_area`: pressure and flow area of a
+  cushion that brakes evenly, to state as `stops.cushion` of a scenario
+- `spool.spool_edge_coefficient`: flow of a valve's edge from the geometry of its spool, with lap
+- `elements.capacitance`, `elements.resonance_frequency`, `elements.sound_speed`,
+  `lugre.lugre_steady_deflection`, `resonators.plugged_branch_impedance`,
+  `stiffness_published.barrel_stiffness_as_published`,
+  `stiffness_published.line_stiffness_as_published`: equations of [AaltoThesis], named in the report
+  of its test cylinder
 """

@@ -1,4 +1,4 @@
-"""Gas-charged accumulators: gas volume, capacitance, usable volume and stored energy.
+"""Gas-charged accumulators: gas volume, capacitance and usable volume.
 
 Pressures are gauge, as everywhere; the gas laws add the atmospheric pressure themselves. The
 branch of an accumulator on a line is `line_ends.accumulator_end`: inertance and resistance of
@@ -8,7 +8,7 @@ its neck before this capacitance.
 from __future__ import annotations
 
 from ..geometry import geometry
-from ..numeric import Array, expm1_quotient, maximum, minimum, namespace, real, where
+from ..numeric import Array, maximum, minimum, real, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 
@@ -161,56 +161,6 @@ def usable_volume(
     ratio = (high_pressure + atmospheric_pressure) / (low_pressure + atmospheric_pressure)
     expanded = filled * ratio ** (1 / polytropic_index)
     return minimum(expanded, gas_volume) - filled
-
-
-@geometry
-def stored_energy(
-    *,
-    pressure: Array,
-    precharge_pressure: Array,
-    gas_volume: Array,
-    polytropic_index: Array = 1.0,
-    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
-) -> Array:
-    """Energy the oil puts into the gas from the precharge up, integral of p (gauge) over -dV.
-
-    W = (p0 + p_a) V0 (e^(k x) - 1)/(n k) - p_a (V0 - V), k = 1 - 1/n, x = ln((p + p_a)/(p0 + p_a));
-    the first term is (p0 + p_a) V0 x for the isothermal gas (n = 1).
-
-    Parameters
-    ----------
-    pressure : oil, gauge [Pa]
-    precharge_pressure : p0, gauge [Pa], at the temperature of use
-    gas_volume : V0, at the precharge pressure [m^3]
-    polytropic_index : n [-]
-    atmospheric_pressure : p_a, absolute [Pa]
-
-    Returns
-    -------
-    energy [J]; 0 below the precharge
-
-    Notes
-    -----
-    Valid: ideal gas, to about 200 bar; the atmosphere's share p_a dV is not counted.
-
-    References
-    ----------
-    [derived] integral of the polytropic gas law, less the work of the atmosphere
-
-    Examples
-    --------
-    >>> w = stored_energy(pressure=100e5, precharge_pressure=60e5, gas_volume=1e-3)
-    >>> print(f"{w / 1e3:.3f} kJ")
-    3.036 kJ
-    """
-    start = precharge_pressure + atmospheric_pressure
-    now = maximum(pressure + atmospheric_pressure, start)
-    xp = namespace(now)
-    growth = xp.log(now / start)
-    step = growth / polytropic_index
-    compression = start * gas_volume * step * expm1_quotient(growth - step)
-    left = gas_volume * xp.exp(-step)
-    return compression - atmospheric_pressure * (gas_volume - left)
 
 
 @geometry

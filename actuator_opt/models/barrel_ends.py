@@ -92,52 +92,6 @@ def shell_decay_length(*, radius: Array, hoop_stiffness: Array, bending_stiffnes
 
 
 @geometry
-def decay_length(
-    *,
-    radius: Array,
-    thickness: Array,
-    hoop_modulus: Array,
-    axial_modulus: Array,
-    poissons_product: Array = 0.0,
-) -> Array:
-    """Axial length over which an orthotropic wall's growth settles beside a pressure step.
-
-    1/beta = (4 R^2 D_z/(E_theta t))^(1/4), D_z = E_z t^3/(12 (1 - nu_ztheta nu_thetaz)); isotropic:
-    sqrt(R t)/(3 (1 - nu^2))^(1/4).
-
-    Parameters
-    ----------
-    radius : mid-radius of the wall [m]
-    thickness : wall thickness [m]
-    hoop_modulus, axial_modulus : effective moduli of the wall [Pa]
-    poissons_product : nu_ztheta nu_thetaz, nu^2 for an isotropic wall [-]
-
-    Returns
-    -------
-    decay length 1/beta [m]
-
-    Notes
-    -----
-    Valid: thin homogeneous shells; layered walls by `shell_decay_length`.
-
-    References
-    ----------
-    [Timoshenko1959] axisymmetric bending of a circular cylindrical shell
-
-    Examples
-    --------
-    >>> x = decay_length(radius=16.75e-3, thickness=1.5e-3, hoop_modulus=1.0, axial_modulus=1.0,
-    ...                  poissons_product=0.33**2)
-    >>> print(f"{x * 1e3:.5f} mm")
-    3.92005 mm
-    """
-    bending = axial_modulus * thickness * thickness * thickness / (12 * (1 - poissons_product))
-    return shell_decay_length(
-        radius=radius, hoop_stiffness=hoop_modulus * thickness, bending_stiffness=bending
-    )
-
-
-@geometry
 def pressure_step_factor(*, distance: Array, decay_length: Array) -> Array:
     """Share of the far-field growth at a distance from the pressure step at the piston seal.
 

@@ -8,7 +8,7 @@ overhang at the head. Critical loads come from `stepped`.
 from __future__ import annotations
 
 from ..geometry import geometry
-from ..numeric import Array, positive, real, sqrt, where
+from ..numeric import Array, positive, real, where
 
 
 @geometry
@@ -133,55 +133,3 @@ def bending_axial_force(
     6.923 kN
     """
     return bending_moment * radius * axial_stiffness / bending_stiffness
-
-
-def push_capacity(
-    *,
-    strength_force: Array,
-    force_per_moment: Array,
-    critical_load: Array,
-    bending_moment: Array = 0.0,
-    offset: Array = 0.0,
-    shape: Array = 0.0,
-) -> Array:
-    """Push at which the rod's most loaded fibre reaches its strength, below buckling and squash.
-
-    Least P of P + c (M + P e)(1 + psi P/P_cr)/(1 - P/P_cr) = N_s, a quadratic: smooth, with no
-    pole at the critical load. Without M and e it is the less of N_s and P_cr; negative where M
-    alone is too much.
-
-    Parameters
-    ----------
-    strength_force : N_s, axial compression the section bears [N]: A times the yield strength
-    force_per_moment : c, `bending_axial_force` of a unit moment [1/m]: A r/I of one material
-    critical_load : P_cr, of the column [N]
-    bending_moment : M, from weight and side load, without the push [N m]
-    offset : e, of the push from the axis [m]
-    shape : psi of `amplified_moment` [-]
-
-    Returns
-    -------
-    push [N]
-
-    Notes
-    -----
-    Valid: elastic up to the strength; M and e >= 0, c e psi < 1; factor as `amplified_moment`.
-
-    References
-    ----------
-    [TimoshenkoGere1961] columns loaded off-centre (Perry's condition), approximate; [derived]
-    moment M beside the offset
-
-    Examples
-    --------
-    >>> p = push_capacity(strength_force=68e3, force_per_moment=500.0, critical_load=30e3,
-    ...                   bending_moment=12.0, offset=0.5e-3)
-    >>> print(f"{p / 1e3:.2f} kN")
-    22.38 kN
-    """
-    lean = force_per_moment * offset
-    square = (1 - shape * lean) / critical_load
-    bent = force_per_moment * bending_moment
-    linear = 1 + lean + (strength_force + shape * bent) / critical_load
-    rest = strength_force - bent
-    return 2 * rest / (linear + sqrt(linear * linear - 4 * square * rest))

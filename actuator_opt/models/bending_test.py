@@ -13,39 +13,6 @@ from ..numeric import Array, positive, sqrt
 
 
 @geometry
-def bending_modulus_as_published(*, slope: Array, span: Array, second_moment: Array) -> Array:
-    """Modulus from a bending test as the source has it: even section, no shear, no dents.
-
-    E = k0 L^3/(48 I). Low by 1/(1 + 12 EI/(kappa G A L^2)) where shear is all that is left out.
-
-    Parameters
-    ----------
-    slope : k0, force over deflection of the middle [N/m]
-    span : L between the supports [m]
-    second_moment : I of the section [m^4]
-
-    Returns
-    -------
-    apparent bending modulus [Pa]
-
-    Notes
-    -----
-    Valid: one section, slender, supports and load that leave no dent.
-
-    References
-    ----------
-    [ElAsswad2018] eq. 13
-
-    Examples
-    --------
-    >>> e = bending_modulus_as_published(slope=150e3, span=0.3, second_moment=7e-9)
-    >>> print(f"{e / 1e9:.3f} GPa")
-    12.054 GPa
-    """
-    return slope * span * span * span / (48 * second_moment)
-
-
-@geometry
 def bending_modulus(
     *,
     slope: Array,

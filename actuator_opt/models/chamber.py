@@ -1,4 +1,4 @@
-"""A chamber that keeps its mass: oil with entrained air over pressure, and the inverse.
+"""A chamber that keeps its mass: oil with entrained air over pressure.
 
 The state is the reference volume, the volume the content takes at zero gauge pressure; it grows
 by the net inflow times `density_ratio` at the pressure the flow comes from. Pressures are gauge.
@@ -12,22 +12,12 @@ import math
 from ..geometry import geometry
 from ..numeric import (
     Array,
-    absolute,
     log1p_quotient,
-    maximum,
-    minimum,
     namespace,
     real,
-    sqrt,
     where,
 )
 from .fluid import ATMOSPHERIC_PRESSURE
-
-_STEPS = 100
-_TOLERANCE = 1e-11
-_LEAST_PRESSURE = 1e-200
-_EMPTY = 1e-60
-"""Density ratio below which a chamber with air is at -p_a (a choice: it is so to rounding)."""
 
 
 def density_ratio(
@@ -76,60 +66,6 @@ def density_ratio(
     return (1 + air_content) / (1 + change + gas)
 
 
-@geometry
-def reference_volume(
-    *,
-    volume: Array,
-    pressure: Array,
-    bulk_modulus: Array,
-    slope: Array = 0.0,
-    air_content: Array = 0.0,
-    polytropic_index: Array = 1.4,
-    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
-) -> Array:
-    """Volume that the content of a chamber takes at zero gauge pressure; V e^(p/K) of pure oil.
-
-    V_ref = V (1 + alpha)/(f + alpha r), f and r as in `density_ratio`; dV_ref/dp = V_ref/K_eff
-    with K_eff of `mixture_bulk_modulus`.
-
-    Parameters
-    ----------
-    volume : of the chamber [m^3]
-    pressure : gauge [Pa]
-    bulk_modulus : tangent value of the pure oil at zero gauge pressure, K [Pa]
-    slope : m = dK/dp of the pure oil [-]
-    air_content : alpha, free air over oil volume at zero gauge pressure [-]
-    polytropic_index : n [-]
-    atmospheric_pressure : p_a, absolute [Pa]
-
-    Returns
-    -------
-    reference volume [m^3]; NaN with air at p <= -p_a, and where 1 + m p/K <= 0
-
-    Notes
-    -----
-    Valid: air neither dissolves nor is released.
-
-    References
-    ----------
-    [derived] mass of the content over its density at zero gauge pressure
-
-    Examples
-    --------
-    >>> v = reference_volume(volume=1e-4, pressure=200e5, bulk_modulus=1.4e9)
-    >>> print(f"{v * 1e6:.4f} cm3")
-    101.4388 cm3
-    """
-    return volume * density_ratio(
-        pressure=pressure,
-        bulk_modulus=bulk_modulus,
-        slope=slope,
-        air_content=air_content,
-        polytropic_index=polytropic_index,
-        atmospheric_pressure=atmospheric_pressure,
-    )
-
-
 def mixture_bulk_modulus(
     *,
     pressure: Array,
@@ -164,7 +100,7 @@ def mixture_bulk_modulus(
 
     References
     ----------
-    [derived] V_ref/(dV_ref/dp) of `reference_volume`; [AaltoThesis] eq. 5 with alpha/f
+    [derived] V_ref/(dV_ref/dp) of V_ref = V `density_ratio`; [AaltoThesis] eq. 5 with alpha/f
 
     Examples
     --------
@@ -175,67 +111,6 @@ def mixture_bulk_modulus(
     law = (bulk_modulus, slope, air_content, polytropic_index, atmospheric_pressure)
     change, gas, falling = _shares(pressure + atmospheric_pressure, law, pressure)
     return (1 + change + gas) / falling
-
-
-def chamber_pressure(
-    *,
-    density_ratio: Array,
-    bulk_modulus: Array,
-    slope: Array = 0.0,
-    air_content: Array = 0.0,
-    polytropic_index: Array = 1.4,
-    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
-) -> Array:
-    """Pressure of a chamber from its reference volume over its volume: `density_ratio` inverted.
-
-    With w = (1 + alpha) V/V_ref, f + alpha r - w is convex and falls in P = p + p_a. As
-    w/2 <= max(f, alpha r) <= w, both laws alone bracket P. Newton steps that leave the bracket
-    or double P give way to its geometric mean; the last step carries the derivatives.
-
-    Parameters
-    ----------
-    density_ratio : V_ref/V [-]
-    bulk_modulus : tangent value of the pure oil at zero gauge pressure, K [Pa]
-    slope : m = dK/dp of the pure oil [-]
-    air_content : alpha, free air over oil volume at zero gauge pressure [-]
-    polytropic_index : n [-]
-    atmospheric_pressure : p_a, absolute [Pa]
-
-    Returns
-    -------
-    gauge pressure [Pa], not below -p_a with air; K ln(V_ref/V) of pure oil; NaN at a ratio < 0
-
-    Notes
-    -----
-    Valid: ratio 0.5 to 2, from 0 with air; pure oil may come out in tension, below -p_a.
-
-    References
-    ----------
-    [derived] inverse of `density_ratio`
-
-    Examples
-    --------
-    >>> for ratio in (1.02, 1.01, 0.9, 0.01):
-    ...     p = chamber_pressure(density_ratio=ratio, bulk_modulus=1.4e9, air_content=0.01)
-    ...     print(f"{p / 1e5:.4f} bar")
-    142.0521 bar
-    17.5506 bar
-    -0.9828 bar
-    -1.0132 bar
-    """
-    filled = real(density_ratio) > _EMPTY
-    wanted = (1 + air_content) / where(filled, density_ratio, 1.0)
-    law = (bulk_modulus, slope, air_content, polytropic_index, atmospheric_pressure)
-    plain = (
-        real(bulk_modulus), real(slope), real(air_content), real(polytropic_index),
-        real(atmospheric_pressure),
-    )  # fmt: skip
-    total = _solved(real(wanted), plain)
-    start = total - plain[-1]
-    change, gas, falling = _shares(total + (atmospheric_pressure - plain[-1]), law, start)
-    drained = (real(density_ratio) >= 0) & (real(air_content) > 0)
-    empty = where(drained, 0 * wanted - atmospheric_pressure, math.nan)
-    return where(filled, start + (change + gas - (wanted - 1)) / falling, empty)
 
 
 @geometry
@@ -262,7 +137,7 @@ def pressure_rate(
 
     References
     ----------
-    [MECE5005] pressure of a cylinder chamber; [derived] rate of `reference_volume`
+    [MECE5005] pressure of a cylinder chamber; [derived] rate of V `density_ratio`
 
     Examples
     --------
@@ -290,59 +165,3 @@ def _shares(
     gas = where(open_gas | (real(air) == 0), air * ratio, math.nan)
     falling = (1 + change) / (modulus * (1 + load)) + gas / (index * pressed)
     return change, gas, falling
-
-
-def _oil_alone(volume: Array, modulus: Array, slope: Array) -> Array:
-    """Gauge pressure at which pure oil takes a volume, all real: -K ln w, K (w^-m - 1)/m."""
-    xp = namespace(volume, modulus, slope)
-    depth = -xp.log(volume)
-    load = slope * depth
-    straight = absolute(load) < 1e-5
-    safe = where(straight, 1.0 + 0 * load, load)
-    mean = where(straight, 1 + load / 2 + load * load / 6, xp.expm1(safe) / safe)
-    return modulus * depth * mean
-
-
-def _solved(wanted: Array, law: tuple[Array, Array, Array, Array, Array]) -> Array:
-    """Absolute pressure at a volume over the oil's at zero gauge pressure, all real."""
-    modulus, slope, air, index, atmosphere = law
-    pure = _oil_alone(wanted, modulus, slope) + atmosphere
-    mixed = air > 0
-    if not namespace(mixed).any(mixed):
-        return pure
-    amount = where(mixed, air, 1.0 + 0 * air)
-    law = (modulus, slope, amount, index, atmosphere)
-    low, high = _bracket(wanted, law)
-    pressure = low
-    for _ in range(_STEPS):
-        change, gas, falling = _shares(pressure, law)
-        missing = change + gas - (wanted - 1)
-        step = missing / falling
-        size = absolute(where(mixed, step, 0.0))
-        found = size <= _TOLERANCE * pressure
-        if namespace(found).all(found):
-            break
-        low, high = where(missing > 0, pressure, low), where(missing > 0, high, pressure)
-        inside = (pressure + step > low) & (pressure + step < high) & (size <= pressure)
-        pressure = where(inside, pressure + step, sqrt(low) * sqrt(high))
-    return where(mixed, pressure, pure)
-
-
-def _bracket(wanted: Array, law: tuple[Array, Array, Array, Array, Array]) -> tuple[Array, Array]:
-    """Absolute pressures on both sides of the solution, the lower one above zero, all real.
-
-    f < f(-p_a) as well, so alpha r > w - f(-p_a): a sharper upper bound where there is much gas.
-    """
-    modulus, slope, air, index, atmosphere = law
-    low = maximum(
-        _oil_alone(wanted, modulus, slope) + atmosphere, atmosphere * (air / wanted) ** index
-    )
-    low = maximum(low, _LEAST_PRESSURE)
-    half = 0.5 * wanted
-    high = maximum(
-        _oil_alone(half, modulus, slope) + atmosphere, atmosphere * (air / half) ** index
-    )
-    bare = wanted - 1 - _shares(0.0 * wanted, law)[0]
-    gaseous = bare > 0
-    ceiling = atmosphere * (air / where(gaseous, bare, 1.0)) ** index
-    return low, maximum(where(gaseous, minimum(high, ceiling), high), low) * (1 + _TOLERANCE)

@@ -1,7 +1,6 @@
-"""Buckling of uniform columns: Euler, Johnson, shear correction, local shell.
+"""Buckling of uniform columns: Euler, shear correction, local shell.
 
-The stepped column lives in `stepped` (two segments, elementwise) and `stepped_segments` (any
-number of segments, scalar); forces and moments of a laminated wall in `shell_buckling`.
+The stepped column lives in `stepped`; forces and moments of a laminated wall in `shell_buckling`.
 """
 
 from __future__ import annotations
@@ -9,7 +8,7 @@ from __future__ import annotations
 from math import pi
 
 from ..geometry import geometry
-from ..numeric import Array, namespace, real, sqrt, where
+from ..numeric import Array, namespace, sqrt
 
 
 @geometry
@@ -42,54 +41,6 @@ def euler_load(*, bending_stiffness: Array, effective_length: Array) -> Array:
     18.521 kN
     """
     return pi * pi * bending_stiffness / (effective_length * effective_length)
-
-
-@geometry
-def johnson_load(
-    *,
-    area: Array,
-    second_moment: Array,
-    youngs_modulus: Array,
-    yield_strength: Array,
-    effective_length: Array,
-) -> Array:
-    """Critical load of a short or slender metal column: Johnson's parabola, then Euler.
-
-    P = A s_y [1 - s_y m^2/(4 pi^2 E)] below the slenderness m_c = sqrt(2 pi^2 E/s_y), Euler above;
-    m = K L/sqrt(I/A). Value and slope join at m_c.
-
-    Parameters
-    ----------
-    area : cross-section [m^2]
-    second_moment : second moment of area [m^4]
-    youngs_modulus : Young's modulus [Pa]
-    yield_strength : compressive yield strength [Pa]
-    effective_length : K L [m]
-
-    Returns
-    -------
-    critical load [N]
-
-    Notes
-    -----
-    Valid: metals, one section.
-
-    References
-    ----------
-    [Shigley2011] J. B. Johnson column
-
-    Examples
-    --------
-    >>> p = johnson_load(area=201.062e-6, second_moment=3216.99e-12, youngs_modulus=210e9,
-    ...                  yield_strength=600e6, effective_length=0.2)
-    >>> print(f"{p / 1e3:.3f} kN")
-    98.810 kN
-    """
-    euler = euler_load(
-        bending_stiffness=youngs_modulus * second_moment, effective_length=effective_length
-    )
-    squash = area * yield_strength
-    return where(real(2 * euler) >= real(squash), squash * (1 - squash / (4 * euler)), euler)
 
 
 def cowper_tube(*, poissons_ratio: Array, radius_ratio: Array) -> Array:

@@ -52,35 +52,6 @@ def land_profile(
     return outer_pressure + fall + excess * (1 - (2 * position - 1) ** LAND_POWER)
 
 
-def land_mean(*, sealed_pressure: Array, outer_pressure: Array, excess: Array) -> Array:
-    """Mean of the land profile, (p_s + p_a)/2 + (8/9) p_e.
-
-    Parameters
-    ----------
-    sealed_pressure, outer_pressure : p_s, p_a [Pa]
-    excess : p_e [Pa]
-
-    Returns
-    -------
-    mean contact pressure [Pa]
-
-    Notes
-    -----
-    Valid: as `land_profile`.
-
-    References
-    ----------
-    [derived] integral of `land_profile` over t
-
-    Examples
-    --------
-    >>> p = land_mean(sealed_pressure=5e6, outer_pressure=0.0, excess=4.5e6)
-    >>> print(f"{p / 1e6:.2f} MPa")
-    6.50 MPa
-    """
-    return (sealed_pressure + outer_pressure) / 2 + excess * LAND_POWER / (LAND_POWER + 1)
-
-
 @geometry
 def land_excess(
     *, line_load: Array, width: Array, sealed_pressure: Array, outer_pressure: Array
@@ -103,7 +74,7 @@ def land_excess(
 
     References
     ----------
-    [derived] inverse of `land_mean`
+    [derived] mean of `land_profile` over t, solved for the excess
 
     Examples
     --------

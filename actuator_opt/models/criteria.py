@@ -22,10 +22,10 @@ keyword of its function: bind it with `functools.partial` for another value.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
-from typing import Final, Protocol
+from dataclasses import dataclass
+from typing import Protocol
 
+from ..kinds import kinds
 from ..numeric import Array
 from .strength import tsai_wu_modes
 from .strength_interfibre import hashin_modes, puck_modes
@@ -38,7 +38,7 @@ from .strength_modes import (
 )
 
 
-class Criterion(Protocol):
+class Modes(Protocol):
     """What every failure criterion is: a function from stresses to utilisations by mode."""
 
     def __call__(
@@ -49,17 +49,65 @@ class Criterion(Protocol):
         residual: Stress | None = None,
         elastic: PlyRatios | None = None,
     ) -> dict[str, Array]:
-        """Utilisation 1/SR of every mode; `elastic` is needed by maximum strain only."""
+        """Utilisation 1/SR of every mode; `elastic` where `Criterion.by_strain`."""
         ...
 
 
-CRITERIA: Final[Mapping[str, Criterion]] = MappingProxyType(
-    {
-        "max_stress": max_stress_modes,
-        "max_strain": max_strain_modes,
-        "tsai_wu": tsai_wu_modes,
-        "hashin": hashin_modes,
-        "puck": puck_modes,
-    }
+@dataclass(frozen=True, slots=True)
+class Criterion:
+    """A failure criterion of plies.
+
+    Attributes
+    ----------
+    name, help : its word in a design, and what it means
+    words : its name in a report
+    modes : utilisation of every mode [-]
+    by_strain : whether it needs the ratios of the ply's elastic constants
+    """
+
+    name: str
+    help: str
+    words: str
+    modes: Modes
+    by_strain: bool
+
+
+CRITERIA = kinds(
+    "criterion",
+    Criterion(
+        "max_stress",
+        "one stress reaches its strength",
+        "maximum stress",
+        max_stress_modes,
+        by_strain=False,
+    ),
+    Criterion(
+        "max_strain",
+        "one strain reaches its limit",
+        "maximum strain",
+        max_strain_modes,
+        by_strain=True,
+    ),
+    Criterion(
+        "tsai_wu",
+        "all stresses together, in one formula",
+        "Tsai-Wu",
+        tsai_wu_modes,
+        by_strain=False,
+    ),
+    Criterion(
+        "hashin",
+        "fibre or matrix, each by its own formula",
+        "Hashin",
+        hashin_modes,
+        by_strain=False,
+    ),
+    Criterion(
+        "puck",
+        "fibre, or matrix pulled open (mode A), sheared (B) or crushed at a slant (C)",
+        "Puck",
+        puck_modes,
+        by_strain=False,
+    ),
 )
 """The criteria a design may name."""

@@ -1,4 +1,4 @@
-"""Viscous damping coefficients (VDC) of oil and gaps, gap leakage, and the seals' secant VDC.
+"""Viscous damping coefficients (VDC) of oil and gaps, gap conductance, and the seals' secant VDC.
 
 The oil's pipe-flow VDC and the seals' secant VDC differ by 1e5 and more: two quantities, never
 merged. Incremental damping (dF/dv) is `friction.stribeck_slope`.
@@ -109,95 +109,6 @@ def flat_gap(*, dynamic_viscosity: Array, diameter: Array, length: Array, gap: A
     1.5080
     """
     return math.pi * dynamic_viscosity * diameter * length / gap
-
-
-@geometry
-def piston_gap_damper(
-    *, dynamic_viscosity: Array, length: Array, radius: Array, gap: Array
-) -> Array:
-    """VDC of a leaking piston in a cylinder with blocked ports.
-
-    6 pi eta L R (R + h)^2/h^3 + 2 pi eta L R/h; leading term 6 pi eta L (R/h)^3. The oil
-    displaced by the piston returns through its gap.
-
-    Parameters
-    ----------
-    dynamic_viscosity : [Pa s]
-    length : of the gap [m]
-    radius : of the piston [m]
-    gap : radial clearance h [m]
-
-    Returns
-    -------
-    VDC [N s/m]
-
-    Notes
-    -----
-    Valid: concentric piston without seals, equal areas, gap much smaller than the radius.
-
-    References
-    ----------
-    [derived] plane Poiseuille and Couette flow in the unrolled gap
-
-    Examples
-    --------
-    >>> c = piston_gap_damper(dynamic_viscosity=0.04, length=0.02, radius=0.02, gap=30e-6)
-    >>> print(f"{c:.5e}")
-    4.48146e+06
-    """
-    base = (2 * math.pi) * dynamic_viscosity * length * radius / gap
-    squeeze = (radius + gap) / gap
-    return base * (3 * squeeze * squeeze + 1)
-
-
-@geometry
-def gap_leakage(
-    *,
-    diameter: Array,
-    gap: Array,
-    dynamic_viscosity: Array,
-    length: Array,
-    pressure_difference: Array,
-    eccentricity: Array = 0.0,
-) -> Array:
-    """Leakage through an annular gap, pi D h^3 dp/(12 eta L) (1 + 1.5 e^2).
-
-    Parameters
-    ----------
-    diameter : [m]
-    gap : mean radial clearance h [m]
-    dynamic_viscosity : [Pa s]
-    length : [m]
-    pressure_difference : [Pa]
-    eccentricity : offset over h [-], 0 to 1
-
-    Returns
-    -------
-    flow [m^3/s]
-
-    Notes
-    -----
-    Valid: laminar, gap much smaller than the diameter.
-
-    References
-    ----------
-    [Merritt1967] annular leakage with eccentricity
-
-    Examples
-    --------
-    >>> q = gap_leakage(diameter=0.04, gap=30e-6, dynamic_viscosity=0.04, length=0.02,
-    ...                 pressure_difference=5e6)
-    >>> print(f"{q:.5e}")
-    1.76715e-06
-    """
-    conductance = gap_conductance(
-        diameter=diameter,
-        gap=gap,
-        dynamic_viscosity=dynamic_viscosity,
-        length=length,
-        eccentricity=eccentricity,
-    )
-    return conductance * pressure_difference
 
 
 @geometry

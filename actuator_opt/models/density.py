@@ -8,42 +8,6 @@ from __future__ import annotations
 from ..numeric import Array, namespace, real, where
 
 
-def density_dowson_higginson(
-    *,
-    reference_density: Array,
-    pressure: Array,
-    coefficient_a: Array = 0.6e-9,
-    coefficient_b: Array = 1.7e-9,
-) -> Array:
-    """Density under pressure, rho = rho0 [1 + a p/(1 + b p)].
-
-    Parameters
-    ----------
-    reference_density : at zero gauge pressure [kg/m^3]
-    pressure : gauge [Pa]
-    coefficient_a, coefficient_b : [1/Pa]; the defaults are the usual mineral-oil constants (the
-        source paper prints none: unverified)
-
-    Returns
-    -------
-    density [kg/m^3]
-
-    Notes
-    -----
-    Valid: 0 to 1 GPa, mineral oils.
-
-    References
-    ----------
-    [Huang2017] eq. 3, [DowsonHigginson1966]
-
-    Examples
-    --------
-    >>> print(f"{density_dowson_higginson(reference_density=870.0, pressure=20e6):.2f}")
-    880.10
-    """
-    return reference_density * (1 + coefficient_a * pressure / (1 + coefficient_b * pressure))
-
-
 def density_compressed(
     *, reference_density: Array, pressure: Array, bulk_modulus: Array, slope: Array = 0.0
 ) -> Array:

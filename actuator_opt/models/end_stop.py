@@ -1,4 +1,4 @@
-"""End stops in time: spring and damper that only push, the bounce off them, and a cushion.
+"""End stops in time: spring and damper that only push, and a cushion.
 
 Position runs from 0 (retracted) to the stroke; forces are positive when they extend. Energy and
 peak force of an undamped stop are in `endurance`.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from ..geometry import geometry
-from ..numeric import Array, angle, clip, maximum, minimum, namespace, real, sqrt, where
+from ..numeric import Array, clip, maximum, real, sqrt, where
 from .endurance import end_stop_energy
 from .orifice import TURBULENT_COEFFICIENT, orifice_pressure_drop
 
@@ -64,7 +64,7 @@ def stop_damping(*, stiffness: Array, mass: Array, factor: Array = DAMPING_FACTO
 
     Notes
     -----
-    Valid: a stand-in for the losses of an impact; the bounce is `stop_restitution`.
+    Valid: a stand-in for the losses of an impact.
 
     References
     ----------
@@ -78,54 +78,10 @@ def stop_damping(*, stiffness: Array, mass: Array, factor: Array = DAMPING_FACTO
     return factor * sqrt(stiffness * mass)
 
 
-@geometry
-def stop_force(
-    *, position: Array, velocity: Array, stroke: Array, stiffness: Array, damping: Array
-) -> Array:
-    """Force of both end stops on the piston; they push it back and never pull.
-
-    max(-K x - b v, 0) at x < 0; min(-K (x - s) - b v, 0) at x > s; 0 between.
-
-    Parameters
-    ----------
-    position : x [m], 0 at the retracted stop
-    velocity : v [m/s], extending positive
-    stroke : s [m]
-    stiffness : K_end [N/m]
-    damping : b [N s/m]
-
-    Returns
-    -------
-    force, extending positive [N]
-
-    Notes
-    -----
-    Valid: the force jumps by b v on contact: end integration steps there.
-
-    References
-    ----------
-    [MECE5005] cylinder ends as stiff springs and dampers; [derived] never pulling
-
-    Examples
-    --------
-    >>> end = dict(stroke=0.16, stiffness=5.63e7, damping=2.05e4)
-    >>> for x, v in ((-1e-4, -0.1), (-1e-4, 0.5), (0.08, 0.1), (0.1601, 0.1)):
-    ...     print(f"{stop_force(position=x, velocity=v, **end):.0f} N")
-    7680 N
-    0 N
-    0 N
-    -7680 N
-    """
-    beyond = position - stroke
-    out = maximum(-stiffness * position - damping * velocity, 0.0)
-    back = minimum(-stiffness * beyond - damping * velocity, 0.0)
-    return where(real(position) < 0, out, where(real(beyond) > 0, back, 0.0))
-
-
 def contact_force(
     *, compression: Array, closing_speed: Array, stiffness: Array, damping: Array
 ) -> Array:
-    """Force of a stop while it is touched, max(K delta + b delta', 0): one end of `stop_force`.
+    """Force of a stop while it is touched, max(K delta + b delta', 0).
 
     Parameters
     ----------
@@ -152,55 +108,6 @@ def contact_force(
     7680.0
     """
     return maximum(stiffness * compression + damping * closing_speed, 0.0)
-
-
-def stop_restitution(*, stiffness: Array, damping: Array, mass: Array) -> Array:
-    """Speed after a bounce over the speed before it, e = exp(-2 theta cot theta).
-
-    zeta = b/(2 sqrt(K m)) = cos theta; beyond zeta = 1, theta cot theta becomes
-    acosh(zeta) zeta/sqrt(zeta^2 - 1). The stop lets go when its force, not its compression, is
-    zero. It takes the energy (1 - e^2) m v^2/2.
-
-    Parameters
-    ----------
-    stiffness : K_end [N/m]
-    damping : b [N s/m], >= 0
-    mass : [kg]
-
-    Returns
-    -------
-    restitution, 0 to 1 [-]; NaN where K m <= 0
-
-    Notes
-    -----
-    Valid: no other force during the contact.
-
-    References
-    ----------
-    [derived] m x'' + b x' + K x = 0 from x = 0 until x'' = 0, at omega_d t = 2 theta
-
-    Examples
-    --------
-    >>> e = stop_restitution(stiffness=4e6, damping=0.5 * (4e6 * 25.0) ** 0.5, mass=25.0)
-    >>> print(f"{e:.4f}, {1 - e * e:.4f} of the energy")
-    0.5063, 0.7437 of the energy
-    """
-    product = stiffness * mass
-    valid = real(product) > 0
-    ratio = where(valid, 0.5 * damping / sqrt(where(valid, product, 1.0)), 0.5)
-    xp = namespace(ratio)
-    under = 1 - ratio * ratio
-    near = (real(under) < 1e-4) & (real(under) > -1e-4)
-    elastic = (real(under) > 0) & (real(under) >= 1e-4)
-    sine = xp.sqrt(where(elastic, under, 0.75))
-    cosine = where(elastic, ratio, 0.5)
-    small = ratio * (1 + under / 6 + (3 / 40) * under * under)
-    slow = near | elastic
-    root = xp.sqrt(where(slow, 1.0, -under))
-    damped = where(slow, 1.0, ratio)
-    large = xp.log(damped + root) * damped / root
-    exponent = where(near, small, where(elastic, angle(sine, cosine) * cosine / sine, large))
-    return where(valid, xp.exp(-2 * exponent), math.nan)
 
 
 @geometry

@@ -9,45 +9,6 @@ _LOW_CYCLES = 1e3
 _LOW_SHARE = 0.9
 
 
-def fatigue_strength(
-    *, cycles: Array, ultimate_strength: Array, fatigue_limit: Array, limit_cycles: Array = 1e6
-) -> Array:
-    """Fully reversed stress amplitude that a metal or ply stands for a number of cycles.
-
-    Basquin line through (1e3, 0.9 R_m) and (limit_cycles, fatigue_limit) in log-log, continued
-    beyond the limit (no endurance limit is assumed: safe under a varying pressure).
-
-    Parameters
-    ----------
-    cycles : required number of cycles [-]
-    ultimate_strength : R_m [Pa]
-    fatigue_limit : amplitude stood for `limit_cycles`, fully reversed, with all reductions [Pa]
-    limit_cycles : cycles of that limit [-]
-
-    Returns
-    -------
-    amplitude [Pa]
-
-    Notes
-    -----
-    Valid: 1e3 cycles and more.
-
-    References
-    ----------
-    [Shigley2011] stress-life method
-
-    Examples
-    --------
-    >>> s = fatigue_strength(cycles=1e5, ultimate_strength=700e6, fatigue_limit=300e6)
-    >>> print(f"{s / 1e6:.1f} MPa")
-    384.2 MPa
-    """
-    xp = namespace(cycles, ultimate_strength, fatigue_limit, limit_cycles)
-    low = _LOW_SHARE * ultimate_strength
-    share = xp.log(cycles / _LOW_CYCLES) / xp.log(limit_cycles / _LOW_CYCLES)
-    return low * xp.exp(share * xp.log(fatigue_limit / low))
-
-
 def cycles_to_failure(
     *,
     peak_stress: Array,
@@ -59,7 +20,7 @@ def cycles_to_failure(
     """Cycles of a pulsating stress until failure.
 
     Amplitude and mean s_a, s_m = s (1 -+ R)/2; Goodman s_r = s_a/(1 - s_m/R_m); the Basquin line
-    of `fatigue_strength` solved for N.
+    from 0.9 R_m at 1e3 cycles through the fatigue limit, solved for N.
 
     Parameters
     ----------
@@ -110,7 +71,7 @@ def fatigue_factor(
 ) -> Array:
     """Factor by which a pulsating stress may grow before its required life is lost.
 
-    1/(s_a/S_f + s_m/R_m), S_f from `fatigue_strength` at the required cycles.
+    1/(s_a/S_f + s_m/R_m), S_f the reversed amplitude stood for the required cycles.
 
     Parameters
     ----------

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..geometry import geometry
 from ..numeric import Array, maximum, namespace, real, where
 
 ATMOSPHERIC_PRESSURE = 101325.0
@@ -325,53 +324,3 @@ def effective_bulk_modulus(
     gas = air_content * (atmospheric_pressure / absolute_pressure) ** (1 / polytropic_index)
     softening = gas * bulk_modulus / (polytropic_index * absolute_pressure)
     return bulk_modulus * (1 + gas) / (1 + softening)
-
-
-@geometry
-def trapped_bubble_volume_change(
-    *,
-    volume: Array,
-    air_volume: Array,
-    bulk_modulus: Array,
-    pressure: Array,
-    initial_pressure: Array,
-    polytropic_index: Array = 1.4,
-    atmospheric_pressure: Array = ATMOSPHERIC_PRESSURE,
-) -> Array:
-    """Volume change of a closed chamber that holds a constant mass of air.
-
-    dV = -(V - V_air)(p - p_0)/K + V_air [(p_a/(p + p_a))^(1/n) - (p_a/(p_0 + p_a))^(1/n)].
-
-    Parameters
-    ----------
-    volume : chamber volume at the initial pressure [m^3]
-    air_volume : air, stated at atmospheric pressure [m^3]
-    bulk_modulus : secant value of the oil between both pressures [Pa]
-    pressure, initial_pressure : gauge [Pa], above -p_a
-    polytropic_index : n [-]
-    atmospheric_pressure : absolute [Pa]
-
-    Returns
-    -------
-    volume change [m^3], negative when the pressure rises
-
-    Notes
-    -----
-    Valid: air neither dissolves nor is released.
-
-    References
-    ----------
-    [derived] liquid at constant K beside a polytropic gas of constant mass
-
-    Examples
-    --------
-    >>> dv = trapped_bubble_volume_change(volume=1e-4, air_volume=2e-7, bulk_modulus=1.5e9,
-    ...                                   pressure=40e5, initial_pressure=20e5)
-    >>> print(f"{dv * 1e9:.1f} mm3")
-    -141.8 mm3
-    """
-    index = 1 / polytropic_index
-    now = (atmospheric_pressure / (pressure + atmospheric_pressure)) ** index
-    before = (atmospheric_pressure / (initial_pressure + atmospheric_pressure)) ** index
-    liquid = (volume - air_volume) * (pressure - initial_pressure) / bulk_modulus
-    return air_volume * (now - before) - liquid

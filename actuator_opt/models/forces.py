@@ -1,4 +1,4 @@
-"""Areas, forces, flow, speed and power of a cylinder, and its lever.
+"""Areas, forces, flow and power of a cylinder, and its lever.
 
 Chamber A is at the cap end, chamber B at the rod end; pressures are gauge, forces positive in
 the named direction.
@@ -223,35 +223,6 @@ def chamber_flow(*, area: Array, speed: Array) -> Array:
     3.0 l/min
     """
     return area * speed
-
-
-@geometry
-def piston_speed(*, flow: Array, area: Array) -> Array:
-    """Piston speed of a flow, v = q/A.
-
-    Parameters
-    ----------
-    flow : [m^3/s]
-    area : [m^2]
-
-    Returns
-    -------
-    speed [m/s]
-
-    Notes
-    -----
-    Valid: incompressible oil, no leakage; standard seals up to 0.5 m/s.
-
-    References
-    ----------
-    [derived] continuity
-
-    Examples
-    --------
-    >>> piston_speed(flow=5e-5, area=5e-4)
-    0.1
-    """
-    return flow / area
 
 
 def power(*, force: Array, speed: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Seal friction: dry sum over the seals, Stribeck curve, and published parameters.
+"""Seal friction: dry, Stribeck curve, and published parameters.
 
 Friction has the sign of the speed; the magnitudes here are positive. The dynamic form, LuGre, lives
 in `lugre`.
@@ -45,53 +45,6 @@ def seal_friction(
     15.71
     """
     return math.pi * friction_coefficient * line_load * diameter * count
-
-
-@geometry
-def cylinder_friction(
-    *,
-    piston_line_load: Array,
-    bore: Array,
-    piston_friction_coefficient: Array,
-    rod_line_load: Array,
-    rod_diameter: Array,
-    rod_friction_coefficient: Array,
-    piston_count: Array = 1.0,
-    rod_count: Array = 1.0,
-) -> Array:
-    """Dry running friction of a cylinder, mu pi (n_p f_p D + n_r f_r d).
-
-    The piston line load is taken at |p_A - p_B|, the rod's at max(p_B, 0), both at the squeeze
-    left after barrel growth.
-
-    Parameters
-    ----------
-    piston_line_load, rod_line_load : [N/m]
-    bore, rod_diameter : [m]
-    piston_friction_coefficient, rod_friction_coefficient : [-]
-    piston_count, rod_count : [-]
-
-    Returns
-    -------
-    friction [N]
-
-    Notes
-    -----
-    Valid: as `seal_friction`.
-
-    References
-    ----------
-    [ElAsswad2018] eq. 15; [derived] squeeze preload inside the line loads
-
-    Examples
-    --------
-    >>> f = cylinder_friction(piston_line_load=2000.0, bore=25e-3, rod_line_load=1500.0,
-    ...     piston_friction_coefficient=0.1, rod_diameter=12e-3, rod_friction_coefficient=0.1)
-    >>> print(f"{f:.2f}")
-    21.36
-    """
-    piston = piston_friction_coefficient * piston_line_load * bore * piston_count
-    return math.pi * (piston + rod_friction_coefficient * rod_line_load * rod_diameter * rod_count)
 
 
 @geometry

@@ -2,8 +2,8 @@
 
 Classical lamination theory of an axisymmetric tube without twist: every entry is an isotropic
 layer or a balanced +-angle pair. It is the fast stand-in for the exact layered tube; its error
-grows with t/r_i (`thin_wall_ratio`, warn above `THIN_WALL_LIMIT`), on the unsafe side at the bore.
-Plies live in `ply`, the burst in `ply_discount`, netting in `netting`.
+grows with t/r_i (warn above `THIN_WALL_LIMIT`), on the unsafe side at the bore.
+Plies live in `ply`, the burst in `ply_discount`.
 """
 
 from __future__ import annotations
@@ -263,34 +263,3 @@ def bending_stiffness(*, plies: Sequence[Sequence[Any]], thicknesses: Sequence[A
         second = second + line * (middle * middle + thickness * thickness / 12)
         depth = depth + thickness
     return second - first * first / zeroth
-
-
-@geometry
-def thin_wall_ratio(*, thickness: Array, inner_radius: Array) -> Array:
-    """Wall thickness over bore radius; above `THIN_WALL_LIMIT` the thin laminate is unsafe.
-
-    t/r_i.
-
-    Parameters
-    ----------
-    thickness : wall thickness [m]
-    inner_radius : bore radius [m]
-
-    Returns
-    -------
-    ratio [-]
-
-    Notes
-    -----
-    Valid: any wall.
-
-    References
-    ----------
-    [derived] definition of the ratio
-
-    Examples
-    --------
-    >>> thin_wall_ratio(thickness=1.5, inner_radius=12.0) > THIN_WALL_LIMIT
-    True
-    """
-    return thickness / inner_radius

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi
 
 from ..geometry import geometry
-from ..numeric import Array, maximum, minimum, namespace, positive, sqrt
+from ..numeric import Array, namespace, positive, sqrt
 
 
 def _edge_ratio(*, loaded: Array, free: Array, reach: Array) -> Array:
@@ -13,55 +13,6 @@ def _edge_ratio(*, loaded: Array, free: Array, reach: Array) -> Array:
     half = sqrt(positive(reach * (1 / loaded + 1 / free))) / 2
     wave = namespace(half).tanh(half)
     return half * ((1 / wave - wave) + 2 * free / (free + loaded) * wave)  # no term below zero
-
-
-@geometry
-def bond_peak_ratio(
-    *,
-    shear_modulus: Array,
-    bond_thickness: Array,
-    length: Array,
-    membrane_stiffness_1: Array,
-    membrane_stiffness_2: Array,
-) -> Array:
-    """Peak over mean shear stress of a bonded overlap.
-
-    (w/2) [coth(w/2) + (s - 1)/(s + 1) tanh(w/2)], w^2 = (G L^2/t_a)(1/K_1 + 1/K_2),
-    s = K_1/K_2 >= 1, K_i = E_i t_i. Length beyond w of about 5 brings nothing.
-
-    Parameters
-    ----------
-    shear_modulus : G of the adhesive [Pa]
-    bond_thickness : t_a of the adhesive [m]
-    length : L, overlap [m]
-    membrane_stiffness_1, membrane_stiffness_2 : axial E t of barrel and skirt, either order [N/m]
-
-    Returns
-    -------
-    peak over mean [-], at least 1
-
-    Notes
-    -----
-    Valid: linear adhesive, thin walls against the radius, no peel.
-
-    A ductile adhesive levels the peak: conservative.
-
-    References
-    ----------
-    [Volkersen1938] shear lag of a lap joint
-
-    Examples
-    --------
-    >>> r = bond_peak_ratio(shear_modulus=1e9, bond_thickness=0.2e-3, length=20e-3,
-    ...                     membrane_stiffness_1=100e6, membrane_stiffness_2=50e6)
-    >>> print(f"{r:.4f}")
-    5.1662
-    """
-    return _edge_ratio(
-        loaded=minimum(membrane_stiffness_1, membrane_stiffness_2),
-        free=maximum(membrane_stiffness_1, membrane_stiffness_2),
-        reach=shear_modulus / bond_thickness * length * length,
-    )
 
 
 @geometry
@@ -74,7 +25,7 @@ def least_bond_peak_ratio(
 ) -> Array:
     """Peak over mean shear of a bonded overlap from below, from one of its two walls alone.
 
-    (w/2) coth(w/2), w^2 = 2 G L^2/(t_a K): `bond_peak_ratio` of two walls as the softer one; a
+    (w/2) coth(w/2), w^2 = 2 G L^2/(t_a K): the peak of two walls as the softer one; a
     stiffer second wall only raises the peak.
 
     Parameters
@@ -90,7 +41,7 @@ def least_bond_peak_ratio(
 
     Notes
     -----
-    Valid: as `bond_peak_ratio`; exact of equal walls.
+    Valid: as `bond_edge_shear`; exact of equal walls.
 
     At the edge that the softer wall ends at, tau ~ (coth(w)/K_1 + csch(w)/K_2)/w with
     w^2 = (G L^2/t_a)(1/K_1 + 1/K_2), which falls as 1/K_2 rises: 2 sinh w <= w + sinh w cosh w
@@ -112,59 +63,6 @@ def least_bond_peak_ratio(
 
 
 @geometry
-def bond_shear_peak(
-    *,
-    force: Array,
-    diameter: Array,
-    length: Array,
-    shear_modulus: Array,
-    bond_thickness: Array,
-    membrane_stiffness_1: Array,
-    membrane_stiffness_2: Array,
-) -> Array:
-    """Peak shear stress of a bonded cap.
-
-    tau = F/(pi D L) times `bond_peak_ratio`.
-
-    Parameters
-    ----------
-    force : axial force through the bond [N]
-    diameter : diameter of the bond surface [m]
-    length : overlap [m]
-    shear_modulus, bond_thickness : G and thickness of the adhesive [Pa], [m]
-    membrane_stiffness_1, membrane_stiffness_2 : axial E t of barrel and skirt [N/m]
-
-    Returns
-    -------
-    peak shear stress [Pa]
-
-    Notes
-    -----
-    Valid: as `bond_peak_ratio`.
-
-    References
-    ----------
-    [Volkersen1938] shear lag of a lap joint
-
-    Examples
-    --------
-    >>> tau = bond_shear_peak(force=10e3, diameter=30e-3, length=20e-3, shear_modulus=1e9,
-    ...                       bond_thickness=0.2e-3, membrane_stiffness_1=100e6,
-    ...                       membrane_stiffness_2=50e6)
-    >>> print(f"{tau / 1e6:.2f} MPa")
-    27.41 MPa
-    """
-    ratio = bond_peak_ratio(
-        shear_modulus=shear_modulus,
-        bond_thickness=bond_thickness,
-        length=length,
-        membrane_stiffness_1=membrane_stiffness_1,
-        membrane_stiffness_2=membrane_stiffness_2,
-    )
-    return force / (pi * diameter * length) * ratio
-
-
-@geometry
 def bond_edge_shear(
     *,
     force: Array,
@@ -177,9 +75,9 @@ def bond_edge_shear(
 ) -> Array:
     """Shear stress at one edge of a bonded cap; smooth, unlike the larger of both edges.
 
-    tau = F/(pi D L) (w/2) [coth(w/2) + ((K_f - K_l)/(K_f + K_l)) tanh(w/2)], w as in
-    `bond_peak_ratio`; K_l belongs to the wall that carries the whole force at this edge, K_f to
-    the one that ends here.
+    tau = F/(pi D L) (w/2) [coth(w/2) + ((K_f - K_l)/(K_f + K_l)) tanh(w/2)],
+    w^2 = (G L^2/t_a)(1/K_l + 1/K_f); K_l belongs to the wall that carries the whole force at
+    this edge, K_f to the one that ends here.
 
     Parameters
     ----------
@@ -195,8 +93,9 @@ def bond_edge_shear(
 
     Notes
     -----
-    Valid: as `bond_peak_ratio`.
+    Valid: linear adhesive, thin walls against the radius, no peel.
 
+    A ductile adhesive levels the peak: conservative. Length beyond w of about 5 brings nothing.
     A plug or a thick sleeve counts with E A/(pi D), D of the bond.
 
     References
@@ -232,7 +131,7 @@ def bond_thermal_shear(
 ) -> Array:
     """Shear stress at an edge of a bonded overlap whose walls change length unequally.
 
-    tau = (G L/t_a) (e_l - e_f) tanh(w/2)/w, w as in `bond_peak_ratio`; opposite at the other edge.
+    tau = (G L/t_a) (e_l - e_f) tanh(w/2)/w, w as in `bond_edge_shear`; opposite at the other edge.
     It adds to the shear of a tensile force from `bond_edge_shear`; l is the wall that carries
     that force at this edge, f the one that ends here.
 
@@ -249,7 +148,7 @@ def bond_thermal_shear(
 
     Notes
     -----
-    Valid: as `bond_peak_ratio`; stress-free at the reference temperature (cure).
+    Valid: as `bond_edge_shear`; stress-free at the reference temperature (cure).
 
     The radial stress of unequal hoop expansion is that of the layered tube.
 

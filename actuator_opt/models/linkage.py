@@ -2,7 +2,7 @@
 
 Length and lever arm are those of `forces.crank`, at the angle theta + theta_0 between both radii.
 At the dead points, angle 0 and pi, the lever arm is zero: forces and reflected mass are infinite
-there, not NaN. `linkage_range` says where the lever arm keeps a least value.
+there, not NaN.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 from ..geometry import geometry
-from ..numeric import Array, absolute, angle, namespace, real, sqrt, where
+from ..numeric import Array, angle, namespace, real, sqrt, where
 from .forces import crank, joint_force
 
 
@@ -105,57 +105,6 @@ def linkage_angle(
     return where(reached, 2 * half - angle_offset, math.nan)
 
 
-class LinkageRange(NamedTuple):
-    """Joint angles between which the lever arm keeps a least value."""
-
-    lowest: Array
-    highest: Array
-
-
-@geometry
-def linkage_range(
-    *, base_radius: Array, crank_radius: Array, least_lever_arm: Array, angle_offset: Array = 0.0
-) -> LinkageRange:
-    """Range of the joint angle over which the lever arm is at least h.
-
-    a r cos(theta + theta_0) = h^2 +- B C at both ends, a r sin(theta + theta_0) = h |B -+ C|, with
-    B = sqrt(a^2 - h^2) and C = sqrt(r^2 - h^2).
-
-    Parameters
-    ----------
-    base_radius, crank_radius : a, r [m]
-    least_lever_arm : h [m], > 0
-    angle_offset : theta_0 [rad]
-
-    Returns
-    -------
-    lowest and highest joint angle theta [rad]; NaN where no angle reaches h
-
-    Notes
-    -----
-    Valid: 0 < h <= min(a, r), the largest lever arm.
-
-    References
-    ----------
-    [derived] square of l' = h, quadratic in the cosine
-
-    Examples
-    --------
-    >>> ends = linkage_range(base_radius=0.3, crank_radius=0.04, least_lever_arm=0.03)
-    >>> print(f"{ends.lowest:.4f} to {ends.highest:.4f} rad")
-    0.7479 to 2.1934 rad
-    """
-    square = least_lever_arm * least_lever_arm
-    wide, narrow = base_radius * base_radius - square, crank_radius * crank_radius - square
-    reached = (real(wide) >= 0) & (real(narrow) >= 0) & (real(least_lever_arm) > 0)
-    base, pin = sqrt(where(reached, wide, 1.0)), sqrt(where(reached, narrow, 1.0))
-    low = angle(least_lever_arm * absolute(base - pin), square + base * pin)
-    high = angle(least_lever_arm * (base + pin), square - base * pin)
-    return LinkageRange(
-        where(reached, low - angle_offset, math.nan), where(reached, high - angle_offset, math.nan)
-    )
-
-
 def joint_torque(*, force: Array, lever_arm: Array) -> Array:
     """Torque of the actuator's push on the joint, T = F dl/dtheta.
 
@@ -201,7 +150,7 @@ def actuator_force(*, torque: Array, lever_arm: Array) -> Array:
 
     Notes
     -----
-    Valid: away from the dead points, see `linkage_range`; pin friction left out.
+    Valid: away from the dead points; pin friction left out.
 
     References
     ----------
@@ -242,7 +191,7 @@ def reflected_inertia(*, inertia: Array, lever_arm: Array, lever_slope: Array) -
 
     Notes
     -----
-    Valid: rigid linkage; away from the dead points, see `linkage_range`.
+    Valid: rigid linkage; away from the dead points.
 
     References
     ----------

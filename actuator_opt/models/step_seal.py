@@ -92,43 +92,6 @@ def line_load(
 
 
 @geometry
-def pressure_balance(
-    *, energiser_slope: Array, wetted_back: Array, wetted_front: Array, land: Array
-) -> Array:
-    """Rise of the land's load with pressure, over the land, (df_e/dp + a_b - a_f)/a.
-
-    An oil film that falls evenly from the sealed to the outer pressure carries 1/2 of p a: above
-    1/2 the dry part of the load, and with it friction, rises with pressure; below it falls.
-
-    Parameters
-    ----------
-    energiser_slope : df_e/dp of the energiser, at most about its contact width [m]
-    wetted_back, wetted_front : a_b, a_f as in `line_load` [m]
-    land : width a of the running face [m]
-
-    Returns
-    -------
-    pressure balance [-]; negative: even the whole load falls with pressure
-
-    Notes
-    -----
-    Valid: ring not tilted; land at rest.
-
-    References
-    ----------
-    [derived] slope of `line_load`; [Huang2017] section 4, peak stress of a step ring over pressure
-
-    Examples
-    --------
-    >>> arguments = {"energiser_slope": 0.72 * 2.62e-3, "wetted_back": 1.66e-3, "land": 1e-3}
-    >>> print(", ".join(f"{pressure_balance(wetted_front=a, **arguments):.3f}"
-    ...                 for a in (0.4e-3, 2.9e-3)))
-    3.146, 0.646
-    """
-    return (energiser_slope + wetted_back - wetted_front) / land
-
-
-@geometry
 def contact_width(
     *,
     line_load: Array,

@@ -292,7 +292,8 @@ def trapped_air_load_step(
     """Secant answer of a closed cylinder with a constant mass of air in each chamber.
 
     Solves dV_A(p_A) = A_A dx, dV_B(p_B) = -A_B dx and
-    (p_A - p_A0) A_A - (p_B - p_B0) A_B = F, dV by `fluid.trapped_bubble_volume_change`.
+    (p_A - p_A0) A_A - (p_B - p_B0) A_B = F, dV of
+    liquid at constant K beside a polytropic gas of constant mass.
     Substituting leaves one decreasing convex equation in p_A; Newton from its left end (either
     chamber at -0.9 p_a) climbs to the root without overshoot, in a fixed 40 steps.
 

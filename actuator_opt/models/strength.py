@@ -1,4 +1,4 @@
-"""Criteria that join all stresses in one quadratic form: Tsai-Wu, in 3-D, and Tsai-Hill.
+"""Criteria that join all stresses in one quadratic form: Tsai-Wu, in 3-D.
 
 F_12* = F_12/sqrt(F_11 F_22) is the only constant of Tsai-Wu that no uniaxial test gives. It is
 -0.5 here unless another value is passed, which makes the form that of von Mises for equal
@@ -11,44 +11,6 @@ from math import inf
 
 from ..numeric import Array, namespace, real, where
 from .strength_modes import PlyRatios, PlyStrength, Stress
-
-
-def inverse_tsai_hill(
-    *, stress_1: Array, stress_2: Array, shear_12: Array, strength: PlyStrength
-) -> Array:
-    """Utilisation by the classical Tsai-Hill criterion, tension strengths always.
-
-    sqrt(sigma_1^2/X_t^2 - sigma_1 sigma_2/X_t^2 + sigma_2^2/Y_t^2 + tau^2/S^2).
-
-    Parameters
-    ----------
-    stress_1, stress_2, shear_12 : ply stresses [Pa]
-    strength : ply strengths
-
-    Returns
-    -------
-    utilisation [-]
-
-    Notes
-    -----
-    Valid: plane stress, X_t > Y_t/2, no residual stress.
-
-    References
-    ----------
-    [Jones1999] Tsai-Hill
-
-    Examples
-    --------
-    >>> p = PlyStrength(1900.0, 1300.0, 55.0, 190.0, 85.0)
-    >>> u = inverse_tsai_hill(stress_1=400.0, stress_2=30.0, shear_12=40.0, strength=p)
-    >>> print(f"{1 / u:.5f}")
-    1.33634
-    """
-    s = strength
-    along, across, slip = stress_1 / s.tension_1, stress_2 / s.tension_2, shear_12 / s.shear_12
-    mixed = along * stress_2 / s.tension_1
-    squares = along * along - mixed + across * across + slip * slip
-    return namespace(squares).sqrt(squares)
 
 
 def _largest_root(square: Array, half: Array, left: Array | None) -> Array:

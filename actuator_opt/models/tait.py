@@ -1,4 +1,4 @@
-"""The Tait equation of a mineral oil: density, tangent and secant bulk modulus.
+"""The Tait equation of a mineral oil: density and tangent bulk modulus.
 
 Pressures are gauge, temperatures in kelvin. K0 = zero_modulus exp(-c T) is the isothermal modulus
 at zero pressure, B = 1 + K0'.
@@ -6,7 +6,7 @@ at zero pressure, B = 1 + K0'.
 
 from __future__ import annotations
 
-from ..numeric import Array, expm1_quotient, namespace
+from ..numeric import Array, namespace
 
 TAIT_PRESSURE, TAIT_TEMPERATURES = 350e5, (273.15, 423.15)
 """Gauge pressure (Pa) and temperatures (K) for which the constants of the generic oil stand."""
@@ -105,44 +105,3 @@ def bulk_modulus_tait(
     modulus = _zero_pressure_modulus(zero_modulus, temperature_coefficient, temperature)
     load = pressure_coefficient * pressure / modulus
     return modulus * (1 + load) * (1 - namespace(load).log1p(load) / pressure_coefficient)
-
-
-def secant_bulk_modulus_tait(
-    *,
-    temperature: Array,
-    pressure: Array,
-    zero_modulus: Array = 8.4e9,
-    temperature_coefficient: Array = 0.0058,
-    pressure_coefficient: Array = 11.9,
-) -> Array:
-    """Isothermal secant bulk modulus from zero gauge pressure, p V0/(V0 - V), by Tait.
-
-    K_s = B p/ln(1 + B p/K0), the tangent K0 at p = 0.
-
-    Parameters
-    ----------
-    temperature : [K]
-    pressure : gauge [Pa]
-    zero_modulus, temperature_coefficient : of K0, c [Pa], [1/K]
-    pressure_coefficient : B [-]
-
-    Returns
-    -------
-    secant bulk modulus [Pa]
-
-    Notes
-    -----
-    Valid: 0 to 150 degC, up to 350 bar for the default constants.
-
-    References
-    ----------
-    [Dymond1988] Tait equation; [derived] from V/V0 = 1 - ln(1 + B p/K0)/B
-
-    Examples
-    --------
-    >>> print(f"{secant_bulk_modulus_tait(temperature=313.15, pressure=280e5) / 1e6:.1f}")
-    1526.6
-    """
-    modulus = _zero_pressure_modulus(zero_modulus, temperature_coefficient, temperature)
-    load = pressure_coefficient * pressure / modulus
-    return modulus * expm1_quotient(namespace(load).log1p(load))

@@ -6,12 +6,9 @@ The controller is u = K (e + (1/T_i) integral of e + T_d de/dt).
 from __future__ import annotations
 
 import math
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 from ..numeric import Array, positive
-
-Law = Literal["p", "pi", "pid"]
-"""Parts of a controller."""
 
 GAIN_MARGIN = 3.0
 """Ultimate gain over gain (a choice: room for the friction, oil and strokes that the linear loop
@@ -30,18 +27,8 @@ class ControllerGains(NamedTuple):
     derivative_time: Array
     """T_d [s]; 0 without a derivative part."""
 
-    @property
-    def integral_gain(self) -> Array:
-        """K/T_i, per second."""
-        return self.proportional_gain / self.integral_time
 
-    @property
-    def derivative_gain(self) -> Array:
-        """K T_d, times second."""
-        return self.proportional_gain * self.derivative_time
-
-
-def ziegler_nichols(*, law: Law, ultimate_gain: Array, ultimate_period: Array) -> ControllerGains:
+def ziegler_nichols(*, law: str, ultimate_gain: Array, ultimate_period: Array) -> ControllerGains:
     """Ziegler-Nichols rule from the ultimate point: quick, for a plant that is well damped.
 
     P 0.5 K_u; PI 0.45 K_u, T_u/1.2; PID 0.6 K_u, T_u/2, T_u/8. A lightly damped oil spring leaves
@@ -84,7 +71,7 @@ def ziegler_nichols(*, law: Law, ultimate_gain: Array, ultimate_period: Array) -
 
 def margin_rules(
     *,
-    law: Law,
+    law: str,
     ultimate_gain: Array,
     velocity_gain: Array,
     gain_margin: Array = GAIN_MARGIN,

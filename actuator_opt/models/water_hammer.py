@@ -1,9 +1,9 @@
-"""Waves in elastic lines: their speed, the surge of a closing valve, standing waves."""
+"""Waves in elastic lines: their speed, and the surge of a sudden stop."""
 
 from __future__ import annotations
 
 from ..geometry import geometry
-from ..numeric import Array, maximum, sqrt
+from ..numeric import Array, sqrt
 
 
 @geometry
@@ -74,79 +74,3 @@ def joukowsky_pressure(*, density: Array, sound_speed: Array, velocity_change: A
     44.0 bar
     """
     return density * sound_speed * velocity_change
-
-
-@geometry
-def closure_factor(*, length: Array, sound_speed: Array, closure_time: Array) -> Array:
-    """Share of the sudden-stop pressure that a slow closure makes, min(1, 2 l/(a T)).
-
-    Parameters
-    ----------
-    length : to the nearest reflecting volume [m]
-    sound_speed : wave speed in the line [m/s]
-    closure_time : T, of a speed that falls linearly [s]
-
-    Returns
-    -------
-    factor on `joukowsky_pressure` [-]
-
-    Notes
-    -----
-    Valid: open far end at constant pressure, low friction.
-
-    References
-    ----------
-    [WylieStreeter1993] slow closure; [derived] waves of a linear stop superposed over 2 l/a
-
-    Examples
-    --------
-    >>> f = closure_factor(length=1.2, sound_speed=1200.0, closure_time=0.01)
-    >>> print(f"{f:.2f}")
-    0.20
-    """
-    reflection = 2 * length / sound_speed
-    return reflection / maximum(closure_time, reflection)
-
-
-@geometry
-def standing_wave_frequency(
-    *, length: Array, sound_speed: Array, ends: tuple[str, str], mode: Array = 1.0
-) -> Array:
-    """Resonance of a line between two ends: n a/(2 l) of equal, (2 n - 1) a/(4 l) of unlike ones.
-
-    Parameters
-    ----------
-    length : [m]
-    sound_speed : wave speed in the line [m/s]
-    ends : each `closed` (no flow) or `open` (constant pressure)
-    mode : n = 1, 2, ... [-]
-
-    Returns
-    -------
-    frequency [Hz]
-
-    Raises
-    ------
-    ValueError
-        An end that is neither closed nor open.
-
-    Notes
-    -----
-    Valid: uniform line, low friction; ends far stiffer or softer than the line.
-
-    References
-    ----------
-    [AaltoThesis] eq. 17, 18; [derived] standing waves
-
-    Examples
-    --------
-    >>> line = dict(length=16.25, sound_speed=1300.0)
-    >>> standing_wave_frequency(**line, ends=("open", "closed"))
-    20.0
-    >>> standing_wave_frequency(**line, ends=("closed", "closed"))
-    40.0
-    """
-    if not set(ends) <= {"closed", "open"}:
-        raise ValueError(f"ends: {ends[0]}, {ends[1]}; each is closed or open")
-    quarters = 2 * mode if ends[0] == ends[1] else 2 * mode - 1
-    return 0.25 * quarters * sound_speed / length

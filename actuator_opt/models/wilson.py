@@ -1,4 +1,4 @@
-"""Wilson's model of a hydraulic motor or pump: flow, shaft torque and efficiencies.
+"""Wilson's model of a hydraulic motor or pump: flow and shaft torque.
 
 One machine, two directions of counting. A motor counts flow and pressure difference from inlet to
 outlet and gives torque; a pump counts pressure difference from outlet to inlet and takes torque:
@@ -10,20 +10,11 @@ the setting. The slides write mu as nu rho (`fluid.dynamic_viscosity`).
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
-from ..numeric import Array, absolute, namespace, positive, real, where
+from ..numeric import Array, absolute, namespace, positive
 
 SIGN_SPEED = 0.5
 """w_0 of tanh(w/w_0) for sgn w, rad/s (a choice: 5 rpm, where Coulomb friction is ill known)."""
-
-
-class Efficiency(NamedTuple):
-    """Efficiencies of a motor or pump [-]: of flow, of torque, and of power, their product."""
-
-    volumetric: Array
-    hydromechanical: Array
-    total: Array
 
 
 def motor_flow(
@@ -122,55 +113,6 @@ def motor_torque(
     viscous = viscous_coefficient * dynamic_viscosity * radian * speed
     ideal = setting * radian * pressure_difference
     return ideal - namespace(ratio).tanh(ratio) * friction - viscous
-
-
-def motor_efficiency(
-    *,
-    speed: Array,
-    pressure_difference: Array,
-    displacement: Array,
-    flow: Array,
-    torque: Array,
-    setting: Array = 1.0,
-) -> Efficiency:
-    """Efficiencies of a motor, eta_v = eps V_r w/q, eta_hm = T/(eps V_r dp), total T w/(q dp).
-
-    Parameters
-    ----------
-    speed : w of the shaft [rad/s]
-    pressure_difference : dp, inlet less outlet [Pa]
-    displacement : V = 2 pi V_r at full setting [m^3 per revolution]
-    flow : q, from `motor_flow` or measured [m^3/s]
-    torque : T, from `motor_torque` or measured [N m]
-    setting : eps, share of the displacement, -1 to 1 [-]
-
-    Returns
-    -------
-    volumetric, hydromechanical and total efficiency [-]; NaN where it does not work as a motor
-
-    Notes
-    -----
-    Valid: q dp > 0 (it takes hydraulic power) and T w >= 0 (the shaft is not driven).
-
-    References
-    ----------
-    [MECE5005] performance of pumps and motors
-
-    Examples
-    --------
-    >>> eta = motor_efficiency(speed=104.72, pressure_difference=100e5, displacement=13.3e-6,
-    ...     flow=20.143 / 60000, torque=17.064)
-    >>> print(" ".join(f"{value:.3f}" for value in eta))
-    0.660 0.806 0.532
-    """
-    swept = setting * displacement / (2 * math.pi)
-    shaft, oil = torque * speed, flow * pressure_difference
-    works = (real(oil) > 0) & (real(shaft) >= 0) & (real(swept) != 0)
-    return Efficiency(
-        _share(works, swept * speed, flow),
-        _share(works, torque, swept * pressure_difference),
-        _share(works, shaft, oil),
-    )
 
 
 def pump_flow(
@@ -279,57 +221,3 @@ def pump_torque(
         setting=setting,
         sign_speed=sign_speed,
     )
-
-
-def pump_efficiency(
-    *,
-    speed: Array,
-    pressure_difference: Array,
-    displacement: Array,
-    flow: Array,
-    torque: Array,
-    setting: Array = 1.0,
-) -> Efficiency:
-    """Efficiencies of a pump, eta_v = q/(eps V_r w), eta_hm = eps V_r dp/T, total q dp/(T w).
-
-    Parameters
-    ----------
-    speed : w of the shaft [rad/s]
-    pressure_difference : dp, outlet less inlet [Pa]
-    displacement : V = 2 pi V_r at full setting [m^3 per revolution]
-    flow : q, from `pump_flow` or measured [m^3/s]
-    torque : T, from `pump_torque` or measured [N m]
-    setting : eps, share of the displacement, -1 to 1 [-]
-
-    Returns
-    -------
-    volumetric, hydromechanical and total efficiency [-]; NaN where it does not work as a pump
-
-    Notes
-    -----
-    Valid: T w > 0 (the shaft is driven) and q dp >= 0 (it takes no hydraulic power).
-
-    References
-    ----------
-    [MECE5005] performance of pumps and motors
-
-    Examples
-    --------
-    >>> eta = pump_efficiency(speed=104.72, pressure_difference=100e5, displacement=13.3e-6,
-    ...     flow=6.457 / 60000, torque=25.271)
-    >>> print(" ".join(f"{value:.3f}" for value in eta))
-    0.485 0.838 0.407
-    """
-    swept = setting * displacement / (2 * math.pi)
-    shaft, oil = torque * speed, flow * pressure_difference
-    works = (real(shaft) > 0) & (real(oil) >= 0) & (real(swept) != 0)
-    return Efficiency(
-        _share(works, flow, swept * speed),
-        _share(works, swept * pressure_difference, torque),
-        _share(works, oil, shaft),
-    )
-
-
-def _share(works: Array, part: Array, whole: Array) -> Array:
-    """`part` of `whole` where the machine works, NaN elsewhere."""
-    return where(works, part, math.nan) / where(works, whole, 1.0)

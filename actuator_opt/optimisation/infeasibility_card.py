@@ -11,7 +11,8 @@ import numpy as np
 
 from ..design import quantity_of
 from ..evaluation.rows import Row
-from ..quantities import METRICS, Quantity
+from ..metrics import METRICS
+from ..quantities import Quantity
 from .actuator import ActuatorProblem
 from .cures import DIGITS, Cure, Cures, cures, outward
 from .infeasibility import Infeasibility as Explanation

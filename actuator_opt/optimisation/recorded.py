@@ -21,9 +21,9 @@ from ..design.build import build, to_tree
 from ..design.kinds import Fraction
 from ..errors import InputError
 from ..evaluation import Evaluation, evaluate, prepare
-from ..evaluation.plugin import Plugin
+from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.reserve import YieldEstimate
-from ..quantities import METRICS, Sense
+from ..quantities import Sense
 from .pareto_result import ParetoFront
 from .result import Optimisation
 
@@ -82,7 +82,7 @@ def from_plain(
     InputError
         data that is none, or of a version with other names
     """
-    metrics = METRICS | {plugin.name: plugin.quantity for plugin in plugins}
+    metrics = with_own(plugins)
     evaluated: dict[int, Evaluation] = {}
     aims: dict[str, Sense] = {}
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
+from math import isfinite
 from typing import Any, Literal, TypeAlias
 
 from ..design import choice_list
 from ..design.model import Design
 from ..evaluation.result import Evaluation
-from ..quantities import INPUTS, of_metric
+from ..metrics import of_metric
+from ..quantities import INPUTS
 from ..tables import aligned
-from . import price_words, result_json
+from . import price_words
 from .robustness import Robust
 from .sensitivity import Offers, Sensitivity, offers
 
@@ -420,5 +422,56 @@ class Optimisation:
         return found | {"limit": [row.limit / row.scale for row in self.sensitivities]}
 
     def to_dict(self) -> dict[str, Any]:
-        """The `optimise --json` object (SI): the evaluation's keys and the optimiser's."""
-        return result_json.of_optimisation(self)
+        """The `optimise --json` object (SI): the evaluation's keys and the optimiser's.
+
+        Metrics, requirements, checks, objective and variables are those of the design to build, as
+        `evaluate` of the saved file repeats them; multipliers, prices and certificate those of the
+        continuous optimum.
+        """
+        best, value, why = self.best_evaluation, self.best_objective, self.infeasibility
+        return (
+            best.to_dict()
+            | {
+                "status": self.status,
+                "outcome": self.sentence,
+                "remedy": self.remedy,
+                "shown": self._shown(),
+                "warnings": [*best.warnings, *self.warnings],
+                "objective": {
+                    "metric": self.objective_metric,
+                    "value": value if isfinite(value) else None,
+                },
+                "variables": self._variables(),
+                "kkt": None if self.kkt is None else asdict(self.kkt),
+                "sensitivities": [row.to_dict(self.objective_value) for row in self.sensitivities],
+                "what_buys_most": self.offers.to_dict() | {"sentence": " ".join(self.buys_most)},
+                "certificate": None if self.certificate is None else self.certificate.to_dict(),
+                "rounding": self._rounding(),
+                "choices": None if self.choices is None else self.choices.to_dict(),
+                "evaluations": self.evaluations,
+                "algorithm": self.algorithm,
+                "seed": self.seed,
+                "seconds": self.seconds,
+            }
+            | ({} if why is None else {"infeasibility": asdict(why)})
+            | ({} if self.robust is None else {"robust": self.robust.to_dict()})
+        )
+
+    def _shown(self) -> dict[str, Any]:
+        """Which design the object is of: the continuous optimum, or that of the sizes asked for."""
+        return {
+            "design": "continuous" if self.made is None else "rounded",
+            "sizes": None if self.rounding is None else self.rounding.name,
+            "sentence": self.shown,
+        }
+
+    def _variables(self) -> dict[str, Any]:
+        """Value, bounds and the bound it is at of every variable, by PATH."""
+        kept = ("value", "lower", "upper", "at_bound")
+        return {v.path: {name: getattr(v, name) for name in kept} for v in self.best_variables}
+
+    def _rounding(self) -> dict[str, Any] | None:
+        """The rounding with the evaluation of the optimum it began from."""
+        if self.rounding is None:
+            return None
+        return self.rounding.to_dict() | {"continuous_evaluation": self.evaluation.to_dict()}

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from ..identification.bending import BendingResult
 from ..least_squares import Parameter
-from ..quantities import MATERIAL_PROPERTIES, METRICS
+from ..metrics import METRICS
+from ..quantities import MATERIAL_PROPERTIES
 from . import text
 from .console import Column, Console, visible
 from .optimum import sentence

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..evaluation.comparison import Comparison, Question
-from ..quantities import METRICS
+from ..metrics import METRICS
 from .compare_text import PART_TITLES, PART_UNITS, answer, duties, named, optimality, part_name
 from .fallback import wrap
 from .figures import AREAS, fills

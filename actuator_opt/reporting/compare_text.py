@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from ..design.kinds import Fraction
 from ..evaluation.comparison import Change, Comparison, Question, Value
 from ..evaluation.reserve import count_words
-from ..quantities import Quantity, of_metric
+from ..metrics import of_metric
+from ..quantities import Quantity
 from . import text
 from .console import Column, Console, visible
 from .text import DASH, number

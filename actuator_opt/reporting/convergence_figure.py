@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..quantities import of_metric
+from ..metrics import of_metric
 from .figures import Axes, Ticks, fitted, ticks
 from .ink import BLUE, GREY, RED, Ink, text_width
 from .text import number, trimmed, unit_text

@@ -18,6 +18,7 @@ from ..design.material import Material
 from ..design.material_laws import bulk_modulus_law, viscosity_law
 from ..evaluation import oil
 from ..models.fluid import LEAST_VISCOSITY
+from ..models.oil_laws import VISCOSITY_LAWS
 from . import fallback
 from .console import Column, Console
 from .figures import Axes, ticks
@@ -68,9 +69,8 @@ def _degrees(temperature: float) -> str:
 def laws_text(material: Material) -> str:
     """The laws of an oil over pressure, in words."""
     modulus = bulk_modulus_law(None, material.numbers)
-    viscosity = viscosity_law(None, material.numbers)
-    thick = {"none": "independent of pressure", "roelands": "under pressure by Roelands"}[viscosity]
-    return f"bulk modulus {modulus} in pressure; viscosity {thick}"
+    viscosity = VISCOSITY_LAWS[viscosity_law(None, material.numbers)]
+    return f"bulk modulus {modulus} in pressure; viscosity {viscosity.words}"
 
 
 def table_lines(material: Material, *, colour: bool, unicode: bool, width: int) -> list[str]:

@@ -16,15 +16,16 @@ from ..identification.coefficient import Coefficient
 from ..identification.record import CHANNELS, Record
 from ..identification.result import Identification
 from ..least_squares import Parameter
+from ..metrics import METRICS
 from ..quantities import Quantity
 from .optimum import sentence
 from .text import DASH, decimals, fixed, number, pretty, trimmed, unit_text, value_text, with_unit
 
-FORCE, PRESSURE = quantities.METRICS["friction_running"], quantities.INPUTS["pressure"]
+FORCE, PRESSURE = METRICS["friction_running"], quantities.INPUTS["pressure"]
 SPEED, LENGTH = quantities.INPUTS["stribeck_speed"], quantities.INPUTS["position"]
-DAMPING = quantities.METRICS["damping_seal"]
-STIFFNESS, GROWTH = quantities.METRICS["stiffness_min"], quantities.METRICS["growth_at_seal"]
-MASS = quantities.METRICS["mass"]
+DAMPING = METRICS["damping_seal"]
+STIFFNESS, GROWTH = METRICS["stiffness_min"], METRICS["growth_at_seal"]
+MASS = METRICS["mass"]
 _VISCOUS = quantities.INPUTS["viscous_friction"]
 VERDICTS = {"identifiable": "yes", "weakly identifiable": "weakly", "not identifiable": "no"}
 """Verdicts in the column "identifiable"."""
@@ -253,7 +254,7 @@ CHANNEL_HEADS = ("channel", "missing", "spikes", "clipped", "step", "noise (1σ)
 _CHANNELS = {
     "p1": PRESSURE,
     "p2": PRESSURE,
-    "x": quantities.METRICS["bore_growth"],
+    "x": METRICS["bore_growth"],
     "v": SPEED,
     "F_L": FORCE,
 }

@@ -9,7 +9,9 @@ from typing import Any
 from ..evaluation.reserve import count_words
 from ..evaluation.result import Evaluation, Requirement
 from ..evaluation.study.seal import SealStudy
+from ..metrics.table import ROWS
 from ..optimisation.result import Optimisation
+from ..quantities import Quantity
 from . import (
     choices_table,
     dynamics_page,
@@ -40,19 +42,6 @@ KEY_FIGURES = (
     "closed_length",
 )
 """Five of these, in this order, after the objective; one without a value is passed over."""
-
-_SHORT = {
-    "mass": "mass, dry",
-    "stiffness_min": "stiffness, weakest position",
-    "push_force": "push force, net",
-    "pull_force": "pull force, net",
-    "friction_running": "running friction",
-    "natural_frequency": "natural frequency, loaded",
-    "burst_factor": "burst over working pressure",
-    "buckling_factor": "buckling over push load",
-    "closed_length": "closed length, pin to pin",
-}
-
 
 _SHORT_OF = ("missed", "infeasible")
 """States in which an optimum has not the yield asked for."""
@@ -168,6 +157,12 @@ def _misfit(optimisation: Optimisation | None) -> str:
     return f"; the geometry does not fit: {', '.join(why.laws)}" if why and why.laws else ""
 
 
+def _tile_label(name: str, quantity: Quantity) -> str:
+    """The words of a metric on a tile."""
+    row = ROWS.get(name)
+    return (row.short if row else "") or quantity.label
+
+
 def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
     """Five numbers to remember, the objective first, each with its limit or where it came from."""
     evaluation, optimisation = parts_of(subject)
@@ -193,7 +188,7 @@ def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
                 note = f"with oil {text.value_text(quantity, metric.value + oil.value)}"
         tiles.append(
             {
-                "label": short(_SHORT.get(name, quantity.label), 30),
+                "label": short(_tile_label(name, quantity), 30),
                 "symbol": quantity.symbol,
                 "value": text.number(text.display(quantity, value)),
                 "unit": text.unit_text(quantity.unit),

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..quantities import INPUTS, MATERIAL_PROPERTIES, METRICS, Quantity, of_metric
+from ..metrics import METRICS, of_metric
+from ..quantities import INPUTS, MATERIAL_PROPERTIES, Quantity
 from .console import Column, Console
 from .text import DASH
 

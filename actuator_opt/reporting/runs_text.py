@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from ..quantities import INPUTS, of_metric
+from ..metrics import of_metric
+from ..quantities import INPUTS
 from . import runs_asked
 from .blocks import short
 from .console import Column, Console

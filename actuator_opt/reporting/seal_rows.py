@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from .. import quantities
 from ..design.seals import SealElement
 from ..evaluation.study.seal import (
     HARDNESS_SCATTER,
@@ -16,11 +15,12 @@ from ..evaluation.study.seal import (
     SealPoint,
     SealStudy,
 )
+from ..metrics import METRICS
 from .seal_figures import bars, degrees, speed_words, stroke_names
 from .seal_gland_figure import slots, tolerance_text
 from .text import DASH, number, trimmed, value_text
 
-_METRICS = quantities.METRICS
+_METRICS = METRICS
 
 
 @dataclass(frozen=True, slots=True)

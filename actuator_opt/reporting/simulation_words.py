@@ -6,7 +6,9 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
+from ..design.scenario.components import ENDS, FRICTIONS, SUPPLIES
 from ..design.scenario.model import Scenario
+from ..design.scenario.shapes import SHAPES, height
 from ..quantities import INPUTS, SCENARIOS, Quantity
 from ..simulation.assemble import ends_of
 from ..simulation.loops import LOOPS
@@ -17,20 +19,6 @@ from .text import trimmed, unit_text, with_unit
 MOST_PARTS = 3
 """Parts of a signal that are told."""
 PRESSURE, LENGTH = INPUTS["pressure"], INPUTS["position"]
-FRICTION = {"lugre": "LuGre friction", "stribeck": "Stribeck friction", "none": "no dry friction"}
-SUPPLY = {
-    "constant": "constant supply",
-    "fixed_pump": "fixed pump",
-    "controlled_pump": "controlled pump",
-}
-ENDS = {
-    "closed": "ports closed",
-    "blocked": "ports blocked",
-    "constant_pressure": "ports at constant pressure",
-    "reducing_valve": "ports at reducing valves",
-}
-
-
 _UNITS = r"(?:mm|m|m/s|ms|s|V|bar|k?N|Hz|J|l/min|rpm|rad|N·m|V/m|kN/mm|MPa)(?![\w/])|%|°"
 _TIED = re.compile(rf"(?<=\d) (?={_UNITS})")
 
@@ -51,23 +39,12 @@ def amount(quantity: Quantity, value: float) -> str:
 
 def _part(part: Any, quantity: Quantity) -> str:
     """A part of a signal."""
-    if part.shape == "record":
-        return f"record {part.file}, {part.column}"
-    value = amount(quantity, part.value or 0.0)
-    if part.shape == "constant":
-        return value
-    begin = trimmed(part.start)
-    if part.shape == "step":
-        return f"step of {value} at {begin} s"
-    if part.shape == "sine":
-        return f"sine of {value} at {trimmed(part.frequency)} Hz"
-    ramp = "ramp of " if part.shape == "ramp" else ""
-    return f"{ramp}{value} from {begin} to {trimmed(part.end)} s"
+    return SHAPES[part.shape].words(part, amount(quantity, height(part)), trimmed)
 
 
 def parts_words(parts: Sequence[Any], quantity: Quantity) -> str:
     """A signal in words; empty where it is zero all the time."""
-    told = [one for one in parts if one.shape == "record" or one.value]
+    told = [one for one in parts if height(one) or "file" in SHAPES[one.shape].needed]
     said = [_part(one, quantity) for one in told[:MOST_PARTS]]
     more = len(told) - len(said)
     return ", ".join(said) + (f" and {more} more" if more else "")
@@ -135,15 +112,15 @@ def _machine(found: Simulation) -> str:
     elif scenario.motor is not None:
         words.append("its valve with a hydraulic motor")
     elif "flow_supply" not in found.signals:
-        words.append(ENDS[ends_of(scenario, plant)])
+        words.append(ENDS[ends_of(scenario, plant)].words or "")
     if "flow_supply" in found.signals:
         relief = scenario.supply.relief
-        supply = SUPPLY[scenario.supply.type]
+        supply = SUPPLIES[scenario.supply.type].words
         if scenario.supply.type == "fixed_pump" and relief is not None:
             supply += f", relief valve {amount(PRESSURE, relief.pressure)}"
         else:
             supply += f" {amount(PRESSURE, plant.supply_pressure)}"
         words.append(f"{supply}, return {amount(PRESSURE, plant.return_pressure)}")
     if "friction" in found.signals:
-        words.append(FRICTION[scenario.friction.model])
+        words.append(FRICTIONS[scenario.friction.model].words)
     return ", ".join(words)

@@ -12,11 +12,13 @@ import numpy as np
 
 from ..errors import Diagnostic, InputError
 from ..numeric import Array
-from ..variants.field import Boundary, Field
+from ..variants.field import Boundary, Field, require_grid
+from ..variants.field import field as field_of
 from .fallback import wrap
 from .figures import Axes
 from .identification_axes import even_ticks, spaced
 from .ink import BLACK, BLUE, GREY, PALE, POINT, RED, WHITE, Ink, Point, hatch, text_width
+from .sweep_figure import SweepFigure
 from .sweep_marks import ORIGINS, Drawn, heading
 from .text import trimmed
 from .wall_figures import GREEN, OCHRE
@@ -324,3 +326,21 @@ def _everywhere(drawn: Drawn, field: Field) -> list[str]:
         if limit.origin in ORIGINS and len(known) and bool((known >= 0).all()):
             found.append(drawn.limit_words(limit))
     return found
+
+
+def _draw(drawn: Drawn, metrics: Sequence[str], asked: bool) -> dict[str, Ink]:
+    """A picture of every metric asked for, else of the first."""
+    grid = field_of(drawn.study)
+    lines = list(grid.boundaries())
+    return {
+        f"contour-{name}": contour_figure(drawn, grid, lines, name)
+        for name in (metrics if asked else metrics[:1])
+    }
+
+
+FIGURE = SweepFigure(
+    every=False,
+    lines=False,
+    check=lambda study, metrics: require_grid(study.plan),
+    draw=_draw,
+)

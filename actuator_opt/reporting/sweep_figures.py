@@ -1,25 +1,21 @@
-"""The figures of a sweep as files: parallel axes, scatter matrix, contours, U-curves."""
+"""The figures of a sweep as files."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..bounds import SWEEP_FIGURES
 from ..errors import Diagnostic, UsageError
 from ..suggest import remedy, shown
 from ..variants import Swept
 from ..variants.chunk import Study
-from ..variants.field import field, require_grid
 from . import writer
 from .image import images
 from .ink import Ink
-from .sweep_contour import contour_figure
+from .sweep_figure import figure
 from .sweep_marks import Drawn
-from .sweep_parallel import parallel_figure
-from .sweep_scatter import require_some, scatter_figure
-from .sweep_ucurves import ucurves_figure
 
-KINDS = ("parallel", "scatter", "contour", "ucurves")
 USUAL = 5
 """Metrics shown where none is chosen, at most."""
 
@@ -51,19 +47,15 @@ def watched(study: Study, kinds: Sequence[str], show: Sequence[str]) -> tuple[st
     UsageError
         no such figure or metric, or a sweep that does not fit it
     """
-    for kind in kinds:
-        if kind not in KINDS:
-            raise UsageError(Diagnostic(f"--figure {shown(kind)}: unknown", remedy(kind, KINDS, 4)))
+    asked = [(kind, figure(kind)) for kind in dict.fromkeys(kinds)]
     metrics = chosen(study, show)
-    if not study.full and {"parallel", "scatter"} & set(kinds):
-        message = "--reduce keeps the best alone, parallel and scatter need every design"
+    if not study.full and any(one.every for _, one in asked):
+        every = " and ".join(kind for kind in SWEEP_FIGURES if figure(kind).every)
+        message = f"--reduce keeps the best alone, {every} need every design"
         raise UsageError(Diagnostic(message, "leave out --reduce"))
-    if "contour" in kinds:
-        require_grid(study.plan)
-    if "scatter" not in kinds:
-        return ()
-    require_some(metrics)
-    return metrics
+    for _, one in asked:
+        one.check(study, metrics)
+    return metrics if any(one.lines for _, one in asked) else ()
 
 
 def sweep_figures(swept: Swept, kinds: Sequence[str], show: Sequence[str] = ()) -> dict[str, Ink]:
@@ -77,19 +69,10 @@ def sweep_figures(swept: Swept, kinds: Sequence[str], show: Sequence[str] = ()) 
         no feasible design, or a metric without values
     """
     watched(swept.study, kinds, show)
-    drawn, metrics, found = Drawn(swept), chosen(swept.study, show), {}
+    drawn, metrics = Drawn(swept), chosen(swept.study, show)
+    found: dict[str, Ink] = {}
     for kind in dict.fromkeys(kinds):
-        if kind == "parallel":
-            found[kind] = parallel_figure(drawn, metrics)
-        elif kind == "scatter":
-            found[kind] = scatter_figure(drawn, metrics)
-        elif kind == "ucurves":
-            found[kind] = ucurves_figure(drawn)
-        else:
-            grid = field(swept.study)
-            lines = list(grid.boundaries())
-            for name in metrics if show else metrics[:1]:
-                found[f"contour-{name}"] = contour_figure(drawn, grid, lines, name)
+        found |= figure(kind).draw(drawn, metrics, bool(show))
     return found
 
 

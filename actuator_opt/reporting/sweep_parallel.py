@@ -11,6 +11,7 @@ from ..numeric import Array
 from .figures import fitted
 from .identification_axes import even_range, even_ticks
 from .ink import BLACK, GREY, RED, WHITE, Ink, Point, text_width
+from .sweep_figure import SweepFigure, fits
 from .sweep_marks import BETTER, INFEASIBLE, Drawn, Rows, Track, heading, two_lines
 from .text import SENSES, trimmed
 
@@ -161,3 +162,11 @@ def _legend(ink: Ink, y: float) -> None:
         ink.line((x, y), (x + 5.0, y), **style)
         ink.text(x + 6.2, y, words, size=_SIZE)
         x += 10.0 + text_width(words, _SIZE)
+
+
+FIGURE = SweepFigure(
+    every=True,
+    lines=False,
+    check=fits,
+    draw=lambda drawn, metrics, asked: {"parallel": parallel_figure(drawn, metrics)},
+)

@@ -13,6 +13,7 @@ from ..variants.sample import better
 from .figures import Axes, fitted
 from .identification_axes import even_range, even_ticks, spaced
 from .ink import BLACK, GREY, PALE, RED, WHITE, Ink, text_width
+from .sweep_figure import SweepFigure
 from .sweep_marks import BETTER, INFEASIBLE, Drawn, heading
 
 MOST = 2000
@@ -213,3 +214,11 @@ def _legend(ink: Ink, x: float, y: float, *, across: bool = False) -> None:
             x += 7.6 + text_width(words, 6.3)
         else:
             y += 3.8
+
+
+FIGURE = SweepFigure(
+    every=True,
+    lines=True,
+    check=lambda study, metrics: require_some(metrics),
+    draw=lambda drawn, metrics, asked: {"scatter": scatter_figure(drawn, metrics)},
+)

@@ -6,6 +6,7 @@ from ..errors import Diagnostic, InputError
 from ..evaluation import evaluate
 from .fallback import wrap
 from .ink import Ink
+from .sweep_figure import SweepFigure, fits
 from .sweep_marks import Drawn, heading, value_words
 from .text import limit_text, margin_text
 from .ucurves import MOST, SIZE, STYLES, Required, curves_drawn, has_points
@@ -64,3 +65,11 @@ def _key(drawn: Drawn, ink: Ink, y: float, count: int) -> float:
             ink.text(13.0, y, line, size=SIZE)
             y += 3.5
     return y + 1.0
+
+
+FIGURE = SweepFigure(
+    every=False,
+    lines=False,
+    check=fits,
+    draw=lambda drawn, metrics, asked: {"ucurves": ucurves_figure(drawn)},
+)

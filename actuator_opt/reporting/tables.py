@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from .. import quantities
 from ..design.paths import get, quantity_of
 from ..evaluation.result import Evaluation, Requirement
+from ..metrics import METRICS
 from . import text
 from .blocks import Block, Cell, ExtraTable, bar, clean, column, notes, share, soft, status, table
 from .text import DASH
@@ -60,7 +60,7 @@ def _result(evaluation: Evaluation, row: Requirement) -> Cell:
 
 def masses(evaluation: Evaluation) -> Block:
     """Mass per part, adding up, with the oil below."""
-    quantity = quantities.METRICS["mass"]
+    quantity = METRICS["mass"]
     parts = evaluation.mass_parts
     total = sum(parts.values())
     largest = max(parts.values(), default=0.0)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from .. import quantities
 from ..evaluation import reserve
+from ..metrics import METRICS, of_metric
 from ..quantities import Quantity
 
 if TYPE_CHECKING:
@@ -171,12 +172,12 @@ def with_unit(text: str, unit: str) -> str:
 
 def metric(name: str) -> Quantity:
     """The declared quantity of a metric; an undeclared one (a user's own) is a plain ratio."""
-    return quantities.of_metric(name)
+    return of_metric(name)
 
 
 def input_quantity(name: str) -> Quantity:
     """The declared quantity of an input; an undeclared one is a plain ratio."""
-    known = quantities.INPUTS.get(name) or quantities.METRICS.get(name)
+    known = quantities.INPUTS.get(name) or METRICS.get(name)
     return known or Quantity(name, "", "ratio", "", name)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..scatter.estimate import Rate
 from ..scatter.inputs import Input
-from ..scatter.result import LEAST, LimitYield, Uncertainty
+from ..scatter.result import LimitYield, Uncertainty
 from . import text
 from .optimum import sentence
 
@@ -127,11 +127,6 @@ def followed(found: Uncertainty) -> list[str]:
     failing = [x.name for x in found.required if x.rate.value < 1][:3]
     nearest = [x.name for x in found.required[:1]]
     return [*(failing or nearest), *found.units]
-
-
-def title(output: str) -> str:
-    """An output in words."""
-    return output if output == LEAST else f"margin of {output}"
 
 
 def heading(found: Uncertainty, output: str) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..quantities import METRICS, RESULTS, Quantity
+from ..metrics import METRICS
+from ..quantities import RESULTS, Quantity
 from ..simulation.sensitivity import Effect, Parameter, Sensitivities
 from ..simulation.verification import Row, Verification
 from . import text

@@ -59,8 +59,7 @@ def named(criterion: str) -> str:
     >>> named("max_stress"), named("tsai_wu")
     ('maximum stress', 'Tsai-Wu')
     """
-    known = {"max_stress": "maximum stress", "max_strain": "maximum strain", "tsai_wu": "Tsai-Wu"}
-    return known.get(criterion, criterion.capitalize())
+    return CRITERIA[criterion].words
 
 
 def turned(angle: float, *, balanced: bool) -> str:

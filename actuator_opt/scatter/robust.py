@@ -18,10 +18,10 @@ import numpy.typing as npt
 from ..design.model import Design
 from ..errors import Diagnostic, UsageError
 from ..evaluation import Subject, prepare
+from ..metrics import of_metric
 from ..optimisation.result import Certificate, Optimisation
 from ..optimisation.robustness import Robust, Round
 from ..progress import whole
-from ..quantities import of_metric
 from .estimate import Rate
 from .inputs import inputs, read_by_models
 from .model import TOLERANCE, Model

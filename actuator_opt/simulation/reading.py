@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..design.scenario.model import Scenario
+from ..design.scenario.shapes import SHAPES
 from ..design.scenario.signals import Part
 from ..errors import InputError
 from ..evaluation.study.plant import Plant
@@ -37,11 +38,11 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
     """The first step of the reference, until it changes again; None without a step."""
     loop, parts = reference(scenario)
     steps = [part for part in parts if part.shape == "step"]
-    if loop is None or not steps or any(part.shape in ("sine", "record") for part in parts):
+    if loop is None or not steps or not all(SHAPES[part.shape].settles for part in parts):
         return None
     first = min(steps, key=lambda part: part.start)
-    ramps = [part for part in parts if part.shape == "ramp"]
-    if any(one.start <= first.start < (one.end or 0.0) for one in ramps):  # no target stands
+    moving = [part for part in parts if SHAPES[part.shape].moves_on]
+    if any(one.start <= first.start < (one.end or 0.0) for one in moving):  # no target stands
         return None
     changes = [t for part in parts for t in (part.start, part.end) if t is not None]
     end = min((t for t in changes if t > first.start), default=scenario.duration)
@@ -71,7 +72,7 @@ def shaken(
     load = scenario.load
     parts: list[Part] = [*load.force, *(load.drive.position if load.drive is not None else ())]
     parts += load.cylinder.signal if load.cylinder is not None else ()
-    sines = [part for part in parts if part.shape == "sine"]
+    sines = [part for part in parts if "frequency" in SHAPES[part.shape].needed]
     tones = set(frequencies(sines))
     if len(tones) != 1:
         return None, none if not tones else "sines of several frequencies shake the rod"
@@ -148,7 +149,7 @@ def values(
         speed = _stop_speed(time, signals["speed"], events)
         found["stop_speed"], why["stop_speed"] = speed, "the piston meets no stop"
     loop, parts = reference(scenario)
-    if loop == "position" and any(p.shape in ("sine", "ramp", "record") for p in parts):
+    if loop == "position" and any(SHAPES[part.shape].moves_on for part in parts):
         late = time >= _settled_from(parts, scenario.duration)
         found["following_error"] = float(np.max(np.abs(signals["error"][late])))
     why["following_error"] = "the reference does not move on"

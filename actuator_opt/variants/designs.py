@@ -15,9 +15,8 @@ from ..errors import Diagnostic, InputError
 from ..evaluation import Subject, prepare
 from ..evaluation.allow import extremes
 from ..evaluation.many import Many, evaluate_many
-from ..evaluation.plugin import Plugin
+from ..evaluation.plugin import Plugin, with_own
 from ..numeric import Array
-from ..quantities import METRICS
 from .axes import Axis
 from .plan import Plan, Points
 
@@ -78,7 +77,7 @@ class Designs:
         """The design with other values; raises `InputError`."""
         if not values:
             return self.design
-        own = METRICS | {plugin.name: plugin.quantity for plugin in self.plugins}
+        own = with_own(self.plugins)
         return with_values(self.design, dict(values), metrics=own)
 
     def made(self, values: Mapping[str, float | str]) -> Subject:

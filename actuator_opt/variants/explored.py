@@ -17,10 +17,10 @@ from ..errors import Diagnostic, InputError
 from ..evaluation import Subject
 from ..evaluation.limits import Limit
 from ..evaluation.many import limits_of, margins_many
-from ..evaluation.plugin import Plugin
+from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.shapes import Shapes, same_dimensions, shapes
+from ..metrics import METRICS
 from ..numeric import Array
-from ..quantities import METRICS
 from ..version import VERSION
 from .axes import Axis
 from .chunk import Study, key_head
@@ -244,7 +244,7 @@ def _study(kept: Kept, plugins: tuple[Plugin, ...], path: Path, ends: Array) -> 
     Its plan takes the texts, and numbers in the order of the columns, each between the `ends` it
     has in some rows; it visits no points.
     """
-    own = METRICS | {plugin.name: plugin.quantity for plugin in plugins}
+    own = with_own(plugins)
     try:
         design = read_design(f"{kept.design}\n", metrics=own).design
     except InputError:

@@ -11,8 +11,7 @@ from ..design import Design, LoadedDesign, Source, read_design, with_values
 from ..design.reader import TEXT
 from ..errors import Diagnostic, InputError
 from ..evaluation import Subject, compute, prepare
-from ..evaluation.plugin import Plugin, View, collect, load
-from ..quantities import METRICS
+from ..evaluation.plugin import Plugin, View, collect, load, with_own
 
 Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
 
@@ -31,7 +30,7 @@ class Actuator:
 
     def changed(self, values: Mapping[str, float | str]) -> Actuator:
         """The same actuator with other numbers by PATH (SI, or text with a unit)."""
-        known = METRICS | {plugin.name: plugin.quantity for plugin in self.plugins}
+        known = with_own(self.plugins)
         design = with_values(self.design, dict(values), metrics=known)
         return Actuator(design, self.source, self.plugins)
 
@@ -77,7 +76,7 @@ def read(
     loaded: LoadedDesign = read_design(
         source,
         overrides=[(path, str(value)) for path, value in pairs],
-        metrics=METRICS | {plugin.name: plugin.quantity for plugin in own},
+        metrics=with_own(own),
     )
     return Actuator(loaded.design, loaded.source, own)
 

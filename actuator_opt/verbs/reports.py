@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 from ..design import Design, Source
 from ..errors import Diagnostic, UsageError
 from ..evaluation import Evaluation, Subject, evaluate, prepare
+from ..evaluation.plugin import with_own
 from ..evaluation.reserve import UNKNOWN
-from ..quantities import METRICS
+from ..metrics import METRICS
 from .actuator import Actuator, Plugins, as_actuator
 from .optimum import with_yield
 from .stamp import stamped
@@ -175,6 +176,6 @@ def save(
         design = design.design
     if isinstance(design, Actuator):
         source = source or design.source
-        metrics = METRICS | {plugin.name: plugin.quantity for plugin in design.plugins}
+        metrics = with_own(design.plugins)
         design = design.design
     return write_text(Path(path), to_yaml(design, source, metrics=metrics))

@@ -22,7 +22,7 @@ from typing import Any
 import yaml
 
 import actuator_opt as ao
-from actuator_opt.quantities import METRICS
+from actuator_opt.metrics import METRICS
 from actuator_opt.reporting.blocks import column, figure, table
 from actuator_opt.reporting.figures import Axes
 from actuator_opt.reporting.ink import BLUE, GREY, RED, WHITE, Ink

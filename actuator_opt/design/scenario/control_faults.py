@@ -8,8 +8,9 @@ from ...errors import Fault
 from ..build import how_to_add
 from ..structure import child_at, entries
 from ..view import View, without_effect
+from .components import LAWS, SUPPLIES, ControlLaw
 from .model import Control, Scenario
-from .signal_faults import SHAPES
+from .shapes import SHAPES
 
 REFERENCES: Mapping[str, str] = {
     "position": "position_gain",
@@ -44,7 +45,8 @@ def drives(view: View) -> Iterator[Fault]:
     if driven:
         message = f"{ends}: the {driven[0]} would drive a valve that leads nowhere"
         yield Fault(("ends",), message, f'write "valve", or leave {driven[0]} out')
-    if view.text("supply", "type") in ("fixed_pump", "controlled_pump"):
+    supply = SUPPLIES.get(view.text("supply", "type") or "")
+    if supply is not None and supply.pumps:
         message = f"{ends}: the pump of supply would feed nothing"
         yield Fault(("ends",), message, 'write "valve", or leave supply out')
 
@@ -76,7 +78,8 @@ def tuning(view: View) -> Iterator[Fault]:
     if not isinstance(child_at(view.tree, ("control",)), dict):
         return
     known = entries(Control)
-    if law not in known["law"].choices or way not in known["tuning"].choices:
+    own = LAWS.get(law or "")
+    if own is None or way not in known["tuning"].choices:
         return
     loop = found[0] if found else None
     for name, gain in REFERENCES.items():
@@ -89,25 +92,24 @@ def tuning(view: View) -> Iterator[Fault]:
             message = f"stated, and tuning ({way}) finds it"
             remedy = 'remove it, or write "tuning: stated"'
             yield Fault(("control", gain), message, remedy, at_key=True)
-    times = {"p": (), "pi": ("integral_time",), "pid": ("integral_time", "derivative_time")}[law]
-    needed = ([] if loop is None else [REFERENCES[loop]]) + list(times)
+    times = [f"{part}_time" for part in own.parts]
+    needed = ([] if loop is None else [REFERENCES[loop]]) + times
     for key in needed if way == "stated" else ():
         if not view.has("control", key):
             what = "tuning stated" if key not in times else f"a stated {law} law"
             how = how_to_add(key, known[key])
             yield Fault(("control", key), f"missing: {what} needs it", how)
-    yield from _unread(view, law, way)
+    yield from _unread(view, own, way)
 
 
-def _unread(view: View, law: str, way: str) -> Iterator[Fault]:
+def _unread(view: View, law: ControlLaw, way: str) -> Iterator[Fault]:
     """Keys that neither law nor tuning reads."""
-    parts = {"p": (), "pi": ("integral",), "pid": ("integral", "derivative")}[law]
     for part in ("integral", "derivative"):
-        if part not in parts:
+        if part not in law.parts:
             keys = [f"{part}_time", f"{part}_factor"]
-            yield from without_effect(view, ("control",), keys, f"on a {law} law")
-    if "derivative" not in parts:
-        yield from without_effect(view, ("control",), ["filter_time"], f"on a {law} law")
+            yield from without_effect(view, ("control",), keys, f"on a {law.name} law")
+    if not law.derivative:
+        yield from without_effect(view, ("control",), ["filter_time"], f"on a {law.name} law")
     if way != "margins":
         yield from without_effect(view, ("control",), ["margin"], f"where tuning is {way}")
     if not view.number("control", "pressure_feedback"):
@@ -125,8 +127,10 @@ def step_results(view: View) -> Iterator[Fault]:
     for name in found:
         for index in range(len(view.items("control", name))):
             shapes.append(view.text("control", name, index, "shape"))
-    faulty = any(shape not in SHAPES for shape in shapes) or bool(found and not shapes)
-    if faulty or ("step" in shapes and not {"sine", "record"} & set(shapes)):
+    known = [SHAPES[shape] for shape in shapes if shape is not None and shape in SHAPES]
+    if len(known) < len(shapes) or (found and not shapes):
+        return
+    if "step" in shapes and all(shape.settles for shape in known):
         return
     where = f"control.{found[0]}" if found else "control with a reference"
     for name in asked:

@@ -13,29 +13,22 @@ from ..model import Design
 from ..structure import entries
 from ..view import View, length_text, without_effect
 from . import control_faults, signal_faults
+from .components import FRICTIONS, SUPPLIES
 from .model import Friction, Load, Scenario, Supply
 
 _force = quantities.SCENARIOS["coulomb_force"].text
 _flow = quantities.INPUTS["rated_flow"].text
 _area = quantities.INPUTS["orifice_area"].text
-_NEEDED = {
-    "fixed_pump": ("volume", "relief"),
-    "controlled_pump": ("volume", "flow", "gain", "time_constant"),
-}
-_UNREAD = {
-    "constant": ("volume", "flow", "pump", "relief", "gain", "time_constant", "accumulator"),
-    "fixed_pump": ("gain", "time_constant"),
-    "controlled_pump": ("pump",),
-}
 
 
 def supply(view: View) -> Iterator[Fault]:
     """A supply states what its type needs, and nothing that it does not read."""
     kind = view.text("supply", "type")
-    if kind not in _UNREAD:  # itself a fault, told where it stands
+    own = SUPPLIES.get(kind or "")
+    if own is None:  # itself a fault, reported where it stands
         return
     known = entries(Supply)
-    for key in _NEEDED.get(kind, ()):
+    for key in own.needed:
         if not view.has("supply", key):
             message = f"missing: a {kind} needs it"
             yield Fault(("supply", key), message, how_to_add(key, known[key]))
@@ -52,7 +45,7 @@ def supply(view: View) -> Iterator[Fault]:
         yield Fault(("supply", "relief", "rated_flow"), message, f"write {_flow(given)} or more")
     where = "on a constant supply" if kind == "constant" else f"on a {kind}"
     remedy = "remove it, or write another type" if kind == "constant" else "remove the line"
-    yield from without_effect(view, ("supply",), _UNREAD[kind], where, remedy)
+    yield from without_effect(view, ("supply",), own.unread, where, remedy)
 
 
 def cushion(view: View) -> Iterator[Fault]:
@@ -84,13 +77,11 @@ def load_cylinder(view: View) -> Iterator[Fault]:
 def friction(view: View) -> Iterator[Fault]:
     """The curve is stated from its Coulomb friction on; its breakaway is not below that."""
     model = view.text("friction", "model")
+    own = FRICTIONS.get(model or "")
+    if own is not None:
+        yield from without_effect(view, ("friction",), own.unread, f"where model is {model}")
     if model == "none":
-        keys = [key for key in entries(Friction) if key not in ("model", "viscous")]
-        yield from without_effect(view, ("friction",), keys, "where model is none")
         return
-    if model == "stribeck":
-        keys = ["bristle_travel", "bristle_damping"]
-        yield from without_effect(view, ("friction",), keys, "where model is stribeck")
     known = entries(Friction)
     if not view.has("friction", "coulomb"):
         for key in ("static", "stribeck_speed", "viscous"):

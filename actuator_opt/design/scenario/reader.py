@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import Diagnostic, Fault, InputError
-from ...quantities import METRICS, RESULTS, Quantity
+from ...metrics import METRICS
+from ...quantities import RESULTS, Quantity
 from ..build import check
 from ..kinds import ValueFault
 from ..model import Design
@@ -110,7 +111,7 @@ def read_design_of(
     ----------
     loaded : the scenario
     materials : names and kinds of materials; default: the library
-    metrics : metrics the design may name; default: `quantities.METRICS`
+    metrics : metrics the design may name; default: `metrics.METRICS`
 
     Raises
     ------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -11,11 +11,10 @@ from ...numeric import Array
 from ..kinds import Of
 from ..structure import child_at, entries
 from .model import Scenario
+from .shapes import SHAPES, Records, sampled
 from .signal_faults import part_lists
 from .signals import Part
 
-Records = Mapping[tuple[str, str], tuple[Array, Array]]
-"""Time [s] and values [SI] of every column of a file that a part names; NaN where missing."""
 WIDE: Final = 1.5
 """Steps of an evenly sampled record from which on samples are missing between two (a choice)."""
 REGULAR: Final = 0.9
@@ -40,25 +39,15 @@ def recorded_parts(scenario: Scenario) -> Iterator[tuple[str, Part, str]]:
         kind = entries(section)["value"].kind
         assert isinstance(kind, Of)
         for index, part in enumerate(child_at(scenario, loc) or ()):
-            if part.shape == "record":
+            if "file" in SHAPES[part.shape].needed:
                 yield f"{'.'.join(loc)}[{index}].column", part, kind.quantity.dimension
-
-
-def course(part: Part, records: Records) -> tuple[Array, Array] | None:
-    """Time [s] and values of a recorded part, missing samples left out; None of any other."""
-    known = records.get((part.file or "", part.column or "")) if part.shape == "record" else None
-    if known is None:
-        return None
-    time, values = known
-    seen = np.isfinite(values)
-    return time[seen] + part.start, part.scale * values[seen]
 
 
 def recorded_notes(scenario: Scenario, records: Records) -> Iterator[str]:
     """Where a recorded signal is none: before its samples, after them and between them."""
     least = ROUNDED * scenario.duration
     for path, part, _ in recorded_parts(scenario):
-        found = course(part, records)
+        found = sampled(part, records)
         if found is None:
             continue
         name = f'column "{part.column}" of {part.file} ({path.removesuffix(".column")})'

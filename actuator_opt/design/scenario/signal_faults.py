@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
-from typing import NamedTuple
 
 from ... import quantities
 from ...errors import Fault
@@ -14,6 +13,7 @@ from ..section import Section
 from ..structure import Loc, entries
 from ..view import View, without_effect
 from .model import FEWEST_SAMPLES, MOST_SAMPLES, SAMPLES, Scenario
+from .shapes import SHAPES
 from .signals import Part
 
 _SLACK = 1e-9
@@ -21,25 +21,6 @@ _SLACK = 1e-9
 _time = quantities.SCENARIOS["instant"].text
 _short = quantities.SCENARIOS["sample_time"].text
 _hertz = quantities.INPUTS["frequency"].text
-
-
-class _Needs(NamedTuple):
-    """Keys that a shape cannot do without, and others it reads."""
-
-    needed: tuple[str, ...]
-    read: tuple[str, ...] = ()
-
-
-SHAPES: Mapping[str, _Needs] = {
-    "constant": _Needs(("value",)),
-    "step": _Needs(("value",), ("start",)),
-    "ramp": _Needs(("value", "end"), ("start",)),
-    "pulse": _Needs(("value", "end"), ("start",)),
-    "sine": _Needs(("value", "frequency"), ("start", "end", "phase")),
-    "record": _Needs(("file", "column"), ("start", "scale")),
-}
-_INSTEAD = {("end", "constant"): "pulse", ("start", "constant"): "step", ("end", "step"): "pulse"}
-"""The shape that a key without effect may mean."""
 
 
 @cache
@@ -74,15 +55,15 @@ def _parts(view: View) -> Iterator[tuple[Loc, str, type[Section]]]:
 def shapes(view: View) -> Iterator[Fault]:
     """Each part states what its shape needs, and nothing that it does not read."""
     for loc, shape, section in _parts(view):
-        needs, known = SHAPES[shape], entries(section)
-        for key in needs.needed:
+        own, known = SHAPES[shape], entries(section)
+        for key in own.needed:
             if not view.has(*loc, key):
                 how = how_to_add(key, known[key])
                 yield Fault((*loc, key), f"missing: a {shape} needs it", how)
         for key in known:
-            if key == "shape" or key in needs.needed or key in needs.read:
+            if key == "shape" or key in own.needed or key in own.read:
                 continue
-            other = _INSTEAD.get((key, shape))
+            other = own.instead.get(key)
             remedy = "remove the line" + (f', or write "shape: {other}"' if other else "")
             yield from without_effect(view, loc, [key], f"on a {shape}", remedy)
 
@@ -132,7 +113,7 @@ def _sines(view: View, duration: float, sample: float, stated: bool) -> Iterator
     waves: list[tuple[float, Loc]] = []
     for loc, shape, _ in _parts(view):
         frequency = view.number(*loc, "frequency")
-        if shape == "sine" and frequency is not None:
+        if "frequency" in SHAPES[shape].needed and frequency is not None:
             waves.append((frequency, (*loc, "frequency")))
     if not waves:
         return

@@ -4,24 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, TypeAlias
 
-from ..kinds import Choice
+from ..kinds import Choice, choice_of
+from .components import ENDS, FRICTIONS, LAWS, SUPPLIES
+from .shapes import SHAPES
 
-Shape: TypeAlias = Annotated[
-    Literal["constant", "step", "ramp", "pulse", "sine", "record"],
-    Choice(
-        "course of this part of the signal; constant: value all the time; "
-        "step: value from start on; ramp: from nothing at start to value at end; "
-        "pulse: value from start to end; sine: amplitude value at frequency, from start to end; "
-        "record: a column of a CSV file, linear between its samples"
-    ),
-]
-Law: TypeAlias = Annotated[
-    Literal["p", "pi", "pid"],
-    Choice(
-        "what the controller does with the error; p: in proportion; pi: and its integral; "
-        "pid: and its rate"
-    ),
-]
+Shape: TypeAlias = Annotated[str, choice_of("course of this part of the signal", SHAPES)]
+Law: TypeAlias = Annotated[str, choice_of("what the controller does with the error", LAWS)]
 Tuning: TypeAlias = Annotated[
     Literal["margins", "ziegler_nichols", "stated"],
     Choice(
@@ -30,28 +18,12 @@ Tuning: TypeAlias = Annotated[
         "ziegler_nichols: by their table from the same point; stated: all are stated"
     ),
 ]
-Friction: TypeAlias = Annotated[
-    Literal["lugre", "stribeck", "none"],
-    Choice(
-        "how the seals resist; lugre: bristles that stick, slide and creep; "
-        "stribeck: a curve over the speed, smooth through zero; none: not at all"
-    ),
-]
-Supply: TypeAlias = Annotated[
-    Literal["constant", "fixed_pump", "controlled_pump"],
-    Choice(
-        "what feeds the valve; constant: the design's supply pressure, whatever flows; "
-        "fixed_pump: a pump of constant flow with a relief valve; "
-        "controlled_pump: a pump that follows the pressure with a lag"
-    ),
-]
+Friction: TypeAlias = Annotated[str, choice_of("how the seals resist", FRICTIONS)]
+Supply: TypeAlias = Annotated[str, choice_of("what feeds the valve", SUPPLIES)]
 Ends: TypeAlias = Annotated[
-    Literal["valve", "closed", "blocked", "constant_pressure", "reducing_valve"] | None,
-    Choice(
-        "what the ports lead to (default: the valve of the design, else its ports.end); "
-        "valve: the valve, driven by signal or control; closed: lines shut at their far end; "
-        "blocked: shut at the cylinder, before a throttle; "
-        "constant_pressure: ports that hold their pressure; reducing_valve: the design's"
+    str | None,
+    choice_of(
+        "what the ports lead to (default: the valve of the design, else its ports.end)", ENDS
     ),
 ]
 CushionEnd: TypeAlias = Annotated[

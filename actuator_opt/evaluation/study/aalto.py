@@ -51,7 +51,6 @@ class Paper:
     bubble_a: float = 0.4e-6  # figure 67
     bubble_b: float = 0.08e-6
     wave_speed: float = 1300.0  # section 2.1.3
-    pipe_length: float = 16.25  # section 2.1.3
     peak: float = 20.0  # section 4.2.2
     speed: float = 20e-3  # section 3.3.3, largest amplitude until the check valve opens
     reynolds: float = 100.8  # section 3.3.3

@@ -26,9 +26,6 @@ LEVEL = "level of the objectives"
 LOWEST, HIGHEST = -1.0, 2.0
 """Bounds of t: between anchors it is within -1 and 1."""
 
-UNHELD = 1e3
-"""Level of an objective that counts as not limited, in its range over the front."""
-
 
 @dataclass(frozen=True)
 class Objectives:

@@ -12,12 +12,12 @@ import numpy as np
 from ...design.paths import quantity_of
 from ...evaluation import prepare
 from ...evaluation.limits import Limit
-from ...evaluation.plugin import Plugin
+from ...evaluation.plugin import Plugin, with_own
 from ...evaluation.reserve import NO_RESERVE, NO_ROOM
 from ...evaluation.result import Outline
 from ...evaluation.shapes import LENGTHS, Template
 from ...numeric import Array
-from ...quantities import METRICS, Quantity
+from ...quantities import Quantity
 from ...variants.explored import BEST, Explored
 from ...variants.sample import MORE_IS_BETTER, better
 from ...version import VERSION
@@ -122,7 +122,7 @@ def _limits(explored: Explored) -> tuple[list[dict[str, Any]], str]:
     """Limits that cut some design, the person's own first; and how many cut none."""
     study = explored.study
     base = prepare(study.design, plugins=study.plugins).values()
-    quantities = METRICS | {plugin.name: plugin.quantity for plugin in study.plugins}
+    quantities = with_own(study.plugins)
     varied = {axis.path for axis in study.plan.axes}
     found, held = [], 0
     order = sorted(

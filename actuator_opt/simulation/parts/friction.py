@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...design.scenario.components import FRICTIONS
 from ...design.scenario.model import Friction as Stated
 from ...evaluation.study.plant import Plane, Plant
+from ...kinds import per_kind
 from ...models import friction, lugre
 from ...numeric import maximum
 from ...quantities import SCENARIOS
@@ -77,23 +79,47 @@ def resist(
     pressure_b: Expression,
 ) -> Expression:
     """Friction force on the piston, with the sign of the speed [N]."""
-    system, model = circuit.system, circuit.scenario.friction.model
-    if model == "none" or circuit.linear:
-        return own.viscous * speed
+    if circuit.linear:
+        return _viscous(circuit, own, speed, pressure_a, pressure_b)
+    return FORCES[circuit.scenario.friction.model](circuit, own, speed, pressure_a, pressure_b)
+
+
+def _levels(
+    own: Law, pressure_a: Expression, pressure_b: Expression
+) -> tuple[Expression, Expression]:
+    """Coulomb and static friction at the pressures of the chambers."""
     coulomb = maximum(own.coulomb.at(pressure_a, pressure_b), LEAST)
-    static = coulomb
-    if own.static is not own.coulomb:
-        static = maximum(own.static.at(pressure_a, pressure_b), coulomb)
-    if model == "stribeck":
-        return friction.stribeck(
-            speed=speed,
-            coulomb=coulomb,
-            static=static,
-            stribeck_speed=own.stribeck_speed,
-            exponent=own.exponent,
-            viscous=own.viscous,
-            smoothing_speed=SMOOTHING * own.stribeck_speed,
-        )
+    if own.static is own.coulomb:
+        return coulomb, coulomb
+    return coulomb, maximum(own.static.at(pressure_a, pressure_b), coulomb)
+
+
+def _viscous(
+    circuit: Circuit, own: Law, speed: Expression, pressure_a: Expression, pressure_b: Expression
+) -> Expression:
+    return own.viscous * speed
+
+
+def _stribeck(
+    circuit: Circuit, own: Law, speed: Expression, pressure_a: Expression, pressure_b: Expression
+) -> Expression:
+    coulomb, static = _levels(own, pressure_a, pressure_b)
+    return friction.stribeck(
+        speed=speed,
+        coulomb=coulomb,
+        static=static,
+        stribeck_speed=own.stribeck_speed,
+        exponent=own.exponent,
+        viscous=own.viscous,
+        smoothing_speed=SMOOTHING * own.stribeck_speed,
+    )
+
+
+def _lugre(
+    circuit: Circuit, own: Law, speed: Expression, pressure_a: Expression, pressure_b: Expression
+) -> Expression:
+    system = circuit.system
+    coulomb, static = _levels(own, pressure_a, pressure_b)
     level = friction.stribeck_level(
         speed=speed,
         coulomb=coulomb,
@@ -118,3 +144,7 @@ def resist(
         bristle_damping=damping,
         viscous=own.viscous,
     )
+
+
+FORCES = per_kind(FRICTIONS, {"lugre": _lugre, "stribeck": _stribeck, "none": _viscous})
+"""Force of every friction of the seals."""

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ...design.scenario.components import ENDS
 from ...evaluation.circuit import Chamber
+from ...kinds import per_kind
 from ...models import one_way_valve, reducing_valve
 from ...quantities import SCENARIOS
 from ...symbolic import Expression, Symbol
@@ -43,15 +45,15 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> Side:
     system, data = circuit.system, circuit.plant.lines[name]
     throttled = circuit.plant.throttle is not None
     near, wall = data.near_volume, data.near_wall
-    if ends == "blocked" or (not throttled and (ends == "closed" or data.inertance == 0)):
+    kind = ENDS[ends]
+    if kind.at_cylinder or (not throttled and (kind.shut or data.inertance == 0)):
         if not throttled:
             near, wall = near + data.far_volume, wall + data.far_wall
-        held = ends == "constant_pressure"
-        pressure = start if held else system.pressure(f"pressure {name}", start)
+        pressure = start if kind.holds else system.pressure(f"pressure {name}", start)
         return Side(name, pressure, pressure, near, wall, None, None)
     pressure = system.pressure(f"pressure {name}", start)
-    lined = data.inertance > 0 and ends != "closed"
-    if throttled and ends == "constant_pressure" and not lined:
+    lined = data.inertance > 0 and not kind.shut
+    if throttled and kind.holds and not lined:
         return Side(name, pressure, start, near, wall, None, start)
     outer = system.pressure(f"behind throttle {name}", start) if throttled else None
     line = None
@@ -59,17 +61,14 @@ def side(circuit: Circuit, name: Chamber, ends: str, start: float) -> Side:
     if lined:
         line = system.state(f"line {name}", 0.0, tolerance=FLOW)
         end = start
-        if ends != "constant_pressure":
+        if not kind.holds:
             end = system.pressure(f"far end {name}", start)
     return Side(name, pressure, end, near, wall, line, outer)
 
 
 def connect(circuit: Circuit, one: Side, ends: str, feed: Expression, *, held: float) -> Expression:
     """Flow into the chamber; `feed` is what the end gives, `held` the pressure it holds."""
-    if ends == "reducing_valve":
-        feed = _reducing(circuit, one, held)
-    elif ends in ("closed", "blocked"):
-        feed = 0.0
+    feed = FEEDS[ends](circuit, one, feed, held)
     if one.line is not None:
         feed = _through_line(circuit, one, one.line, feed)
     if one.outer is not None:
@@ -156,3 +155,29 @@ def _reducing(circuit: Circuit, one: Side, held: float) -> Expression:
     )
     circuit.door("held ports", one.end * flow, state=f"reducing work {one.name}", into=True)
     return flow
+
+
+def _given(circuit: Circuit, one: Side, feed: Expression, held: float) -> Expression:
+    """What the valve, or nothing, gives."""
+    return feed
+
+
+def _nothing(circuit: Circuit, one: Side, feed: Expression, held: float) -> Expression:
+    return 0.0
+
+
+def _regulated(circuit: Circuit, one: Side, feed: Expression, held: float) -> Expression:
+    return _reducing(circuit, one, held)
+
+
+FEEDS = per_kind(
+    ENDS,
+    {
+        "valve": _given,
+        "closed": _nothing,
+        "blocked": _nothing,
+        "constant_pressure": _given,
+        "reducing_valve": _regulated,
+    },
+)
+"""Flow that every end gives to the line."""

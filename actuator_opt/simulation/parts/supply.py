@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...design.scenario.components import SUPPLIES
+from ...kinds import per_kind
 from ...models import accumulator, elements, lines, supply, wilson
 from ...numeric import clip, where
 from ...quantities import INPUTS, SCENARIOS
@@ -32,7 +34,7 @@ class Source:
         """The pressures; a pipe between pump and valve parts them."""
         stated, system = circuit.scenario.supply, circuit.system
         unit: Expression = circuit.plant.supply_pressure
-        if stated.type != "constant":
+        if SUPPLIES[stated.type].pumps:
             unit = system.pressure("supply", circuit.plant.supply_pressure)
         port = unit
         if stated.line is not None:
@@ -47,10 +49,10 @@ class Source:
             "pressure_supply", "supply pressure", INPUTS["pressure"], self.pressure
         )
         taken = self._through_line(demand)
-        if circuit.scenario.supply.type == "constant":
-            circuit.door("supply", self.unit * taken, state="supply work", into=True)
-        else:
+        if SUPPLIES[circuit.scenario.supply.type].pumps:
             self._pumped(taken)
+        else:
+            circuit.door("supply", self.unit * taken, state="supply work", into=True)
 
     def _through_line(self, demand: Expression) -> Expression:
         """Flow out of the pump's side of the supply pipe; its oil springs at the valve."""
@@ -76,7 +78,7 @@ class Source:
     def _pumped(self, demand: Expression) -> None:
         circuit, unit = self.circuit, self.circuit.scenario.supply
         assert unit.volume is not None
-        delivered = self._delivery()
+        delivered = DELIVERIES[unit.type](self)
         pressure = self.unit
         circuit.door("supply", pressure * delivered, state="supply work", into=True)
         relieved: Expression = 0.0
@@ -94,48 +96,6 @@ class Source:
         assert isinstance(pressure, Symbol)
         inflow = delivered - relieved - demand - stored
         node(circuit, "supply line", pressure, inflow=inflow, volume=unit.volume)
-
-    def _delivery(self) -> Expression:
-        """Flow of the pump into the line."""
-        unit, system, plant = self.circuit.scenario.supply, self.circuit.system, self.circuit.plant
-        if unit.type == "fixed_pump":
-            if unit.pump is None:
-                assert unit.flow is not None
-                return unit.flow
-            machine = unit.pump
-            across = self.unit - plant.return_pressure
-            common = {
-                "speed": machine.shaft_speed,
-                "pressure_difference": across,
-                "displacement": machine.displacement,
-                "dynamic_viscosity": plant.oil.dynamic_viscosity,
-                "setting": machine.setting,
-            }
-            torque = wilson.pump_torque(
-                **common,
-                coulomb_coefficient=machine.coulomb,
-                viscous_coefficient=machine.viscous,
-                constant_torque=machine.constant_torque,
-            )
-            system.signal("pump_torque", "torque of the pump", SCENARIOS["torque_value"], torque)
-            return wilson.pump_flow(**common, slip_coefficient=machine.slip)
-        assert unit.flow is not None
-        assert unit.gain is not None
-        assert unit.time_constant is not None
-        begin = AWAKE * unit.flow if self.circuit.linear else 0.0
-        state = system.state("pump", begin, tolerance=1e-6 * unit.flow)
-        rate = supply.controlled_pump_rate(
-            flow=state,
-            pressure=self.unit,
-            set_pressure=plant.supply_pressure,
-            gain=unit.gain,
-            time_constant=unit.time_constant,
-        )
-        band = RATE_BAND * unit.flow
-        closing = clip(state / band, 0.0, 1.0)
-        opening = clip((unit.flow - state) / band, 0.0, 1.0)
-        system.rate(state, where(rate < 0, rate * closing, rate * opening))
-        return supply.controlled_pump_delivery(flow=state, largest_flow=unit.flow)
 
     def _accumulator(self) -> Expression:
         """Flow into the accumulator on the line."""
@@ -170,6 +130,61 @@ class Source:
         )
         return flow
 
+
+def _fixed_pump(source: Source) -> Expression:
+    """Flow of a pump of constant speed into the line."""
+    circuit = source.circuit
+    unit, system, plant = circuit.scenario.supply, circuit.system, circuit.plant
+    if unit.pump is None:
+        assert unit.flow is not None
+        return unit.flow
+    machine = unit.pump
+    across = source.unit - plant.return_pressure
+    common = {
+        "speed": machine.shaft_speed,
+        "pressure_difference": across,
+        "displacement": machine.displacement,
+        "dynamic_viscosity": plant.oil.dynamic_viscosity,
+        "setting": machine.setting,
+    }
+    torque = wilson.pump_torque(
+        **common,
+        coulomb_coefficient=machine.coulomb,
+        viscous_coefficient=machine.viscous,
+        constant_torque=machine.constant_torque,
+    )
+    system.signal("pump_torque", "torque of the pump", SCENARIOS["torque_value"], torque)
+    return wilson.pump_flow(**common, slip_coefficient=machine.slip)
+
+
+def _controlled_pump(source: Source) -> Expression:
+    """Flow of a pump that follows the pressure into the line."""
+    circuit = source.circuit
+    unit, system, plant = circuit.scenario.supply, circuit.system, circuit.plant
+    assert unit.flow is not None
+    assert unit.gain is not None
+    assert unit.time_constant is not None
+    begin = AWAKE * unit.flow if circuit.linear else 0.0
+    state = system.state("pump", begin, tolerance=1e-6 * unit.flow)
+    rate = supply.controlled_pump_rate(
+        flow=state,
+        pressure=source.unit,
+        set_pressure=plant.supply_pressure,
+        gain=unit.gain,
+        time_constant=unit.time_constant,
+    )
+    band = RATE_BAND * unit.flow
+    closing = clip(state / band, 0.0, 1.0)
+    opening = clip((unit.flow - state) / band, 0.0, 1.0)
+    system.rate(state, where(rate < 0, rate * closing, rate * opening))
+    return supply.controlled_pump_delivery(flow=state, largest_flow=unit.flow)
+
+
+DELIVERIES = per_kind(
+    {name: one for name, one in SUPPLIES.items() if one.pumps},
+    {"fixed_pump": _fixed_pump, "controlled_pump": _controlled_pump},
+)
+"""Flow that every pump delivers."""
 
 NECK = 5e-3
 """Bore and length of the neck of an accumulator on the supply line (a choice): 5 mm both."""

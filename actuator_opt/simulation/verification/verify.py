@@ -19,8 +19,8 @@ from ...errors import InputError, Unsolvable
 from ...evaluation.build import evaluate
 from ...evaluation.kernel import Subject
 from ...evaluation.result import Requirement
+from ...metrics import METRICS
 from ...progress import steps
-from ...quantities import METRICS
 from ..loops import loop_of
 from ..parts.signals import Records
 from ..result import Simulation
