@@ -82,6 +82,19 @@ class Diagnostic:
         return "\n".join(lines)
 
 
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A fault by its place in the tree of a file; `at_key` points at the key instead of the value.
+
+    What is missing has the place it would have; the message then stands at its block.
+    """
+
+    loc: tuple[str | int, ...]
+    message: str
+    remedy: str = ""
+    at_key: bool = False
+
+
 class ActuatorError(Exception):
     """Base of every error the library raises on purpose."""
 

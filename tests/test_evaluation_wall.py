@@ -173,10 +173,10 @@ def test_tie_rods_share_the_force_with_the_barrel(tmp_path):
         tie_rod_stiffness=rods,
         free_shortening=-wall.swelling.shortening * supply * g.barrel_length,
     )
-    assert wall.path.tie_rods is not None
+    assert wall.path.clamp is not None
     per_pressure = wall.path.per_pressure["piston at the end stop"]
     assert np.squeeze(per_pressure * supply) - 15e3 == pytest.approx(float(np.squeeze(force)))
-    assert np.squeeze(wall.path.tie_rods.largest) == pytest.approx(float(np.squeeze(rod_force)))
+    assert np.squeeze(wall.path.clamp.largest) == pytest.approx(float(np.squeeze(rod_force)))
     factor = float(np.squeeze(done.computed.metrics["joint_factor"][""]))
     lost = float(np.squeeze(force)) + 15e3
     assert factor == pytest.approx(15e3 / (values["supply.proof_ratio"] * lost))

@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 from pydantic import ValidationError
 
 from .. import suggest
-from ..errors import Diagnostic, InputError
+from ..errors import Diagnostic, Fault, InputError
 from ..metrics import METRICS
 from ..quantities import Quantity
 from . import choice_list, wishes
@@ -19,7 +19,7 @@ from .model import Design, Ply
 from .paths import put, resolve, spell
 from .section import Section
 from .structure import Entry, Loc, child_at, entries, leaves
-from .view import Fault, Materials
+from .view import Materials
 
 MOST_FAULTS = 100
 

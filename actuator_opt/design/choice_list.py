@@ -14,13 +14,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
 from .. import suggest
+from ..errors import Fault
 from ..quantities import Quantity
 from .kinds import Fraction, MaterialName, Text, ValueFault, what
 from .material import ROLES
 from .model import Design
 from .paths import Target, resolve
 from .structure import Entry, number_of, value_at
-from .view import Fault, Materials
+from .view import Materials
 from .wishes import in_faulty_block
 
 Value: TypeAlias = float | bool | str | Fraction

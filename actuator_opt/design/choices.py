@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Annotated, Literal, TypeAlias
 
 from ..friction.kinds import LAWS as FRICTION_LAWS
+from ..joints.kinds import JOINTS
 from ..models.criteria import CRITERIA
 from ..models.elastomer import MODULUS_LAWS
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
@@ -67,11 +68,7 @@ WallModel: TypeAlias = Annotated[
 ]
 Criterion: TypeAlias = Annotated[str, choice_of("when a ply of barrel or rod fails", CRITERIA)]
 RetentionType: TypeAlias = Annotated[
-    Literal["bond", "thread", "tie_rods"],
-    Choice(
-        "what holds cap and head to the barrel; bond: skirts glued over it; "
-        "thread: skirts screwed over it; tie_rods: rods outside clamp it between cap and head"
-    ),
+    str, choice_of("what holds cap and head to the barrel", JOINTS)
 ]
 SealType: TypeAlias = Annotated[
     str,

@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterator
 from typing import get_args
 
 from .. import quantities
+from ..errors import Fault
 from . import choices
-from .view import Fault, View, length_text
+from .view import View, length_text
 
 
 def lines(view: View) -> Iterator[Fault]:

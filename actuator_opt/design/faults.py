@@ -2,8 +2,8 @@
 
 Every check is a small function of a `View`; it yields nothing where a value it needs is missing
 or already faulty, so the checks also run on a file with other faults. Those of the walls of
-barrel and rod are in `wall_faults`, of the caps' thread in `thread_faults`, of the seals in
-`seal_faults`, of a joint in `linkage_faults`.
+barrel and rod are in `wall_faults`, of the joints of caps and head in `retention_faults`, of the
+seals in `seal_faults`, of a robot's joint in `linkage_faults`.
 """
 
 from __future__ import annotations
@@ -12,18 +12,19 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from .. import quantities, suggest
+from ..errors import Fault
 from . import (
     circuit_faults,
     linkage_faults,
     material_laws,
+    retention_faults,
     seal_faults,
-    thread_faults,
     wall_faults,
 )
 from .kinds import MaterialName
 from .material import ROLES
 from .structure import Loc, child, leaves
-from .view import Fault, Materials, View, length_text
+from .view import Materials, View, length_text
 
 
 def _smaller(
@@ -83,24 +84,6 @@ def barrel_length(view: View) -> Iterator[Fault]:
         )
 
 
-def skirts(view: View) -> Iterator[Fault]:
-    """The skirts of both ends do not meet on the barrel."""
-    if view.text("retention", "type") not in ("bond", "thread"):
-        return
-    overlap, length = view.number("retention", "length"), view.number("barrel", "length")
-    parts = [("cylinder", "stroke"), ("piston", "length"), ("head", "length")]
-    known = [one for one in (view.number(*part) for part in parts) if one is not None]
-    if length is None and len(known) == len(parts):
-        length = sum(known)
-    if overlap is not None and length is not None and 2 * overlap > length * (1 + 1e-9):
-        yield Fault(
-            ("retention", "length"),
-            f"{length_text(overlap)}: the skirts of both ends overlap on the barrel, which is "
-            f"{length_text(length)} long",
-            f"write at most {length_text(length / 2)}",
-        )
-
-
 def supply(view: View) -> Iterator[Fault]:
     """Supply above return, proof not below working pressure."""
     pressure, back = view.number("supply", "pressure"), view.number("supply", "return_pressure")
@@ -130,35 +113,6 @@ def environment(view: View) -> Iterator[Fault]:
             ("environment", "temperature_max"),
             f"range reversed: {text(high)} is not above temperature_min ({text(low)})",
             "swap them",
-        )
-
-
-def retention(view: View) -> Iterator[Fault]:
-    """A bond names its adhesive, a thread and tie rods their thread, tie rods their pull."""
-    kind = view.text("retention", "type")
-    if view.has("retention", "preload") and kind in ("bond", "thread"):
-        yield Fault(
-            ("retention", "preload"),
-            f"a {kind} has no preload, only tie rods have",
-            "remove the line, or write type: tie_rods",
-            at_key=True,
-        )
-    if kind in ("bond", "tie_rods") and not view.has("retention", "material"):
-        name = "epoxy_structural" if kind == "bond" else "steel_bolt_10_9"
-        what = "a bond needs its adhesive" if kind == "bond" else "tie rods need their material"
-        yield Fault(("retention", "material"), f"missing: {what}", f'add e.g. "material: {name}"')
-    if kind in ("thread", "tie_rods") and not view.has("retention", "thread"):
-        keys = "pitch" if kind == "thread" else "diameter, pitch"
-        yield Fault(
-            ("retention", "thread"),
-            f"missing: {kind} needs it",
-            f'add a block "thread:" with {keys}',
-        )
-    elif kind == "tie_rods" and not view.has("retention", "thread", "diameter"):
-        yield Fault(
-            ("retention", "thread", "diameter"),
-            "missing: tie rods need it",
-            'add e.g. "diameter: 6 mm"',
         )
 
 
@@ -226,16 +180,16 @@ def _case_force(loc: Loc, case: dict[str, Any], *, linked: bool) -> Iterator[Fau
 CHECKS: tuple[Callable[[View], Iterator[Fault]], ...] = (
     rod,
     barrel_length,
-    skirts,
+    retention_faults.skirts,
     supply,
     environment,
-    retention,
+    retention_faults.keys,
     load_cases,
     *seal_faults.CHECKS,
     *circuit_faults.CHECKS,
     *linkage_faults.CHECKS,
     *wall_faults.CHECKS,
-    thread_faults.fits,
+    retention_faults.values,
 )
 
 
@@ -254,20 +208,20 @@ def material_faults(tree: Any, materials: Materials) -> Iterator[Fault]:
     """Every fault that shows when the library is asked."""
     yield from _material_names(tree, materials)
     yield from wall_faults.of_materials(tree, materials)
-    yield from thread_faults.of_materials(tree, materials)
+    yield from retention_faults.of_materials(tree, materials)
     yield from seal_faults.sliding_rings(tree, materials)
     yield from material_laws.of_fluid(tree, materials)
 
 
 def _material_names(tree: Any, materials: Materials) -> Iterator[Fault]:
     """Unknown materials, and materials of a kind that cannot stand where they are named."""
-    joint = View(tree).text("retention", "type")
+    joint = retention_faults.joint_of(View(tree))
     for loc, entry, name in leaves(tree):
         if not isinstance(entry.kind, MaterialName) or not isinstance(name, str):
             continue
         fits = ROLES[entry.kind.role]
-        if loc == ("retention", "material"):
-            fits = ("adhesive",) if joint == "bond" else fits if joint == "thread" else ("metal",)
+        if loc == ("retention", "material") and joint is not None:
+            fits = joint.kinds or fits
         elif loc == ("rod", "fitting", "adhesive"):
             fits = ("adhesive",)
         if name in materials and materials.kind(name) in fits:

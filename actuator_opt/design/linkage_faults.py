@@ -7,11 +7,12 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from .. import quantities
+from ..errors import Fault
 from ..models import linkage as crank
 from .linkage import closed_length
 from .model import PLAIN_CAP
 from .structure import Loc
-from .view import Fault, View, length_text
+from .view import View, length_text
 
 _ROUND = math.radians(0.01)
 """Joint angles in remedies are rounded inwards to this (rad): a person can write them."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Container, Iterator, Mapping
 from typing import Any
 
-from ..errors import InputError
+from ..errors import Fault, InputError
 from ..kinds import Kinds
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from .structure import child_at
-from .view import Fault, Materials, Properties, View
+from .view import Materials, Properties, View
 
 _GOOD = {
     "bulk_modulus_slope": "6", "pressure_viscosity": "18 1/GPa", "tait_modulus": "8.4 GPa",

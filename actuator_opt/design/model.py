@@ -6,10 +6,11 @@ Schema and reports read one declaration (`quantities.INPUTS`). Sections hold no 
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
-from pydantic import Field
+from pydantic import Field, create_model
 
+from ..joints.kinds import JOINTS
 from ..quantities import Sense
 from . import choices
 from .choices import Paper
@@ -219,7 +220,7 @@ class Caps(Section):
     thickness: Annotated[float, Of("wall_thickness", "thickness of both end plates")]
 
 
-class Retention(Section):
+class _Retention(Section):
     """How caps and head are held: a skirt over the barrel's outside (bond, thread), or tie rods.
 
     `length` is the overlap of skirt and barrel, `wall` the skirt's thickness, `material` the
@@ -235,6 +236,23 @@ class Retention(Section):
     count: Annotated[float, Of("bolt_count", "number of tie rods")] = 4.0
     thread: RetentionThread | None = None
     preload: Annotated[float | None, Of("force", "total tie-rod tension without pressure")] = None
+
+
+if TYPE_CHECKING:
+    Retention: TypeAlias = _Retention
+else:  # with the keys that single joints add
+    Retention = create_model(
+        "Retention",
+        __base__=_Retention,
+        __doc__=_Retention.__doc__,
+        __module__=__name__,
+        **{
+            field.key: (Annotated[float | None, Of(field.quantity, field.help)], None)
+            for joint in JOINTS.values()
+            for field in joint.fields
+            if field.quantity
+        },
+    )
 
 
 class Clevis(Section):

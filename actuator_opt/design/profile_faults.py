@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
+from ..errors import Fault
 from ..quantities import INPUTS
 from .structure import Loc
-from .view import Fault, View
+from .view import View
 
 
 def elements(view: View) -> Iterator[Loc]:

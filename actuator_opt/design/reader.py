@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from .. import suggest, units
-from ..errors import Diagnostic, InputError
+from ..errors import Diagnostic, Fault, InputError
 from ..quantities import Quantity
 from ..store import read_bytes
 from . import layup
@@ -21,7 +21,7 @@ from .model import Design
 from .paths import put, resolve, spell
 from .section import Section
 from .structure import Loc
-from .view import Fault, Materials
+from .view import Materials
 from .yaml_source import MAX_BYTES, Document, Span, decode, parse
 
 TEXT = "<text>"

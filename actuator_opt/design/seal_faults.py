@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from ..errors import InputError
+from ..errors import Fault, InputError
 from ..friction.kinds import LAWS as FRICTION_LAWS
 from ..models.elastomer import modulus_gent
 from ..models.seals import LAWS
@@ -21,7 +21,7 @@ from . import profile_faults
 from .profile_faults import elements
 from .seals import BACK_UPS
 from .structure import Loc, child_at
-from .view import Fault, Materials, Properties, View, length_text
+from .view import Materials, Properties, View, length_text
 
 
 def fields(view: View) -> Iterator[Fault]:

@@ -13,12 +13,13 @@ from decimal import Decimal
 from typing import Any
 
 from .. import suggest
+from ..errors import Fault
 from ..quantities import Quantity
 from .kinds import ValueFault, example, read_quantity, what
 from .paths import resolve
 from .size_series import SERIES, Series
 from .structure import Loc, child, child_at, number_of, value_at
-from .view import Fault, View
+from .view import View
 
 MOST_SIZES = 1000
 """Largest number of sizes of a variable, and of rows of those that go together."""

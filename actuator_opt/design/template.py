@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..joints.kinds import JOINTS
 from ..seals import o_ring
 from ..seals.kinds import TYPES
 from .kinds import Text
@@ -82,7 +83,7 @@ caps:
   thickness: 6 mm
 
 retention:                     # how caps and head are held to the barrel
-  type: bond                   # or thread, tie_rods
+  type: bond                   # or @JOINTS@
   material: epoxy_structural
   length: 20 mm
   wall: 1.5 mm
@@ -199,8 +200,10 @@ def init_text(name: str = "my actuator", from_design: LoadedDesign | Design | No
     """
     title = Text().validate(name)
     if from_design is None:
-        others = ", ".join(name for name in TYPES if name != o_ring.TYPE.name)
-        return _TEXT.replace("@SEALS@", others).replace("@NAME@", scalar(title))
+        joints = ", ".join(name for name in JOINTS if name != "bond")
+        seals = ", ".join(name for name in TYPES if name != o_ring.TYPE.name)
+        text = _TEXT.replace("@JOINTS@", joints).replace("@SEALS@", seals)
+        return text.replace("@NAME@", scalar(title))
     if isinstance(from_design, Design):
         return to_yaml(from_design.model_copy(update={"name": title}))
     design = from_design.design.model_copy(update={"name": title})

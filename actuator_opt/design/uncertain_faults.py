@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from typing import Any, get_args
 
 from .. import suggest
+from ..errors import Fault
 from .distributions import KEYS, NUMBERS, misfit, quantity_of_entry
 from .kinds import ValueFault, example, read_quantity, what
 from .paths import Target, resolve
 from .structure import number_of, value_at
 from .variable import Shape
-from .view import Fault
 
 
 def faults(tree: dict[str, Any]) -> Iterator[Fault]:

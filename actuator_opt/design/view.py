@@ -3,26 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
 from .. import quantities
+from ..errors import Fault
 from .model import Design
 from .section import Section
 from .structure import Loc, child_at, number_of, value_at
-
-
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """A fault by its place in the tree; `at_key` points at the key instead of the value.
-
-    What is missing has the place it would have; the message then stands at its block.
-    """
-
-    loc: Loc
-    message: str
-    remedy: str = ""
-    at_key: bool = False
 
 
 class Materials(Protocol):

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from .. import quantities
-from ..errors import InputError
+from ..errors import Fault, InputError
 from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_constants
 from .model import Ply
 from .paths import spell
 from .structure import Loc, child, child_at, lists_of, number_of
-from .view import Fault, Materials, Properties, View, length_text
+from .view import Materials, Properties, View, length_text
 
 PLY_STRENGTHS = (
     "strength_1_tension", "strength_1_compression", "strength_2_tension",

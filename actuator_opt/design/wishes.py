@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import Any
 
 from .. import quantities, suggest
+from ..errors import Fault
 from ..quantities import Quantity
 from . import sizes, uncertain_faults
 from .kinds import ValueFault, example, read_quantity, what
@@ -18,7 +19,6 @@ from .model import Design
 from .paths import Target, resolve
 from .section import Section
 from .structure import Loc, entries, number_of, value_at
-from .view import Fault
 
 _LARGEST = {
     "ratio": 1e12, "length": 1e3, "mass": 1e7, "force": 1e9, "stiffness": 1e13, "pressure": 1e12,

@@ -63,6 +63,10 @@ class Stock:
         """What the library knows of `name`."""
         return self.materials[name]
 
+    def kind(self, name: str) -> str:
+        """Kind of a material: metal, ply, polymer, adhesive, fluid or seal."""
+        return self.materials[name].kind
+
     def names(self) -> list[str]:
         """Every material of the design."""
         return list(self.materials)

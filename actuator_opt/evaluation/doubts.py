@@ -8,11 +8,10 @@ import numpy as np
 
 from ..design.model import PLAIN_CAP
 from ..design.paths import quantity_of
-from ..design.thread_faults import ROUNDING
-from ..metrics import LEAST_METAL, METRICS
+from ..metrics import METRICS
 from ..metrics.table import OWN, WALL_FED
 from ..models import laminate
-from . import joint, motion_range, oil, oil_range, proportions, seal_doubts, springs, threads
+from . import joint, motion_range, oil, oil_range, proportions, seal_doubts, springs
 from .barrel import LAMINATES, kind
 from .beam import NEAR
 from .kernel import Pass, Subject
@@ -44,9 +43,10 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
             yield metric, text
     yield from (("", text) for text in proportions.warnings(subject, v, g))
     yield from _wall_warnings(subject, done)
+    if done.held is not None:
+        yield from done.held.joint.warnings(done.held.loaded, METRICS)
     yield from _rod_warnings(subject, done)
     yield from _bond_warnings(done)
-    yield from _thread_warnings(done)
     for part, what in (
         ("head", "of the piston's material and length"),
         ("caps", f"of the piston's material, {PLAIN_CAP:g} bore thick"),
@@ -122,14 +122,6 @@ def _wall_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:
                 "autofrettage yields the liner along its axis too: the axial residual strain is "
                 "understated, up to a third; hoop residuals hold",
             )
-    retention = subject.design.retention
-    if done.wall.path.tie_rods is not None and retention is not None and retention.preload is None:
-        force = float(np.max(np.real(done.wall.path.tie_rods.preload)))
-        yield (
-            "joint_factor",
-            f"no tie-rod preload stated: taken {force / 1e3:.1f} kN, which keeps the joint closed "
-            "at proof pressure",
-        )
 
 
 def _rod_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:
@@ -172,20 +164,6 @@ def _bond_warnings(done: Pass) -> Iterable[tuple[str, str]]:
             f"{sums[place]:.2f} times the strength; each is checked alone, as a ductile adhesive "
             "yields and levels both",
         )
-
-
-def _thread_warnings(done: Pass) -> Iterable[tuple[str, str]]:
-    """A thread that leaves too little metal: free sizes may start there, no search ends there."""
-    for name in threads.LANDS:
-        for left in done.computed.metrics.get(name, {}).values():
-            least = float(np.min(np.real(left)))
-            if least < LEAST_METAL * (1 - ROUNDING):
-                label = METRICS[name]
-                yield (
-                    "retention_factor",
-                    f"{label.label}: {label.text(least)}, {label.text(LEAST_METAL)} is the least: "
-                    "such a thread cannot be cut, and its factors do not count",
-                )
 
 
 def models(

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from ..design.model import Design
-from ..models import density, end_stop, endurance, retention, rod
+from ..joints.joint import Fatigue
+from ..models import density, end_stop, endurance, rod
 from ..numeric import Array, maximum, where
-from . import rod_strength, threads
+from . import rod_strength
 from .allow import Stock
-from .barrel import Wall, load_path
+from .barrel import Wall
 from .geometry import Geometry
 from .joint import Demand
 from .rods import Rod
 from .rows import Computed
 from .state import State
+from .strength import Held
 from .values import Values
 
 THREAD_NOTCH = 3.0
@@ -27,6 +29,7 @@ def compute(
     state: State,
     wall: Wall,
     section: Rod,
+    held: Held | None,
     stop: Demand,
     net: Array,
     out: Computed,
@@ -34,7 +37,7 @@ def compute(
     """Every life and service metric; `net` is the force of every case, `stop` runs into a stop."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
-    _endurance(v, stock, design, g, wall, section, supply, push, pull, out)
+    _endurance(v, stock, design, wall, section, held, supply, push, pull, out)
     _end_stop(v, design, g, state, supply, stop, net, out)
     _trapped(v, stock, design, g, state, wall, supply, out)
     _layers(stock, wall, out)
@@ -47,9 +50,9 @@ def _endurance(
     v: Values,
     stock: Stock,
     design: Design,
-    g: Geometry,
     wall: Wall,
     section: Rod,
+    held: Held | None,
     supply: Array,
     push: Array,
     pull: Array,
@@ -63,10 +66,8 @@ def _endurance(
             force=pull, diameter=v["rod.thread.diameter"], pitch=v["rod.thread.pitch"]
         )
         loads.append(("rod thread", section.end_material, stress, stress / 2))
-    cut = threads.judged(v, design, stock, g)
-    if isinstance(cut, threads.Thread):
-        force = supply * load_path.largest_area(design, g)
-        loads.extend(threads.root_stresses(stock, cut, force))
+    joined = Fatigue() if held is None else held.joint.fatigue(held.loaded)
+    loads.extend(joined.pulsed)
     life, factor, lacking = {}, {}, []
     for place, name, span, mean in loads:
         ultimate = stock.allowable(name, "ultimate_strength")
@@ -74,14 +75,14 @@ def _endurance(
         if ultimate is None or limit is None:
             lacking.append(name)
             continue
-        known = stock.get(name, "fatigue_cycles", default=1e6)
+        reached = stock.get(name, "fatigue_cycles", default=1e6)
         peak = mean + span / 2
         ratio = (mean - span / 2) / peak
         life[place] = endurance.cycles_to_failure(
             peak_stress=peak,
             ultimate_strength=ultimate,
             fatigue_limit=limit,
-            limit_cycles=known,
+            limit_cycles=reached,
             stress_ratio=ratio,
         )
         factor[place] = endurance.fatigue_factor(
@@ -90,17 +91,8 @@ def _endurance(
             amplitude_strength=limit,
             stress_ratio=ratio,
         )
-    rods = wall.path.tie_rods
-    if rods is not None:
-        diameter = v["retention.thread.diameter"]
-        amplitude = retention.tie_rod_stress(
-            force=(rods.largest - rods.preload) / 2,
-            count=v["retention.count"],
-            diameter=diameter,
-            pitch=v["retention.thread.pitch"],
-        )
-        life["tie rods"] = endurance.bolt_cycles(amplitude=amplitude, diameter=diameter)
-        factor["tie rods"] = endurance.bolt_endurance_amplitude(diameter=diameter) / amplitude
+    for place, known in joined.lives.items():
+        life[place], factor[place] = known
     for metric, values in (("cycle_life", life), ("fatigue_factor", factor)):
         if values:
             out.put(metric, values)

@@ -1,8 +1,8 @@
 """Derived dimensions of the actuator, once for physics, mass and drawing.
 
 Axial layout, from the outer face of the cap plate: plate, barrel (piston retracted against the
-plate, stroke, head plug), head plate, exposed rod, eye. Both plates carry a skirt over the
-barrel's outside (bond or thread), or are clamped by tie rods.
+plate, stroke, head plug), head plate, exposed rod, eye. What holds both plates is
+a joint of `joints`.
 """
 
 from __future__ import annotations
@@ -13,9 +13,11 @@ from dataclasses import dataclass
 from ..design.linkage import closed_length
 from ..design.material import Material
 from ..design.model import Design, Ply
+from ..joints.joint import End, Fit, Sizes
 from ..models import forces, mass
-from ..numeric import Array, absolute, minimum
+from ..numeric import Array, absolute
 from .grooves import Groove, grooves, taken
+from .retention import Numbers, end_of, joint_of
 from .values import Values
 
 
@@ -40,12 +42,9 @@ class Geometry:
     head_length: Array
     head_clearance: Array
     plate: Array
-    plate_radius: Array
+    fit: Fit
+    """What the joint of caps and head gives both."""
     has_skirts: bool
-    skirt_radius: Array
-    """Inner radius of the skirts."""
-    skirt_length: Array
-    skirt_wall: Array
     barrel_length: Array
     eye_offset: Array
     pin_diameter: Array
@@ -73,17 +72,19 @@ def derive(v: Values, design: Design) -> Geometry:
     barrel_length = v.get("barrel.length", needed)
     plate = v["caps.thickness"]
     extension = v["rod.extension"]
-    retention = design.retention
-    skirt_length: Array = 0.0
-    skirt_wall: Array = 0.0
-    skirt_radius = plate_radius = outer_radius
-    if retention is not None and retention.type == "tie_rods":
-        plate_radius = outer_radius + 2 * v["retention.thread.diameter"]
-    elif retention is not None:
-        skirt_length, skirt_wall = v["retention.length"], v["retention.wall"]
-        if retention.type == "thread" and "retention.thread.diameter" in v:
-            skirt_radius = minimum(v["retention.thread.diameter"] / 2, outer_radius)
-        plate_radius = skirt_radius + skirt_wall
+    joint = joint_of(design)
+    fit = Fit(plate_radius=outer_radius, radius=outer_radius)
+    if joint is not None:
+        end = end_of(
+            design,
+            Numbers(v),
+            inner_radius=inner_radius,
+            outer_radius=outer_radius,
+            thicknesses=thicknesses,
+            barrel_length=barrel_length,
+            plate=plate,
+        )
+        fit = joint.fit(end)
     pin = v["clevis.pin_diameter"] if design.clevis is not None else 0.0
     eye_offset = mass.eye_length(pin_diameter=pin)
     return Geometry(
@@ -104,11 +105,8 @@ def derive(v: Values, design: Design) -> Geometry:
         head_length=head_length,
         head_clearance=v["head.clearance"],
         plate=plate,
-        plate_radius=plate_radius,
-        has_skirts=retention is not None and retention.type != "tie_rods",
-        skirt_radius=skirt_radius,
-        skirt_length=skirt_length,
-        skirt_wall=skirt_wall,
+        fit=fit,
+        has_skirts=joint is not None and joint.skirts,
         barrel_length=barrel_length,
         eye_offset=eye_offset,
         pin_diameter=pin,
@@ -121,13 +119,26 @@ def derive(v: Values, design: Design) -> Geometry:
     )
 
 
+def end_at(design: Design, sizes: Sizes, g: Geometry) -> End:
+    """The end of the barrel as its joint sees it."""
+    return end_of(
+        design,
+        sizes,
+        inner_radius=g.inner_radius,
+        outer_radius=g.outer_radius,
+        thicknesses=g.thicknesses,
+        barrel_length=g.barrel_length,
+        plate=g.plate,
+    )
+
+
 def lands(geometry: Geometry, thread_radius: Array) -> dict[str, Array]:
     """Walls that must not vanish: every one is a constraint of the optimiser."""
     g = geometry
     piston_length, piston_count, piston_depth = taken(g.piston_grooves)
     head_length, head_count, head_depth = taken(g.rod_grooves)
     bore = {"geometry_rod_bore": g.rod_inner_diameter} if g.rod_thicknesses else {}
-    between = g.barrel_length - 2 * g.skirt_length
+    between = g.barrel_length - 2 * g.fit.length
     skirts = {"geometry_skirts": between} if g.has_skirts else {}
     return (
         bore

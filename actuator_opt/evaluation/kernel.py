@@ -29,7 +29,6 @@ from . import (
     springs,
     state,
     strength,
-    threads,
     weight,
 )
 from . import geometry as geometry_module
@@ -101,6 +100,7 @@ class Pass:
     wall: Wall
     rings: tuple[Ring, ...]
     rod: Rod
+    held: strength.Held | None
     beam: Beam
     springs: springs.Springs
     motion: motion.Motion
@@ -150,6 +150,7 @@ class Statics:
 
     base: Base
     rod: Rod
+    held: strength.Held | None
     mass_parts: dict[str, Array]
     breakaway: Array
     branches: dict[circuit.Chamber, circuit.Branch]
@@ -177,7 +178,7 @@ def statics(subject: Subject, v: Values, out: Computed, implicit: Implicit = IMP
     net = _forces(g, case_state, friction, out)
     joint.compute(design, case_state.joint, case_state.positions, net, out)
     rod = rods.derive(v, design, stock, g)
-    parts = weight.parts(v, design, g, rod)
+    parts = weight.parts(v, design, stock, g, rod)
     out.put("mass", sum(parts.values()))
     out.put("mass_oil", weight.oil(v, design, g))
     branches = circuit.branches(v, design, case_state)
@@ -188,28 +189,26 @@ def statics(subject: Subject, v: Values, out: Computed, implicit: Implicit = IMP
     beam = beam_module.derive(
         v, design, g, case_state, barrel, rod, parts, critical_load=implicit.critical_load
     )
-    strength.compute(v, design, stock, g, case_state, barrel, rod, beam, out)
+    held = strength.held(v, design, stock, g, barrel)
+    strength.compute(v, design, stock, g, case_state, barrel, rod, beam, held, out)
     stop = joint.at_stop(case_state.asked, case_state.push)
     stop = replace(stop, mass=_moving(stop.mass, parts))
-    duty.compute(v, design, stock, g, case_state, barrel, rod, stop, net, out)
+    duty.compute(v, design, stock, g, case_state, barrel, rod, held, stop, net, out)
     thread = v["rod.thread.diameter"] if design.rod.thread is not None else g.rod_diameter
     for name, value in geometry_module.lands(g, thread / 2).items():
         out.put(name, value)
-    for name, value in threads.lands(v, design, g).items():
-        out.put(name, value)
+    strength.own(held, out)
     if not g.rod_thicknesses:
         out.skip("geometry_rod_bore", "the rod has no layers")
     if not g.has_skirts:
         out.skip("geometry_skirts", "the ends have no skirts")
-    if not threads.screwed(design):
-        for name in (*threads.LANDS, threads.CREST):
-            out.skip(name, "the caps are not screwed on")
     _manufacture(v, subject, out)
     out.put("barrel_length", g.barrel_length)
     out.put("closed_length", g.closed_length)
     return Statics(
         base=found,
         rod=rod,
+        held=held,
         mass_parts=parts,
         breakaway=friction.breakaway,
         branches=branches,
@@ -249,6 +248,7 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
         wall=s.base.wall,
         rings=s.base.rings,
         rod=s.rod,
+        held=s.held,
         beam=s.beam,
         springs=s.springs,
         motion=linear,

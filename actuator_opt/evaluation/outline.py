@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin
 from typing import Literal, TypeAlias
 
 from ..design.material import Material
 from ..design.model import Design
-from .geometry import Geometry
+from ..joints.joint import Polygon, Span, rectangle
+from .geometry import Geometry, end_at
 from .grooves import Groove, taken
 from .result import Outline
+from .retention import Stated, end_of, joint_of
 from .rods import end_material
 
-_Polygon: TypeAlias = tuple[tuple[float, float], ...]
-_Part: TypeAlias = tuple[str, str, list[_Polygon]]
-"""Part, material, polygons."""
+_Part: TypeAlias = tuple[str, str, list[Polygon], int]
+"""Part, material, polygons, and of round bars how many."""
 
 _Kind: TypeAlias = Literal["metal", "composite", "polymer", "seal", "oil"]
-
-
-def _rectangle(x0: float, x1: float, r0: float, r1: float) -> _Polygon:
-    return ((x0, r0), (x1, r0), (x1, r1), (x0, r1))
 
 
 def _grooves(
@@ -47,7 +44,7 @@ def _grooved(
     counterface: float,
     *,
     outside: bool,
-) -> _Polygon:
+) -> Polygon:
     """A ring with rectangular grooves cut from outside or from inside.
 
     A groove is as deep as its gland, from the counterface on.
@@ -63,14 +60,14 @@ def _grooved(
     return (*edge, (x1, other), (x0, other))
 
 
-def _eye(centre: float, pin: float, side: int) -> list[_Polygon]:
+def _eye(centre: float, pin: float, side: int) -> list[Polygon]:
     """Half of an eye seen from the side: lug of radius `pin` around the pin hole, and its neck."""
     angles = [pi * k / 24 for k in range(25)]
     rim = [(centre + pin * cos(a), pin * sin(a)) for a in angles]
     hole = [(centre + pin / 2 * cos(a), pin / 2 * sin(a)) for a in reversed(angles)]
     foot = 0.75**0.5 * pin  # where a neck of this diameter meets the rim
     neck = sorted((centre + side * foot, centre + side * 2 * pin))
-    return [(*rim, *hole), _rectangle(neck[0], neck[1], 0.0, pin / 2)]
+    return [(*rim, *hole), rectangle(neck[0], neck[1], 0.0, pin / 2)]
 
 
 def _kind(material: Material) -> _Kind:
@@ -112,51 +109,46 @@ def _stations(g: Geometry) -> _Stations:
 
 
 def _barrel(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
-    radius, held = at.bore, design.retention
-    thread = held.thread if held is not None and held.type == "thread" else None
-    stated = thread is not None and thread.diameter is not None
+    radius, turned = at.bore, float(g.fit.radius)
     for i, (ply, thickness) in enumerate(zip(design.barrel.layup, g.thicknesses, strict=True)):
         outer = radius + float(thickness)
-        shape = _rectangle(at.start, at.end, radius, outer)
-        if stated and i == len(g.thicknesses) - 1 and float(g.skirt_radius) < outer:
-            shape = _turned_down(shape, float(g.skirt_radius), float(g.skirt_length))
-        yield f"layup[{i}]", ply.material, [shape]
+        shape = rectangle(at.start, at.end, radius, outer)
+        if i == len(g.thicknesses) - 1 and turned < min(outer, float(g.outer_radius)):
+            shape = _turned_down(shape, turned, float(g.fit.length))
+        yield f"layup[{i}]", ply.material, [shape], 0
         radius = outer
 
 
-def _turned_down(shape: _Polygon, radius: float, length: float) -> _Polygon:
-    """A ring whose outside is smaller at both ends, for the thread."""
+def _turned_down(shape: Polygon, radius: float, length: float) -> Polygon:
+    """A ring whose outside is smaller at both ends, under the skirts."""
     (x0, r0), _, (x1, r1), _ = shape
     left, right = x0 + length, x1 - length
     ends = ((x1, radius), (right, radius), (right, r1), (left, r1), (left, radius), (x0, radius))
     return ((x0, r0), (x1, r0), *ends)
 
 
-def _caps(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
-    plate, radius = float(g.plate), float(g.plate_radius)
-    polygons = [
-        _rectangle(at.face, at.start, 0.0, radius),
-        _rectangle(at.end, at.end + plate, at.hole, radius),
+def _ends(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
+    """Caps, with what their joint adds to them, and what else holds them."""
+    plate, radius = float(g.plate), float(g.fit.plate_radius)
+    caps = [
+        rectangle(at.face, at.start, 0.0, radius),
+        rectangle(at.end, at.end + plate, at.hole, radius),
     ]
-    length, inner = float(g.skirt_length), float(g.skirt_radius)
-    outer = inner + float(g.skirt_wall)
-    if length > 0:
-        polygons += [
-            _rectangle(at.start, at.start + length, inner, outer),
-            _rectangle(at.end - length, at.end, inner, outer),
-        ]
-    yield "caps", design.caps.material, polygons
-
-
-def _tie_rods(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
-    """One tie rod in the plane of the section, between the outer faces of both plates."""
-    retention = design.retention
-    if retention is None or retention.type != "tie_rods" or retention.thread is None:
-        return
-    assert retention.material is not None
-    low, size = float(g.outer_radius), (float(g.plate_radius) - float(g.outer_radius)) / 2
-    shape = _rectangle(at.face, at.end + float(g.plate), low + size / 2, low + 3 * size / 2)
-    yield "tie rods", retention.material, [shape]
+    others: dict[tuple[str, str, int], list[Polygon]] = {}
+    joint = joint_of(design)
+    if joint is not None and design.retention is not None:
+        end = end_at(design, Stated(design.retention), g)
+        face, back = at.face, at.end + plate
+        for span in (Span(at.start, 1, face, back), Span(at.end, -1, back, face)):
+            for piece in joint.outline(end, g.fit, span):
+                if piece.part == "caps":
+                    caps.append(piece.shape)
+                else:
+                    key = (piece.part, piece.material, piece.bars)
+                    others.setdefault(key, []).append(piece.shape)
+    yield "caps", design.caps.material, caps, 0
+    for (part, material, bars), shapes in others.items():
+        yield part, material, shapes, bars
 
 
 def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
@@ -164,8 +156,8 @@ def _inside(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     radius = at.bore - float(g.piston_clearance)
     piston = _grooved(at.start, at.piston_end, 0.0, radius, g.piston_grooves, at.bore, outside=True)
     plug = _grooved(at.head, at.end, at.hole, at.bore, g.rod_grooves, at.rod, outside=False)
-    yield "piston", design.piston.material, [piston]
-    yield "glands", design.head.material, [plug]
+    yield "piston", design.piston.material, [piston], 0
+    yield "glands", design.head.material, [plug], 0
     yield from _rod(design, g, at)
     yield from _rings(at.start, float(g.piston_length), g.piston_grooves, at.bore, -1)
     yield from _rings(at.head, float(g.head_length), g.rod_grooves, at.rod, 1)
@@ -175,13 +167,14 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     """The rod: a bar or tube, or its layers with the fittings inside both ends."""
     bore = float(g.rod_inner_diameter) / 2
     if not design.rod.layup:
-        yield "rod", design.rod.material, [_rectangle(at.piston_end, at.tip, bore, at.rod)]
+        bar = rectangle(at.piston_end, at.tip, bore, at.rod)
+        yield "rod", design.rod.material, [bar], 0
         return
     radius = bore
     for i, (ply, thickness) in enumerate(zip(design.rod.layup, g.rod_thicknesses, strict=True)):
         outer = radius + float(thickness)
-        shape = _rectangle(at.piston_end, at.tip, radius, outer)
-        yield f"rod.layup[{i}]", ply.material, [shape]
+        shape = rectangle(at.piston_end, at.tip, radius, outer)
+        yield f"rod.layup[{i}]", ply.material, [shape], 0
         radius = outer
     fitting = design.rod.fitting
     if fitting is not None:
@@ -190,9 +183,10 @@ def _rod(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
             "rod.fitting",
             end_material(design),
             [
-                _rectangle(at.piston_end, at.piston_end + fitting.length, hole, bore),
-                _rectangle(at.tip - fitting.length, at.tip, hole, bore),
+                rectangle(at.piston_end, at.piston_end + fitting.length, hole, bore),
+                rectangle(at.tip - fitting.length, at.tip, hole, bore),
             ],
+            0,
         )
 
 
@@ -200,21 +194,21 @@ def _rings(
     start: float, length: float, grooves: Sequence[Groove], counterface: float, side: int
 ) -> Iterator[_Part]:
     """What lies in every groove: round rings as wide as their section, others fill it."""
-    shapes: dict[tuple[str, str], list[_Polygon]] = {}
+    shapes: dict[tuple[str, str], list[Polygon]] = {}
     for groove, left, right in _grooves(start, length, grooves):
         middle, half = (left + right) / 2, min(float(groove.ring_width), right - left) / 2
         near, far = counterface, counterface + side * float(groove.gland_depth)
-        shape = _rectangle(middle - half, middle + half, min(near, far), max(near, far))
+        shape = rectangle(middle - half, middle + half, min(near, far), max(near, far))
         shapes.setdefault((groove.place, groove.material), []).append(shape)
     for (place, material), polygons in shapes.items():
-        yield place, material, polygons
+        yield place, material, polygons, 0
 
 
 def _eyes(design: Design, g: Geometry, at: _Stations) -> Iterator[_Part]:
     if design.clevis is not None:
         pin, name = float(g.pin_diameter), design.clevis.material
-        yield "cap eye", name, _eye(0.0, pin, 1)
-        yield "rod eye", name, _eye(at.tip + float(g.eye_offset), pin, -1)
+        yield "cap eye", name, _eye(0.0, pin, 1), 0
+        yield "rod eye", name, _eye(at.tip + float(g.eye_offset), pin, -1), 0
 
 
 def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tuple[Outline, ...]:
@@ -223,16 +217,16 @@ def outlines(design: Design, materials: dict[str, Material], g: Geometry) -> tup
     oil = Outline(
         "oil",
         design.fluid.material,
-        (_rectangle(at.piston_end, at.head, at.rod, at.bore),),
+        (rectangle(at.piston_end, at.head, at.rod, at.bore),),
         "oil",
     )
-    groups = (_barrel, _caps, _tie_rods, _inside, _eyes)
+    groups = (_barrel, _ends, _inside, _eyes)
     parts = [part for group in groups for part in group(design, g, at)]
     return (
         oil,
         *(
-            Outline(part, name, tuple(polygons), _kind(materials[name]))
-            for part, name, polygons in parts
+            Outline(part, name, tuple(polygons), _kind(materials[name]), bars)
+            for part, name, polygons, bars in parts
             if polygons
         ),
     )
@@ -245,7 +239,7 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "rod": g.rod_diameter,
         "rod_inner": g.rod_inner_diameter,
         "barrel_outer_diameter": 2 * g.outer_radius,
-        "plate_outer": 2 * g.plate_radius,
+        "plate_outer": 2 * g.fit.plate_radius,
         "stroke": g.stroke,
         "piston_length": g.piston_length,
         "head_length": g.head_length,
@@ -259,3 +253,20 @@ def lengths(design: Design, g: Geometry) -> dict[str, float]:
         "extension": g.rod_extension,
     }
     return {name: float(value) for name, value in values.items()}
+
+
+def notes(design: Design, lengths: Mapping[str, float]) -> list[str]:
+    """Sentences on what the section does not show of the joint; `lengths` of the same design."""
+    joint = joint_of(design)
+    if joint is None or design.retention is None:
+        return []
+    end = end_of(
+        design,
+        Stated(design.retention),
+        inner_radius=lengths["bore"] / 2,
+        outer_radius=lengths["barrel_outer_diameter"] / 2,
+        thicknesses=[ply.thickness for ply in design.barrel.layup],
+        barrel_length=lengths["barrel_length"],
+        plate=lengths["plate"],
+    )
+    return list(joint.notes(end))

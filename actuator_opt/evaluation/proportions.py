@@ -14,11 +14,13 @@ from math import inf, pi
 import numpy as np
 
 from ..design.model import Design
+from ..joints.joint import End, Joint
+from ..joints.kinds import JOINTS
 from ..numeric import Array
 from . import geometry
-from .geometry import Geometry
+from .geometry import Geometry, end_at
 from .kernel import Subject
-from .threads import screwed
+from .retention import Numbers, joint_of
 from .values import Values
 
 Ratio = Callable[[Values, Design, Geometry], Array | None]
@@ -111,8 +113,11 @@ def _skirt(of: Callable[[Geometry], Array]) -> Ratio:
     return ratio
 
 
-def _turns(v: Values, design: Design, g: Geometry) -> Array | None:
-    return g.skirt_length / v["retention.thread.pitch"] if screwed(design) else None
+def _joined(joint: Joint, number: Callable[[End], Array]) -> Ratio:
+    def ratio(v: Values, design: Design, g: Geometry) -> Array | None:
+        return number(end_at(design, Numbers(v), g)) if joint_of(design) is joint else None
+
+    return ratio
 
 
 def _acceleration(v: Values, design: Design, g: Geometry) -> Array | None:
@@ -231,14 +236,18 @@ TABLE: tuple[Proportion, ...] = (
         "choice; ISO 3601-2 grooves", _gland("rod"),
     ),
     Proportion(
-        "retention.wall", _BORE, 0.01, 0.7, _WIDE, _skirt(lambda g: g.skirt_wall / g.bore),
+        "retention.wall", _BORE, 0.01, 0.7, _WIDE, _skirt(lambda g: g.fit.wall / g.bore),
     ),
     Proportion(
-        "retention.length", _BORE, 0.1, 4.0, _WIDE, _skirt(lambda g: g.skirt_length / g.bore),
+        "retention.length", _BORE, 0.1, 4.0, _WIDE, _skirt(lambda g: g.fit.length / g.bore),
     ),
-    Proportion(
-        "retention.length", "turns of the thread", 5.0, 60.0,
-        "choice: start and run-out take two, the first turns carry most", _turns,
+    *(
+        Proportion(
+            usual.path, usual.what, usual.least, usual.most, usual.source,
+            _joined(joint, usual.number),
+        )
+        for joint in JOINTS.values()
+        for usual in joint.usual
     ),
     Proportion(
         "load.mass", "m/s^2, what the supply pressure can give the load", 0.05, inf, _WIDE,

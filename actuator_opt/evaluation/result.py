@@ -149,6 +149,8 @@ class Outline:
     material: str
     polygons: tuple[tuple[tuple[float, float], ...], ...]
     kind: Literal["metal", "composite", "polymer", "seal", "oil"]
+    bars: int = 0
+    """Of round bars, how many stand about the axis; 0: a turned part."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from ..joints.joint import Fit
 from ..numeric import Array
 from . import geometry as geometry_module
 from . import outline
@@ -177,9 +178,21 @@ def _changed(geometry: Geometry, change: _Change) -> Geometry:
         value = getattr(geometry, field.name)
         if isinstance(value, tuple):
             values[field.name] = tuple(_changed_one(one, change) for one in value)
+        elif isinstance(value, Fit):
+            values[field.name] = _changed_fit(value, change)
         else:
             values[field.name] = value if isinstance(value, bool) else change(value)
     return Geometry(**values)
+
+
+def _changed_fit(fit: Fit, change: _Change) -> Fit:
+    return Fit(
+        plate_radius=change(fit.plate_radius),
+        radius=change(fit.radius),
+        length=change(fit.length),
+        wall=change(fit.wall),
+        own=tuple(change(one) for one in fit.own),
+    )
 
 
 def _changed_one(value: Groove | Array, change: _Change) -> Groove | Array:

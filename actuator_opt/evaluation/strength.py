@@ -7,17 +7,22 @@ tension), and what the end stop puts through barrel and retention.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import pi, sqrt
+from dataclasses import dataclass
+from math import sqrt
 
 from ..design.model import Design
+from ..joints.joint import Joint, Loaded, Strength
+from ..joints.kinds import JOINTS
+from ..joints.overlap import Overlap
 from ..models import end_plate, retention, rod
 from ..numeric import Array, real, where
-from . import bonds, rod_strength, threads
+from . import bonds, rod_strength
 from .allow import Stock
 from .barrel import Wall, load_path
 from .beam import Beam
-from .geometry import Geometry
+from .geometry import Geometry, end_at
 from .grooves import Groove, taken
+from .retention import Numbers, clamped, joint_of
 from .rods import Rod
 from .rows import Computed
 from .state import State, side_reactions
@@ -25,6 +30,34 @@ from .values import Values
 
 HOLE = 2.0
 """Stress at the edge of a small central hole over that of the solid plate [Timoshenko1959]."""
+
+
+NO_RETENTION = "no retention stated: add retention"
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """The joint of caps and head under load."""
+
+    joint: Joint
+    loaded: Loaded
+
+
+def held(v: Values, design: Design, stock: Stock, g: Geometry, wall: Wall) -> Held | None:
+    """The joint of a design under the largest force; None where it states no retention."""
+    joint = joint_of(design)
+    if joint is None:
+        return None
+    loaded = Loaded(
+        end=end_at(design, Numbers(v), g),
+        materials=stock,
+        force=v["supply.pressure"] * load_path.largest_area(design, g),
+        paths=wall.path.per_pressure,
+        line_stiffness=wall.axial_line_stiffness,
+        expansion=None if wall.expansion is None else wall.expansion[0],
+        clamp=wall.path.clamp,
+    )
+    return Held(joint, loaded)
 
 
 def compute(
@@ -36,32 +69,34 @@ def compute(
     wall: Wall,
     section: Rod,
     beam: Beam,
+    held: Held | None,
     out: Computed,
 ) -> None:
     """Every strength metric."""
     supply = v["supply.pressure"]
     push, pull = supply * g.area_a, supply * g.area_b
-    through = supply * load_path.largest_area(design, g)
-    cut = threads.judged(v, design, stock, g)
     yields, bursts = wall.yield_pressure, wall.burst_pressure
-    if isinstance(cut, threads.Thread):
-        under = threads.barrel_pressures(stock, cut, wall.path.per_pressure)
-        yields, bursts = yields | under[0], bursts | under[1]
+    if held is not None:
+        beside = held.joint.wall(held.loaded)
+        yields, bursts = {**yields, **beside.yields}, {**bursts, **beside.bursts}
     _pressure_factors(v, wall, supply, yields, bursts, out)
     parts = {place: p / supply for place, p in yields.items()}
     parts |= rod_strength.yields(stock, design, g, state, section, beam)
-    parts |= _metal_ends(v, stock, design, g, section, cut, through, push)
+    parts |= {} if held is None else held.joint.yields(held.loaded)
+    parts |= _fitting_yield(v, stock, design, section, push)
     out.put("yield_factor", parts)
     out.put("buckling_factor", beam.critical / push)
     rod_strength.compute(design, section, beam, supply, push, pull, out)
     _rod_end(v, stock, design, section, pull, out)
-    laps = {
-        "caps": bonds.caps(stock, design, g, wall),
-        "rod fittings": bonds.fittings(v, stock, design, section),
+    found = NO_RETENTION if held is None else held.joint.strength(held.loaded)
+    _retention(found, out)
+    fittings = bonds.fittings(v, stock, design, section)
+    _fittings(stock, fittings, push, out)
+    thermal = {
+        "caps": found if isinstance(found, str) else found.thermal,
+        "rod fittings": fittings if isinstance(fittings, str) else fittings.thermal(stock),
     }
-    _retention(v, stock, design, wall, laps["caps"], cut, through, out)
-    _fittings(stock, laps["rod fittings"], push, out)
-    bonds.thermal(v, stock, design, laps, out)
+    bonds.thermal(v, design, thermal, out)
     _caps(stock, design, g, supply, out)
     _pins(v, stock, design, push, out)
     _guides(stock, design, g, state, out)
@@ -98,27 +133,14 @@ def _pressure_factors(
         out.skip("proof_factor", why)
 
 
-def _metal_ends(
-    v: Values,
-    stock: Stock,
-    design: Design,
-    g: Geometry,
-    section: Rod,
-    cut: threads.Thread | str,
-    through: Array,
-    push: Array,
+def _fitting_yield(
+    v: Values, stock: Stock, design: Design, section: Rod, push: Array
 ) -> dict[str, Array]:
-    """Yield over working stress of what hangs on the ends: the caps' skirts, rod fittings."""
-    factors = {}
-    strength = stock.allowable(design.caps.material, "yield_strength")
-    if isinstance(cut, threads.Thread):
-        factors["skirt under the thread"] = strength * cut.skirt_section / through
-    elif strength is not None and design.retention is not None and not load_path.tied(design):
-        factors["cap skirt"] = strength * (2 * pi * g.outer_radius * g.skirt_wall) / through
+    """Yield over working stress of the rod's fittings."""
     strength = stock.allowable(section.end_material, "yield_strength")
-    if strength is not None and design.rod.fitting is not None:
-        factors["rod fitting"] = strength * bonds.fitting_area(v, design, section) / push
-    return factors
+    if strength is None or design.rod.fitting is None:
+        return {}
+    return {"rod fitting": strength * bonds.fitting_area(v, design, section) / push}
 
 
 def _rod_end(
@@ -139,79 +161,39 @@ def _rod_end(
     out.put("thread_factor", strength / stress)
 
 
-def _retention(
-    v: Values,
-    stock: Stock,
-    design: Design,
-    wall: Wall,
-    lap: bonds.Lap | str,
-    cut: threads.Thread | str,
-    load: Array,
-    out: Computed,
-) -> None:
+def _retention(found: Strength | str, out: Computed) -> None:
     """What holds caps and head: elastic limit and breaking load over the largest axial force."""
-    held = design.retention
-    found: tuple[dict[str, Array], Array | dict[str, Array]] | str
-    if held is None:
-        found = "no retention stated: add retention"
-    elif held.type == "bond":
-        found = (
-            lap
-            if isinstance(lap, str)
-            else (bonds.edge_factors(stock, lap, load), bonds.mean_factor(stock, lap, load))
-        )
-    elif held.type == "thread":
-        found = (
-            cut
-            if isinstance(cut, str)
-            else (threads.factors(stock, cut, load), threads.burst_factors(stock, cut, load))
-        )
-    else:
-        found = _tied(v, stock, design, wall)
     if isinstance(found, str):
         out.skip("retention_factor", found)
         out.skip("retention_burst_factor", found)
     else:
-        out.put("retention_factor", found[0])
-        out.put("retention_burst_factor", found[1])
-    if wall.path.tie_rods is None:
-        out.skip("joint_factor", "no tie rods")
-    else:
-        out.put("joint_factor", wall.path.tie_rods.closed)
+        out.put("retention_factor", dict(found.working))
+        out.put("retention_burst_factor", dict(found.burst))
 
 
-def _fittings(stock: Stock, lap: bonds.Lap | str, push: Array, out: Computed) -> None:
+def own(held: Held | None, out: Computed) -> None:
+    """The joint's own metrics; those of other joints have a reason."""
+    found = {} if held is None else held.joint.own(held.loaded)
+    for joint in JOINTS.values():
+        for name, absent in joint.metrics.items():
+            if name in found:
+                out.put(name, found[name])
+            else:
+                out.skip(name, absent)
+
+
+def _fittings(stock: Stock, bond: Overlap | str, push: Array, out: Computed) -> None:
     """Bond of the rod's fittings under the push, which is larger than any pull."""
-    if isinstance(lap, str):
-        out.skip("fitting_factor", lap)
+    if isinstance(bond, str):
+        out.skip("fitting_factor", bond)
     else:
-        out.put("fitting_factor", bonds.edge_factors(stock, lap, push))
-
-
-def _tied(
-    v: Values, stock: Stock, design: Design, wall: Wall
-) -> tuple[dict[str, Array], Array] | str:
-    """Yield and ultimate strength of the tie rods over their stress; or why not."""
-    held = design.retention
-    name = None if held is None else held.material
-    strength = None if name is None else stock.allowable(name, "yield_strength")
-    ultimate = None if name is None else stock.allowable(name, "ultimate_strength")
-    if held is None or held.thread is None or strength is None or ultimate is None:
-        return "tie rods need a thread and a material with yield and ultimate strength"
-    assert wall.path.tie_rods is not None
-    stress = retention.tie_rod_stress(
-        force=wall.path.tie_rods.largest,
-        count=v["retention.count"],
-        diameter=v["retention.thread.diameter"],
-        pitch=v["retention.thread.pitch"],
-    )
-    return {"tie rods": strength / stress}, ultimate / stress
+        out.put("fitting_factor", bond.edge_factors(stock, push))
 
 
 def _caps(stock: Stock, design: Design, g: Geometry, supply: Array, out: Computed) -> None:
     """Bending of the end plates; the head's plate and plug bend as one turned part.
 
-    The cap hangs on the skirt (or the tie rods) while the piston stands at the far end; on a
+    The cap hangs on its joint while the piston stands at the far end; on a
     clevis its neck takes the push, pressure bending the plate around it, and the pull, which
     comes in at the skirt.
     """
@@ -221,9 +203,9 @@ def _caps(stock: Stock, design: Design, g: Geometry, supply: Array, out: Compute
     if strength is None or ratio is None:
         out.skip("cap_factor", f"{name} states no yield strength or Poisson's ratio")
         return
-    support = (g.plate_radius + g.skirt_radius) / 2
+    support = (g.fit.plate_radius + g.fit.radius) / 2
     stresses: dict[str, Array] = {}
-    if design.cylinder.end_stop == "internal" or load_path.tied(design) or design.clevis is None:
+    if design.cylinder.end_stop == "internal" or clamped(design) or design.clevis is None:
         stresses["cap, hung on its skirt"] = end_plate.hung_plate_stress(
             pressure=supply,
             loaded_radius=g.inner_radius,

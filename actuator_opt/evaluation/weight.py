@@ -5,8 +5,10 @@ from __future__ import annotations
 from ..design.model import Design
 from ..models import mass
 from ..numeric import Array
+from .allow import Stock
 from .bonds import fitting_hole
-from .geometry import Geometry
+from .geometry import Geometry, end_at
+from .retention import Numbers, joint_of
 from .rods import Rod
 from .values import Values
 
@@ -21,11 +23,7 @@ def _barrel(v: Values, design: Design, g: Geometry) -> Array:
         area = mass.layer_area(inner_radius=radius, thickness=thickness)
         total = total + v[f"materials.{ply.material}.density"] * area
         radius = radius + thickness
-    if g.skirt_radius is g.outer_radius:
-        return total * g.barrel_length
-    outermost = v[f"materials.{design.barrel.layup[-1].material}.density"]
-    turned = mass.layer_area(inner_radius=g.skirt_radius, thickness=g.outer_radius - g.skirt_radius)
-    return total * g.barrel_length - outermost * turned * (2 * g.skirt_length)
+    return total * g.barrel_length
 
 
 def _piston(v: Values, design: Design, g: Geometry) -> Array:
@@ -43,12 +41,10 @@ def _piston(v: Values, design: Design, g: Geometry) -> Array:
 
 
 def _plate(density: Array, g: Geometry, hole: Array) -> Array:
-    """One end plate with its skirt over the barrel."""
-    plate = mass.tube_mass(
-        density=density, inner_diameter=hole, outer_diameter=2 * g.plate_radius, length=g.plate
+    """One end plate."""
+    return mass.tube_mass(
+        density=density, inner_diameter=hole, outer_diameter=2 * g.fit.plate_radius, length=g.plate
     )
-    skirt = mass.layer_area(inner_radius=g.skirt_radius, thickness=g.skirt_wall)
-    return plate + density * skirt * g.skirt_length
 
 
 def _gland(v: Values, design: Design, g: Geometry) -> Array:
@@ -104,40 +100,36 @@ def _rod_ends(v: Values, design: Design, rod: Rod) -> Array:
     return total + stud + 2 * mass.disc_mass(density=density, diameter=hole, thickness=diameter)
 
 
-def _fastening(v: Values, design: Design, g: Geometry, rod: Rod) -> Array:
-    """Ends of the rod, and tie rods."""
-    total = _rod_ends(v, design, rod)
-    retention = design.retention
-    if retention is not None and retention.type == "tie_rods":
-        total = total + mass.tie_rod_mass(
-            density=v[f"materials.{retention.material}.density"],
-            diameter=v["retention.thread.diameter"],
-            length=g.barrel_length + 2 * g.plate,
-            count=v["retention.count"],
-        )
-    return total
-
-
-def parts(v: Values, design: Design, geometry: Geometry, rod: Rod) -> dict[str, Array]:
+def parts(
+    v: Values, design: Design, stock: Stock, geometry: Geometry, rod: Rod
+) -> dict[str, Array]:
     """Mass of every dry part, kg."""
     g = geometry
     caps = v[f"materials.{design.caps.material}.density"]
-    hole = g.rod_diameter + 2 * g.head_clearance
     clevises: Array = 0.0
     if design.clevis is not None:
         density = v[f"materials.{design.clevis.material}.density"]
         clevises = 2 * density * mass.eye_volume(pin_diameter=g.pin_diameter)
-    values = (
-        _barrel(v, design, g),
-        rod.mass_per_length * g.rod_length,
-        _piston(v, design, g),
-        _plate(caps, g, 0.0) + _plate(caps, g, hole),
-        _gland(v, design, g),
-        _seals(v, g),
-        _fastening(v, design, g, rod),
-        clevises,
-    )
-    return dict(zip(PARTS, values, strict=True))
+    found = {
+        "barrel": _barrel(v, design, g),
+        "rod": rod.mass_per_length * g.rod_length,
+        "piston": _piston(v, design, g),
+        "cap": _plate(caps, g, 0.0),
+        "head": _plate(caps, g, g.rod_diameter + 2 * g.head_clearance),
+        "glands": _gland(v, design, g),
+        "seals": _seals(v, g),
+        "fastening": _rod_ends(v, design, rod),
+        "clevises": clevises,
+    }
+    joint = joint_of(design)
+    joined = {} if joint is None else joint.mass(end_at(design, Numbers(v), g), stock)
+    for part, added in joined.items():
+        if part == "caps":
+            found["cap"], found["head"] = found["cap"] + added, found["head"] + added
+        else:
+            found[part] = found[part] + 2 * added
+    found["caps"] = found.pop("cap") + found.pop("head")
+    return {part: found[part] for part in PARTS}
 
 
 def oil(v: Values, design: Design, geometry: Geometry, position: Array = 0.0) -> Array:

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from math import cos, radians, sin, sqrt, tan
 from typing import Any, TypeAlias
 
+from ..evaluation.outline import notes
 from ..evaluation.result import Evaluation, Outline
 from ..extras import library
 from . import dimensions
@@ -83,8 +84,7 @@ def _cut(evaluation: Evaluation, outline: Outline) -> list[list[_Corner]]:
         lengths = evaluation.lengths
         return _eye(1000 * lengths[at], 1000 * lengths["pin"], side)
     lines = [half for profile in _profiles(outline) for half in _halves(profile)]
-    retention = evaluation.design.retention
-    if outline.part == "tie rods" and retention is not None and retention.count % 2:
+    if outline.bars % 2:
         return [line for line in lines if line[0][1] > 0]  # none stands opposite the first
     return lines
 
@@ -168,9 +168,7 @@ def _words(
         "Not drawn, for the models have no shape of them: threads, ports, fillets, chamfers.",
         "Rings fill what they take of their grooves; their own sections are not drawn.",
     ]
-    if any(one.part == "tie rods" for one in outlines):
-        lines.append("Tie rods pass the plates; their holes are not drawn.")
-    lines += _thread(evaluation)
+    lines += notes(evaluation.design, evaluation.lengths)
     x, y = corner
     for index, words in enumerate(lines):
         if words:
@@ -178,16 +176,6 @@ def _words(
             attributes = {"layer": "text", "height": paper.letter, "style": "Standard"}
             place = (x, y - index * 1.7 * paper.letter)
             space.add_text(text, dxfattribs=attributes).set_placement(place)
-
-
-def _thread(evaluation: Evaluation) -> list[str]:
-    """Size of the thread between barrel and caps, which is not drawn."""
-    held = evaluation.design.retention
-    if held is None or held.type != "thread" or held.thread is None:
-        return []
-    size = held.thread.diameter or evaluation.lengths["barrel_outer_diameter"]
-    sizes = f"M{1e3 * size:.5g} x {1e3 * held.thread.pitch:g}, {1e3 * held.length:.4g} long"
-    return [f"Thread of barrel and caps: {sizes}."]
 
 
 @contextmanager

@@ -23,7 +23,6 @@ _DIGITS = 9
 _NAMES = {
     "caps": ("cap, cap end", "cap, rod end"),
     "rod.fitting": ("rod.fitting, piston end", "rod.fitting, rod end"),
-    "tie rods": ("tie rod",),
 }
 """What the bodies of a part are called, from the cap end on; others have the part's name."""
 
@@ -177,18 +176,15 @@ def _fault(part: str) -> InputError:
     return InputError(Diagnostic(f"{part}: its section crosses itself or has no wall", remedy))
 
 
-def _tie_rods(evaluation: Evaluation, outline: Outline) -> Body:
+def _bars(outline: Outline) -> Body:
     """Round bars evenly spread about the axis, the first in the plane of the section."""
-    retention = evaluation.design.retention
-    assert retention is not None
     profile = tidy(millimetres(outline.polygons[0]))
-    count = round(retention.count)
     first, low = profile[0]
     last, high = max(profile)
     radius, ring = (high - low) / 2, (low + high) / 2
-    turns = [2 * pi * k / count for k in range(count)]
+    turns = [2 * pi * k / outline.bars for k in range(outline.bars)]
     return Body(
-        name=_NAMES[outline.part][0],
+        name=outline.part.removesuffix("s"),
         part=outline.part,
         material=outline.material,
         profile=((0.0, 0.0), (last - first, 0.0), (last - first, radius), (0.0, radius)),
@@ -219,8 +215,8 @@ def bodies(evaluation: Evaluation) -> list[Body]:
     """
     found: list[Body] = []
     for outline in evaluation.outlines:
-        if outline.part == "tie rods":
-            found.append(_tie_rods(evaluation, outline))
+        if outline.bars:
+            found.append(_bars(outline))
         elif outline.part not in NOT_TURNED:
             found += _bodies(outline)
     return found

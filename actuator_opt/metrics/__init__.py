@@ -1,6 +1,6 @@
 """What an evaluation computes: the table of metrics."""
 
 from .metric import MetricRow
-from .table import LEAST_METAL, METRICS, of_metric
+from .table import METRICS, of_metric
 
-__all__ = ["LEAST_METAL", "METRICS", "MetricRow", "of_metric"]
+__all__ = ["METRICS", "MetricRow", "of_metric"]

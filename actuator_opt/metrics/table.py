@@ -11,13 +11,11 @@ from collections.abc import Mapping
 from math import pi
 from types import MappingProxyType
 
+from ..joints.joint import LEAST_METAL, judged_on, models_at
+from ..joints.kinds import JOINTS
 from ..models.thread import LEAST_OVERLAP
 from ..quantities import Quantity
 from .metric import CRITERION, CheckLine, Least, MetricRow, fed_by, table
-
-LEAST_METAL = 1e-3
-"""Least wall beside or under a groove or thread, least rod wall, bore of a laminated rod and room
-between rod and bore (m): a choice for turned parts in this size range."""
 
 _LEAST_WALL = Least(LEAST_METAL, "choice: 1 mm least wall")
 
@@ -159,8 +157,8 @@ ROWS = table((
                           "choice: 1.5 on yield of every metal part"),
               by_wall={"layered": "yielding.yield_utilisation",
                        "thin_laminate": "yielding.yield_utilisation"},
-              at={"skirt under the thread": "rod.section_area",
-                  "rod": "beam_column.amplified_moment"}),
+              at={"rod": "beam_column.amplified_moment",
+                  **models_at(JOINTS.values(), "yield_factor")}),
     MetricRow("fatigue_factor", "S_f", "ratio", "", "fatigue strength over stress amplitude",
               worst="min", model="endurance.fatigue_factor", feeds=(),
               check=CheckLine("10.2", "fatigue strength")),
@@ -185,21 +183,13 @@ ROWS = table((
     MetricRow("retention_factor", "S_r", "ratio", "", "strength of cap retention over its load",
               worst="min", model="lap_joint.bond_edge_shear", feeds=(),
               check=CheckLine("4.1", "cap retention", 1.5,
-                          "choice: 1.5 on the elastic peak shear of a bond, "
-                          "on yield of threads or tie rods"),
-              at={"barrel thread": "thread.male_strip_area",
-                  "skirt thread": "thread.female_strip_area",
-                  "thread flanks": "thread.flank_area",
-                  "tie rods": "retention.tie_rod_stress"}),
+                          f"choice: 1.5 on {judged_on(JOINTS.values(), 0)}"),
+              at=models_at(JOINTS.values(), "retention_factor")),
     MetricRow("retention_burst_factor", "S_rb", "ratio", "",
               "ultimate strength of cap retention over its load", worst="min", model=None, feeds=(),
               check=CheckLine("4.2", "cap retention at burst pressure", 4.0,
-                          "as barrel burst: 4:1 on mean bond shear, "
-                          "rupture of threads and skirt, or of tie rods"),
-              at={"barrel thread": "thread.stripping_reductions",
-                  "skirt thread": "thread.stripping_reductions",
-                  "skirt under the thread": "rod.section_area",
-                  "skirt spread by the thread": "thread.spread_stress"}),
+                          f"as barrel burst: 4:1 on {judged_on(JOINTS.values(), 1)}"),
+              at=models_at(JOINTS.values(), "retention_burst_factor")),
     MetricRow("cap_factor", "S_c", "ratio", "", "yield over bending stress of the end caps",
               worst="min", model="end_plate.hub_plate_stress", feeds=(),
               check=CheckLine("4.3", "end plate bending", 1.5, "choice: 1.5 on yield"),

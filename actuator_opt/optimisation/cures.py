@@ -24,6 +24,7 @@ from ..design.variable import Variable
 from ..errors import InputError
 from ..evaluation import Subject, prepare
 from ..evaluation.build import names_of_materials
+from ..joints.kinds import JOINTS
 from ..numeric import STEP, Array
 from ..progress import tell
 from ..quantities import INPUTS, Quantity
@@ -66,9 +67,6 @@ SUBSTITUTES = {
     "adhesive": ("epoxy_structural",),
 }
 """Materials of the library tried in place of one of their kind: a choice, few and usual."""
-
-JOINTS = ("bond", "thread", "tie_rods")
-"""Joints of caps and head that are tried."""
 
 BACK_UP = "back_up_ptfe"
 """Material of a back-up ring where the design has none: the usual one, a choice."""
@@ -356,7 +354,7 @@ def _vocabulary(
                 for compound in SUBSTITUTES["seal"]:
                     yield f"{here}.compound", compound, {}
     if design.retention is not None and matters("retention."):
-        for joint in JOINTS:
+        for joint in JOINTS.names:
             yield "retention.type", joint, {}
     parts = ["rod", "piston", "head", "caps", "retention", "clevis"]
     parts += [f"barrel.layup[{i}]" for i in range(len(design.barrel.layup))]

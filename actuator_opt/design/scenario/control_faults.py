@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
+from ...errors import Fault
 from ..build import how_to_add
 from ..structure import child_at, entries
-from ..view import Fault, View, without_effect
+from ..view import View, without_effect
 from .components import LAWS, SUPPLIES, ControlLaw
 from .model import Control, Scenario
 from .shapes import SHAPES

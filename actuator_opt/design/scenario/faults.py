@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from ... import quantities
+from ...errors import Fault
 from ..build import how_to_add
 from ..kinds import position_at
 from ..model import Design
 from ..structure import entries
-from ..view import Fault, View, length_text, without_effect
+from ..view import View, length_text, without_effect
 from . import control_faults, signal_faults
 from .components import FRICTIONS, SUPPLIES
 from .model import Friction, Load, Scenario, Supply

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...errors import Diagnostic, InputError
+from ...errors import Diagnostic, Fault, InputError
 from ...metrics import METRICS
 from ...quantities import RESULTS, Quantity
 from ..build import check
@@ -18,7 +18,7 @@ from ..paths import resolve
 from ..reader import STDIN, TEXT, LoadedDesign, Override, Source, load, opened, read_design
 from ..section import Section
 from ..structure import entries
-from ..view import Fault, Materials
+from ..view import Materials
 from ..yaml_source import parse
 from .faults import cross_field, design_faults
 from .model import Scenario

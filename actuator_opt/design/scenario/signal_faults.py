@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 
 from ... import quantities
+from ...errors import Fault
 from ..build import how_to_add
 from ..section import Section
 from ..structure import Loc, entries
-from ..view import Fault, View, without_effect
+from ..view import View, without_effect
 from .model import FEWEST_SAMPLES, MOST_SAMPLES, SAMPLES, Scenario
 from .shapes import SHAPES
 from .signals import Part

@@ -97,11 +97,11 @@ class _Rest:
 
     def alone(self) -> _Rest:
         """Cooling from the cure only, before anything else is done to the wall."""
-        return replace(self, path=replace(self.path, tie_rods=None), autofrettage=None)
+        return replace(self, path=replace(self.path, clamp=None), autofrettage=None)
 
     def of(self, rows: list[int]) -> Stress | None:
         """Residual stress of some layers, (faces, layers, climates, 1, designs)."""
-        clamped = self.path.tie_rods is not None
+        clamped = self.path.clamp is not None
         if not clamped and self.autofrettage is None and not self.cured():
             return None
         change = np.stack([np.atleast_1d(state.change) for state in self.states])

@@ -8,15 +8,16 @@ proof pressure.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
 
 import numpy as np
 
 from ...design.model import Design
+from ...joints.joint import Clamp
 from ...models import barrel_ends
 from ...numeric import Array, maximum
 from ..allow import Stock
-from ..geometry import Geometry
+from ..geometry import Geometry, end_at
+from ..retention import Numbers, clamped, joint_of
 from ..state import State
 from ..values import Values
 
@@ -41,15 +42,6 @@ class Swelling:
 
 
 @dataclass(frozen=True, slots=True)
-class TieRods:
-    """Tie rods: preload and force of all at supply pressure [N]; preload over its loss at proof."""
-
-    preload: Array
-    largest: Array
-    closed: Array
-
-
-@dataclass(frozen=True, slots=True)
 class LoadPath:
     """Axial force in the wall.
 
@@ -61,13 +53,8 @@ class LoadPath:
     per_pressure: dict[str, Array]
     held: Array
     cases: Array
-    tie_rods: TieRods | None = None
+    clamp: Clamp | None = None
     share: Array = 1.0
-
-
-def tied(design: Design) -> bool:
-    """Whether tie rods hold the ends."""
-    return design.retention is not None and design.retention.type == "tie_rods"
 
 
 def largest_area(design: Design, g: Geometry) -> Array:
@@ -92,19 +79,17 @@ def derive(
     none = 0.0 * np.atleast_1d(np.asarray(g.area_a))
     name = STOP if design.cylinder.end_stop == "internal" else LARGEST
     worst = {name: none + largest_area(design, g)}
-    if not tied(design):
+    if not clamped(design):
         return LoadPath({NONE: none, **worst}, 0.0, cases)
     return _clamped(v, design, stock, g, state, swelling, worst, cases)
 
 
-def tie_rod_stiffness(v: Values, design: Design, stock: Stock, g: Geometry) -> Array:
-    """Axial stiffness of all tie rods, plate to plate."""
-    assert design.retention is not None
-    assert design.retention.material is not None
-    modulus = stock.get(design.retention.material, "youngs_modulus")
-    diameter = v["retention.thread.diameter"]
-    length = g.barrel_length + 2 * g.plate
-    return v["retention.count"] * modulus * pi * diameter * diameter / 4 / length
+def clamp_stiffness(v: Values, design: Design, stock: Stock, g: Geometry) -> Array:
+    """Axial stiffness of what clamps the barrel between both ends."""
+    joint = joint_of(design)
+    assert joint is not None
+    assert joint.stiffness is not None
+    return joint.stiffness(end_at(design, Numbers(v), g), stock)
 
 
 def _clamped(
@@ -123,7 +108,7 @@ def _clamped(
     """
     springs = {
         "barrel_stiffness": 1 / (swelling.stretch * g.barrel_length),
-        "tie_rod_stiffness": tie_rod_stiffness(v, design, stock, g),
+        "tie_rod_stiffness": clamp_stiffness(v, design, stock, g),
     }
     supply = v["supply.pressure"]
     proof = v["supply.proof_ratio"] * supply
@@ -146,6 +131,6 @@ def _clamped(
         {NONE: relaxed, name: unit},
         -preload,
         barrel - preload,
-        TieRods(preload, supply * (area - unit) + preload, preload / (proof * unit)),
+        Clamp(preload, supply * (area - unit) + preload, preload / (proof * unit)),
         springs["barrel_stiffness"] / (springs["barrel_stiffness"] + springs["tie_rod_stiffness"]),
     )

@@ -101,7 +101,7 @@ def _used(
     hoop, radial, along = barrel.bore_stresses(pressure=1.0, axial_force=axial, **size)
     none = 0.0 * hoop
     residual = None
-    if clamped and path.tie_rods is not None:
+    if clamped and path.clamp is not None:
         _, _, clamp = barrel.bore_stresses(pressure=0.0, axial_force=path.held, **size)
         residual = (none, none, clamp, none)
     stress = (hoop, radial, along, none)

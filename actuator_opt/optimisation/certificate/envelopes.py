@@ -10,17 +10,19 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...design.model import Design
-from ...evaluation import Subject, beam, bonds, plies
+from ...evaluation import Subject, beam, plies
 from ...evaluation.allow import Stock
 from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind, load_path
 from ...evaluation.barrel.load_path import LoadPath
 from ...evaluation.geometry import Geometry
 from ...evaluation.kernel import Implicit, Pass, Statics
+from ...evaluation.retention import clamped
 from ...evaluation.rods import Rod
 from ...evaluation.rows import Computed
 from ...evaluation.springs import Springs
 from ...evaluation.state import State
 from ...evaluation.values import Values
+from ...joints.joint import Clamp
 from ...models import column, stepped, tube_bounds
 from ...models import rod as rod_models
 from ...models.layered_tube import layered_tube, tube_state
@@ -230,16 +232,16 @@ class Envelopes:
             "stretch": pulled.a0 if pulling == "a" else pulled.b0,
         }
 
-    def bond(self, design: Design, done: Statics, out: Computed) -> None:
-        """The caps' bonds by one wall at a time, which says as much where both are as stiff."""
-        lap = bonds.caps(done.base.stock, design, done.base.geometry, done.base.wall)
-        if isinstance(lap, str):
+    @staticmethod
+    def joint(done: Statics, out: Computed) -> None:
+        """The joint of caps and head where its factor itself is not convex."""
+        held = done.held
+        if held is None or held.joint.envelope is None:
             return
-        (mean,) = out.metrics["retention_burst_factor"].values()
-        out.metrics["retention_factor"] = {
-            f"bond of the {name}": mean / bonds.least_peak_ratio(done.base.stock, lap, stiffness)
-            for name, stiffness in zip(lap.names, (lap.tube, lap.metal), strict=True)
-        }
+        burst = out.metrics.get("retention_burst_factor", {})
+        found = held.joint.envelope(held.loaded, burst)
+        if found:
+            out.metrics["retention_factor"] = dict(found)
 
     def _path(
         self,
@@ -251,7 +253,7 @@ class Envelopes:
         swelling: Swelling,
     ) -> LoadPath:
         """Axial force in a laminated wall; between tie rods its share is unknown."""
-        if not load_path.tied(design):
+        if not clamped(design):
             return load_path.derive(v, design, stock, g, state, swelling)
         name = load_path.STOP if design.cylinder.end_stop == "internal" else load_path.LARGEST
         share = self.problem.unknown(
@@ -261,9 +263,9 @@ class Envelopes:
         proof = v["supply.proof_ratio"] * supply
         preload = v.get("retention.preload", proof * share)
         largest = supply * (load_path.largest_area(design, g) - share) + preload
-        rods = load_path.TieRods(preload, largest, preload / (proof * share))
+        rods = Clamp(preload, largest, preload / (proof * share))
         barrel = 1 / (swelling.stretch * g.barrel_length)
-        whole = barrel + load_path.tie_rod_stiffness(v, design, stock, g)
+        whole = barrel + load_path.clamp_stiffness(v, design, stock, g)
         return load_path.LoadPath({name: share}, 0.0, 0.0, rods, barrel / whole)
 
 

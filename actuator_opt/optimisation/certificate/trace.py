@@ -112,7 +112,7 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
             raise Unknown("one of its models is no expression of the variables") from None
         found.facts += [(part, 0.0) for part in done.mass_parts.values()]
         found.facts += _along_the_stroke(envelopes, done, out, positions)
-        envelopes.bond(design, done, out)
+        envelopes.joint(done, out)
         if envelopes.bearable is not None:
             proof = values["supply.proof_ratio"] * values["supply.pressure"]
             least = found.unknown("proof_factor", _least_proof)

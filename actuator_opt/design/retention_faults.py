@@ -1,0 +1,114 @@
+"""Faults of `retention`: keys that its joint needs or does not use, and what the joint itself says.
+
+What a joint needs, uses and refuses stands in its own module in `joints`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from ..errors import Fault
+from ..joints.joint import Joint
+from ..joints.kinds import JOINTS
+from .model import Retention
+from .structure import entries
+from .view import Materials, Properties, View, length_text
+from .wall_faults import known_numbers
+
+_TYPE = ("retention", "type")
+
+
+def joint_of(view: View) -> Joint | None:
+    """The joint that a file names; None where it names none that there is."""
+    return JOINTS.get(view.text(*_TYPE) or "")
+
+
+def keys(view: View) -> Iterator[Fault]:
+    """Keys that the joint needs are stated, and no others."""
+    joint = joint_of(view)
+    if joint is None:
+        return
+    yield from _unused(view, joint)
+    for field in joint.fields:
+        loc = ("retention", *field.key.split("."))
+        needed = field.missing and all(view.has(*loc[:end]) for end in range(1, len(loc)))
+        if needed and not view.has(*loc):
+            yield Fault(loc, field.missing, field.remedy)
+
+
+def _unused(view: View, joint: Joint) -> Iterator[Fault]:
+    """Keys that neither the joint nor one among the choices uses; a default is no statement."""
+    offered = [JOINTS.get(name) for name in view.items("choices", ".".join(_TYPE))]
+    used = _keys(one for one in (joint, *offered) if one is not None)
+    for name, entry in entries(Retention).items():
+        value = view.value("retention", name)
+        if entry.required or name in used or value is None or value == entry.default:
+            continue
+        users = [one for one in JOINTS.values() if name in _keys([one])]
+        message, remedy = joint.without.get(name) or (
+            f"{joint.noun} {_have([joint])} no {name}, "
+            f"only {' and '.join(one.noun for one in users)} {_have(users)}",
+            f"remove the line, or write type: {' or '.join(one.name for one in users)}",
+        )
+        yield Fault(("retention", name), message, remedy, at_key=True)
+
+
+def _keys(joints: Iterable[Joint]) -> set[str]:
+    """Keys of `retention` that some joints use."""
+    return {field.key.partition(".")[0] for joint in joints for field in joint.fields}
+
+
+def _have(joints: list[Joint]) -> str:
+    return "have" if len(joints) > 1 or joints[0].plural else "has"
+
+
+def skirts(view: View) -> Iterator[Fault]:
+    """The skirts of both ends do not meet on the barrel."""
+    joint = joint_of(view)
+    if joint is None or not joint.skirts:
+        return
+    overlap, length = view.number("retention", "length"), view.number("barrel", "length")
+    parts = [("cylinder", "stroke"), ("piston", "length"), ("head", "length")]
+    known = [one for one in (view.number(*part) for part in parts) if one is not None]
+    if length is None and len(known) == len(parts):
+        length = sum(known)
+    if overlap is not None and length is not None and 2 * overlap > length * (1 + 1e-9):
+        yield Fault(
+            ("retention", "length"),
+            f"{length_text(overlap)}: the skirts of both ends overlap on the barrel, which is "
+            f"{length_text(length)} long",
+            f"write at most {length_text(length / 2)}",
+        )
+
+
+def values(view: View) -> Iterator[Fault]:
+    """What the joint says of the values of the file."""
+    joint = joint_of(view)
+    if joint is not None:
+        yield from joint.faults(view)
+
+
+class _Known:
+    """The library, with the design's own properties over it."""
+
+    def __init__(self, view: View, materials: Materials) -> None:
+        self._view, self._materials = view, materials
+
+    def kind(self, name: str) -> str | None:
+        """Kind of a material; None where there is none of this name."""
+        return self._materials.kind(name) if name in self._materials else None
+
+    def properties(self, name: str) -> Iterable[str]:
+        """Names of its stated properties; none where they cannot be read."""
+        if isinstance(self._materials, Properties):
+            return known_numbers(self._view, self._materials, name)
+        return ()
+
+
+def of_materials(tree: Any, materials: Materials) -> Iterator[Fault]:
+    """What the joint says when the library is asked."""
+    view = View(tree)
+    joint = joint_of(view)
+    if joint is not None:
+        yield from joint.material_faults(view, _Known(view, materials))

@@ -1,0 +1,86 @@
+"""The joint of caps and head that a design names, and the end of the barrel as that joint sees it.
+
+Both ends have the same joint, so one `End` stands for both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ..design.model import Design, Retention
+from ..joints.joint import End, Joint, Layer, Sizes
+from ..joints.kinds import JOINTS
+from ..numeric import Array
+from .values import Values
+
+
+class Numbers:
+    """Numbers of `retention` by key, read from the numbers of an evaluation."""
+
+    def __init__(self, v: Values) -> None:
+        self._v = v
+
+    def __contains__(self, key: object) -> bool:
+        return f"retention.{key}" in self._v
+
+    def __getitem__(self, key: str) -> Array:
+        return self._v[f"retention.{key}"]
+
+    def get(self, key: str, default: Array) -> Array:
+        """The number of a key, or `default` where the design does not state it."""
+        return self._v.get(f"retention.{key}", default)
+
+
+class Stated:
+    """Numbers of `retention` by key, as a design states them."""
+
+    def __init__(self, section: Retention) -> None:
+        self._section = section
+
+    def get(self, key: str, default: Array) -> Array:
+        """The number of a key, or `default` where the design does not state it."""
+        found: object = self._section
+        for name in key.split("."):
+            found = getattr(found, name, None)
+        return default if found is None else found
+
+    def __contains__(self, key: object) -> bool:
+        return self.get(str(key), None) is not None
+
+    def __getitem__(self, key: str) -> Array:
+        return self.get(key, None)
+
+
+def joint_of(design: Design) -> Joint | None:
+    """The joint that a design names; None where it states no retention."""
+    return None if design.retention is None else JOINTS[design.retention.type]
+
+
+def clamped(design: Design) -> bool:
+    """Whether the joint clamps the barrel between both ends."""
+    joint = joint_of(design)
+    return joint is not None and joint.stiffness is not None
+
+
+def end_of(
+    design: Design,
+    sizes: Sizes,
+    *,
+    inner_radius: Array,
+    outer_radius: Array,
+    thicknesses: Sequence[Array],
+    barrel_length: Array,
+    plate: Array,
+) -> End:
+    """The end of a design's barrel; `thicknesses` are those of its layers."""
+    layers = zip(design.barrel.layup, thicknesses, strict=True)
+    return End(
+        sizes=sizes,
+        material=None if design.retention is None else design.retention.material,
+        cap=design.caps.material,
+        layers=tuple(Layer(ply.material, thickness) for ply, thickness in layers),
+        inner_radius=inner_radius,
+        outer_radius=outer_radius,
+        barrel_length=barrel_length,
+        plate=plate,
+    )

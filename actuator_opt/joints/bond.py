@@ -1,0 +1,113 @@
+"""Skirts of the caps glued over the barrel's outside."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..numeric import Array
+from . import skirt
+from .joint import (
+    End,
+    Fatigue,
+    Field,
+    Fit,
+    Joint,
+    Judged,
+    Loaded,
+    Materials,
+    Strength,
+    WallPressures,
+    nothing,
+)
+from .overlap import Overlap, mismatch
+
+
+def _fit(end: End) -> Fit:
+    return skirt.fit(end, end.outer_radius)
+
+
+def _mass(end: End, materials: Materials) -> dict[str, Array]:
+    return {"caps": skirt.weight(end, materials, end.outer_radius)}
+
+
+def _overlap(loaded: Loaded) -> Overlap | str:
+    """The skirt over the barrel, or why it cannot be judged."""
+    end, materials = loaded.end, loaded.materials
+    if end.material is None:
+        return "a bond needs its adhesive: add retention.material"
+    modulus = materials.get(end.cap, "youngs_modulus")
+    glue = (materials.get(end.material, key) for key in ("bond_strength", "shear_modulus"))
+    if any(value is None for value in (modulus, *glue)):
+        return "adhesive or caps lack bond strength or a modulus"
+    return Overlap(
+        adhesive=end.material,
+        diameter=2 * end.outer_radius,
+        length=end.sizes["length"],
+        tube=loaded.line_stiffness,
+        metal=modulus * end.sizes["wall"],
+        mismatch=mismatch(materials, end.cap, loaded.expansion),
+        names=("barrel", "skirt"),
+    )
+
+
+def _strength(loaded: Loaded) -> Strength | str:
+    overlap = _overlap(loaded)
+    if isinstance(overlap, str):
+        return overlap
+    return Strength(
+        overlap.edge_factors(loaded.materials, loaded.force),
+        {"": overlap.mean_factor(loaded.materials, loaded.force)},
+        overlap.thermal(loaded.materials),
+    )
+
+
+def _envelope(loaded: Loaded, burst: Mapping[str, Array]) -> dict[str, Array]:
+    """One wall at a time, which says as much where both are as stiff."""
+    overlap = _overlap(loaded)
+    if isinstance(overlap, str):
+        return {}
+    (mean,) = burst.values()
+    return {
+        f"bond of the {name}": mean / overlap.least_peak_ratio(loaded.materials, stiffness)
+        for name, stiffness in zip(overlap.names, (overlap.tube, overlap.metal), strict=True)
+    }
+
+
+JOINT = Joint(
+    name="bond",
+    help="skirts glued over it",
+    noun="a bond",
+    fields=(
+        Field("length"),
+        Field("wall"),
+        Field(
+            "material",
+            "missing: a bond needs its adhesive",
+            'add e.g. "material: epoxy_structural"',
+        ),
+    ),
+    kinds=("adhesive",),
+    without={},
+    faults=nothing,
+    material_faults=nothing,
+    skirts=True,
+    fit=_fit,
+    stiffness=None,
+    mass=_mass,
+    outline=skirt.outline,
+    notes=nothing,
+    strength=_strength,
+    yields=skirt.yields,
+    wall=lambda loaded: WallPressures(),
+    fatigue=lambda loaded: Fatigue(),
+    own=lambda loaded: {},
+    envelope=_envelope,
+    metrics={},
+    judged=(Judged("the elastic peak shear", "a bond"), Judged("mean bond shear")),
+    models={
+        ("retention_factor", "bond at the skirt's edge"): "lap_joint.bond_edge_shear",
+        ("retention_factor", "bond at the barrel's edge"): "lap_joint.bond_edge_shear",
+    },
+    usual=(),
+    warnings=nothing,
+)

@@ -1,0 +1,94 @@
+"""Bonded overlaps: of caps with the barrel, of metal fittings with a laminated rod.
+
+Shear at both edges of the overlap under force, and without force at the coldest and the hottest.
+The two are not added: their elastic sum overstates an adhesive that yields before it breaks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from math import pi
+
+from ..models import lap_joint
+from ..models.strength_modes import load_multiplier
+from ..numeric import Array, absolute
+from .joint import Materials, Thermal
+
+
+@dataclass(frozen=True, slots=True)
+class Overlap:
+    """A bonded overlap of a metal part with a tube.
+
+    `tube` and `metal` are axial E t at the bond's diameter [N/m]; `mismatch` is the metal's
+    expansion less the tube's [1/K], None where one is not known; `names` are tube and metal part.
+    """
+
+    adhesive: str
+    diameter: Array
+    length: Array
+    tube: Array
+    metal: Array
+    mismatch: Array
+    names: tuple[str, str]
+
+    def _adhesive(self, materials: Materials) -> dict[str, Array]:
+        """The overlap as the models take it."""
+        return {
+            "length": self.length,
+            "shear_modulus": materials.get(self.adhesive, "shear_modulus"),
+            "bond_thickness": materials.get(self.adhesive, "bond_thickness", default=0.15e-3),
+        }
+
+    def edge_factors(self, materials: Materials, force: Array) -> dict[str, Array]:
+        """Strength over elastic shear at both edges under a force."""
+        strength = materials.allowable(self.adhesive, "bond_strength")
+        tube, metal = self.names
+        factors = {}
+        for edge, loaded, free in (
+            (metal, self.tube, self.metal),
+            (tube, self.metal, self.tube),
+        ):
+            stress = lap_joint.bond_edge_shear(
+                force=force,
+                diameter=self.diameter,
+                membrane_stiffness_loaded=loaded,
+                membrane_stiffness_free=free,
+                **self._adhesive(materials),
+            )
+            factors[f"bond at the {edge}'s edge"] = strength / stress
+        return factors
+
+    def least_peak_ratio(self, materials: Materials, stiffness: Array) -> Array:
+        """Peak over mean shear from below, from the stiffness of one of the walls."""
+        return lap_joint.least_bond_peak_ratio(
+            membrane_stiffness=stiffness, **self._adhesive(materials)
+        )
+
+    def mean_factor(self, materials: Materials, force: Array) -> Array:
+        """Strength over mean shear under a force."""
+        strength = materials.allowable(self.adhesive, "bond_strength")
+        return strength * (pi * self.diameter * self.length) / force
+
+    def thermal_factor(self, materials: Materials, warming: Array, cold: bool) -> Array:
+        """Strength over edge shear without load, from joining to a temperature."""
+        stress = lap_joint.bond_thermal_shear(
+            strain_difference=self.mismatch * warming,
+            membrane_stiffness_1=self.tube,
+            membrane_stiffness_2=self.metal,
+            **self._adhesive(materials),
+        )
+        strength = materials.allowable(self.adhesive, "bond_strength", cold=cold)
+        return load_multiplier(absolute(stress) / strength)
+
+    def thermal(self, materials: Materials) -> Thermal | str:
+        """`thermal_factor` of these materials, or why there is none."""
+        if self.mismatch is None:
+            return f"thermal expansion of the {' or of the '.join(self.names)} is not known"
+        return partial(self.thermal_factor, materials)
+
+
+def mismatch(materials: Materials, metal: str, along: Array) -> Array:
+    """Expansion of the metal less that of the tube along the axis; None where not known."""
+    own = materials.get(metal, "thermal_expansion")
+    return None if own is None or along is None else own - along

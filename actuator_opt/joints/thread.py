@@ -1,0 +1,500 @@
+"""Skirts of the caps screwed over the barrel: threads on barrel and skirts, walls under both.
+
+The thread is cut into the barrel's outermost layer, which is turned down to `thread.diameter` where
+that is smaller. It is taken to carry all of the force. Oil stands under it up to the ends of the
+barrel; inner layers are taken to hold none of its pressure there. A thread is cut into metal, and
+leaves metal under it: other files are refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+
+from ..errors import Fault
+from ..models import barrel, mass, thread, yielding
+from ..models.rod import section_area
+from ..numeric import Array, minimum, real, where
+from ..quantities import INPUTS, Quantity
+from . import skirt
+from .joint import (
+    LEAST_METAL,
+    NOT_BONDED,
+    ROUNDING,
+    End,
+    Fatigue,
+    Field,
+    Fit,
+    Joint,
+    Judged,
+    Known,
+    Loaded,
+    Materials,
+    Pulsed,
+    Stated,
+    Strength,
+    Usual,
+    WallPressures,
+    judged_later,
+)
+
+NEEDED = ("yield_strength", "ultimate_strength")
+"""What a metal states, so that a thread in it can be judged."""
+
+OTHERWISE = "bond the caps (type: bond), or clamp them (type: tie_rods)"
+
+LANDS = ("geometry_barrel_thread", "geometry_skirt_thread")
+CREST = "geometry_thread_crest"
+"""Metrics of the metal left under both roots, and of the overlap of their flanks."""
+
+HARD = 830e6
+"""Tensile strength from which a metal counts as hard [Pa] (a choice, for the grades of
+[Shigley2011] table 8-16)."""
+
+CUT, CUT_HARD = 3.0, 3.8
+"""Fatigue notch factors of a cut thread root: [Shigley2011] table 8-16 has 2.8 for soft steel and
+3.8 for hard steel; 3 below `HARD` covers other metals too, for which no table was found."""
+
+
+# --- faults of the file ---------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Stated:
+    """Barrel's outside, thickness of its outermost layer, thread and skirt [m]."""
+
+    outside: float
+    layer: float
+    diameter: float
+    pitch: float
+    wall: float
+
+
+def _text(length: float) -> str:
+    return INPUTS["length"].text(length)
+
+
+def _layer(view: Stated) -> tuple[str, str, int]:
+    """Place of the outermost layer of the barrel."""
+    return ("barrel", "layup", len(view.items("barrel", "layup")) - 1)
+
+
+def _stated(view: Stated) -> _Stated | None:
+    """The sizes of the joint; None where one is missing or faulty."""
+    count = len(view.items("barrel", "layup"))
+    layers = [view.number("barrel", "layup", index, "thickness") for index in range(count)]
+    known = [layer for layer in layers if layer is not None]
+    bore, pitch = view.number("cylinder", "bore"), view.number("retention", "thread", "pitch")
+    wall = view.number("retention", "wall")
+    if bore is None or pitch is None or wall is None or not known or len(known) < count:
+        return None
+    outside = bore + 2 * sum(known)
+    stated = view.number("retention", "thread", "diameter")
+    return _Stated(outside, known[-1], outside if stated is None else stated, pitch, wall)
+
+
+def _faults(view: Stated) -> Iterator[Fault]:
+    """The thread is cut on the barrel's outside, and its turns engage."""
+    pitch, length = view.number("retention", "thread", "pitch"), view.number("retention", "length")
+    if pitch is not None and length is not None and length < (1 + thread.RUN_OUT) * pitch:
+        yield Fault(
+            ("retention", "length"),
+            f"{_text(length)}: no whole turn of the thread engages, whose pitch is {_text(pitch)}",
+            f"write at least {_text((1 + thread.RUN_OUT) * pitch)}",
+        )
+    sizes = _stated(view)
+    if sizes is None:
+        return
+    overlap = thread.crest_overlap(
+        diameter=sizes.diameter,
+        pitch=sizes.pitch,
+        crest_diameter=min(sizes.diameter, sizes.outside),
+    )
+    if overlap < thread.LEAST_OVERLAP * (1 - ROUNDING) and not judged_later(view, _moved(view)):
+        text = _text(sizes.outside)
+        yield Fault(
+            ("retention", "thread", "diameter"),
+            f"{_text(sizes.diameter)}: larger than the barrel's outside ({text}), which it "
+            "is cut into",
+            f"write at most {text}, or leave it out: then it is the outside",
+        )
+
+
+def _material_faults(view: Stated, known: Known) -> Iterator[Fault]:
+    """Both threads are cut into a metal that states its strengths, and leave enough of it."""
+    sizes, layer = _stated(view), _layer(view)
+    caps = "caps" if view.has("caps") else "piston"  # whose material caps have by default
+    if _metal(view, known, (*layer, "material")) and sizes is not None:
+        yield from _under(view, sizes)
+    if _metal(view, known, (caps, "material")) and sizes is not None:
+        yield from _over(view, sizes)
+    yield from _into(
+        view,
+        known,
+        (*layer, "material"),
+        "the barrel's outermost layer, which is",
+        f"barrel.layup[{layer[-1]}]",
+    )
+    yield from _into(view, known, (caps, "material"), "the caps' skirts, which are", caps)
+
+
+def _metal(view: Stated, known: Known, loc: tuple[str | int, ...]) -> bool:
+    name = view.text(*loc)
+    return name is not None and known.kind(name) == "metal"
+
+
+def _into(
+    view: Stated, known: Known, loc: tuple[str | int, ...], part: str, path: str
+) -> Iterator[Fault]:
+    """A thread cut into what is no metal, or a metal without strengths; `path` is the part's."""
+    name = view.text(*loc)
+    kind = None if name is None else known.kind(name)
+    if name is None or kind is None:
+        return
+    if kind != "metal":
+        what = "of plies, whose fibres it severs" if kind == "ply" else f"of a {kind}"
+        yield Fault(
+            loc,
+            f"{name}: retention.type thread cuts into {part} {what}; a thread is cut into metal "
+            "only",
+            f"make {path} of metal, {OTHERWISE}",
+        )
+        return
+    properties = set(known.properties(name))
+    missing = [key for key in NEEDED if properties and key not in properties]
+    if missing:
+        yield Fault(
+            loc,
+            f"{name} states no {' nor '.join(missing)}: a thread in it cannot be judged",
+            f'add e.g. "{missing[0]}: 355 MPa" under materials.{name}, {OTHERWISE}',
+        )
+
+
+def _under(view: Stated, sizes: _Stated) -> Iterator[Fault]:
+    """Too little metal under the thread, in the layer it is cut into."""
+    root = thread.root_diameter(diameter=min(sizes.diameter, sizes.outside), pitch=sizes.pitch)
+    left = sizes.layer - (sizes.outside - root) / 2
+    layer = _layer(view)
+    if left < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, _moved(view)):
+        name = view.text(*layer, "material")
+        rest = _text(left) if left > 0 else "nothing"
+        yield Fault(
+            (*layer, "thickness"),
+            f"{_text(sizes.layer)} of {name}: the thread leaves {rest} of it, "
+            f"{_text(LEAST_METAL)} is the least",
+            f"write a thickness of at least {_text(sizes.layer + LEAST_METAL - left)}, a finer "
+            f"pitch, {OTHERWISE}",
+        )
+
+
+def _over(view: Stated, sizes: _Stated) -> Iterator[Fault]:
+    """Too little metal over the thread of the skirts."""
+    if sizes.wall < LEAST_METAL * (1 - ROUNDING) and not judged_later(view, ["retention.wall"]):
+        yield Fault(
+            ("retention", "wall"),
+            f"{_text(sizes.wall)}: the least metal over a thread is {_text(LEAST_METAL)}",
+            f"write at least {_text(LEAST_METAL)}",
+        )
+
+
+def _moved(view: Stated) -> Iterator[str]:
+    """PATHs of the sizes on which the wall under the thread and its crests depend."""
+    outermost = _layer(view)[-1]
+    yield "retention.thread.pitch"
+    yield f"barrel.layup[{outermost}].thickness"
+    if view.has("retention", "thread", "diameter"):
+        yield "retention.thread.diameter"
+        yield "cylinder.bore"
+        for index in range(outermost):
+            yield f"barrel.layup[{index}].thickness"
+
+
+# --- dimensions and mass --------------------------------------------------------------------
+
+
+def _radius(end: End) -> Array:
+    """Of the barrel under the skirt: its outside, or what it is turned down to."""
+    if "thread.diameter" in end.sizes:
+        return minimum(end.sizes["thread.diameter"] / 2, end.outer_radius)
+    return end.outer_radius
+
+
+def _fit(end: End) -> Fit:
+    return skirt.fit(end, _radius(end))
+
+
+def _mass(end: End, materials: Materials) -> dict[str, Array]:
+    """The skirt, less the ring that is turned off the barrel."""
+    radius = _radius(end)
+    caps = {"caps": skirt.weight(end, materials, radius)}
+    if radius is end.outer_radius:
+        return caps
+    turned = mass.layer_area(inner_radius=radius, thickness=end.outer_radius - radius)
+    ring = materials.get(end.layers[-1].material, "density") * turned * end.sizes["length"]
+    return caps | {"barrel": -ring}
+
+
+def _notes(end: End) -> Iterator[str]:
+    sizes = end.sizes
+    diameter = sizes.get("thread.diameter", None) or 2 * end.outer_radius
+    text = f"M{1e3 * diameter:.5g} x {1e3 * sizes['thread.pitch']:g}"
+    yield f"Thread of barrel and caps: {text}, {1e3 * sizes['length']:.4g} long."
+
+
+# --- strength -------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Thread:
+    """The thread of an end: sizes [m], areas [m^2], and the metals it is cut into."""
+
+    male: str
+    female: str
+    diameter: Array
+    root_diameter: Array
+    skirt_wall: Array
+    """Wall of the skirts over the thread."""
+    engagement: Array
+    male_area: Array
+    female_area: Array
+    flank_area: Array
+    barrel_section: Array
+    """Section of the threaded layer under its root."""
+    skirt_section: Array
+    layer_radius: Array
+    """Inner radius of the threaded layer."""
+    overlap: Array
+    """Of the flanks, over that of full crests."""
+    bore_radius: Array
+
+
+def derive(end: End) -> Thread:
+    """The thread of an end."""
+    pitch = end.sizes["thread.pitch"]
+    diameter = end.sizes.get("thread.diameter", 2 * end.outer_radius)
+    radius, wall = _radius(end), end.sizes["wall"]
+    size = {"diameter": diameter, "pitch": pitch}
+    engagement = thread.engaged_length(length=end.sizes["length"], pitch=pitch)
+    crested = {"engagement": engagement, "crest_diameter": 2 * radius}
+    root = thread.root_diameter(**size)
+    layer = end.outer_radius - end.layers[-1].thickness
+    outer = 2 * (radius + wall)
+    return Thread(
+        male=end.layers[-1].material,
+        female=end.cap,
+        diameter=diameter,
+        root_diameter=root,
+        skirt_wall=(outer - diameter) / 2,
+        engagement=engagement,
+        male_area=thread.male_strip_area(**size, engagement=engagement),
+        female_area=thread.female_strip_area(**size, **crested),
+        flank_area=thread.flank_area(**size, **crested),
+        barrel_section=section_area(outer_diameter=root, inner_diameter=2 * layer),
+        skirt_section=section_area(outer_diameter=outer, inner_diameter=diameter),
+        layer_radius=layer,
+        overlap=thread.crest_overlap(**size, crest_diameter=2 * radius),
+        bore_radius=end.inner_radius,
+    )
+
+
+def _strengths(materials: Materials, name: str) -> tuple[Array, Array]:
+    return (
+        materials.allowable(name, "yield_strength"),
+        materials.allowable(name, "ultimate_strength"),
+    )
+
+
+def _judged(loaded: Loaded) -> Thread | str:
+    """The thread of an end, or why it has no factor."""
+    cut, materials = derive(loaded.end), loaded.materials
+    for name in (cut.male, cut.female):
+        if materials.kind(name) != "metal":
+            return f"{name} is no metal: a thread is cut into metal only"
+        if any(strength is None for strength in _strengths(materials, name)):
+            return f"{name} states no yield or ultimate strength"
+    return cut
+
+
+def _strength(loaded: Loaded) -> Strength | str:
+    cut, materials, force = _judged(loaded), loaded.materials, loaded.force
+    if isinstance(cut, str):
+        return cut
+    return Strength(_working(materials, cut, force), _burst(materials, cut, force), NOT_BONDED)
+
+
+def _yields(loaded: Loaded) -> dict[str, Array]:
+    cut = _judged(loaded)
+    if isinstance(cut, str):
+        return skirt.yields(loaded)
+    strength = loaded.materials.allowable(cut.female, "yield_strength")
+    return {"skirt under the thread": strength * cut.skirt_section / loaded.force}
+
+
+def _own(loaded: Loaded) -> dict[str, Array]:
+    """Metal left under either root and overlap of the flanks, limits that no search gives up."""
+    cut = derive(loaded.end)
+    walls = (cut.root_diameter / 2 - cut.layer_radius, cut.skirt_wall)
+    return dict(zip(LANDS, walls, strict=True)) | {CREST: cut.overlap}
+
+
+def _working(materials: Materials, cut: Thread, force: Array) -> dict[str, Array]:
+    """Elastic limit over stress: both threads in shear, and their flanks."""
+    male, female = (_strengths(materials, name)[0] for name in (cut.male, cut.female))
+    return {
+        "barrel thread": male / sqrt(3) * cut.male_area / force,
+        "skirt thread": female / sqrt(3) * cut.female_area / force,
+        "thread flanks": minimum(male, female) * cut.flank_area / force,
+    }
+
+
+def _burst(materials: Materials, cut: Thread, force: Array) -> dict[str, Array]:
+    """Strength at rupture over the force: both threads, and the skirt they tear and spread."""
+    male, female = (_strengths(materials, name)[1] for name in (cut.male, cut.female))
+    ratio = female * cut.female_area / (male * cut.male_area)
+    of_male, of_female = thread.stripping_reductions(strength_ratio=ratio)
+    spread = thread.spread_stress(force=force, thickness=cut.skirt_wall, engagement=cut.engagement)
+    return {
+        "barrel thread": of_male * male / sqrt(3) * cut.male_area / force,
+        "skirt thread": of_female * female / sqrt(3) * cut.female_area / force,
+        "skirt under the thread": female * cut.skirt_section / force,
+        "skirt spread by the thread": _strengths(materials, cut.female)[0] / spread,
+    }
+
+
+def _wall(loaded: Loaded) -> WallPressures:
+    """Pressures at which the barrel yields and bursts under its thread, by load path.
+
+    The layer carries the axial forces alone, with the pressure p r_i/r_l on its inner radius r_l
+    that inner layers without hoop stress would leave.
+
+    It yields as if the skirt were not there. At burst both are plastic, and the skirt adds the
+    pressure p_s that it would burst at: the turns, cut through, carry no hoop stress and pass it
+    on as p_s d/d_3 (balance of forces; no axial force is taken in the skirt, which lowers p_s).
+    """
+    cut, materials = _judged(loaded), loaded.materials
+    if isinstance(cut, str):
+        return WallPressures()
+    yields, bursts = {}, {}
+    size = {"inner_radius": cut.layer_radius, "outer_radius": cut.root_diameter / 2}
+    inside = cut.bore_radius / cut.layer_radius
+    strength, ultimate = _strengths(materials, cut.male)
+    skirt_strength, skirt_ultimate = _strengths(materials, cut.female)
+    support = (
+        barrel.burst_pressure_thick(
+            inner_radius=cut.diameter / 2,
+            outer_radius=cut.diameter / 2 + cut.skirt_wall,
+            yield_strength=skirt_strength,
+            ultimate_strength=skirt_ultimate,
+            axial_force_ratio=0.0,
+        )
+        * cut.diameter
+        / cut.root_diameter
+    )
+    for path, axial in loaded.paths.items():
+        hoop, radial, along = barrel.bore_stresses(pressure=inside, axial_force=axial, **size)
+        stress = (hoop, radial, along, 0.0 * hoop)
+        place = f"barrel under the thread, {path}"
+        yields[place] = 1 / yielding.yield_utilisation(stress=stress, yield_strength=strength)
+        ratio = axial / (inside * pi * cut.layer_radius * cut.layer_radius)
+        alone = barrel.burst_pressure_thick(
+            **size, yield_strength=strength, ultimate_strength=ultimate, axial_force_ratio=ratio
+        )
+        bursts[place] = (alone + support) / inside
+    return WallPressures(yields, bursts)
+
+
+def _fatigue(loaded: Loaded) -> Fatigue:
+    """Axial stress at either root while the force pulsates; the notch raises the range alone."""
+    cut = _judged(loaded)
+    if isinstance(cut, str):
+        return Fatigue()
+    pulsed = []
+    for place, name, section in (
+        ("barrel thread root", cut.male, cut.barrel_section),
+        ("skirt thread root", cut.female, cut.skirt_section),
+    ):
+        stress = loaded.force / section
+        hard = real(loaded.materials.get(name, "ultimate_strength", default=0.0)) >= HARD
+        pulsed.append(Pulsed(place, name, where(hard, CUT_HARD, CUT) * stress, stress / 2))
+    return Fatigue(tuple(pulsed))
+
+
+def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
+    """A thread that leaves too little metal: free sizes may start there, no search ends there."""
+    own = _own(loaded)
+    for name in LANDS:
+        least = float(np.min(np.real(own[name])))
+        if least < LEAST_METAL * (1 - ROUNDING):
+            label = quantities[name]
+            yield (
+                "retention_factor",
+                f"{label.label}: {label.text(least)}, {label.text(LEAST_METAL)} is the least: "
+                "such a thread cannot be cut, and its factors do not count",
+            )
+
+
+_ABSENT = "the caps are not screwed on"
+
+JOINT = Joint(
+    name="thread",
+    help="skirts screwed over it",
+    noun="a thread",
+    fields=(
+        Field("length"),
+        Field("wall"),
+        Field("thread", "missing: thread needs it", 'add a block "thread:" with pitch'),
+        Field("thread.diameter"),
+        Field("thread.pitch"),
+    ),
+    kinds=(),
+    without={
+        "material": (
+            "without effect on a thread, which is cut into barrel and caps",
+            "remove the line; change barrel.layup or caps.material",
+        )
+    },
+    faults=_faults,
+    material_faults=_material_faults,
+    skirts=True,
+    fit=_fit,
+    stiffness=None,
+    mass=_mass,
+    outline=skirt.outline,
+    notes=_notes,
+    strength=_strength,
+    yields=_yields,
+    wall=_wall,
+    fatigue=_fatigue,
+    own=_own,
+    envelope=None,
+    metrics={
+        LANDS[0]: _ABSENT,
+        LANDS[1]: _ABSENT,
+        CREST: _ABSENT,
+    },
+    judged=(Judged("on yield", "threads"), Judged("rupture", "threads and skirt")),
+    models={
+        ("retention_factor", "barrel thread"): "thread.male_strip_area",
+        ("retention_factor", "skirt thread"): "thread.female_strip_area",
+        ("retention_factor", "thread flanks"): "thread.flank_area",
+        ("retention_burst_factor", "barrel thread"): "thread.stripping_reductions",
+        ("retention_burst_factor", "skirt thread"): "thread.stripping_reductions",
+        ("retention_burst_factor", "skirt under the thread"): "rod.section_area",
+        ("retention_burst_factor", "skirt spread by the thread"): "thread.spread_stress",
+        ("yield_factor", "skirt under the thread"): "rod.section_area",
+    },
+    usual=(
+        Usual(
+            "retention.length",
+            "turns of the thread",
+            5.0,
+            60.0,
+            "choice: start and run-out take two, the first turns carry most",
+            lambda end: end.sizes["length"] / end.sizes["thread.pitch"],
+        ),
+    ),
+    warnings=_warnings,
+)

@@ -1,0 +1,174 @@
+"""Rods outside the barrel that clamp it between cap and head."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import pi
+
+import numpy as np
+
+from ..models import endurance, mass, retention
+from ..numeric import Array
+from ..quantities import Quantity
+from .joint import (
+    NOT_BONDED,
+    Clamp,
+    Drawn,
+    End,
+    Fatigue,
+    Field,
+    Fit,
+    Joint,
+    Judged,
+    Life,
+    Loaded,
+    Materials,
+    Span,
+    Strength,
+    WallPressures,
+    nothing,
+    rectangle,
+)
+
+
+def _fit(end: End) -> Fit:
+    """Plates two rods wider than the barrel."""
+    radius = end.outer_radius
+    return Fit(plate_radius=radius + 2 * end.sizes["thread.diameter"], radius=radius)
+
+
+def _length(end: End) -> Array:
+    """From plate to plate."""
+    return end.barrel_length + 2 * end.plate
+
+
+def _stiffness(end: End, materials: Materials) -> Array:
+    """Of all rods: n E (pi d^2/4)/L."""
+    assert end.material is not None
+    modulus = materials.get(end.material, "youngs_modulus")
+    diameter = end.sizes["thread.diameter"]
+    return end.sizes["count"] * modulus * pi * diameter * diameter / 4 / _length(end)
+
+
+def _mass(end: End, materials: Materials) -> dict[str, Array]:
+    """Half of the rods at either end."""
+    assert end.material is not None
+    rods = mass.tie_rod_mass(
+        density=materials.get(end.material, "density"),
+        diameter=end.sizes["thread.diameter"],
+        length=_length(end),
+        count=end.sizes["count"],
+    )
+    return {"fastening": rods / 2}
+
+
+def _outline(end: End, fit: Fit, span: Span) -> Iterator[Drawn]:
+    """One rod in the plane of the section, between the outer faces of both plates."""
+    if span.inwards < 0 or end.material is None:
+        return
+    low, size = float(fit.radius), (float(fit.plate_radius) - float(fit.radius)) / 2
+    shape = rectangle(span.outside, span.opposite, low + size / 2, low + 3 * size / 2)
+    yield Drawn("tie rods", end.material, shape, bars=round(float(end.sizes["count"])))
+
+
+def _notes(end: End) -> Iterator[str]:
+    yield "Tie rods pass the plates; their holes are not drawn."
+
+
+def _stress(end: End, force: Array) -> Array:
+    """Tension in the threads under the force of all rods."""
+    return retention.tie_rod_stress(
+        force=force,
+        count=end.sizes["count"],
+        diameter=end.sizes["thread.diameter"],
+        pitch=end.sizes["thread.pitch"],
+    )
+
+
+def _clamp(loaded: Loaded) -> Clamp:
+    assert loaded.clamp is not None
+    return loaded.clamp
+
+
+def _strength(loaded: Loaded) -> Strength | str:
+    end, materials = loaded.end, loaded.materials
+    assert end.material is not None
+    strength = materials.allowable(end.material, "yield_strength")
+    ultimate = materials.allowable(end.material, "ultimate_strength")
+    if strength is None or ultimate is None:
+        return "tie rods need a thread and a material with yield and ultimate strength"
+    stress = _stress(end, _clamp(loaded).largest)
+    return Strength({"tie rods": strength / stress}, {"": ultimate / stress}, NOT_BONDED)
+
+
+def _fatigue(loaded: Loaded) -> Fatigue:
+    """Of the rods' threads while the pressure comes and goes."""
+    end, clamp = loaded.end, _clamp(loaded)
+    diameter = end.sizes["thread.diameter"]
+    amplitude = _stress(end, (clamp.largest - clamp.preload) / 2)
+    life = Life(
+        endurance.bolt_cycles(amplitude=amplitude, diameter=diameter),
+        endurance.bolt_endurance_amplitude(diameter=diameter) / amplitude,
+    )
+    return Fatigue(lives={"tie rods": life})
+
+
+def _own(loaded: Loaded) -> dict[str, Array]:
+    return {"joint_factor": _clamp(loaded).closed}
+
+
+def _warnings(loaded: Loaded, quantities: Mapping[str, Quantity]) -> Iterator[tuple[str, str]]:
+    if "preload" not in loaded.end.sizes:
+        force = float(np.max(np.real(_clamp(loaded).preload)))
+        yield (
+            "joint_factor",
+            f"no tie-rod preload stated: taken {force / 1e3:.1f} kN, which keeps the joint closed "
+            "at proof pressure",
+        )
+
+
+JOINT = Joint(
+    name="tie_rods",
+    help="rods outside clamp it between cap and head",
+    noun="tie rods",
+    fields=(
+        Field("length"),
+        Field(
+            "material",
+            "missing: tie rods need their material",
+            'add e.g. "material: steel_bolt_10_9"',
+        ),
+        Field("count"),
+        Field(
+            "thread",
+            "missing: tie_rods needs it",
+            'add a block "thread:" with diameter, pitch',
+        ),
+        Field("thread.diameter", "missing: tie rods need it", 'add e.g. "diameter: 6 mm"'),
+        Field("thread.pitch"),
+        Field("preload"),
+    ),
+    kinds=("metal",),
+    without={},
+    faults=nothing,
+    material_faults=nothing,
+    skirts=False,
+    fit=_fit,
+    stiffness=_stiffness,
+    mass=_mass,
+    outline=_outline,
+    notes=_notes,
+    strength=_strength,
+    yields=lambda loaded: {},
+    wall=lambda loaded: WallPressures(),
+    fatigue=_fatigue,
+    own=_own,
+    envelope=None,
+    metrics={"joint_factor": "no tie rods"},
+    judged=(Judged("on yield", "tie rods"), Judged("rupture", "tie rods")),
+    models={
+        ("retention_factor", "tie rods"): "retention.tie_rod_stress",
+    },
+    usual=(),
+    warnings=_warnings,
+)
