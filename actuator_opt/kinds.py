@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
+from importlib import import_module
 from types import MappingProxyType
 from typing import Any, Protocol, TypeVar
 
@@ -95,6 +96,29 @@ def kinds(what: str, *entries: K) -> Kinds[K]:
     actuator_opt.kinds.UnknownKind: no joint "bnd"; did you mean "bond"?
     """
     return Kinds(what, entries)
+
+
+def kinds_in(what: str, package: str, name: str, *modules: str) -> Kinds[Any]:
+    """A registry of the kinds that modules of a package declare under one name.
+
+    Parameters
+    ----------
+    what : what they are, in the singular
+    package : of the modules
+    name : under which each declares its kind
+    modules : in the order of lists
+
+    Raises
+    ------
+    ValueError : as `kinds`, or a module that declares none
+    """
+    found = []
+    for module in modules:
+        declared = getattr(import_module(f".{module}", package), name, None)
+        if declared is None:
+            raise ValueError(f"{package}.{module}: declares no {name}")
+        found.append(declared)
+    return kinds(what, *found)
 
 
 def per_kind(registry: Mapping[str, Any], functions: Mapping[str, V]) -> Mapping[str, V]:

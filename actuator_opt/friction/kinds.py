@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from ..kinds import kinds
-from . import coefficient, film
+from ..kinds import Kinds, kinds_in
+from .law import FrictionLaw
 
-LAWS = kinds("friction law", coefficient.LAW, film.LAW)
+LAWS: Kinds[FrictionLaw] = kinds_in(
+    "friction law",
+    __package__,
+    "LAW",
+    "coefficient",
+    "film",
+)

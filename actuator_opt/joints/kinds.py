@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from ..kinds import kinds
-from . import bond, thread, tie_rods
-from .joint import check
+from ..kinds import Kinds, kinds_in
+from .joint import Joint, check
 
-JOINTS = kinds(
+JOINTS: Kinds[Joint] = kinds_in(
     "joint",
-    bond.JOINT,
-    thread.JOINT,
-    tie_rods.JOINT,
+    __package__,
+    "JOINT",
+    "bond",
+    "thread",
+    "tie_rods",
 )
 
 check(JOINTS.values())

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
-from ..kinds import kinds
-from . import compact, o_ring, step_ring, u_cup
+from ..kinds import Kinds, kinds_in
+from .seal_type import SealType
 from .sizes import SHARED
 
-TYPES = kinds("seal type", o_ring.TYPE, step_ring.TYPE, u_cup.TYPE, compact.TYPE)
+TYPES: Kinds[SealType] = kinds_in(
+    "seal type",
+    __package__,
+    "TYPE",
+    "o_ring",
+    "step_ring",
+    "u_cup",
+    "compact",
+)
 
 SIZES = tuple(dict.fromkeys((*SHARED, *(x.size for one in TYPES.values() for x in one.fields))))
 """Sizes a design file knows: the shared ones, then those of single types."""
