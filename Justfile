@@ -27,3 +27,7 @@ bench:
 # the committed sample reports
 samples:
     .venv/bin/python reports/make_samples.py
+
+# outputs of every command against tests/frozen: just frozen [WORD...] [--update] [--keep FOLDER]
+frozen *ARGS:
+    .venv/bin/python tests/frozen.py {{ARGS}}
