@@ -133,13 +133,14 @@ class Job:
 
     def written(self, result: object, **also: Any) -> list[dict[str, Any]]:
         """Write the CSV and the report that are asked for."""
+        from .. import verbs
         from ..verbs import results
 
         if not results.writes(result):
             return []
         files = [] if self.csv is None else [results.write_csv(result, self.csv)]
         if self.report:
-            files += results.report(result, **self._origin(), folder=self.out, **self.paper, **also)
+            files += verbs.report(result, **self._origin(), folder=self.out, **self.paper, **also)
         return [file.to_dict() for file in files]
 
     def keep(self, result: object, **how: Any) -> None:

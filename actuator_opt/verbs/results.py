@@ -120,7 +120,7 @@ KINDS = kinds(
     ),
     ResultKind(
         "optimisation.result:Optimisation", _optimised, text="reporting.terminal:optimisation_text",
-        report="verbs.reports:report_design", csv=None, record="verbs.recording:record",
+        report="verbs.reports:report_design", csv=None, record="verbs:record",
         remarks=_unrounded, writes=lambda result: not result.status.startswith("interrupted"),
     ),
     ResultKind(
@@ -129,31 +129,31 @@ KINDS = kinds(
     ),
     ResultKind(
         "optimisation.pareto_result:ParetoFront", _solved, text="reporting.pareto_rows:front_text",
-        report="verbs.fronts:write_front", csv="verbs.fronts:write_front_csv",
-        record="verbs.recording:record_front", writes=lambda front: bool(front.points),
+        report="verbs:write_front", csv="verbs:write_front_csv",
+        record="verbs:record_front", writes=lambda front: bool(front.points),
     ),
     ResultKind(
         "scatter.result:Uncertainty", _met, text="reporting.uncertainty_text:uncertainty_text",
-        report="verbs.uncertain:write_uncertainty", csv="verbs.uncertain:write_draws", record=None,
+        report="verbs:write_uncertainty", csv="verbs:write_draws", record=None,
     ),
     ResultKind(
         "evaluation.comparison:Comparison", _always, text="reporting.compare_text:comparison_text",
         report="verbs.comparing:report_comparison", csv=None, record=None,
-        data="verbs.comparing:comparison_json",
+        data="verbs:comparison_json",
     ),
     ResultKind(
         "variants.swept:Swept", lambda swept: _missed(not swept.best),
         text="reporting.sweep_text:sweep_text",
-        report=None, csv=None, record="verbs.recording:record_sweep",
+        report=None, csv=None, record="verbs:record_sweep",
         writes=lambda swept: False,  # rows are written as they come, figures by draw_sweep
     ),
     ResultKind(
         "evaluation.study.seal_record:SealStudy", _converged, text="reporting.seal_text:seal_text",
-        report="verbs.seals:write_seal", csv=None, record=None,
+        report="verbs:write_seal", csv=None, record=None,
     ),
     ResultKind(
         "simulation.result:Simulation", _met, text="reporting.simulation_text:simulation_text",
-        report="verbs.simulations:write_simulation", csv="verbs.simulations:write_signals",
+        report="verbs:write_simulation", csv="verbs:write_signals",
         record=None,
     ),
     ResultKind(
@@ -171,7 +171,7 @@ KINDS = kinds(
     ResultKind(
         "identification.result:Identification", _always,
         text="reporting.identification_text:identification_text",
-        report="verbs.records:write_identification", csv="verbs.records:write_series", record=None,
+        report="verbs:write_identification", csv="verbs:write_series", record=None,
     ),
     ResultKind(
         "identification.bending:BendingResult", _always, text="reporting.bending_text:bending_text",
@@ -179,7 +179,7 @@ KINDS = kinds(
     ),
     ResultKind(
         "verbs.records:Calibrated", lambda new: _met(new.redesign.evaluation), text="text",
-        report="verbs.records:write_calibration", csv=None, record=None,
+        report="verbs:write_calibration", csv=None, record=None,
     ),
     ResultKind(
         "verbs.installation:Installation", lambda found: _missed(not found.ok), text="text",
@@ -187,7 +187,7 @@ KINDS = kinds(
     ),
     ResultKind(
         "verbs.recorded_runs:Run", _always, text="text",
-        report="verbs.restoring:report_run", csv=None, record=None,
+        report="verbs:report_run", csv=None, record=None,
     ),
     ResultKind(
         "verbs.kept_sweeps:KeptSweep", lambda kept: _missed(not kept.run.head["met"]), text=None,
@@ -195,7 +195,7 @@ KINDS = kinds(
     ),
     ResultKind(
         "verbs.restoring:Restored", lambda restored: exit_code(restored.result), text=None,
-        report="verbs.restoring:report_run", csv=None, record=None, data=None,
+        report="verbs:report_run", csv=None, record=None, data=None,
     ),
     ResultKind(
         "verbs.repeating:Rerun", _repeats, text="text", report="report", csv=None, record="record",
