@@ -490,13 +490,10 @@ def _faults() -> Iterator[Case]:
 
 def commands() -> list[tuple[str, ...]]:
     """Every command of the command line, as words; hidden ones are left out."""
-    import typer.main
-
-    from actuator_opt.cli import app
+    from actuator_opt import cli
 
     found: list[tuple[str, ...]] = []
-    root = typer.main.get_command(app)
-    for name, command in root.commands.items():  # type: ignore[attr-defined]
+    for name, command in cli.command_line().commands.items():
         below = getattr(command, "commands", {})
         if not command.hidden:
             found += [(name, inner) for inner in below] or [(name,)]

@@ -230,11 +230,9 @@ def test_the_parser_knows_every_option_of_the_commands():
     known = {word for action in repeating.parser()._actions for word in action.option_strings}
     idle = {
         "--out", "--json", "--quiet", "-q", "--report", "--write", "--no-record", "--help", "-h",
-        "--csv",
+        "--csv", "--debug",
     }  # fmt: skip
-    import typer
-
-    commands = typer.main.get_command(cli.app).commands
+    commands = cli.command_line().commands
     for verb in repeating.OPTIMISED + repeating.EVALUATED + repeating.FRONTS:
         words = {word for one in commands[verb].params for word in one.opts if word[0] == "-"}
         assert words - idle <= known, verb

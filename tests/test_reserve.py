@@ -209,7 +209,7 @@ def test_every_active_limit_has_no_reserve(optimum):
 
 def test_the_verdict_is_amber_where_a_limit_has_no_reserve(optimum):
     """Words and colour on page 1, in the terminal and of print; met and exit code stay."""
-    from actuator_opt.cli.optimise import outcome_of
+    from actuator_opt.verbs import exit_code
 
     count = len(optimum.best_evaluation.tight)
     assert count >= 10
@@ -226,7 +226,7 @@ def test_the_verdict_is_amber_where_a_limit_has_no_reserve(optimum):
     data = optimum.to_dict()
     assert data["reserve"]["without"] == list(optimum.best_evaluation.tight)
     assert all(row["met"] for row in data["requirements"])
-    assert int(outcome_of(optimum)) == 0
+    assert int(exit_code(optimum)) == 0
 
 
 def test_rows_without_reserve_are_marked_on_paper_and_in_the_terminal(optimum):

@@ -1,11 +1,11 @@
 """The terminal: read arguments, call the library, print. No physics."""
 
 try:
-    from .app import app, main
+    from .app import command_line, main
 except KeyboardInterrupt:  # before there is a command to interrupt
     import sys
 
     print("interrupted", file=sys.stderr)
     sys.exit(130)
 
-__all__ = ["app", "main"]
+__all__ = ["command_line", "main"]

@@ -4,28 +4,19 @@ from __future__ import annotations
 
 import sys
 
-import typer
-
 from .. import run_store
 from ..errors import ExitCode
 from . import streams
+from .job import Job
 from .options import REPORTS, Json, Out, Quiet
 
 
-def doctor(out: Out = REPORTS, as_json: Json = False, quiet: Quiet = False) -> None:
+def doctor(out: Out = REPORTS, as_json: Json = False, quiet: Quiet = False) -> ExitCode:
     """What this installation has, lacks and may write."""
     from .. import verbs
 
     found = verbs.doctor(out=out, runs=run_store.folder(), terminal=_terminal())
-    if as_json:
-        streams.out_json(found.to_dict())
-    elif not quiet:
-        from ..reporting.installation_text import installation_text
-
-        rows = [(x.group, x.name, x.status, x.value, x.remedy) for x in found.findings]
-        streams.out(installation_text(rows, **streams.style()), end="")
-    if not found.ok:
-        raise typer.Exit(ExitCode.MISSED)
+    return Job(as_json=as_json, quiet=quiet).deliver(found)
 
 
 def _terminal() -> str:

@@ -12,13 +12,13 @@ from ..errors import Diagnostic, UsageError
 from . import streams
 from .options import Json
 
-app = typer.Typer(
+materials = typer.Typer(
     help="Look up materials, fluids, seal compounds and adhesives.",
     no_args_is_help=True,
 )
 
 
-@app.command("list")
+@materials.command("list")
 def list_materials(
     kind: Annotated[
         str | None,
@@ -42,7 +42,7 @@ def list_materials(
         streams.out("\n".join(list_lines(found, kind=kind, ascii=not streams.style()["unicode"])))
 
 
-@app.command("show")
+@materials.command("show")
 def show_material(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the entry.")],
     out: Annotated[
@@ -83,7 +83,7 @@ def show_material(
             streams.err(f"wrote {path}")
 
 
-@app.command("compare")
+@materials.command("compare")
 def compare_materials(
     names: Annotated[list[str], typer.Argument(metavar="NAME", help="Two or more entries.")],
     as_json: Json = False,

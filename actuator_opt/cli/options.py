@@ -1,13 +1,17 @@
-"""The options that commands share, each declared once with its help."""
+"""The options that commands share, each declared once with its help; how their texts are read."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..bounds import SEED, STARTS
+from ..errors import Diagnostic, UsageError
+
+if TYPE_CHECKING:
+    from ..quantities import Quantity
 
 DesignFile = Annotated[str, typer.Argument(metavar="DESIGN", help="Design file, or - for stdin.")]
 Set = Annotated[
@@ -115,3 +119,36 @@ NoRecord = Annotated[
 ]
 Report = Annotated[bool, typer.Option("--report", help="Write the report (PDF and PNG) too.")]
 REPORTS = Path("reports")
+
+
+def quantity_of(option: str, text: str | None, quantity: Quantity) -> float | None:
+    """The SI number of an option in its quantity's unit."""
+    from ..design.kinds import ValueFault, read_quantity
+
+    if text is None:
+        return None
+    try:
+        return read_quantity(text, quantity)
+    except ValueFault as fault:
+        raise UsageError(Diagnostic(f"{option}: {fault.message}", fault.remedy)) from None
+
+
+def named_columns(texts: list[str] | None) -> dict[str, str]:
+    """Channel and column of every ``--column``."""
+    found: dict[str, str] = {}
+    for text in texts or []:
+        channel, equals, name = text.partition("=")
+        if not equals or not channel.strip() or not name.strip():
+            message = f'--column "{text}" is no CHANNEL=NAME'
+            raise UsageError(Diagnostic(message, 'write e.g. "p1=Channel 3 [bar]"'))
+        found[channel.strip()] = name.strip()
+    return found
+
+
+def file_of_units(units: str | None) -> list[str]:
+    """The file of a ``--units``, where it names one."""
+    if units is None:
+        return []
+    from ..identification.column_units import SI
+
+    return [] if units == SI else [units]

@@ -1,31 +1,31 @@
-"""The commands `identify` and `calibrate`: what a test bench measured, and what it changes."""
+"""Records of a test bench: `identify` and `calibrate`."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from ..errors import Diagnostic, ExitCode, UsageError
 from ..quantities import RECORDS
-from ..store import require_apart
-from . import streams
-from .options import REPORTS, Date, Json, Out, PluginFile, Quiet, Report, Seed, Set, Units
-from .shared import (
-    check_targets,
-    command_line,
+from .job import Job
+from .options import (
+    REPORTS,
+    Date,
+    Json,
+    Out,
+    PluginFile,
+    Quiet,
+    Report,
+    Seed,
+    Set,
+    Units,
     file_of_units,
-    given,
     named_columns,
-    read_actuator,
-    say_files,
+    quantity_of,
 )
-
-if TYPE_CHECKING:
-    from ..identification.specimen import Part
-    from ..verbs import Actuator
 
 RecordFile = Annotated[
     str, typer.Argument(metavar="RECORD", help="CSV file of the test record, or - for stdin.")
@@ -91,6 +91,31 @@ Bootstrap = Annotated[
     ),
 ]
 
+Series = Annotated[
+    Path | None,
+    typer.Option("--csv", metavar="FILE", help="Save friction, stiffness, growth over time."),
+]
+Span = Annotated[
+    str | None,
+    typer.Option(
+        "--span",
+        metavar="L",
+        help='Span of a bending test (channels F_L, w), e.g. "300 mm": gives a modulus.',
+    ),
+]
+BentPart = Annotated[
+    str | None,
+    typer.Option("--part", metavar="rod|barrel", help="What was bent; default: rod."),
+]
+NewDesign = Annotated[
+    Path | None,
+    typer.Option("--write", metavar="FILE", help="Save the design with the measured values."),
+]
+Search = Annotated[
+    bool,
+    typer.Option("--optimise/--no-optimise", help="Also find the best design before and after."),
+]
+
 
 def identify(
     record: RecordFile,
@@ -104,22 +129,9 @@ def identify(
     load_force: LoadForce = None,
     pressure_lag: PressureLag = None,
     bootstrap: Bootstrap = 0,
-    csv: Annotated[
-        Path | None,
-        typer.Option("--csv", metavar="FILE", help="Save friction, stiffness, growth over time."),
-    ] = None,
-    span: Annotated[
-        str | None,
-        typer.Option(
-            "--span",
-            metavar="L",
-            help='Span of a bending test (channels F_L, w), e.g. "300 mm": gives a modulus.',
-        ),
-    ] = None,
-    part: Annotated[
-        str | None,
-        typer.Option("--part", metavar="rod|barrel", help="What was bent; default: rod."),
-    ] = None,
+    csv: Series = None,
+    span: Span = None,
+    part: BentPart = None,
     sets: Set = None,
     plugin: PluginFile = None,
     report: Report = False,
@@ -128,60 +140,35 @@ def identify(
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
-) -> None:
+) -> ExitCode:
     """Friction and damping from a test record, with bounds."""
     from .. import verbs
 
-    check_targets(out if report else None, date, csv)
-    if csv is not None:
-        require_apart(csv, record, design, *file_of_units(units))
+    job = Job(
+        design, [record, *file_of_units(units)], sets=sets, plugins=plugin, csv=csv,
+        report=report, out=out, date=date, as_json=as_json, quiet=quiet,
+    )  # fmt: skip
     _check_bootstrap(bootstrap)
-    named = named_columns(columns)
-    length = given("--span", span, RECORDS["span"])
+    reading = {"columns": named_columns(columns), "units": units}
+    length = quantity_of("--span", span, RECORDS["span"])
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
-    actuator = read_actuator(design, sets, plugin)
-    if length is None and part is not None:
-        raise UsageError(Diagnostic("--part: only with --span", "add --span, or leave it out"))
-    if length is not None:
-        others = {"--report": report or None, "--csv": csv, "--bootstrap": bootstrap or None}
-        _only_bending(others | {_OPTIONS[name]: one for name, one in settings.items()})
-        _bend(record, actuator, length, part or "rod", named, units, as_json=as_json, quiet=quiet)
-        return
-    found = verbs.identify(
-        record,
-        design=actuator,
-        columns=named,
-        units=units,
-        bootstrap=bootstrap,
-        seed=seed,
-        **settings,
-    )
-    files = []
-    if csv is not None:
-        files.append(verbs.write_series(found, csv).to_dict())
-    if report:
-        files += [
-            file.to_dict()
-            for file in verbs.write_identification(
-                found, folder=out, actuator=actuator, command=command_line(), date=date
-            )
-        ]
-    if as_json:
-        streams.out_json(found.to_dict() | ({"files": files} if files else {}))
-    elif not quiet:
-        from ..reporting.identification_text import identification_text
-
-        streams.out(identification_text(found, **streams.style()), end="")
-        say_files(files)
+    if length is None:
+        if part is not None:
+            raise UsageError(Diagnostic("--part: only with --span", "add --span, or leave it out"))
+        how = {"bootstrap": bootstrap, "seed": seed, **reading, **settings}
+        return job.deliver(job.run(verbs.identify, record, design=job.actuator, **how))
+    others = {"--report": report or None, "--csv": csv, "--bootstrap": bootstrap or None}
+    _only_bending(others | {_OPTIONS[name]: one for name, one in settings.items()})
+    if part not in (None, "rod", "barrel"):
+        raise UsageError(Diagnostic(f'--part "{part}"', "write rod or barrel"))
+    how = {"span": length, "part": part or "rod", **reading}
+    return job.deliver(job.run(verbs.bending, record, design=job.actuator, **how))
 
 
 def calibrate(
     record: RecordFile,
     design: Tested,
-    write: Annotated[
-        Path | None,
-        typer.Option("--write", metavar="FILE", help="Save the design with the measured values."),
-    ] = None,
+    write: NewDesign = None,
     columns: Columns = None,
     units: Units = None,
     cutoff: Cutoff = None,
@@ -191,12 +178,7 @@ def calibrate(
     load_force: LoadForce = None,
     pressure_lag: PressureLag = None,
     bootstrap: Bootstrap = 0,
-    search: Annotated[
-        bool,
-        typer.Option(
-            "--optimise/--no-optimise", help="Also find the best design before and after."
-        ),
-    ] = True,
+    search: Search = True,
     sets: Set = None,
     plugin: PluginFile = None,
     report: Report = False,
@@ -205,19 +187,20 @@ def calibrate(
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
-) -> None:
+) -> ExitCode:
     """Put a record's friction into its design; say what changes."""
     from .. import verbs
 
-    check_targets(out if report else None, date, write)
-    if write is not None:
-        require_apart(write, record, *file_of_units(units))
+    job = Job(
+        design, [record, *file_of_units(units)], sets=sets, plugins=plugin, write=write,
+        report=report, out=out, date=date, as_json=as_json, quiet=quiet,
+    )  # fmt: skip
     _check_bootstrap(bootstrap)
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)
-    actuator = read_actuator(design, sets, plugin)
-    found = verbs.calibrate(
+    calibrated = job.run(
+        verbs.calibrate,
         record,
-        design=actuator,
+        design=job.actuator,
         columns=named_columns(columns),
         units=units,
         search=search,
@@ -225,53 +208,8 @@ def calibrate(
         seed=seed,
         **settings,
     )
-    files: list[dict[str, Any]] = []
-    if write is not None:
-        files.append({"path": str(verbs.save(found.actuator, write))})
-    if report:
-        files += [
-            file.to_dict()
-            for file in verbs.write_calibration(
-                found, folder=out, command=command_line(), date=date
-            )
-        ]
-    if as_json:
-        streams.out_json(found.to_dict() | ({"files": files} if files else {}))
-    elif not quiet:
-        from ..reporting.calibration_text import calibration_text
-
-        streams.out(calibration_text(found.calibration, found.redesign, **streams.style()), end="")
-        say_files(files)
-    if not found.redesign.evaluation.met:
-        raise typer.Exit(ExitCode.MISSED)
-
-
-def _bend(
-    record: str,
-    actuator: Actuator,
-    span: float,
-    part: str,
-    columns: dict[str, str],
-    units: str | None,
-    *,
-    as_json: bool,
-    quiet: bool,
-) -> None:
-    """A bending test to a modulus."""
-    from .. import verbs
-
-    if part not in ("rod", "barrel"):
-        raise UsageError(Diagnostic(f'--part "{part}"', "write rod or barrel"))
-    own: Part = part  # type: ignore[assignment]
-    found = verbs.bending(
-        record, design=actuator, span=span, part=own, columns=columns, units=units
-    )
-    if as_json:
-        streams.out_json(found.to_dict())
-    elif not quiet:
-        from ..reporting.bending_text import bending_text
-
-        streams.out(bending_text(found, **streams.style()), end="")
+    saved = [] if write is None else [{"path": str(verbs.save(calibrated.actuator, write))}]
+    return job.deliver(calibrated, files=saved)
 
 
 def _only_bending(asked: Mapping[str, object]) -> None:
@@ -311,11 +249,11 @@ def _settings(
 ) -> dict[str, Any]:
     """How a record is read, SI: what was stated."""
     found = {
-        "cutoff": given("--cutoff", cutoff, RECORDS["cutoff"]),
+        "cutoff": quantity_of("--cutoff", cutoff, RECORDS["cutoff"]),
         "order": order,
         "compensated": False if uncompensated else None,
-        "mass": given("--mass", mass, RECORDS["moving_mass"]),
-        "load_force": given("--load-force", load_force, RECORDS["load_force"]),
-        "pressure_lag": given("--pressure-lag", pressure_lag, RECORDS["pressure_lag"]),
+        "mass": quantity_of("--mass", mass, RECORDS["moving_mass"]),
+        "load_force": quantity_of("--load-force", load_force, RECORDS["load_force"]),
+        "pressure_lag": quantity_of("--pressure-lag", pressure_lag, RECORDS["pressure_lag"]),
     }
     return {name: one for name, one in found.items() if one is not None}

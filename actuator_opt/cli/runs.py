@@ -1,18 +1,19 @@
-"""The commands below `actuator-opt runs`, and the report of a recorded run."""
+"""Recorded runs: the commands below `runs`, and `rerun` of a report."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from .. import run_store, store
 from ..errors import Diagnostic, ExitCode, UsageError
 from . import streams
-from .options import Json, Quiet
+from .job import Job
+from .options import REPORTS, Json, NoRecord, PluginFile, Quiet
 
-app = typer.Typer(
+runs = typer.Typer(
     help="Recorded runs: list, show, delete, prune. Each optimise, pareto and sweep leaves one.",
     no_args_is_help=True,
 )
@@ -22,7 +23,7 @@ RunName = Annotated[
 ]
 
 
-@app.command("list")
+@runs.command("list")
 def list_runs(
     design: Annotated[
         str | None, typer.Option("--design", metavar="NAME", help="Only of this design or file.")
@@ -37,18 +38,23 @@ def list_runs(
     from .. import verbs
 
     found, faults = verbs.runs(design=design, command=command)
-    if as_json:
-        rows = [{"id": one.id} | dict(one.head) for one in found]
-        streams.out_json({"runs": rows, "errors": [fault.to_dict() for fault in faults]})
-        return
-    for fault in faults:
-        streams.err(str(fault))
-    if found and not quiet:
+    rows = [(run.id, dict(run.head)) for run in found]
+    told = [{"id": name} | head for name, head in rows]
+
+    def text() -> str:
         from ..reporting.runs_text import runs_table
 
-        streams.out(runs_table([(one.id, one.head) for one in found], **streams.style()), end="")
-    elif not quiet:
-        streams.err(_nothing(design, command))
+        return runs_table(rows, **streams.style())
+
+    job = Job(as_json=as_json, quiet=quiet)
+    if not as_json:
+        for fault in faults:
+            streams.err(str(fault))
+    job.answer(
+        lambda: {"runs": told, "errors": [fault.to_dict() for fault in faults]},
+        text if rows else None,
+        remarks=[] if rows else [_nothing(design, command)],
+    )
 
 
 def _nothing(design: str | None, command: str | None) -> str:
@@ -59,7 +65,7 @@ def _nothing(design: str | None, command: str | None) -> str:
     return f"no runs{what} are recorded in {place}"
 
 
-@app.command("show")
+@runs.command("show")
 def show_run(
     name: RunName,
     out: Annotated[
@@ -76,20 +82,10 @@ def show_run(
         store.require_folder(out)
     found = verbs.read_run(name)
     paths = [] if out is None else verbs.draw_run(found, out)
-    if as_json:
-        files: dict[str, Any] = {"files": [{"path": str(path)} for path in paths]} if paths else {}
-        streams.out_json(found.to_dict() | files)
-    elif not quiet:
-        from ..reporting.runs_text import run_text
-
-        with verbs.sound(found):
-            told = run_text(found.id, found.head, found.body, **streams.style())
-        streams.out(told, end="")
-        for path in paths:
-            streams.err(f"wrote {path}")
+    Job(as_json=as_json, quiet=quiet).deliver(found, files=[{"path": str(x)} for x in paths])
 
 
-@app.command("delete")
+@runs.command("delete")
 def delete_run(name: RunName, as_json: Json = False, quiet: Quiet = False) -> None:
     """Delete one recorded run by its id."""
     from .. import verbs
@@ -99,7 +95,7 @@ def delete_run(name: RunName, as_json: Json = False, quiet: Quiet = False) -> No
     _say_deleted([verbs.delete_run(name)], as_json=as_json, quiet=quiet)
 
 
-@app.command("prune")
+@runs.command("prune")
 def prune_runs(
     keep: Annotated[
         int, typer.Option("--keep", min=0, metavar="N", help="Keep the newest N runs.")
@@ -114,35 +110,28 @@ def prune_runs(
 
 
 def _say_deleted(found: list[str], *, as_json: bool, quiet: bool) -> None:
-    if as_json:
-        streams.out_json({"deleted": found})
-    elif not quiet:
-        for name in found:
-            streams.err(f"deleted {name}")
-        if not found:
-            streams.err("nothing to delete")
+    said = [f"deleted {name}" for name in found] or ["nothing to delete"]
+    Job(as_json=as_json, quiet=quiet).answer(lambda: {"deleted": found}, remarks=said)
 
 
-def reported(
-    name: str, sets: list[str] | None, plugins: list[Path] | None, out: Path, date: str | None
-) -> tuple[list[dict[str, Any]], ExitCode]:
-    """Report a recorded run: its files and the exit status; what differs from then is told."""
+def rerun(
+    report: Annotated[str, typer.Argument(metavar="REPORT.pdf", help="Report of actuator-opt.")],
+    plugin: PluginFile = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Write the report into this folder again."),
+    ] = None,
+    no_record: NoRecord = False,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> ExitCode:
+    """Run the command of a report again, from the input it carries."""
     from .. import verbs
-    from ..optimisation.pareto_result import ParetoFront
-    from .optimise import outcome_of
-    from .pareto import outcome_of as outcome_of_front
 
-    if sets:
-        raise UsageError(Diagnostic("--set: a run is reported as it was", "name a design instead"))
-    found = verbs.restore(name, plugins=plugins or [])
-    for doubt in found.doubts:
-        streams.err(doubt)
-    with streams.watching():
-        files = [x.to_dict() for x in verbs.report_run(found, folder=out, date=date)]
-    if found.run.head["kind"] == "sweep":
-        return files, ExitCode.MET if found.run.head["met"] else ExitCode.MISSED
-    if isinstance(found.result, ParetoFront):
-        if not files:
-            streams.err(found.result.sentence)
-        return files, outcome_of_front(found.result)
-    return files, outcome_of(found.optimisation)
+    job = Job(
+        report=out is not None, out=out or REPORTS, as_json=as_json, quiet=quiet,
+        record=not no_record,
+    )  # fmt: skip
+    if out is not None:
+        store.require_apart(out / f"{Path(report).stem}.pdf", report)
+    return job.deliver(job.run(verbs.rerun, report, plugins=plugin or []))

@@ -15,25 +15,20 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from time import monotonic
 from types import FrameType
-from typing import Any, TextIO, TypedDict
+from typing import TYPE_CHECKING, Any, TextIO
 
 from ..errors import Diagnostic, ExitCode, InputError
 from ..progress import watched
 from ..suggest import escaped
 from ..units import whole
 
+if TYPE_CHECKING:
+    from ..reporting.console import Style
+
 NARROWEST, WIDEST, USUAL, TERMINAL = 40, 1000, 100, 80
 """Columns: at least, at most, where the output is no terminal, where a terminal does not say."""
 PATIENCE, PAUSE = 1.0, 0.2
 """Seconds before progress is told, and between two tellings."""
-
-
-class Style(TypedDict):
-    """How text may look: colour codes, Unicode signs, columns."""
-
-    colour: bool
-    unicode: bool
-    width: int
 
 
 @dataclass(slots=True)

@@ -1,21 +1,21 @@
-"""`sweep`: many variants of a design."""
+"""Many variants of a design: `sweep` and `explore`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..bounds import SWEEP_FIGURES
-from ..errors import ActuatorError, Diagnostic, ExitCode, InputError, UsageError
+from ..errors import ActuatorError, Diagnostic, ExitCode, UsageError
 from ..suggest import shown
 from ..units import whole
 from . import streams
+from .job import Job
 from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Seed, Set
-from .shared import check_targets, command_line, keep_record, read_actuator, say_files
 
 if TYPE_CHECKING:
     from ..variants import Swept
@@ -104,44 +104,31 @@ def sweep(
     as_json: Json = False,
     quiet: Quiet = False,
     out: Folder = REPORTS,
-) -> None:
+) -> ExitCode:
     """Evaluate many variants of a design."""
     from .. import verbs
 
     keep = _kept(reduce)
     if show and not figures:
         raise UsageError(Diagnostic("--show without --figure", "add --figure parallel, say"))
-    if figures:
-        check_targets(out, None)
-    actuator = read_actuator(design, sets, plugin)
+    job = Job(
+        design, sets=sets, plugins=plugin, report=bool(figures), out=out,
+        as_json=as_json, quiet=quiet,
+    )  # fmt: skip
     asked: dict[str, Any] = {"store": store, "csv": csv, "parquet": parquet, "keep": keep}
     asked |= {"figures": figures or [], "show": show or []}
-    with _kept_rows(store, quiet), nullcontext() if quiet else streams.watching():
-        found = verbs.sweep(
-            actuator,
-            vary or [],
-            method=method,  # type: ignore[arg-type]
-            n=count,
-            seed=seed,
-            reduce=reduce is not None,
-            workers=workers,
-            scheduler=scheduler,
-            engine=engine,  # type: ignore[arg-type]
-            yes=yes,
-            **asked,
-        )
+    how: dict[str, Any] = {"vary": vary or [], "yes": yes, "engine": engine}
+    how |= {"method": method, "n": count, "seed": seed, "workers": workers, "scheduler": scheduler}
+    how |= {"reduce": reduce is not None}
+    with _kept_rows(store, quiet):
+        found = job.run(verbs.sweep, **asked, **how)
     if found.study.engine != engine and not quiet:
         streams.err("JAX is missing (pip install 'actuator-opt[gpu]'): NumPy did its work")
     if not no_record:
-        asked["command"] = command_line()
-        keep_record(lambda: verbs.record_sweep(found, actuator=actuator, **asked))
-    files, fault = _drawn(found, figures or [], show or [], out)
-    if as_json:
-        _tell_json(found, files, fault)
-    else:
-        _tell(found, [csv, parquet], files, fault, quiet=quiet)
-    if not found.best:
-        raise typer.Exit(ExitCode.MISSED)
+        job.keep(found, **asked)
+    files, faults = _drawn(found, asked["figures"], asked["show"], out)
+    code = job.deliver(found, files=files, saved=[csv, parquet], faults=faults)
+    return ExitCode.BAD_INPUT if faults else code
 
 
 @contextmanager
@@ -155,38 +142,9 @@ def _kept_rows(store: Path | None, quiet: bool) -> Iterator[None]:
         raise
 
 
-def _tell_json(found: Swept, files: list[dict[str, str]], fault: ActuatorError | None) -> None:
-    """One object; a figure that could not be drawn is told beside the results."""
-    told = found.to_dict() | ({"files": files} if files else {})
-    faults = [] if fault is None else [one.to_dict() for one in fault.diagnostics]
-    streams.out_json(told | ({"errors": faults} if faults else {}))
-    if fault is not None:
-        raise typer.Exit(fault.exit_code)
-
-
-def _tell(
-    found: Swept,
-    tables: list[Path | None],
-    files: list[dict[str, str]],
-    fault: ActuatorError | None,
-    *,
-    quiet: bool,
-) -> None:
-    """Results as text, then the files, then what could not be drawn."""
-    from ..reporting.sweep_text import sweep_text
-
-    if not quiet:
-        streams.out(sweep_text(found, **streams.style()))
-        for path in filter(None, tables):
-            streams.err(f"wrote {path}")
-        say_files(files)
-    if fault is not None:
-        raise fault
-
-
 def _drawn(
     found: Swept, figures: list[str], show: list[str], out: Path
-) -> tuple[list[dict[str, str]], ActuatorError | None]:
+) -> tuple[list[dict[str, str]], list[Diagnostic]]:
     """The files of figures, and the faults of the others, told once the sweep's results are."""
     from .. import verbs
 
@@ -196,10 +154,10 @@ def _drawn(
         try:
             paths = verbs.draw_sweep(found, [figure], show=show, out=out)
         except ActuatorError as error:
-            faults |= {str(one): one for one in error.diagnostics}
+            faults |= {str(fault): fault for fault in error.diagnostics}
         else:
             files += [{"path": str(path)} for path in paths]
-    return files, InputError(list(faults.values())) if faults else None
+    return files, [*faults.values()]
 
 
 def _kept(reduce: str | None) -> int:
@@ -212,3 +170,35 @@ def _kept(reduce: str | None) -> int:
         message = f"--reduce {shown(reduce)}: unknown"
         raise UsageError(Diagnostic(message, "write best:K, e.g. best:20"))
     return keep
+
+
+def explore(
+    store: Annotated[
+        str,
+        typer.Argument(
+            metavar="RUN|F.db", help="Run of sweep or pareto (id, last), or a sweep's database."
+        ),
+    ],
+    study: Annotated[
+        int | None,
+        typer.Option("--study", metavar="N", help="Which of its studies; default: the newest."),
+    ] = None,
+    rows: Annotated[
+        int,
+        typer.Option("--rows", metavar="N", help="Most designs shown; of more, an even sample."),
+    ] = 5000,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FILE", help="The page (.html), or a folder for it.")
+    ] = REPORTS,
+    plugin: PluginFile = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+) -> None:
+    """Write a kept sweep or a front as one offline HTML page."""
+    from .. import verbs
+
+    found = verbs.explore(store, out=out, study=study, rows=rows, plugins=plugin or [])
+    files = [file.to_dict() for file in found]
+    job = Job(as_json=as_json, quiet=quiet)
+    job.answer(lambda: {"files": files}, remarks=found[0].remarks, files=files)

@@ -7,6 +7,7 @@ import textwrap
 import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypedDict
 
 from .blocks import clean
 from .text import plain
@@ -16,6 +17,14 @@ _CODE = "|".join(_CODES.values())
 PAINT = rf"\x1b\[(?:0|(?:{_CODE})(?:;(?:{_CODE}))*)m"
 """What `Console.paint` writes, as a regular expression."""
 _BREAK = re.compile(r"[\t\n\r\v\f\u2028\u2029]+")
+
+
+class Style(TypedDict):
+    """How text may look: colour codes, Unicode signs, columns."""
+
+    colour: bool
+    unicode: bool
+    width: int
 
 
 def visible(text: str) -> int:

@@ -36,7 +36,7 @@ def sweep_text(
         lines.append(console.wrap(f"failed: {times} times {reason}"))
     if len(reasons) > FAILURES:
         lines.append(f"and {len(reasons) - FAILURES} more reasons")
-    return "\n".join(lines)
+    return "\n".join(lines) + "\n"
 
 
 def counts(swept: Swept) -> str:

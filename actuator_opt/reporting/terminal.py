@@ -6,7 +6,7 @@ Every function takes `colour`, `unicode` and `width`; without `unicode` the text
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypedDict, Unpack
+from typing import Unpack
 
 from ..evaluation.result import Evaluation, Requirement, StrokeCurve
 from ..optimisation.result import Optimisation
@@ -22,7 +22,7 @@ from . import (
     trust,
     whole_plies,
 )
-from .console import Column, Console
+from .console import Column, Console, Style
 from .places import brief
 from .text import DASH
 
@@ -50,12 +50,6 @@ _PLAIN_MARKS = {
     "not_checked": "-",
     "infeasible": "INFEASIBLE",
 }
-
-
-class _Style(TypedDict):
-    colour: bool
-    unicode: bool
-    width: int
 
 
 def _mark(console: Console, state: str) -> str:
@@ -307,7 +301,7 @@ def stiffness_curve(
     return "\n".join([console.heading(title), *lines, console.paint(console.say(ending), "dim")])
 
 
-def notes(subject: Evaluation | Optimisation, **style: Unpack[_Style]) -> str:
+def notes(subject: Evaluation | Optimisation, **style: Unpack[Style]) -> str:
     """Warnings in full, unverified data counted; empty when there is nothing to say."""
     console = Console(**style)
     evaluation = page.parts_of(subject)[0]
@@ -330,7 +324,7 @@ def evaluation_text(
         (r for r in evaluation.requirements if (r.metric, r.sense) == ("stiffness_min", "min")),
         None,
     )
-    style: _Style = {"colour": colour, "unicode": unicode, "width": width}
+    style: Style = {"colour": colour, "unicode": unicode, "width": width}
     curve = stiffness_curve(evaluation.curve, required, **style)
     shares = stiffness_page.summary(evaluation.curve)
     if curve and shares:
@@ -349,7 +343,7 @@ def optimisation_text(
     optimisation: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
 ) -> str:
     """What `optimise` shows."""
-    style: _Style = {"colour": colour, "unicode": unicode, "width": width}
+    style: Style = {"colour": colour, "unicode": unicode, "width": width}
     console = Console(**style)
     parts: Sequence[str] = [
         verdict(optimisation, **style),

@@ -8,8 +8,8 @@ from .exploring import explore
 from .exports import export
 from .fronts import pareto, write_front, write_front_csv
 from .installation import Installation, doctor
-from .optimum import evaluate, optimise, sensitivity, with_yield
-from .recorded_runs import Run, delete_run, prune_runs, read_run, record_run, runs, sound
+from .optimum import Prices, evaluate, optimise, sensitivity, with_yield
+from .recorded_runs import Run, delete_run, prune_runs, read_run, record_run, runs
 from .recording import record, record_front, record_sweep
 from .records import (
     Calibrated,
@@ -22,8 +22,9 @@ from .records import (
     write_series,
 )
 from .repeating import Rerun, rerun
-from .reports import date_from_environment, is_date, report, save
+from .reports import save
 from .restoring import Restored, draw_run, report_run, restore
+from .results import exit_code, report
 from .seals import seal, with_contact, write_seal
 from .sessions import Curve, Prediction, Price, Session, session
 from .simulations import (
@@ -51,6 +52,7 @@ __all__ = [
     "Installation",
     "Prediction",
     "Price",
+    "Prices",
     "Rerun",
     "Restored",
     "Run",
@@ -62,7 +64,6 @@ __all__ = [
     "compare",
     "compare_measured",
     "comparison_json",
-    "date_from_environment",
     "delete_run",
     "doctor",
     "draw_comparison",
@@ -70,11 +71,11 @@ __all__ = [
     "draw_sweep",
     "evaluate",
     "examine",
+    "exit_code",
     "explore",
     "export",
     "fitting",
     "identify",
-    "is_date",
     "optimise",
     "pareto",
     "prune_runs",
@@ -97,7 +98,6 @@ __all__ = [
     "servo_sensitivities",
     "session",
     "simulate",
-    "sound",
     "sweep",
     "uncertainty",
     "verify_dynamics",

@@ -133,6 +133,16 @@ def located(actuator: Actuator) -> Iterator[None]:
         ) from None
 
 
+def answered(design: Actuator | Design | str | Path, plugins: Plugins) -> tuple[Actuator, Subject]:
+    """Any form of a design, ready for the models; raises `InputError` as `unanswered`."""
+    actuator = as_actuator(design, plugins)
+    subject = actuator.subject()
+    faults = unanswered(actuator, subject)
+    if faults:
+        raise InputError(faults)
+    return actuator, subject
+
+
 def unanswered(actuator: Actuator, subject: Subject) -> list[Diagnostic]:
     """Requirements on metrics that this design does not have."""
     if not actuator.design.requirements:

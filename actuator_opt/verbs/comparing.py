@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from .. import run_store
 from ..design import Design
@@ -14,12 +14,13 @@ from ..evaluation.comparison import Comparison, DesignState
 from .actuator import Actuator, Plugins, read
 from .optimum import evaluate
 from .recorded_runs import Run
-from .reports import file_name
+from .reports import Paper, file_name, report_files
 from .restoring import Restored, restore
 from .stamp import is_optimum
 
 if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
+    from ..reporting import ReportFile
 
 MOST = 12
 """Designs beside each other, at most: a choice."""
@@ -137,6 +138,11 @@ def comparison_json(found: Comparison) -> dict[str, Any]:
         for question, sentence in zip(found.questions, said, strict=False)
     }
     return found.to_dict() | {"answers": answers, "notes": said[len(answers) :]}
+
+
+def report_comparison(found: Comparison, **paper: Unpack[Paper]) -> list[ReportFile]:
+    """Draw a comparison as its report: PNG and SVG carry no title block."""
+    return report_files(draw_comparison(found, paper.get("folder", "reports")))
 
 
 def draw_comparison(found: Comparison, folder: str | Path = "reports") -> list[Path]:

@@ -7,12 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..design import Design
-from ..errors import Diagnostic, UsageError
 from ..evaluation import Evaluation
-from ..suggest import shown
 from .actuator import Actuator, Plugins, as_actuator
 from .optimum import evaluate
-from .reports import date_from_environment, file_name
+from .reports import date_from_environment, file_name, require_date
 
 if TYPE_CHECKING:
     from ..exporting import ExportFile
@@ -59,7 +57,7 @@ def export(
     from ..exporting import require_formats, write_exports
 
     if date is not None:
-        _require_date(date)
+        require_date(date)
     formats = require_formats((formats,) if isinstance(formats, str) else formats)
     if isinstance(subject, Actuator | Design | str | Path):
         actuator = as_actuator(subject, plugins)
@@ -74,13 +72,3 @@ def export(
         stem=stem or Path(file_name(evaluation.design, source)).stem,
         date=date or date_from_environment(),
     )
-
-
-def _require_date(text: str) -> None:
-    from datetime import date
-
-    try:
-        date.fromisoformat(text)
-    except ValueError:
-        fault = Diagnostic(f'date "{shown(text)}" is no date', "write YYYY-MM-DD")
-        raise UsageError(fault) from None

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 from ..design import Design
-from ..errors import InputError
-from .actuator import Actuator, Plugins, as_actuator, located, place, unanswered
-from .reports import file_name, origin
+from .actuator import Actuator, Plugins, answered, located, place
+from .reports import Paper, page_of
 
 if TYPE_CHECKING:
     from ..optimisation.pareto_result import ParetoFront
@@ -38,11 +37,7 @@ def pareto(
     """
     from ..optimisation.pareto import pareto as run
 
-    actuator = as_actuator(design, plugins)
-    subject = actuator.subject()
-    faults = unanswered(actuator, subject)
-    if faults:
-        raise InputError(faults)
+    actuator, subject = answered(design, plugins)
     with located(actuator):
         return run(subject, objectives, count=n, seed=seed, checks=checks, fault=place(actuator))
 
@@ -54,22 +49,14 @@ def write_front_csv(found: ParetoFront, path: str | Path) -> ReportFile:
     return write_csv(found, Path(path))
 
 
-def write_front(
-    found: ParetoFront,
-    *,
-    folder: str | Path = "reports",
-    actuator: Actuator | None = None,
-    command: str = "",
-    date: str | None = None,
-) -> list[ReportFile]:
-    """Write the page of a front (PDF and PNG) and its figure (PNG and SVG); as `report`."""
+def write_front(front: ParetoFront, **paper: Unpack[Paper]) -> list[ReportFile]:
+    """Write the page of a front (PDF and PNG) and its figure (PNG and SVG).
+
+    Nothing is written where no design was found. Parameters as `report`.
+    """
     from ..reporting.pareto_document import write_front_sheet
 
-    source = None if actuator is None else actuator.source
-    stem = Path(file_name(found.subject, source)).stem
-    return write_front_sheet(
-        found,
-        origin(found.subject, source, command=command, date=date),
-        folder=Path(folder),
-        stem=f"{stem}_pareto",
-    )
+    if not front.points:
+        return []
+    origin, place = page_of(front.subject, "_pareto", **paper)
+    return write_front_sheet(front, origin, **place)

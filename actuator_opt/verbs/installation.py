@@ -11,11 +11,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from importlib import import_module, metadata
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Unpack
 
 from .. import store
 from ..errors import InputError
 from ..version import VERSION
+
+if TYPE_CHECKING:
+    from ..reporting.console import Style
 
 Status: TypeAlias = Literal["ok", "missing", "fault"]
 """As it must be; an extra that is not installed; something that a command will fail at."""
@@ -59,6 +62,13 @@ class Installation:
             "ok": self.ok,
             "findings": [asdict(finding) for finding in self.findings],
         }
+
+    def text(self, **style: Unpack[Style]) -> str:
+        """What the terminal shows."""
+        from ..reporting.installation_text import installation_text
+
+        rows = [(x.group, x.name, x.status, x.value, x.remedy) for x in self.findings]
+        return installation_text(rows, **style)
 
 
 def doctor(

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from ..errors import Diagnostic, InputError, UsageError
 from .actuator import Actuator
 from .recorded_runs import Run
-from .reports import file_name
+from .reports import Paper, file_name, report_files
 from .sweeping import LARGE, draw_sweep, study_of, writing
 
 if TYPE_CHECKING:
@@ -89,28 +88,28 @@ def store_of(run: Run) -> tuple[Path, str]:
     return path, kept["study"]
 
 
-def report_sweep(kept: KeptSweep, *, folder: str | Path = "reports") -> list[ReportFile]:
+def report_sweep(kept: KeptSweep, **paper: Unpack[Paper]) -> list[ReportFile]:
     """Write the figures and tables of a recorded sweep again, from the rows in its store.
 
     The figures are those that the sweep drew, else parallel axes where a design is feasible; the
     CSV (``NAME-sweep.csv``) is left out of a sweep of over a million points that wrote none; a
-    Parquet file comes where the sweep wrote one.
+    Parquet file comes where the sweep wrote one. Of `paper` (see `report`) folder and stem count.
 
     Raises
     ------
     InputError : its store is gone, holds other rows or lacks some, or the folder cannot be written
     """
-    from ..reporting import ReportFile
     from ..reporting.sweep_figures import watched
     from ..store import require_folder
     from ..variants import swept_again
 
-    target, asked, study = Path(folder), kept.run.body["asked"], kept.study
+    target = Path(paper.get("folder", "reports"))
+    asked, study = kept.run.body["asked"], kept.study
     path, _ = store_of(kept.run)
     require_folder(target)
     figures, show = asked["figures"], asked["show"]
     how: dict[str, Any] = {"keep": asked["keep"], "watch": watched(study, figures, show)}
-    stem = Path(file_name(study.design, None)).stem
+    stem = paper.get("stem") or Path(file_name(study.design, None)).stem
     csv = parquet = None
     if study.plan.count <= LARGE or asked["csv"] is not None:
         csv = target / f"{stem}-sweep.csv"
@@ -123,9 +122,4 @@ def report_sweep(kept: KeptSweep, *, folder: str | Path = "reports") -> list[Rep
     kinds = figures or (["parallel"] if found.feasible else [])
     if kinds:
         files += draw_sweep(found, kinds, show=show, out=target, stem=stem)
-    return [ReportFile(file, _sha256(file), 1) for file in files]
-
-
-def _sha256(file: Path) -> str:
-    with file.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
+    return report_files(files)

@@ -2,26 +2,40 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Unpack
 
 from ..design import Design
-from ..errors import InputError
 from ..evaluation import Evaluation, Subject, prepare
 from ..evaluation import evaluate as evaluate_subject
 from ..evaluation.plugin import Plugin
 from ..evaluation.reserve import YieldEstimate
-from .actuator import Actuator, Plugins, as_actuator, located, place, unanswered
+from .actuator import Actuator, Plugins, answered, as_actuator, located, place
 
 if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
     from ..optimisation.sensitivity import Sensitivity
+    from ..reporting import ReportFile
+    from ..reporting.console import Style
 
 
-def evaluate(design: Actuator | Design | str | Path, *, plugins: Plugins = ()) -> Evaluation:
-    """Every metric, requirement and check of a design as it stands."""
-    return evaluate_subject(as_actuator(design, plugins).subject())
+def evaluate(
+    design: Actuator | Design | str | Path, *, plugins: Plugins = (), seed: int | None = None
+) -> Evaluation:
+    """Every metric, requirement and check of a design.
+
+    Parameters
+    ----------
+    design : the design
+    plugins : the user's own metrics and constraints
+    seed : of the draws of a quick estimate of the yield (`with_yield`); None: no estimate
+    """
+    actuator = as_actuator(design, plugins)
+    evaluation = evaluate_subject(actuator.subject())
+    if seed is None:
+        return evaluation
+    return with_yield(evaluation, plugins=actuator.plugins, seed=seed)
 
 
 def with_yield(
@@ -64,11 +78,7 @@ def optimise(
     """
     from ..optimisation.run import optimise as run
 
-    actuator = as_actuator(design, plugins)
-    subject = actuator.subject()
-    faults = unanswered(actuator, subject)
-    if faults:
-        raise InputError(faults)
+    actuator, subject = answered(design, plugins)
 
     def search(subject: Subject, last: bool) -> Optimisation:
         return run(
@@ -120,3 +130,31 @@ def sensitivity(
 ) -> tuple[Sensitivity, ...]:
     """What each requirement and parameter costs at the design's optimum."""
     return optimise(design, seed=seed, plugins=plugins).sensitivities
+
+
+@dataclass(frozen=True, slots=True)
+class Prices:
+    """The prices of an optimum alone: what `sensitivity` shows."""
+
+    optimisation: Optimisation
+
+    def to_dict(self) -> dict[str, Any]:
+        """The `sensitivity --json` object; prices are of the continuous optimum."""
+        data = replace(self.optimisation, rounding=None).to_dict()
+        keys = ["name", "version", "status", "outcome", "objective", "sensitivities"]
+        keys += ["what_buys_most", "kkt", "infeasibility"]
+        return {key: data[key] for key in keys if key in data}
+
+    def text(self, **style: Unpack[Style]) -> str:
+        """Prices in the terminal, or why there is no optimum."""
+        from ..reporting import infeasibility_card, prices
+
+        best = self.optimisation
+        shown = prices.terminal(best, moving=True, **style)
+        return f"{shown or infeasibility_card.terminal(best, **style) or best.sentence}\n"
+
+    def report(self, **paper: Any) -> list[ReportFile]:
+        """Write the report of the optimum."""
+        from .reports import report_design
+
+        return report_design(self.optimisation, **paper)

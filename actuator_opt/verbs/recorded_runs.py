@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 from .. import run_store
 from ..errors import Diagnostic, InputError
@@ -21,6 +21,9 @@ from ..version import VERSION
 from .actuator import Actuator
 from .record_form import body_fault, head_fault
 from .reports import date_from_environment, file_name
+
+if TYPE_CHECKING:
+    from ..reporting.console import Style
 
 _STATED = re.compile(r"^Version: *(\S+)", re.MULTILINE)
 CLOSE = 1e-9
@@ -40,6 +43,13 @@ class Run:
         """The `runs show --json` object."""
         kept = {key: value for key, value in self.body.items() if key not in ("state", "tables")}
         return {"id": self.id, "path": str(self.path)} | dict(self.head) | kept
+
+    def text(self, **style: Unpack[Style]) -> str:
+        """What the terminal shows."""
+        from ..reporting.runs_text import run_text
+
+        with sound(self):
+            return run_text(self.id, self.head, self.body, **style)
 
 
 @contextmanager

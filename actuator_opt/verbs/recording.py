@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from .actuator import Actuator
 from .recorded_runs import Run, record_run
+from .reports import verification_tables
 
 if TYPE_CHECKING:
     from ..optimisation.pareto_result import ParetoFront
     from ..optimisation.result import Optimisation
     from ..reporting import ExtraTable
+    from ..simulation.verification import Verification
     from ..variants import Swept
 
 BEST = 10
@@ -31,6 +33,7 @@ def record(
     command: str = "",
     date: str | None = None,
     extra_tables: Sequence[ExtraTable] = (),
+    dynamics_verified: Verification | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
     """Record an optimisation with its input, so that it can be shown and reported later.
@@ -39,7 +42,7 @@ def record(
     ----------
     result : of `optimise`
     actuator : that was optimised
-    command, date, extra_tables : of its report
+    command, date, extra_tables, dynamics_verified : of its report
     folder : where to; default: ACTUATOR_OPT_RUNS, else the person's data folder
 
     Returns
@@ -65,7 +68,9 @@ def record(
         "trace": [list(row) for row in result.trace],
         "result": result.to_dict(),
         "state": to_plain(result),
-        "tables": [asdict(table) for table in extra_tables],
+        "tables": [
+            asdict(table) for table in (*extra_tables, *verification_tables(dynamics_verified))
+        ],
     }
     return record_run(
         "optimise", head, more, actuator=actuator, command=command, date=date,
@@ -114,6 +119,7 @@ def record_sweep(
     figures: Sequence[str] = (),
     show: Sequence[str] = (),
     command: str = "",
+    date: str | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
     """Record a sweep: its plan, counts, the best designs and where its rows lie, but no rows.
@@ -121,7 +127,7 @@ def record_sweep(
     Parameters
     ----------
     found : of `sweep`
-    actuator, command, folder : as `record`
+    actuator, command, date, folder : as `record`
     store, csv, parquet, keep, figures, show : as given to `sweep`
     """
     from ..reporting.sweep_text import counts
@@ -161,7 +167,7 @@ def record_sweep(
         "result": kept.to_dict(),
     }
     return record_run(
-        "sweep", head, more, actuator=actuator, command=command,
+        "sweep", head, more, actuator=actuator, command=command, date=date,
         seed=study.plan.seed, folder=folder,
     )  # fmt: skip
 

@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from ..design import Design
 from ..errors import Diagnostic, InputError
 from .actuator import Actuator, as_actuator
-from .reports import origin
+from .reports import Paper, page_of
 
 if TYPE_CHECKING:
     from ..identification import BendingResult, Calibration, Identification, Record, Specimen
     from ..identification.specimen import Part
     from ..optimisation.redesign import Redesign
     from ..reporting import ReportFile
+    from ..reporting.console import Style
 
 MOST_BYTES = 1_000_000_000
 """Largest file of a record (a choice: what memory holds several times)."""
@@ -219,6 +220,12 @@ class Calibrated:
             **self.redesign.to_dict(),
         }
 
+    def text(self, **style: Unpack[Style]) -> str:
+        """What the terminal shows."""
+        from ..reporting.calibration_text import calibration_text
+
+        return calibration_text(self.calibration, self.redesign, **style)
+
 
 def calibrate(
     record: Identification | Record | str | Path,
@@ -317,24 +324,14 @@ def _require_use(
 
 
 def write_identification(
-    identification: Identification,
-    *,
-    folder: str | Path = "reports",
-    actuator: Actuator | None = None,
-    command: str = "",
-    date: str | None = None,
+    identification: Identification, **paper: Unpack[Paper]
 ) -> list[ReportFile]:
     """Write the page of an identification (PDF and PNG); parameters as `report`."""
     from ..reporting.identification_document import write_identification_sheet
 
-    design = identification.bench.design
-    source = None if actuator is None else actuator.source
-    return write_identification_sheet(
-        identification,
-        origin(design, source, command=command, date=date),
-        folder=Path(folder),
-        stem=f"{Path(identification.record.file_name).stem}_identification",
-    )
+    record = identification.record.file_name
+    origin, place = page_of(identification.bench.design, "_identification", beside=record, **paper)
+    return write_identification_sheet(identification, origin, **place)
 
 
 def write_series(identification: Identification, path: str | Path) -> ReportFile:
@@ -344,32 +341,22 @@ def write_series(identification: Identification, path: str | Path) -> ReportFile
     return write(identification, Path(path))
 
 
-def write_calibration(
-    calibrated: Calibrated,
-    *,
-    folder: str | Path = "reports",
-    command: str = "",
-    date: str | None = None,
-) -> list[ReportFile]:
+def write_calibration(calibrated: Calibrated, **paper: Unpack[Paper]) -> list[ReportFile]:
     """Write the page of a calibration (PDF and PNG), the new design attached.
 
-    Parameters
-    ----------
-    calibrated : what `calibrate` found
-    folder : where to
-    command, date : as `report`
+    Parameters as `report`; the design is the calibrated one.
     """
     from ..design.writer import to_yaml
     from ..evaluation.study.bench import bench
     from ..reporting.calibration_document import write_calibration_sheet
 
-    actuator = calibrated.actuator
-    page = origin(actuator.design, actuator.source, command=command, date=date)
+    actuator = paper["actuator"] = calibrated.actuator
+    record = calibrated.calibration.identification.record.file_name
+    origin, place = page_of(actuator.design, "_calibration", beside=record, **paper)
     return write_calibration_sheet(
         calibrated.calibration,
         calibrated.redesign,
         bench(actuator.subject()),
-        replace(page, source_text=to_yaml(actuator.design, actuator.source)),
-        folder=Path(folder),
-        stem=f"{Path(calibrated.calibration.identification.record.file_name).stem}_calibration",
+        replace(origin, source_text=to_yaml(actuator.design, actuator.source)),
+        **place,
     )

@@ -8,24 +8,26 @@ import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
 from ..bounds import CHECKS, FRONT, SEED, STARTS, Bounds
 from ..errors import Diagnostic, InputError
 from ..evaluation import Evaluation
 from ..suggest import shown
 from ..version import VERSION
+from . import results
 from .actuator import Actuator, Plugins, plugins_of, read_as
 from .fronts import pareto
-from .optimum import evaluate, optimise, with_yield
+from .optimum import evaluate, optimise
 from .record_form import run_fault
-from .recorded_runs import differing
-from .reports import is_date
+from .recorded_runs import Run, differing
+from .reports import Paper, is_date, verification_tables
 
 if TYPE_CHECKING:
     from ..optimisation.pareto_result import ParetoFront
     from ..optimisation.result import Optimisation
-    from ..reporting import ExtraTable
+    from ..reporting import ExtraTable, ReportFile
+    from ..reporting.console import Style
 
 OPTIMISED, EVALUATED = ("optimise", "optimize", "sensitivity"), ("evaluate", "report")
 FRONTS = ("pareto",)
@@ -70,6 +72,22 @@ class Rerun:
                 },
             }
         }
+
+    def text(self, **style: Unpack[Style]) -> str:
+        """What the command shows in the terminal."""
+        return results.text(self.subject, **style)
+
+    def report(self, **paper: Unpack[Paper]) -> list[ReportFile]:
+        """Write the report again: the command and the date are those of the first."""
+        paper |= {"actuator": self.actuator, "command": self.command, "date": self.date}
+        tables: dict[str, Any] = {"extra_tables": self.tables} if self.tables else {}
+        return results.report(self.subject, **paper, **tables)
+
+    def record(self, **paper: Any) -> Run | None:
+        """Record the run, where its command leaves a record."""
+        paper |= {"actuator": self.actuator, "command": self.command, "date": self.date}
+        tables: dict[str, Any] = {"extra_tables": self.tables} if self.tables else {}
+        return results.keep(self.subject, **paper, **tables)
 
 
 def rerun(report: str | Path, *, plugins: Plugins = ()) -> Rerun:
@@ -228,7 +246,7 @@ def _again(
 ) -> tuple[Evaluation | Optimisation | ParetoFront, Sequence[ExtraTable]]:
     """The result of the command, and the further tables of its report."""
     if verb in EVALUATED:
-        return with_yield(evaluate(actuator), plugins=actuator.plugins, seed=asked.seed), []
+        return evaluate(actuator, seed=asked.seed), []
     if verb in FRONTS:
         how = {"n": asked.n, "seed": asked.seed, "checks": asked.checks}
         return pareto(actuator, asked.objective, **how), []
@@ -246,10 +264,9 @@ def _again(
     )
     if asked.verify_dynamics is None:
         return found, []
-    from ..reporting.verification_rows import verification_rows
     from .simulations import verify_dynamics
 
-    return found, verification_rows(verify_dynamics(asked.verify_dynamics, found.best))
+    return found, verification_tables(verify_dynamics(asked.verify_dynamics, found.best))
 
 
 def _differences(

@@ -1,21 +1,20 @@
-"""Reports of designs, and designs written down."""
+"""Reports of designs, and designs written down; what every report takes."""
 
 from __future__ import annotations
 
+import hashlib
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict, Unpack
 
 from ..design import Design, Source
 from ..errors import Diagnostic, UsageError
-from ..evaluation import Evaluation, Subject, evaluate, prepare
+from ..evaluation import Evaluation, Subject, prepare
 from ..evaluation.plugin import with_own
-from ..evaluation.reserve import UNKNOWN
 from ..metrics import METRICS
-from .actuator import Actuator, Plugins, as_actuator
-from .optimum import with_yield
+from .actuator import Actuator, as_actuator
 from .stamp import stamped
 
 if TYPE_CHECKING:
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
     from ..reporting import ExtraTable, ReportFile
     from ..reporting.origin import Origin
+    from ..simulation.verification import Verification
 
 _LAST_SECOND = 253_402_300_799
 """End of the year 9999, the last a date can hold."""
@@ -39,56 +39,96 @@ def _seal_studies(subject: Subject) -> list[SealStudy]:
     return [study(subject, x, curves=True, mapped=True) for x in asked if moving]
 
 
-def report(
-    subject: Actuator | Design | Evaluation | Optimisation | str | Path,
+class Paper(TypedDict, total=False):
+    """What every report takes; see `report`."""
+
+    folder: str | Path
+    stem: str | None
+    actuator: Actuator | None
+    command: str
+    date: str | None
+
+
+class Target(TypedDict):
+    """Folder and name of the files of a page, without suffix."""
+
+    folder: Path
+    stem: str
+
+
+def page_of(
+    design: Design,
+    tail: str = "",
     *,
+    beside: str | None = None,
     folder: str | Path = "reports",
     stem: str | None = None,
     actuator: Actuator | None = None,
     command: str = "",
     date: str | None = None,
-    extra_tables: Sequence[ExtraTable] = (),
-    plugins: Plugins = (),
-) -> list[ReportFile]:
-    """Write the PDF and PNG report of a design, an evaluation or an optimisation.
-
-    An evaluation without an estimate of its yield gets one (`with_yield`, seed 0).
+) -> tuple[Origin, Target]:
+    """What the title block of a page says, and where the page is written.
 
     Parameters
     ----------
-    subject : what to report; a design in any form is evaluated
-    folder, stem : where to; default: the design's name in ``reports/``
-    actuator : the design as read, for the input listing and attachment
-    command : what made the report, printed on it
-    date : ISO date; default: SOURCE_DATE_EPOCH, else none
-    extra_tables : further tables
-    plugins : the user's metrics and constraints, of a design that is no `Actuator` yet
+    design : the page is about
+    tail : of the file names, behind the name of the design's file
+    beside : another file that gives the name
+    folder, stem, actuator, command, date : as `report`
+
+    Raises
+    ------
+    UsageError : no ISO date
     """
-    from ..design.writer import to_yaml
+    if date is not None:
+        require_date(date)
+    source = None if actuator is None else actuator.source
+    named = f"{Path(beside or file_name(design, source)).stem}{tail}"
+    page = origin(design, source, command=command, date=date)
+    return page, {"folder": Path(folder), "stem": stem or named}
+
+
+def report_design(
+    subject: Evaluation | Optimisation,
+    *,
+    extra_tables: Sequence[ExtraTable] = (),
+    dynamics_verified: Verification | None = None,
+    **paper: Unpack[Paper],
+) -> list[ReportFile]:
+    """Write the report of an evaluation or an optimisation; parameters as `report`."""
     from ..reporting import write_report
     from ..reporting.published import published_tables
     from ..reporting.robust_rows import robust_tables
 
-    if isinstance(subject, Actuator | Design | str | Path):
-        actuator = as_actuator(subject, plugins)
-        subject = evaluate(actuator.subject())
-    if isinstance(subject, Evaluation) and subject.yield_estimate == UNKNOWN:
-        subject = with_yield(subject, plugins=() if actuator is None else actuator.plugins)
-    source = None if actuator is None else actuator.source
     design = subject.design if isinstance(subject, Evaluation) else subject.best
-    text = source.text if source is not None else to_yaml(design)
-    name = file_name(design, source)
+    origin, place = page_of(design, **paper)
+    tables = [*published_tables(subject), *robust_tables(subject), *extra_tables]
     return write_report(
         subject,
-        folder=Path(folder),
-        stem=stem or Path(name).stem,
-        source_text=text,
-        source_name=name,
-        command=command,
-        date=date or date_from_environment(),
-        extra_tables=[*published_tables(subject), *robust_tables(subject), *extra_tables],
+        source_text=origin.source_text,
+        source_name=origin.source_name,
+        command=origin.command,
+        date=origin.date,
+        extra_tables=[*tables, *verification_tables(dynamics_verified)],
         seals=_seal_studies(prepare(design)),
+        **place,
     )
+
+
+def verification_tables(verification: Verification | None) -> list[ExtraTable]:
+    """Requirements checked in time, as tables of a report."""
+    if verification is None:
+        return []
+    from ..reporting.verification_rows import verification_rows
+
+    return [*verification_rows(verification)]
+
+
+def report_files(paths: Iterable[Path]) -> list[ReportFile]:
+    """Files written by others, each with its hash."""
+    from ..reporting import ReportFile
+
+    return [ReportFile(path, hashlib.sha256(path.read_bytes()).hexdigest(), 1) for path in paths]
 
 
 def file_name(design: Design, source: Source | None) -> str:
@@ -128,6 +168,12 @@ def is_date(text: str) -> bool:
         return date.fromisoformat(text).isoformat() == text
     except ValueError:
         return False
+
+
+def require_date(text: str, option: str = "date") -> None:
+    """Refuse what is no ISO date; raises `UsageError`."""
+    if not is_date(text):
+        raise UsageError(Diagnostic(f'{option} "{text}" is no date', "write YYYY-MM-DD"))
 
 
 def date_from_environment() -> str | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
 from ..errors import Diagnostic, InputError
 from ..version import VERSION
@@ -13,7 +13,7 @@ from .actuator import Actuator, Plugins, plugins_of, read_as
 from .fronts import write_front, write_front_csv
 from .kept_sweeps import KeptSweep, kept_sweep, report_sweep
 from .recorded_runs import Run, differing, read_run, sha256, sound
-from .reports import file_name, report
+from .reports import Paper, report_design
 
 if TYPE_CHECKING:
     from ..evaluation import Evaluation
@@ -136,11 +136,7 @@ def _doubts(found: Run, now: Evaluation) -> list[str]:
 
 
 def report_run(
-    of: Restored | Run | str | Path,
-    *,
-    folder: str | Path = "reports",
-    date: str | None = None,
-    plugins: Plugins = (),
+    of: Restored | Run | str | Path, *, plugins: Plugins = (), **paper: Unpack[Paper]
 ) -> list[ReportFile]:
     """Write the report of a recorded run: the bytes that its command wrote.
 
@@ -150,36 +146,28 @@ def report_run(
     Parameters
     ----------
     of : what `restore` takes, or gives
-    folder : where to
-    date : default: that of the run
     plugins : as `restore`
+    paper : as `report`; design and command are those of the run, and its date unless one is given
     """
     found = of if isinstance(of, Restored) else restore(of, plugins=plugins)
     with sound(found.run):
-        return _reported(found, folder, date)
+        paper["actuator"], paper["command"] = found.actuator, found.run.head["command"]
+        paper["date"] = paper.get("date") or found.run.body["date"]
+        return _reported(found, paper)
 
 
-def _reported(found: Restored, folder: str | Path, date: str | None) -> list[ReportFile]:
+def _reported(found: Restored, paper: Paper) -> list[ReportFile]:
     from ..optimisation.result import Optimisation
     from ..reporting import ExtraTable
 
-    result, body = found.result, found.run.body
+    result = found.result
     if isinstance(result, KeptSweep):
-        return report_sweep(result, folder=folder)
-    how: dict[str, Any] = {
-        "folder": folder,
-        "actuator": found.actuator,
-        "command": found.run.head["command"],
-        "date": date or body["date"],
-    }
+        return report_sweep(result, **paper)
     if isinstance(result, Optimisation):
-        tables = [ExtraTable(**table) for table in body["tables"]]
-        return report(result, extra_tables=tables, **how)
-    if not result.points:
-        return []
-    stem = Path(file_name(result.subject, found.actuator.source)).stem
-    pages = write_front(result, **how)
-    return [*pages, write_front_csv(result, Path(folder) / f"{stem}_pareto.csv")]
+        tables = [ExtraTable(**table) for table in found.run.body["tables"]]
+        return report_design(result, extra_tables=tables, **paper)
+    files = write_front(result, **paper)
+    return [*files, *(write_front_csv(result, x.path.with_suffix(".csv")) for x in files[:1])]
 
 
 def draw_run(of: Run, folder: str | Path) -> list[Path]:

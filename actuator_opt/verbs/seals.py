@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 from ..design import Design
 from .actuator import Actuator, as_actuator
-from .reports import file_name, origin
+from .reports import Paper, page_of
 
 if TYPE_CHECKING:
     from ..evaluation.rings import Place
@@ -76,33 +76,19 @@ def with_contact(actuator: Actuator, study: SealStudy) -> Actuator:
     return Actuator(design, actuator.source, actuator.plugins)
 
 
-def write_seal(
-    study: SealStudy,
-    *,
-    folder: str | Path = "reports",
-    actuator: Actuator | None = None,
-    command: str = "",
-    date: str | None = None,
-    sheet: bool = True,
-) -> list[ReportFile]:
+def write_seal(study: SealStudy, *, sheet: bool = True, **paper: Unpack[Paper]) -> list[ReportFile]:
     """Write the sheet of a seal (PDF and PNG), and its map as CSV where it has one.
 
     Parameters
     ----------
-    study : what `seal` told
-    folder : where to
-    actuator : the design as read, for the attachment
-    command, date : as `report`
+    study : of `seal`
     sheet : whether to write the sheet, or the map alone
+    paper : as `report`
     """
     from ..reporting.seal_document import write_map, write_sheet
 
-    source = None if actuator is None else actuator.source
-    stem = f"{Path(file_name(study.design, source)).stem}_{study.place}_seal"
-    files = []
-    if sheet:
-        page = origin(study.design, source, command=command, date=date)
-        files += write_sheet(study, page, folder=Path(folder), stem=stem)
+    origin, place = page_of(study.design, f"_{study.place}_seal", **paper)
+    files = write_sheet(study, origin, **place) if sheet else []
     if study.map is not None:
-        files.append(write_map(study.map, Path(folder) / f"{stem}_map.csv"))
+        files.append(write_map(study.map, place["folder"] / f"{place['stem']}_map.csv"))
     return files

@@ -6,19 +6,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from ..design import Design
-from ..errors import Diagnostic, InputError
+from ..errors import Diagnostic, InputError, UsageError
 from ..evaluation.study.plant import plant
 from ..numeric import Array
 from .actuator import Actuator, as_actuator
 from .records import Units
-from .reports import origin
+from .reports import Paper, Target, page_of
 
 if TYPE_CHECKING:
     from ..design.scenario import LoadedScenario, Scenario
     from ..reporting import ReportFile
+    from ..reporting.console import Style
     from ..reporting.origin import Origin
     from ..simulation import Simulation
     from ..simulation.measured import Overlay
@@ -205,6 +206,16 @@ class Compared:
         """As plain data for JSON, SI."""
         return self.overlay.to_dict() if self.fit is None else self.fit.to_dict()
 
+    def text(self, **style: Unpack[Style]) -> str:
+        """What the terminal shows below the simulation."""
+        from ..reporting.measured_rows import measured_text
+
+        return measured_text(self.overlay, self.fit, **style)
+
+    def report(self, **how: Any) -> list[ReportFile]:
+        """Write the page of the simulation with the record; parameters as `write_simulation`."""
+        return write_simulation(self.simulation, measured=self, **how)
+
 
 def compare_measured(
     scenario: Trial | str | Path,
@@ -318,23 +329,24 @@ def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
 
 def write_simulation(
     simulation: Simulation,
-    scenario: Trial,
+    scenario: Trial | None = None,
     *,
     measured: Compared | None = None,
     sensitivities: Sensitivities | None = None,
-    folder: str | Path = "reports",
-    command: str = "",
-    date: str | None = None,
+    **paper: Unpack[Paper],
 ) -> list[ReportFile]:
     """Write the page of a simulation (PDF and PNG); the scenario is attached.
 
     Parameters
     ----------
-    simulation : what happened
+    simulation : of `simulate`
     scenario : as read
     measured, sensitivities : what else to show
-    folder : where to; the name is the scenario file's
-    command, date : as `report`
+    paper : as `report`; the name is the scenario file's
+
+    Raises
+    ------
+    UsageError : no `scenario`: the simulation does not keep its file
     """
     from ..reporting.measured_figures import drawn
     from ..reporting.measured_rows import measured_blocks
@@ -342,16 +354,18 @@ def write_simulation(
     from ..reporting.tables import extra
     from ..reporting.verification_rows import sensitivity_rows
 
-    page, stem = _page(scenario, simulation, command, date)
+    if scenario is None:
+        message = "the page of a simulation needs its scenario"
+        raise UsageError(Diagnostic(message, "give scenario=read_scenario(...)"))
+    origin, place = _page(scenario, simulation, "", paper)
     blocks = [] if measured is None else measured_blocks(measured.overlay, measured.fit)
     blocks += [] if sensitivities is None else map(extra, sensitivity_rows(sensitivities))
     return write_simulation_sheet(
         simulation,
-        page,
-        folder=Path(folder),
-        stem=stem,
+        origin,
         measured=None if measured is None else drawn(measured.overlay),
         extra=blocks,
+        **place,
     )
 
 
@@ -361,9 +375,7 @@ def write_comparison(
     *,
     title: str,
     notes: Sequence[str] = (),
-    folder: str | Path = "reports",
-    command: str = "",
-    date: str | None = None,
+    **paper: Unpack[Paper],
 ) -> list[ReportFile]:
     """Write one page about several simulations side by side (PDF and PNG).
 
@@ -372,8 +384,7 @@ def write_comparison(
     runs : name and simulation of each; "50 %, extending" and "50 %, retracting" share a colour
     scenario : that they vary, attached
     title, notes : of the page
-    folder : where to; the name is the scenario file's with "-compared"
-    command, date : as `report`
+    paper : as `report`; the name is the scenario file's with "-compared"
 
     Raises
     ------
@@ -384,21 +395,17 @@ def write_comparison(
     from ..reporting.simulation_comparison_document import write_comparison_sheet
 
     made = comparison(runs, title, notes)
-    page, stem = _page(scenario, runs[0][1], command, date)
-    return write_comparison_sheet(made, page, folder=Path(folder), stem=f"{stem}-compared")
+    origin, place = _page(scenario, runs[0][1], "-compared", paper)
+    return write_comparison_sheet(made, origin, **place)
 
 
 def _page(
-    scenario: Trial, simulation: Simulation, command: str, date: str | None
-) -> tuple[Origin, str]:
-    """What the title block of a scenario's page says, the file attached, and the file's stem."""
+    scenario: Trial, simulation: Simulation, tail: str, paper: Paper
+) -> tuple[Origin, Target]:
+    """As `page_of`; the scenario's file is attached, and names the page."""
     source = scenario.loaded.source
-    page = origin(scenario.actuator.design, scenario.actuator.source, command=command, date=date)
     name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
-    found = replace(
-        page,
-        source_text=source.text,
-        source_name=name,
-        spec_hash=simulation.spec_hash or page.spec_hash,
-    )
-    return found, Path(name).stem
+    paper["actuator"] = scenario.actuator
+    page, place = page_of(scenario.actuator.design, tail, beside=name, **paper)
+    spec_hash = simulation.spec_hash or page.spec_hash
+    return replace(page, source_text=source.text, source_name=name, spec_hash=spec_hash), place

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 from ..design import Design
-from ..errors import Diagnostic, InputError, UsageError
-from .actuator import Actuator, Plugins, as_actuator, located, unanswered
-from .reports import file_name, origin
+from ..errors import Diagnostic, UsageError
+from .actuator import Actuator, Plugins, answered, located
+from .reports import Paper, page_of
 
 if TYPE_CHECKING:
     from ..reporting import ReportFile
@@ -54,44 +54,28 @@ def uncertainty(
     if not LEAST <= count <= MOST:
         message = f"{count} draws: need {LEAST} to {MOST}"
         raise UsageError(Diagnostic(message, "10000 bounds a yield of 99 % within 0.2 %"))
-    actuator = as_actuator(design, plugins)
-    subject = actuator.subject()
-    faults = unanswered(actuator, subject)
-    if faults:
-        raise InputError(faults)
+    actuator, subject = answered(design, plugins)
     with located(actuator):
         return run(
             subject, count=count, seed=seed, quasi_random=quasi_random, rows=rows, metrics=metrics
         )
 
 
-def write_uncertainty(
-    found: Uncertainty,
-    *,
-    folder: str | Path = "reports",
-    actuator: Actuator,
-    command: str = "",
-    date: str | None = None,
-) -> list[ReportFile]:
-    """Write the page of a yield as PDF and PNG.
+def write_uncertainty(study: Uncertainty, **paper: Unpack[Paper]) -> list[ReportFile]:
+    """Write the page of a yield as PDF and PNG; parameters as `report`.
 
-    Parameters
-    ----------
-    found : what scatter does
-    folder : where to
-    actuator : the design as read
-    command : what made the page, printed on it
-    date : ISO date; default: SOURCE_DATE_EPOCH, else none
+    Raises
+    ------
+    UsageError : no `actuator`: the study does not keep its design
     """
     from ..reporting.uncertainty_document import write_uncertainty_sheet
 
-    source = actuator.source
-    return write_uncertainty_sheet(
-        found,
-        origin(actuator.design, source, command=command, date=date),
-        folder=Path(folder),
-        stem=f"{Path(file_name(actuator.design, source)).stem}_uncertainty",
-    )
+    actuator = paper.get("actuator")
+    if actuator is None:
+        message = "the page of an uncertainty study needs the design"
+        raise UsageError(Diagnostic(message, "give actuator=..."))
+    origin, place = page_of(actuator.design, "_uncertainty", **paper)
+    return write_uncertainty_sheet(study, origin, **place)
 
 
 def write_draws(found: Uncertainty, path: str | Path) -> ReportFile:

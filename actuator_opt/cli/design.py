@@ -1,0 +1,277 @@
+"""Designs: `init`, `check`, `evaluate`, `report`, `compare`, `export`, `schema`."""
+
+from __future__ import annotations
+
+import os
+import re
+from os.path import relpath
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from .. import run_store, store
+from ..errors import Diagnostic, ExitCode, UsageError
+from ..suggest import shown
+from . import streams
+from .job import Job
+from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Report, Seed, Set
+
+if TYPE_CHECKING:
+    from ..verbs import Restored
+
+
+def _named_file(name: str) -> tuple[str, Path]:
+    """Title and file that `init NAME` promises: ``"left knee"`` is written to left_knee.yaml."""
+    folder, base = os.path.split(name)
+    title = base.removesuffix(".yaml").removesuffix(".yml")
+    if base and not title.strip(". "):
+        raise UsageError(Diagnostic(f"NAME: {shown(name)} names no file", "write e.g. left_knee"))
+    stem = re.sub(r"[^\w.+-]+", "_", title).strip("_.")
+    return title, Path(folder, f"{stem or 'actuator'}.yaml")
+
+
+def init(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="NAME",
+            help="Name of the actuator or scenario; NAME.yaml is written. "
+            "Without a name the text is printed.",
+        ),
+    ] = None,
+    source: Annotated[
+        str | None, typer.Option("--from", metavar="DESIGN", help="Start from this design.")
+    ] = None,
+    scenario: Annotated[
+        str | None,
+        typer.Option("--scenario", metavar="DESIGN", help="A scenario around this design instead."),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="FILE", help="Another file to write; - prints the text."),
+    ] = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a commented start file for a design or a scenario."""
+    if scenario is not None and source is not None:
+        raise UsageError(Diagnostic("--from and --scenario", "give one of them"))
+    given = {}
+    if name is not None:
+        given["name"], file = _named_file(name)
+        out = file if out is None else out
+    if out is not None and str(out) == "-":
+        out = None
+    text = _start_text(source, scenario, out, given)
+    if out is None:
+        Job(as_json=as_json).answer(lambda: {"text": text}, lambda: text)
+        return
+    if os.path.lexists(out):
+        raise UsageError(Diagnostic("exists already", "choose another name", str(out)))
+    store.require_writable(out)
+    store.write_text(out, text)
+    files = [{"path": str(out)}]
+    Job(as_json=as_json, quiet=quiet).answer(lambda: {"files": files}, files=files)
+
+
+def _start_text(
+    source: str | None, scenario: str | None, out: Path | None, given: dict[str, str]
+) -> str:
+    """The start file of a design, or of a scenario that is to stand at `out`."""
+    from ..design import read_design
+    from ..design.kinds import ValueFault
+    from ..design.scenario.template import scenario_text
+    from ..design.template import init_text
+
+    try:
+        if scenario is None:
+            return init_text(from_design=None if source is None else read_design(source), **given)
+        beside = relpath(scenario, Path() if out is None else out.parent)
+        return scenario_text(read_design(scenario).design, beside, **given)
+    except ValueFault as fault:
+        raise UsageError(Diagnostic(f"NAME: {fault.message}", fault.remedy)) from None
+
+
+def check(
+    designs: Annotated[
+        list[str],
+        typer.Argument(metavar="FILE", help="Design or scenario files; - for stdin."),
+    ],
+    sets: Set = None,
+    plugin: PluginFile = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    out: Annotated[Path, typer.Option("--out", hidden=True)] = REPORTS,
+    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+) -> ExitCode:
+    """Name every fault of design and scenario files."""
+    from .. import verbs
+
+    job = Job(sets=sets, as_json=as_json, quiet=quiet)
+    pairs, faults, said = job.set, list[Diagnostic](), list[str]()
+    warnings: list[dict[str, str]] = []
+    for design in designs:
+        found = verbs.examine(design, set=pairs, plugins=plugin or [])
+        faults += found.faults
+        warnings += [{"file": design, "message": text} for text in found.warnings]
+        said += [f"{design}: warning: {text}" for text in found.warnings]
+        said += [] if found.faults else [f"{design}: no faults"]
+    errors = {"errors": [fault.to_dict() for fault in faults]}
+    data = errors | ({"warnings": warnings} if warnings else {})
+    job.answer(lambda: data, remarks=said, faults=faults)
+    return ExitCode.BAD_INPUT if faults else ExitCode.MET
+
+
+def evaluate(
+    design: DesignFile,
+    sets: Set = None,
+    plugin: PluginFile = None,
+    report: Report = False,
+    out: Out = REPORTS,
+    date: Date = None,
+    seed: Seed = 0,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> ExitCode:
+    """Every metric, requirement and check of a design as it stands."""
+    from .. import verbs
+
+    job = Job(
+        design, sets=sets, plugins=plugin, report=report, out=out, date=date,
+        as_json=as_json, quiet=quiet,
+    )  # fmt: skip
+    return job.deliver(job.run(verbs.evaluate, seed=seed if report else None))
+
+
+def report(
+    design: Annotated[
+        str,
+        typer.Argument(metavar="DESIGN", help="Design file, - for stdin, or a run (id, last)."),
+    ],
+    sets: Set = None,
+    out: Out = REPORTS,
+    date: Date = None,
+    seed: Seed = 0,
+    plugin: PluginFile = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> ExitCode:
+    """Write the report of a design as it is, or of a run."""
+    from .. import verbs
+
+    job = Job(
+        design, sets=sets, plugins=plugin, report=True, out=out, date=date,
+        as_json=as_json, quiet=quiet,
+    )  # fmt: skip
+    recorded = run_store.is_name(design)
+    result: Any = _restored(job) if recorded else job.run(verbs.evaluate, seed=seed)
+    files = job.run(job.written, result)
+    if not files:  # a front without designs
+        streams.err(result.result.sentence)
+    job.answer(lambda: {"files": files}, files=files)
+    return verbs.exit_code(result)
+
+
+def _restored(job: Job) -> Restored:
+    """A recorded run; what differs from then is said."""
+    from .. import verbs
+
+    if job.sets:
+        raise UsageError(Diagnostic("--set: a run is reported as it was", "name a design instead"))
+    restored = verbs.restore(job.design, plugins=job.plugins or [])
+    for doubt in restored.doubts:
+        streams.err(doubt)
+    return restored
+
+
+def compare(
+    designs: Annotated[
+        list[str],
+        typer.Argument(metavar="DESIGN", help="Two or more design files or runs (id, last)."),
+    ],
+    sets: Set = None,
+    plugin: PluginFile = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="Draw mass, compliance and friction into this folder."
+        ),
+    ] = None,
+    optimise: Annotated[
+        bool,
+        typer.Option("--optimise", help="Optimise each design first; runs and optima stay."),
+    ] = False,
+    seed: Seed = 0,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> ExitCode:
+    """What differs between designs, and which parts decide."""
+    from .. import verbs
+
+    if out is not None:
+        store.require_folder(out)
+    job = Job(sets=sets, as_json=as_json, quiet=quiet)
+    how = {"set": job.set, "plugins": plugin or [], "optimise": optimise, "seed": seed}
+    found = job.run(verbs.compare, *designs, **how)
+    paths = [] if out is None else verbs.draw_comparison(found, out)
+    return job.deliver(found, files=[{"path": str(path)} for path in paths])
+
+
+def export(
+    design: DesignFile,
+    formats: Annotated[
+        list[str] | None,
+        typer.Option("--format", metavar="step|dxf|xlsx", help="File to write. Repeatable."),
+    ] = None,
+    sets: Set = None,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Folder of the files.")
+    ] = REPORTS,
+    date: Annotated[
+        str | None,
+        typer.Option(
+            "--date",
+            metavar="YYYY-MM-DD",
+            help="Date to write into the files; default: none, or that of SOURCE_DATE_EPOCH.",
+        ),
+    ] = None,
+    seed: Seed = 0,
+    plugin: PluginFile = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> ExitCode:
+    """Write the design for CAD (STEP, DXF) or Excel (XLSX)."""
+    from .. import verbs
+    from ..exporting import require_formats
+
+    asked = require_formats(formats or [])
+    job = Job(
+        design, sets=sets, plugins=plugin, report=True, out=out, date=date,
+        as_json=as_json, quiet=quiet,
+    )  # fmt: skip
+    evaluation = job.run(verbs.evaluate)
+    written = verbs.export(evaluation, formats=asked, folder=out, actuator=job.actuator, date=date)
+    files = [file.to_dict() for file in written]
+    job.answer(lambda: {"files": files}, files=files)
+    return verbs.exit_code(evaluation)
+
+
+def schema(
+    scenario: Annotated[
+        bool, typer.Option("--scenario", help="Of scenario files, not of designs.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="As always: it is JSON.")] = False,
+) -> None:
+    """Print the JSON Schema of design or scenario files."""
+    from ..design.materials import load_library
+    from ..design.schema import json_schema
+    from ..metrics import METRICS
+    from ..quantities import RESULTS
+
+    if scenario:
+        from ..design.scenario import Scenario
+
+        streams.out_json(json_schema(Scenario, materials=load_library(), metrics=RESULTS))
+    else:
+        streams.out_json(json_schema(materials=load_library(), metrics=METRICS))

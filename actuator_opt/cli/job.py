@@ -1,0 +1,205 @@
+"""One command from its targets to its exit code: check, read, run, write, answer, record."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from .. import store
+from ..errors import ActuatorError, Diagnostic, ExitCode
+from . import streams
+from .options import REPORTS
+
+if TYPE_CHECKING:
+    from ..verbs import Actuator
+
+_T = TypeVar("_T")
+Files = Sequence[Mapping[str, Any]]
+"""Files as in JSON: each with its `path`."""
+
+
+@dataclass
+class Job:
+    """What a command reads, where it writes, and how it answers.
+
+    Places that cannot be written are refused at once, before any work.
+
+    Parameters
+    ----------
+    design : its file
+    others : further files that are read
+    sets, plugins : of the design
+    csv, write : files to write; neither may be one that is read, but `write` may be the design
+    report : whether to write the report into `out`, with `date`
+    as_json, quiet : how to answer
+    record : whether to keep a record of the run
+    paper : keywords of the report besides those that every report takes
+    """
+
+    design: str = ""
+    others: Sequence[str] = ()
+    sets: Sequence[str] | None = None
+    plugins: Sequence[Path] | None = None
+    csv: Path | None = None
+    write: Path | None = None
+    report: bool = False
+    out: Path = REPORTS
+    date: str | None = None
+    as_json: bool = False
+    quiet: bool = False
+    record: bool = False
+    paper: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for path in filter(None, (self.csv, self.write)):
+            store.require_writable(path)
+        if self.report:
+            from ..verbs.reports import date_from_environment, require_date
+
+            store.require_folder(self.out)
+            if self.date is not None:
+                require_date(self.date, "--date")
+            date_from_environment()
+        if self.csv is not None:
+            store.require_apart(self.csv, self.design, *self.others)
+        if self.write is not None:
+            store.require_apart(self.write, *self.others)
+
+    @property
+    def set(self) -> list[tuple[str, str]]:
+        """The ``--set``, each as PATH and value."""
+        from ..design import split_assignment
+
+        return [split_assignment(text) for text in self.sets or ()]
+
+    @cached_property
+    def actuator(self) -> Actuator:
+        """The design, with ``--set`` and ``--plugin``."""
+        from ..verbs import read
+
+        return read(self.design, set=self.set, plugins=self.plugins or ())
+
+    def run(self, verb: Callable[..., _T], *given: object, **options: Any) -> _T:
+        """Run a verb, of the design where nothing else is given; a terminal sees the progress."""
+        given = given or (self.actuator,)
+        with nullcontext() if self.quiet else streams.watching():
+            return verb(*given, **options)
+
+    def deliver(
+        self,
+        result: object,
+        *,
+        files: Files = (),
+        saved: Iterable[Path | None] = (),
+        faults: Sequence[Diagnostic] = (),
+        **also: Any,
+    ) -> ExitCode:
+        """Write a result's files, show it, record it; the exit code.
+
+        Parameters
+        ----------
+        result : of a verb
+        files : written already, named in the answer
+        saved : the same, of which JSON says nothing
+        faults : what could not be done
+        also : further results by their key in JSON, shown below the first; None for none
+        """
+        from ..verbs import results
+
+        also = {name: one for name, one in also.items() if one is not None}
+        written = [*files, *self.written(result, **also)]
+
+        def data() -> dict[str, Any]:
+            more: dict[str, Any] = {name: results.data(one) for name, one in also.items()}
+            more |= {"files": written} if written else {}
+            more |= {"errors": [fault.to_dict() for fault in faults]} if faults else {}
+            return results.data(result) | more
+
+        def text() -> str:
+            style = streams.style()
+            return "\n".join(results.text(one, **style) for one in (result, *also.values()))
+
+        named = [*({"path": path} for path in saved if path is not None), *written]
+        self.answer(data, text, remarks=results.remarks(result), files=named, faults=faults)
+        if self.record:
+            self.keep(result, **also)
+        codes = [results.exit_code(one) for one in (result, *also.values())]
+        return next(filter(None, codes), ExitCode.MET)
+
+    def written(self, result: object, **also: Any) -> list[dict[str, Any]]:
+        """Write the CSV and the report that are asked for."""
+        from .. import verbs
+        from ..verbs import results
+
+        if not results.writes(result):
+            return []
+        files = [] if self.csv is None else [results.write_csv(result, self.csv)]
+        if self.report:
+            files += verbs.report(result, **self._origin(), folder=self.out, **self.paper, **also)
+        return [file.to_dict() for file in files]
+
+    def keep(self, result: object, **how: Any) -> None:
+        """Record the run of a result; where that fails, one line says so and nothing is lost."""
+        from ..verbs import results
+
+        try:
+            results.keep(result, **self._origin(), **how)
+        except ActuatorError as error:
+            remedy = "set ACTUATOR_OPT_RUNS to another folder, or give --no-record"
+            fault = replace(error.diagnostics[0], remedy=remedy)
+            streams.err(f"the run is not recorded: {fault}")
+
+    def _origin(self) -> dict[str, Any]:
+        """Where the result comes from."""
+        actuator = self.__dict__.get("actuator")  # none where the command read no design
+        return {"actuator": actuator, "command": command_line(), "date": self.date}
+
+    def answer(
+        self,
+        data: Callable[[], Mapping[str, Any]],
+        text: Callable[[], str] | None = None,
+        *,
+        remarks: Iterable[str] = (),
+        files: Files = (),
+        faults: Iterable[Diagnostic] = (),
+    ) -> None:
+        """Print the data as JSON, or the text; below it remarks, files and faults."""
+        if self.as_json:
+            streams.out_json(dict(data()))
+            return
+        if not self.quiet:
+            if text is not None:
+                streams.out(text(), end="")
+            for remark in remarks:
+                streams.err(remark)
+            for file in files:
+                streams.err(f"wrote {file['path']}")
+        for fault in faults:
+            streams.err(str(fault))
+
+
+_TARGETS = ("--out", "--write", "--csv", "--parquet")
+"""Options that say where to write."""
+
+_SILENT = ("--json", "--report", "--quiet", "-q", "--no-record", "--debug")
+"""Flags that change no result."""
+
+
+def command_line() -> str:
+    """The command line without what does not change the result: same input, same bytes."""
+    import shlex
+
+    kept, skip = [], False
+    for word in sys.argv[1:]:
+        if skip:
+            skip = False
+        elif word in _TARGETS:
+            skip = True
+        elif word not in _SILENT and not word.startswith(tuple(f"{one}=" for one in _TARGETS)):
+            kept.append(word)
+    return shlex.join(["actuator-opt", *kept])

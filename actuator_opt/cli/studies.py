@@ -1,0 +1,236 @@
+"""Closer looks at one design: `uncertainty`, `seal` and `simulate`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..errors import Diagnostic, ExitCode, UsageError
+from ..quantities import INPUTS
+from ..store import require_apart
+from .job import Job
+from .options import (
+    REPORTS,
+    Date,
+    DesignFile,
+    Json,
+    Out,
+    PluginFile,
+    Quiet,
+    Report,
+    Seed,
+    Set,
+    Units,
+    file_of_units,
+    named_columns,
+    quantity_of,
+)
+
+Draws = Annotated[
+    int, typer.Option("-n", "--samples", metavar="N", help="Draws of the yield, 20 to 10 million.")
+]
+Quasi = Annotated[
+    bool,
+    typer.Option("--quasi", help="Draw scrambled Sobol points, 16 times: narrower bounds."),
+]
+Rows = Annotated[
+    int,
+    typer.Option(
+        "--index-rows",
+        min=0,
+        max=1_000_000,
+        metavar="N",
+        help="Rows behind the indices, inputs + 2 evaluations each; 0 for none.",
+    ),
+]
+Metrics = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--metric",
+        metavar="METRIC",
+        help="Follow this metric too; default: those of the objective. Repeatable.",
+    ),
+]
+
+
+def uncertainty(
+    design: DesignFile,
+    count: Draws = 10_000,
+    quasi: Quasi = False,
+    rows: Rows = 1024,
+    metric: Metrics = None,
+    csv: Annotated[
+        Path | None,
+        typer.Option("--csv", metavar="FILE", help="Save draws: inputs, margins, what held."),
+    ] = None,
+    sets: Set = None,
+    plugin: PluginFile = None,
+    report: Report = False,
+    out: Out = REPORTS,
+    date: Date = None,
+    seed: Seed = 0,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> ExitCode:
+    """Yield, indices and tornado from scatter and tolerances."""
+    from .. import verbs
+
+    job = Job(
+        design, sets=sets, plugins=plugin, csv=csv, report=report, out=out, date=date,
+        as_json=as_json, quiet=quiet,
+    )  # fmt: skip
+    how = {"count": count, "seed": seed, "quasi_random": quasi, "rows": rows}
+    return job.deliver(job.run(verbs.uncertainty, metrics=metric or [], **how))
+
+
+def seal(
+    design: DesignFile,
+    place: Annotated[
+        str, typer.Option("--seal", metavar="piston|rod", help="The seal to look at.")
+    ],
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            "--speed", metavar="V", help='Sliding speed, e.g. "0.1 m/s"; default: of a case.'
+        ),
+    ] = None,
+    pressure: Annotated[
+        str | None,
+        typer.Option(
+            "--pressure", metavar="P", help='Sealed pressure, e.g. "60 bar"; default: highest.'
+        ),
+    ] = None,
+    mapped: Annotated[
+        bool, typer.Option("--map", help="Also fill a map over speed and pressure (and its CSV).")
+    ] = False,
+    finite_elements: Annotated[
+        bool,
+        typer.Option(
+            "--finite-elements",
+            help="Compute the contact of an O-ring or step ring (extra fem; some seconds).",
+        ),
+    ] = False,
+    write: Annotated[
+        Path | None,
+        typer.Option(
+            "--write", metavar="FILE", help="Save the design with the contact profiles used."
+        ),
+    ] = None,
+    sets: Set = None,
+    plugin: PluginFile = None,
+    report: Report = False,
+    out: Out = REPORTS,
+    date: Date = None,
+    seed: Seed = 0,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> ExitCode:
+    """Contact, oil film, friction and leakage of one seal."""
+    from .. import verbs
+
+    if place not in ("piston", "rod"):
+        raise UsageError(Diagnostic(f'--seal "{place}"', "write piston or rod"))
+    job = Job(
+        design, sets=sets, plugins=plugin, write=write, report=report or mapped, out=out,
+        date=date, as_json=as_json, quiet=quiet, paper={"sheet": report},
+    )  # fmt: skip
+    study = job.run(
+        verbs.seal,
+        place=place,
+        speed=quantity_of("--speed", speed, INPUTS["speed"]),
+        pressure=quantity_of("--pressure", pressure, INPUTS["pressure"]),
+        mapped=mapped,
+        curves=report,
+        finite_elements=finite_elements,
+    )
+    if write is not None:
+        verbs.save(verbs.with_contact(job.actuator, study), write)
+    return job.deliver(study, saved=[write])
+
+
+ScenarioFile = Annotated[
+    str, typer.Argument(metavar="SCENARIO", help="Scenario file, or - for stdin.")
+]
+Verify = Annotated[
+    bool,
+    typer.Option("--verify", help="Integrate again by Radau and tell the largest difference."),
+]
+Fast = Annotated[
+    bool, typer.Option("--fast", help='Integrate by CVODES (pip install "actuator-opt[fast]").')
+]
+SignalsFile = Annotated[
+    Path | None, typer.Option("--csv", metavar="FILE", help="Save every signal over time.")
+]
+MeasuredFile = Annotated[
+    str | None,
+    typer.Option("--measured", metavar="F.csv", help="Overlay a record, with its residuals."),
+]
+Fitted = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--fit",
+        metavar="NAME",
+        help="Fit a parameter to the record, with bounds (e.g. air_content, valve_capacity, "
+        "piston_leakage, coulomb). Repeatable.",
+    ),
+]
+RecordColumns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--column",
+        metavar="CHANNEL=NAME",
+        help='Column of a channel of the record (t, p1, x, U, ...), e.g. "p1=Channel 3 [bar]". '
+        "Repeatable.",
+    ),
+]
+Sensitivity = Annotated[
+    bool,
+    typer.Option("--sensitivity", help="Rank the parameters by what they change in the results."),
+]
+
+
+def simulate(
+    scenario: ScenarioFile,
+    sets: Set = None,
+    csv: SignalsFile = None,
+    verify: Verify = False,
+    fast: Fast = False,
+    measured: MeasuredFile = None,
+    fit: Fitted = None,
+    columns: RecordColumns = None,
+    units: Units = None,
+    sensitivity: Sensitivity = False,
+    report: Report = False,
+    out: Out = REPORTS,
+    date: Date = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+    seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
+) -> ExitCode:
+    """A scenario over time: servo, pressures, energy."""
+    from .. import verbs
+
+    for name, given in (("--fit", fit), ("--column", columns)):
+        if given and measured is None:
+            raise UsageError(Diagnostic(f"{name}: only with --measured", "name the record"))
+    job = Job(
+        scenario, [*filter(None, [measured]), *file_of_units(units)], sets=sets, csv=csv,
+        report=report, out=out, date=date, as_json=as_json, quiet=quiet,
+    )  # fmt: skip
+    trial = verbs.read_scenario(scenario, set=job.set, units=units)
+    if units is not None and measured is None and not trial.records:
+        raise UsageError(Diagnostic("--units: no record is read", "leave it out"))
+    if csv is not None:
+        require_apart(csv, *map(str, trial.files))
+    job.paper["scenario"] = trial
+    how: dict[str, Any] = {"verify": verify, "method": "cvodes" if fast else "lsoda"}
+    if measured is None:
+        overlay, simulation = None, job.run(verbs.simulate, trial, **how)
+    else:
+        how |= {"fit": fit or (), "columns": named_columns(columns), "units": units}
+        overlay = job.run(verbs.compare_measured, trial, measured, **how)
+        simulation = overlay.simulation
+    ranked = job.run(verbs.servo_sensitivities, trial) if sensitivity else None
+    return job.deliver(simulation, measured=overlay, sensitivities=ranked)
