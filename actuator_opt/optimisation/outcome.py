@@ -162,17 +162,17 @@ class Solution:
     kkt: Kkt | None
     evaluations: int
     gradients: int
-    samples: int
-    feasible_samples: int
-    undefined: float
-    starts: tuple[StartRecord, ...]
-    optima: tuple[LocalOptimum, ...]
-    trace: tuple[tuple[int, float, float], ...]
     algorithm: str
-    without_effect: tuple[str, ...]
-    warnings: tuple[str, ...]
-    seed: int
     seconds: float
+    samples: int = 0
+    feasible_samples: int = 0
+    undefined: float = 0.0
+    starts: tuple[StartRecord, ...] = ()
+    optima: tuple[LocalOptimum, ...] = ()
+    trace: tuple[tuple[int, float, float], ...] = ()
+    without_effect: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    seed: int = 0
 
     @property
     def feasible(self) -> bool:

@@ -333,16 +333,7 @@ def _solution(evaluator: Evaluator, point: Point, algorithm: str) -> Solution:
         kkt=found,
         evaluations=evaluator.evaluations,
         gradients=evaluator.gradients,
-        samples=0,
-        feasible_samples=0,
-        undefined=0.0,
-        starts=(),
-        optima=(),
-        trace=(),
         algorithm=algorithm,
-        without_effect=(),
-        warnings=(),
-        seed=0,
         seconds=time.perf_counter() - evaluator.began,
     )
 
