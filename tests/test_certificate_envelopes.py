@@ -6,8 +6,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from samples_tube import PLY
 
 from actuator_opt.models import rod

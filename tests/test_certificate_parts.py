@@ -8,8 +8,7 @@ import warnings
 import cvxpy as cp
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 
 from actuator_opt.optimisation.certificate.bounding import Bounding
 from actuator_opt.optimisation.certificate.box import Box, Layout

@@ -11,8 +11,7 @@ from dataclasses import replace
 import cli_runner
 import pytest
 from cli_runner import DESIGNS, evaluated, refused, run
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import actuator_opt as ao
 from actuator_opt import units

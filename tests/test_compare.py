@@ -8,8 +8,7 @@ from dataclasses import replace
 
 import pytest
 from cli_runner import BENCH, DESIGNS, run
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import actuator_opt as ao
 from actuator_opt.reporting.compare_figure import comparison_figure, comparison_ucurves

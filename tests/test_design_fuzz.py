@@ -8,8 +8,7 @@ import time
 
 import pytest
 from fuzz import WORDS as ODD
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from actuator_opt.design import read_design
 from actuator_opt.design.template import init_text

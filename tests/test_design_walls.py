@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from actuator_opt.design import LoadedDesign, get, numbers, read_design, with_values
 from actuator_opt.design.materials import load_library

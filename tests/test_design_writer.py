@@ -5,8 +5,7 @@ from __future__ import annotations
 import random
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from actuator_opt import quantities, units
 from actuator_opt.design import LoadedDesign, Source, read_design, with_values

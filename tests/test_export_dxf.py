@@ -11,8 +11,7 @@ from itertools import combinations, pairwise
 
 import pytest
 from cli_runner import DESIGNS, bench, block
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from test_export_step import FITTED_ROD, SHIPPED, VARIANTS
 
 import actuator_opt as ao

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import pytest
 from cli_runner import DESIGNS, bench, block
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from step_reader import StepFile, volume
 
 import actuator_opt as ao

@@ -15,8 +15,7 @@ from cli_runner import BENCH, DESIGNS, KNEE, command, run, spawn, surroundings
 import actuator_opt as ao
 from actuator_opt import cli, verbs
 from actuator_opt.errors import InputError
-from actuator_opt.evaluation import compute, without_films
-from actuator_opt.evaluation import film_tables as films
+from actuator_opt.evaluation import compute, film_tables as films, without_films
 from actuator_opt.plain_json import encoded
 
 LONG, DIGITS = "a" * 300, "9" * 5000

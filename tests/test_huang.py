@@ -13,8 +13,13 @@ import pytest
 
 from actuator_opt import verbs
 from actuator_opt.design.housings import housings_for
-from actuator_opt.evaluation.study import huang, huang_parts, huang_readings, huang_study
-from actuator_opt.evaluation.study import huang_trend as trend
+from actuator_opt.evaluation.study import (
+    huang,
+    huang_parts,
+    huang_readings,
+    huang_study,
+    huang_trend as trend,
+)
 from actuator_opt.evaluation.study.film_walk import film_map
 from actuator_opt.evaluation.study.seal import study as seal_study
 from actuator_opt.models.damping import flat_gap

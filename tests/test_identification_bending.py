@@ -7,8 +7,7 @@ from math import inf, pi
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scipy.signal import lfilter
 
 from actuator_opt.errors import InputError

@@ -13,8 +13,13 @@ import pytest
 import actuator_opt as ao
 from actuator_opt.errors import InputError
 from actuator_opt.evaluation.study.bench import bench as bench_of
-from actuator_opt.identification import Settings, identify, parse_record, synthetic
-from actuator_opt.identification import conditioning as conditioning_module
+from actuator_opt.identification import (
+    Settings,
+    conditioning as conditioning_module,
+    identify,
+    parse_record,
+    synthetic,
+)
 from actuator_opt.identification.points import SETTLED, steady_points
 
 DESIGNS = Path(__file__).parent.parent / "designs"

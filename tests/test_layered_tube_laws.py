@@ -8,8 +8,7 @@ from math import pi
 import numpy as np
 import pytest
 import tube_oracle as oracle
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from numpy.polynomial import legendre
 
 from actuator_opt.models import laminate, ply

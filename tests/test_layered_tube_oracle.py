@@ -8,8 +8,7 @@ from math import pi
 import numpy as np
 import pytest
 import tube_oracle as oracle
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 
 from actuator_opt.models.solid_ply import (
     solid_expansion_load,

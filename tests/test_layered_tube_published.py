@@ -8,8 +8,7 @@ from math import pi, radians
 import numpy as np
 import pytest
 import tube_oracle as oracle
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given, settings, strategies as st
 
 from actuator_opt.models.laminate import membrane
 from actuator_opt.models.layered_tube import ply_stresses_at_faces, tube_state, tube_stresses

@@ -5,8 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from actuator_opt.design import get, read_design, with_values
 from actuator_opt.design.layup import NotationFault, read_notation

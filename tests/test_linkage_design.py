@@ -12,8 +12,7 @@ import math
 import numpy as np
 import pytest
 from cli_runner import BENCH
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 import actuator_opt as ao
 from actuator_opt.design import with_values

@@ -11,8 +11,7 @@ from math import inf
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given, settings, strategies as st
 
 from actuator_opt.models.criteria import CRITERIA
 from actuator_opt.models.strength_modes import PlyRatios, PlyStrength, load_multiplier

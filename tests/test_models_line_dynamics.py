@@ -7,8 +7,7 @@ import math
 import array_api_strict as strict
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from model_samples import leaves, public_functions, rebuilt
 from samples_lines import FREQUENCY_RESPONSES
 from scipy.integrate import quad

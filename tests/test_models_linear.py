@@ -13,8 +13,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from circuit_oracle import descriptor, random_circuit, state_space
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from samples_dynamics import model_of
 from test_models_hydraulics_dynamics import CHAMBERS, CONDUCTANCE
 

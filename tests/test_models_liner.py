@@ -8,8 +8,7 @@ from math import log, pi, sqrt
 import numpy as np
 import pytest
 import tube_oracle as oracle
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 from plastic_oracle import PlasticTube, mises
 from scipy.optimize import brentq
 

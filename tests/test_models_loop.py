@@ -12,8 +12,7 @@ import control
 import numpy as np
 import pytest
 from circuit_oracle import closed, in_milliseconds, plant, random_circuit, state_space
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 from samples_dynamics import DRIVEN, bare, loop_of, model_of
 from test_models_hydraulics_dynamics import CHAMBERS
 from test_models_valve import LEAKAGE, RATED

@@ -6,8 +6,7 @@ from math import exp, log, pi, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from actuator_opt.models import barrel, barrel_ends
 

@@ -6,8 +6,7 @@ from math import cos, pi, sqrt, tan
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from transfer_matrices import column_load
 
 from actuator_opt.models import column, rod, stepped

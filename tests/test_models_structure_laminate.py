@@ -6,8 +6,7 @@ from math import cos, inf, pi, radians, sin, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from actuator_opt.models import barrel, laminate, ply
 from actuator_opt.models.ply_discount import WallLayer, burst_by_ply_discount

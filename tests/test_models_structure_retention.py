@@ -6,8 +6,7 @@ from math import cos, cosh, inf, log, pi, sinh, sqrt, tanh
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scipy.integrate import quad
 
 from actuator_opt.models import end_plate, endurance, lap_joint, retention

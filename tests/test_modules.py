@@ -7,8 +7,10 @@ import re
 from functools import cache
 from pathlib import Path
 
+import pytest
 from model_samples import public_functions
 
+import actuator_opt
 import actuator_opt.models
 
 ROOT = Path(__file__).parent.parent
@@ -123,3 +125,15 @@ def test_every_model_is_used_or_listed_for_scripts():
     _, for_scripts = actuator_opt.models.__doc__.split("for scripts alone")
     listed = set(re.findall(r"`(\w+\.\w+)`", for_scripts)) - {"stops.cushion"}
     assert set(public_functions()) - used == listed
+
+
+def test_public_names_load_and_are_known_to_type_checkers():
+    """Each loads; the imports for type checkers name the same from the same modules."""
+    tree = ast.parse(Path(actuator_opt.__file__).read_text("utf-8"))
+    (typed,) = (node for node in tree.body if isinstance(node, ast.If))
+    static = {alias.asname: node.module for node in typed.body for alias in node.names}
+    assert static == actuator_opt._HOMES
+    assert dir(actuator_opt) == actuator_opt.__all__ == ["__version__", *sorted(static)]
+    assert all(getattr(actuator_opt, name) is not None for name in actuator_opt.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'evaluat'"):
+        actuator_opt.evaluat  # noqa: B018

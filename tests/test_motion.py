@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 from circuit_oracle import descriptor, plant, state_space
 from cli_runner import bench
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scipy.optimize import brentq
 
 import actuator_opt as ao

@@ -13,8 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cli_runner import bench, evaluated, refused, run
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 import actuator_opt as ao
 from actuator_opt.design.materials import load_library

@@ -19,8 +19,7 @@ from actuator_opt.optimisation.prices import prices
 from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
 from actuator_opt.optimisation.sensitivity import ranked
 from actuator_opt.optimisation.solver import solve
-from actuator_opt.reporting import prices as told
-from actuator_opt.reporting import text
+from actuator_opt.reporting import prices as told, text
 from actuator_opt.reporting.tornado import tornado
 
 DESIGNS = Path(__file__).parents[1] / "designs"

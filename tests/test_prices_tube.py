@@ -22,8 +22,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 from cli_runner import BENCH
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import actuator_opt as ao
 from actuator_opt.models import barrel

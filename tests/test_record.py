@@ -9,8 +9,7 @@ import contextlib
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 
 from actuator_opt.errors import InputError
 from actuator_opt.identification.csv_table import decode_record

@@ -13,10 +13,12 @@ from identification_case import DESIGN, identified
 
 import actuator_opt as ao
 from actuator_opt.evaluation.study.bench import bench
-from actuator_opt.reporting import calibration_document as document
-from actuator_opt.reporting import calibration_figure as figure
-from actuator_opt.reporting import calibration_rows as rows
-from actuator_opt.reporting import fallback
+from actuator_opt.reporting import (
+    calibration_document as document,
+    calibration_figure as figure,
+    calibration_rows as rows,
+    fallback,
+)
 from actuator_opt.reporting.blocks import printable
 from actuator_opt.reporting.calibration_text import calibration_text
 from actuator_opt.reporting.origin import Origin

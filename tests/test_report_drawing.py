@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import pytest
 import report_fixture as fixture
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from report_fixture import overlaps
 
 from actuator_opt.evaluation.result import Outline

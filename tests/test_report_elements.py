@@ -11,8 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 from report_fixture import overlaps
-from test_finite_elements_step_ring import SECTION, SHAPE, SQUEEZE
-from test_finite_elements_step_ring import seal as step_seal
+from test_finite_elements_step_ring import SECTION, SHAPE, SQUEEZE, seal as step_seal
 from test_report_seal import TEXTS, area, ink_of
 
 import actuator_opt as ao
@@ -22,8 +21,13 @@ from actuator_opt.evaluation.study.seal import study
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.finite_elements.result import StressField
-from actuator_opt.reporting import seal_elements_figure as drawn
-from actuator_opt.reporting import seal_rows, seal_sheet, seal_text, stress_bands
+from actuator_opt.reporting import (
+    seal_elements_figure as drawn,
+    seal_rows,
+    seal_sheet,
+    seal_text,
+    stress_bands,
+)
 
 COLUMNS = ((11.0, 66.0), (103.0, 66.0))
 """Left end and width of the frames of the lower figure."""

@@ -14,18 +14,20 @@ from dataclasses import replace
 import identification_case as case
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt.identification.record import Record
-from actuator_opt.reporting import fallback, read_attachment
-from actuator_opt.reporting import identification_axes as axes
-from actuator_opt.reporting import identification_document as document
-from actuator_opt.reporting import identification_figures as figures
-from actuator_opt.reporting import identification_map as maps
-from actuator_opt.reporting import identification_rows as rows
-from actuator_opt.reporting import identification_series as series
-from actuator_opt.reporting import identification_text as terminal
+from actuator_opt.reporting import (
+    fallback,
+    identification_axes as axes,
+    identification_document as document,
+    identification_figures as figures,
+    identification_map as maps,
+    identification_rows as rows,
+    identification_series as series,
+    identification_text as terminal,
+    read_attachment,
+)
 from actuator_opt.reporting.blocks import printable
 from actuator_opt.reporting.figures import Axes
 from actuator_opt.reporting.ink import Ink

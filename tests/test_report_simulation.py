@@ -21,18 +21,18 @@ from actuator_opt.reporting import (
     read_attachment,
     simulation_axes,
     simulation_comparison,
+    simulation_comparison_document as pair_document,
+    simulation_comparison_figures as pair_figures,
     simulation_csv,
+    simulation_document as document,
     simulation_energy,
+    simulation_figures as figures,
     simulation_rows,
     simulation_series,
     simulation_stiffness,
     simulation_text,
     simulation_words,
 )
-from actuator_opt.reporting import simulation_comparison_document as pair_document
-from actuator_opt.reporting import simulation_comparison_figures as pair_figures
-from actuator_opt.reporting import simulation_document as document
-from actuator_opt.reporting import simulation_figures as figures
 from actuator_opt.reporting.blocks import column, table
 from actuator_opt.reporting.ink import Ink
 from actuator_opt.reporting.origin import Origin

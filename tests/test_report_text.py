@@ -3,8 +3,7 @@
 import doctest
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt import units
 from actuator_opt.reporting import blocks, console, drawing, figures, ink, optimum, text

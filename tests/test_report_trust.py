@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 import report_fixture as fixture
 from cli_runner import BENCH, KNEE, run
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from report_fixture import overlaps
 
 from actuator_opt.design import read_design

@@ -8,8 +8,7 @@ import shlex
 
 import pytest
 from cli_runner import BENCH, run
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import actuator_opt as ao
 from actuator_opt import cli

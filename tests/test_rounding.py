@@ -10,8 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cli_runner import bench, run
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 import actuator_opt as ao
 from actuator_opt.design import read_design

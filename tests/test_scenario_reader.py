@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from actuator_opt import quantities, units
 from actuator_opt.design.kinds import Fraction, ValueFault, example, read_quantity

@@ -6,8 +6,7 @@ import json
 from math import isfinite
 
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from seal_designs import KINDS, O_RING, STEP, U_CUP, evaluated, text
 
 import actuator_opt as ao

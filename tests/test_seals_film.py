@@ -15,8 +15,7 @@ from seal_designs import KINDS, O_RING, STEP, U_CUP, evaluated, metrics, subject
 from test_seals import BLOCK, BORE, DRAIN, MODULUS, PULL, ROD, STEP_NUMBERS, SUPPLY, W, growth, lip
 
 import actuator_opt as ao
-from actuator_opt.evaluation import compute
-from actuator_opt.evaluation import film as films
+from actuator_opt.evaluation import compute, film as films
 from actuator_opt.lubrication import (
     Contact,
     Elastic,

@@ -11,8 +11,7 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 import tube_oracle as oracle
-from plastic_oracle import PlasticTube
-from plastic_oracle import mises as von_mises_flow
+from plastic_oracle import PlasticTube, mises as von_mises_flow
 from test_second_reader import (
     COLD,
     CURE,

@@ -10,8 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import simulation_case as case
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt.errors import InputError, Unsolvable
 from actuator_opt.models.tuning import ControllerGains

@@ -15,8 +15,7 @@ import numpy as np
 import pytest
 import servo_oracle as oracle
 import servo_oracle_parts as parts
-from simulation_case import AREA_A, AREA_B, BAR, FULL, LEAK, OIL, plant, scenario
-from simulation_case import VALVE as FAST
+from simulation_case import AREA_A, AREA_B, BAR, FULL, LEAK, OIL, VALVE as FAST, plant, scenario
 
 from actuator_opt.errors import InputError
 from actuator_opt.evaluation.study.plant import Plane, SealData

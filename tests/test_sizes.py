@@ -10,8 +10,7 @@ import cli_runner
 import numpy as np
 import pytest
 from cli_runner import PLIES, bench, refused, run
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from problems import pressure_vessel
 
 import actuator_opt as ao

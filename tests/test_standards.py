@@ -5,8 +5,7 @@ from __future__ import annotations
 import array_api_strict as xp
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from actuator_opt.design import standards
 from actuator_opt.errors import InputError

@@ -17,8 +17,7 @@ from itertools import pairwise
 from math import ceil, exp, log, pi
 
 import numpy as np
-from hypothesis import assume
-from hypothesis import strategies as st
+from hypothesis import assume, strategies as st
 from numpy.polynomial import legendre
 from scipy.optimize import brentq
 

@@ -21,8 +21,7 @@ from ..design.model import Design
 from ..errors import Diagnostic, Unsolvable
 from ..numeric import Array
 from ..surrogate import Answer, Axis, Surrogate, surrogate
-from .film import Row, Solved, ring_films, solve
-from .film import slopes as film_slopes
+from .film import Row, Solved, ring_films, slopes as film_slopes, solve
 from .rings import Place, Ring
 from .values import Values, of_case
 

@@ -14,16 +14,18 @@ from ..metrics.table import AT_STOPS
 from ..models import forces
 from ..numeric import Array, minimum, where
 from ..quantities import Quantity, Sense
-from . import barrel as barrel_module
-from . import beam as beam_module
 from . import (
+    barrel as barrel_module,
+    beam as beam_module,
     circuit,
     duty,
     film_tables,
+    geometry as geometry_module,
     hydraulics,
     joint,
     motion,
     oil_range,
+    rings as rings_module,
     rods,
     sealing,
     springs,
@@ -31,8 +33,6 @@ from . import (
     strength,
     weight,
 )
-from . import geometry as geometry_module
-from . import rings as rings_module
 from .allow import Stock
 from .barrel import Wall
 from .beam import Beam

@@ -13,8 +13,7 @@ from typing import TypeAlias
 from ..design.material import Material
 from ..design.material_laws import bulk_modulus_law, viscosity_law
 from ..design.model import FluidSection
-from ..models import density as density_models
-from ..models import fluid
+from ..models import density as density_models, fluid
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from ..numeric import Array
 from .allow import Stock

@@ -21,8 +21,7 @@ from ..models.layered_tube import (
 )
 from ..models.shell_buckling import shell_modulus
 from ..models.strength_modes import Stress
-from ..numeric import Array, real
-from ..numeric import sqrt as root
+from ..numeric import Array, real, sqrt as root
 from . import plies
 from .allow import Stock
 from .geometry import Geometry

@@ -17,8 +17,7 @@ from ..seals.contact import SealContact
 from . import gland_check
 from .allow import Stock
 from .barrel import SEAL_STEP, Wall
-from .film_tables import Key, Running, Stroke, Table, of_place
-from .film_tables import running as run
+from .film_tables import Key, Running, Stroke, Table, of_place, running as run
 from .geometry import Geometry
 from .grooves import Groove
 from .rings import INCOMPRESSIBLE, Place, Ring, face_modulus, places

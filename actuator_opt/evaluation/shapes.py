@@ -15,8 +15,7 @@ import numpy as np
 
 from ..joints.joint import Fit
 from ..numeric import Array
-from . import geometry as geometry_module
-from . import outline
+from . import geometry as geometry_module, outline
 from .geometry import Geometry
 from .grooves import Groove
 from .kernel import Subject

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..design.model import Design
-from ..models import dynamics, lugre, stiffness
-from ..models import stiffness_published as published
+from ..models import dynamics, lugre, stiffness, stiffness_published as published
 from ..numeric import Array, real
 from .barrel import Wall
 from .circuit import Branch, Chamber

@@ -11,8 +11,7 @@ from ..design.kinds import Fraction
 from ..design.model import Design
 from ..models import retention, stiffness
 from ..numeric import Array, where
-from . import joint as joint_module
-from . import oil
+from . import joint as joint_module, oil
 from .allow import Stock
 from .geometry import Geometry
 from .joint import WORST, Demand, Joint

@@ -28,8 +28,7 @@ import numpy as np
 
 from ..errors import Diagnostic, InputError
 from ..least_squares import CONFIDENCE, WEAK, Parameter, quantile
-from ..numeric import STEP as COMPLEX_STEP
-from ..numeric import Array
+from ..numeric import STEP as COMPLEX_STEP, Array
 from .balance import Sliding
 from .conditioning import Motion
 from .lugre_problem import BENDS, LOGARITHMIC, STEP, SYMBOLS, TRAVELS, LuGreFit, sizes

@@ -6,8 +6,7 @@ import numpy as np
 
 from ..errors import Diagnostic, InputError
 from ..numeric import Array
-from ..suggest import remedy as remedy_for
-from ..suggest import shown
+from ..suggest import remedy as remedy_for, shown
 from ..units import UnitError
 from .column_units import NONE, ColumnUnits
 from .csv_table import numbers, read_sheet

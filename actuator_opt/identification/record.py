@@ -14,8 +14,7 @@ from .. import units
 from ..errors import Diagnostic, InputError
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array
-from ..suggest import remedy as remedy_for
-from ..suggest import shown
+from ..suggest import remedy as remedy_for, shown
 from .column_units import NONE, ColumnUnits
 from .csv_table import Sheet, numbers, read_sheet
 

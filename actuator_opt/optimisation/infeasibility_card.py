@@ -15,8 +15,7 @@ from ..metrics import METRICS
 from ..quantities import Quantity
 from .actuator import ActuatorProblem
 from .cures import DIGITS, Cure, Cures, cures, outward
-from .infeasibility import Infeasibility as Explanation
-from .infeasibility import explain
+from .infeasibility import Infeasibility as Explanation, explain
 from .outcome import Outcome, Solution
 from .repairs import WIDEST, Opening, Relaxation
 from .result import Infeasibility

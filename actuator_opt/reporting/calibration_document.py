@@ -9,8 +9,7 @@ from ..evaluation.reserve import count_words
 from ..evaluation.study.bench import Bench
 from ..identification.calibration import Calibration
 from ..optimisation.redesign import Redesign, solved
-from . import calibration_rows as rows
-from . import text, writer
+from . import calibration_rows as rows, text, writer
 from .blocks import Block, Cell, column, notes, short, soft, table
 from .calibration_figure import calibration_figure
 from .identification_rows import force, samples_hash

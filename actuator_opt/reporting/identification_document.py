@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..identification.result import Identification
-from . import identification_rows as rows
-from . import writer
+from . import identification_rows as rows, writer
 from .blocks import Block, Cell, column, notes, soft, table
 from .fallback import joined, wrap
 from .identification_figures import LEAST, MOST, identification_figure

@@ -6,8 +6,7 @@ import numpy as np
 
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
-from . import identification_rows as rows
-from . import plot
+from . import identification_rows as rows, plot
 from .console import Column, Console
 from .text import DASH, number
 

@@ -8,8 +8,7 @@ from typing import Any
 
 from ..evaluation.reserve import count_words
 from ..optimisation.pareto_result import ParetoFront
-from . import pareto_rows as rows
-from . import text, writer
+from . import pareto_rows as rows, text, writer
 from .blocks import Block, Cell, column, notes, short, soft, table
 from .image import images
 from .origin import Origin, tile

@@ -8,8 +8,7 @@ from typing import Any
 
 from ..evaluation.study.seal import FilmMap, SealStudy
 from ..store import write_text
-from . import seal_rows as rows
-from . import text, writer
+from . import seal_rows as rows, text, writer
 from .blocks import soft
 from .origin import Origin, tile
 from .seal_figures import bars, stroke_names

@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..evaluation.study.seal import SealStudy
-from . import seal_rows as rows
-from . import text
+from . import seal_rows as rows, text
 from .blocks import Block, Cell, column, figure, notes, soft, table
-from .seal_elements_figure import contact_figure as elements_contact_figure
-from .seal_elements_figure import contact_note, sentence, stress_figure, stress_note
+from .seal_elements_figure import (
+    contact_figure as elements_contact_figure,
+    contact_note,
+    sentence,
+    stress_figure,
+    stress_note,
+)
 from .seal_figures import contact_figure, drawable, speed_figure, squeeze_figure, stroke_names
 from .seal_gland_figure import gland_drawing
 from .seal_map_figure import map_figure

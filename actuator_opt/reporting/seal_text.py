@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from ..evaluation.study.seal import SealStudy
-from . import seal_rows as rows
-from . import text
+from . import seal_rows as rows, text
 from .console import Column, Console
 from .seal_elements_figure import sentence
 from .seal_figures import bars, degrees, speed_words, squeeze_limits, stroke_names

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from . import simulation_comparison as compare
-from . import writer
+from . import simulation_comparison as compare, writer
 from .blocks import Block, notes, soft
 from .origin import Origin
 from .simulation_comparison import Comparison

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..simulation.result import Simulation
-from . import simulation_rows as rows
-from . import writer
+from . import simulation_rows as rows, writer
 from .blocks import Block, Cell, clean, column, notes, short, soft, status, table
 from .fallback import joined, wrap
 from .ink import text_width

@@ -6,8 +6,7 @@ import numpy as np
 
 from ..simulation.loops import LOOPS
 from ..simulation.result import Simulation
-from . import plot
-from . import simulation_rows as rows
+from . import plot, simulation_rows as rows
 from .console import Column, Console
 from .simulation_energy import table_rows
 from .simulation_step import window

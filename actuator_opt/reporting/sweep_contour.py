@@ -12,8 +12,7 @@ import numpy as np
 
 from ..errors import Diagnostic, InputError
 from ..numeric import Array
-from ..variants.field import Boundary, Field, require_grid
-from ..variants.field import field as field_of
+from ..variants.field import Boundary, Field, field as field_of, require_grid
 from .fallback import wrap
 from .figures import Axes
 from .identification_axes import even_ticks, spaced

@@ -8,8 +8,7 @@ from typing import Any
 
 from ..evaluation.reserve import count_words, without_reserve
 from ..scatter.result import Uncertainty
-from . import text, writer
-from . import uncertainty_rows as rows
+from . import text, uncertainty_rows as rows, writer
 from .blocks import Block, Cell, column, figure, notes, short, soft, table
 from .origin import Origin, tile
 from .uncertainty_figures import margins_figure, tornado

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from ..scatter.result import LimitYield, Swing, Uncertainty
-from . import text
-from . import uncertainty_rows as rows
+from . import text, uncertainty_rows as rows
 from .figures import Axes, fitted, ticks
 from .ink import BLACK, BLUE, GREY, RED, Ink
 from .tornado import LIGHT, MOST, Bar, bars

@@ -21,8 +21,7 @@ from ..evaluation.result import Evaluation
 from ..evaluation.study.seal import SealStudy
 from ..optimisation.result import Optimisation
 from ..plain_json import encoded
-from ..store import read_bytes, read_json
-from ..store import write_all as write_all
+from ..store import read_bytes, read_json, write_all as write_all
 from .blocks import ExtraTable, printable
 from .embed import extract
 from .origin import Origin

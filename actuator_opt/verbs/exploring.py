@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .. import run_store
-from .. import store as files
+from .. import run_store, store as files
 from ..errors import Diagnostic, InputError, UsageError
 from .actuator import Plugins, plugins_of
 from .kept_sweeps import store_of

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..design import Design
-from ..evaluation import Evaluation, Subject, prepare
-from ..evaluation import evaluate as evaluate_subject
+from ..evaluation import Evaluation, Subject, evaluate as evaluate_subject, prepare
 from ..evaluation.plugin import Plugin
 from ..evaluation.reserve import YieldEstimate
 from .actuator import Actuator, Plugins, answered, as_actuator, located, place

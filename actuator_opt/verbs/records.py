@@ -121,8 +121,7 @@ def identify(
         a channel missing, a record too short, channels turned round, no motion
     """
     from ..evaluation.study.bench import bench
-    from ..identification import Settings
-    from ..identification import identify as run
+    from ..identification import Settings, identify as run
 
     settings = Settings(
         cutoff=cutoff,
@@ -256,8 +255,7 @@ def calibrate(
         as `identify`; no steady sliding; friction that the design takes from an oil film; a record
         identified with another actuator
     """
-    from ..identification import Identification
-    from ..identification import calibration as learn
+    from ..identification import Identification, calibration as learn
     from ..identification.calibration import refuse_films
     from ..optimisation.redesign import redesign
 

@@ -68,8 +68,7 @@ def read_scenario(
     InputError
         with every fault of scenario, design and records, each with its place and remedy
     """
-    from ..design.scenario import read_design_of
-    from ..design.scenario import read_scenario as read
+    from ..design.scenario import read_design_of, read_scenario as read
 
     pairs = set.items() if isinstance(set, Mapping) else set
     loaded = read(source, overrides=[(path, str(value)) for path, value in pairs])

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ..design import Design
 from ..errors import Diagnostic, InputError, UsageError
 from ..evaluation import Subject, compute
-from ..store import require_apart
-from ..store import writing as cannot_write
+from ..store import require_apart, writing as cannot_write
 from .actuator import Actuator, Plugins, as_actuator, unanswered
 from .reports import file_name
 
@@ -81,8 +80,7 @@ def sweep(
         a PATH or value that is none, an objective that the design has no value of, or a store that
         cannot be used
     """
-    from ..variants import plan, read_axis
-    from ..variants import sweep as run
+    from ..variants import plan, read_axis, sweep as run
     from ..variants.engine import usable_engine
 
     engine = usable_engine(engine, reduced=reduce)

@@ -16,8 +16,7 @@ from ...models import barrel, barrel_ends, laminate, liner, ply
 from ...models.layered_tube import layered_tube, tube_state
 from ...numeric import Array
 from ..allow import Stock, allowances, extremes
-from ..barrel import Wall
-from ..barrel import laminate as laminated
+from ..barrel import Wall, laminate as laminated
 from ..geometry import Geometry
 from ..kernel import Pass, Subject
 from ..plies import Layer

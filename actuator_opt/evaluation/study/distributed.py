@@ -9,8 +9,7 @@ import numpy as np
 
 from ...design.circuit import Line
 from ...design.model import Design
-from ...models import line_ends, lines, water_hammer
-from ...models import transmission_line as transmission
+from ...models import line_ends, lines, transmission_line as transmission, water_hammer
 from ...models.line_ends import LineEnd
 from ...numeric import Array
 from ..circuit import CHAMBERS, Chamber, wall_compliance

@@ -23,8 +23,7 @@ from ...evaluation.springs import Springs
 from ...evaluation.state import State
 from ...evaluation.values import Values
 from ...joints.joint import Clamp
-from ...models import column, stepped, tube_bounds
-from ...models import rod as rod_models
+from ...models import column, rod as rod_models, stepped, tube_bounds
 from ...models.layered_tube import layered_tube, tube_state
 from ...models.solid_ply import solid_rotated
 from ...models.trial_mode import TrialMode, buckled_mode, trial_mode_load

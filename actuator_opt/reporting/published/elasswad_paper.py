@@ -5,8 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ...models import barrel, bending_test, damping, forces, friction, rod
-from ...models import stiffness_published as published
+from ...models import (
+    barrel,
+    bending_test,
+    damping,
+    forces,
+    friction,
+    rod,
+    stiffness_published as published,
+)
 
 POISSONS_RATIO = 0.3
 """Of the barrel in eq. 12; the paper prints none. Assumed, as usual for its isotropic form."""

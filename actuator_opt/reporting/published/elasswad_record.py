@@ -11,8 +11,7 @@ from math import pi
 import numpy as np
 
 from ...evaluation import Evaluation
-from ...models import barrel, forces, stiffness
-from ...models import stiffness_published as published
+from ...models import barrel, forces, stiffness, stiffness_published as published
 from ...numeric import Array
 from .elasswad_friction import chord
 from .elasswad_paper import PAPER

@@ -12,8 +12,7 @@ from functools import partial
 from ... import units
 from ...design.materials import load_library
 from ...evaluation import Evaluation
-from ...models import barrel, damping, fluid, forces, rod
-from ...models import stiffness_published as published
+from ...models import barrel, damping, fluid, forces, rod, stiffness_published as published
 from ...numeric import Array
 from .. import text
 from ..blocks import ExtraTable, figure

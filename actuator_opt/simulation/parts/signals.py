@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...design.scenario.shapes import SHAPES, height
-from ...design.scenario.shapes import Records as Records
+from ...design.scenario.shapes import SHAPES, Records as Records, height
 from ...design.scenario.signals import Part
 from ...numeric import Array
 from ...symbolic import Expression, Namespace, jacobian
