@@ -11,35 +11,11 @@ import jsonschema
 import pytest
 import yaml
 from cli_runner import BENCH, DESIGNS, KNEE, run, spawn, surroundings
+from frozen_cases import commands
 
 from actuator_opt.design.template import init_text
 
-COMMANDS = [
-    (),
-    ("init",),
-    ("check",),
-    ("evaluate",),
-    ("optimise",),
-    ("optimize",),
-    ("sensitivity",),
-    ("report",),
-    ("schema",),
-    ("materials",),
-    ("materials", "list"),
-    ("materials", "show"),
-    ("materials", "compare"),
-    ("seal",),
-    ("export",),
-    ("pareto",),
-    ("doctor",),
-    ("rerun",),
-    ("compare",),
-    ("runs",),
-    ("runs", "list"),
-    ("runs", "show"),
-    ("runs", "delete"),
-    ("runs", "prune"),
-]
+COMMANDS = [(), ("optimize",), *commands()]
 VERBS = ["check", "evaluate", "optimise", "optimize", "sensitivity", "report"]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import shlex
 from importlib import import_module
 from pathlib import Path
@@ -224,6 +225,17 @@ def test_what_a_report_needs_is_asked_for_in_one_line():
         ao.report(actuator, date="today")
     with pytest.raises(TypeError, match="float is no result"):
         ao.report(1.0)
+
+
+def test_every_command_is_registered():
+    """The public functions of the modules of `cli` are commands, but for those that all share."""
+    shared = {"__init__", "app", "faults", "job", "options", "streams"}
+    known = {("materials", "materials"), ("runs", "runs")}
+    for file in Path(cli.__file__).parent.glob("*.py"):
+        own = [] if file.stem in shared else ast.parse(file.read_text("utf-8")).body
+        plain = (x for x in own if isinstance(x, ast.FunctionDef) and not x.decorator_list)
+        known |= {(x.name, file.stem) for x in plain if not x.name.startswith("_")}
+    assert known == {one for one in COMMANDS.items() if one[0] not in HIDDEN}
 
 
 def test_only_the_command_asked_for_is_there():

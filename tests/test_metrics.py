@@ -7,10 +7,10 @@ import pytest
 import actuator_opt as ao
 from actuator_opt.evaluation.kernel import compute
 from actuator_opt.evaluation.limits import all_limits, default_limits
-from actuator_opt.evaluation.provenance import model_of
+from actuator_opt.evaluation.provenance import function_of, model_of
 from actuator_opt.evaluation.rows import Computed
 from actuator_opt.metrics import METRICS, metric, table
-from actuator_opt.metrics.metric import CheckLine, Least, MetricRow
+from actuator_opt.metrics.metric import CRITERION, CheckLine, Least, MetricRow
 from actuator_opt.metrics.table import ROWS
 
 DESIGNS = sorted((Path(__file__).parents[1] / "designs").glob("*.yaml"))
@@ -21,7 +21,8 @@ def row(**changed):
     """A complete row, some of it changed; a value of ... leaves the field out."""
     stated = {"worst": "max", "model": None, "feeds": (), "check": None} | changed
     stated = {name: value for name, value in stated.items() if value is not ...}
-    return MetricRow("span", "L", "length", "mm", "span of the bearings", **stated)
+    quantity = {"dimension": "length", "unit": "mm", "label": "span of the bearings"}
+    return MetricRow(name="span", symbol="L", **quantity | stated)
 
 
 @pytest.mark.parametrize("piece", ["worst", "model", "feeds", "check"])
@@ -38,12 +39,24 @@ def test_a_row_that_forgets_a_piece_is_refused(piece):
         ({"worst": "least"}, "worst value is min or max"),
         ({"feeds": ("air",)}, "feeds are wall, oil, own"),
         ({"least": Least(1e-3, "choice")}, "state `least`"),
+        ({"label": ""}, "label is empty"),
+        ({"dimension": "lenght"}, "no dimension lenght"),
+        ({"unit": "mn"}, "mn"),
+        ({"model": "gland"}, r"gland is no module\.function"),
     ],
 )
 def test_a_doubtful_row_is_refused(changed, words):
     """Misspelt words, and a least value of what is no geometry."""
     with pytest.raises(ValueError, match=words):
         row(**changed)
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_every_model_of_a_row_exists(name):
+    """A misspelt module or function is found here."""
+    own = ROWS[name]
+    for model in {own.model, *own.by_wall.values(), *own.at.values()} - {None, CRITERION}:
+        assert callable(function_of(model))
 
 
 def test_a_limit_without_source_is_refused():

@@ -133,7 +133,8 @@ def test_public_names_load_and_are_known_to_type_checkers():
     (typed,) = (node for node in tree.body if isinstance(node, ast.If))
     static = {alias.asname: node.module for node in typed.body for alias in node.names}
     assert static == actuator_opt._HOMES
-    assert dir(actuator_opt) == actuator_opt.__all__ == ["__version__", *sorted(static)]
+    assert actuator_opt.__all__ == ["__version__", *sorted(static)]
+    assert dir(actuator_opt) == sorted(actuator_opt.__all__)
     assert all(getattr(actuator_opt, name) is not None for name in actuator_opt.__all__)
     with pytest.raises(AttributeError, match="no attribute 'evaluat'"):
         actuator_opt.evaluat  # noqa: B018

@@ -181,8 +181,8 @@ RecordColumns = Annotated[
     typer.Option(
         "--column",
         metavar="CHANNEL=NAME",
-        help='Column of a channel of the record (t, p1, x, U, ...), e.g. "p1=Channel 3 [bar]". '
-        "Repeatable.",
+        help="Column of a channel of the record (t, p1, p2, x, v, F_L, U, spool, pS, qA, qB, "
+        'n_shaft, phi), e.g. "p1=Channel 3 [bar]". Repeatable.',
     ),
 ]
 Sensitivity = Annotated[

@@ -38,6 +38,7 @@ from .study import dynamics
 from .values import Values, of_case
 
 NO_ANSWER = "the models have no finite answer for these dimensions"
+NOT_COMPUTED = "nothing computes it for this design"
 
 TOLERANCE = 1e-6
 """A margin of at least −TOLERANCE counts as met (CONTRACT)."""
@@ -173,7 +174,8 @@ def _metric(
             rows.append((float(value[0]), case, place))
     value = float(governing(name, computed, v, subject)[0])
     if not _finite(value):
-        why = computed.why.get(name, NO_ANSWER)
+        computed_at_all = name in computed.metrics
+        why = computed.why.get(name, NO_ANSWER if computed_at_all else NOT_COMPUTED)
         if value == math.inf:
             why = computed.why.get(name, "nothing loads it: the factor is unlimited")
         definition = None if name in METRICS else subject.quantities[name]

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Literal, get_args
 
 from ..quantities import INFINITY, Quantity, Sense
+from ..units import BASE, unit
 
 Feed = Literal["wall", "oil", "own"]
 """Whose validity warnings a metric inherits: those of the barrel's wall model (bore growth), those
@@ -90,6 +91,15 @@ class MetricRow:
     short: str = field(default="", kw_only=True)
 
     def __post_init__(self) -> None:
+        if not self.label:
+            raise ValueError(f"metric {self.name}: its label is empty")
+        if self.dimension not in BASE:
+            raise ValueError(f"metric {self.name}: no dimension {self.dimension}")
+        if self.unit:
+            unit(self.unit, self.dimension)  # raises UnitError
+        for model in filter(None, (self.model, *self.by_wall.values(), *self.at.values())):
+            if model != CRITERION and model.count(".") != 1:
+                raise ValueError(f"metric {self.name}: {model} is no module.function")
         if self.worst not in get_args(Sense):
             raise ValueError(f"metric {self.name}: its worst value is min or max")
         if not {*self.feeds} <= {*get_args(Feed)}:
