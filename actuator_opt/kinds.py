@@ -106,17 +106,19 @@ def kinds_in(what: str, package: str, name: str, *modules: str) -> Kinds[Any]:
     what : what they are, in the singular
     package : of the modules
     name : under which each declares its kind
-    modules : in the order of lists
+    modules : in the order of lists; each is the name of its kind
 
     Raises
     ------
-    ValueError : as `kinds`, or a module that declares none
+    ValueError : as `kinds`, a module that declares none, or one of another name
     """
     found = []
     for module in modules:
         declared = getattr(import_module(f".{module}", package), name, None)
         if declared is None:
             raise ValueError(f"{package}.{module}: declares no {name}")
+        if declared.name != module:
+            raise ValueError(f'{package}.{module}: its {name} is named "{declared.name}"')
         found.append(declared)
     return kinds(what, *found)
 

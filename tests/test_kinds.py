@@ -12,6 +12,7 @@ import subprocess
 import sys
 from dataclasses import MISSING, fields, replace
 from importlib import import_module
+from itertools import combinations
 from math import inf, isfinite
 
 import numpy as np
@@ -335,7 +336,22 @@ def test_slope_of_a_law_is_its_derivative(law):
     derived = np.imag(law.level(seal, 100.0, speeds + 1j * STEP)) / STEP
     np.testing.assert_allclose(law.slope(seal, 100.0, speeds), derived, rtol=1e-9, atol=1e-9)
     assert (level >= 0).all()
-    assert float(law.breakaway(seal, 100.0)) >= 100.0
+    breakaway = float(law.breakaway(seal, 100.0))
+    assert breakaway >= 100.0
+    assert breakaway == pytest.approx(float(law.level(seal, 100.0, 0.0)), rel=1e-12)
+
+
+def test_no_law_is_a_copy_of_another():
+    """Something besides word and help tells two laws apart."""
+    bare = [replace(law, name="x", help="x") for law in FRICTION_LAWS.values()]
+    assert all(one != other for one, other in combinations(bare, 2))
+
+
+@TYPE
+def test_the_modulus_of_a_type_has_a_known_origin(kind):
+    """A word that nothing else checks at run time."""
+    words = next(one.type for one in fields(SealType) if one.name == "modulus_by")
+    assert repr(kind.modulus_by) in words
 
 
 @LAW
