@@ -157,7 +157,7 @@ def test_a_block_that_does_not_fit_leaves_the_optimum_and_says_so(wide):
 def test_the_yield_asked_for_is_told_by_its_own_sample(optimum):
     """With --yield reached the verdict is green, and the bounds are those of its own draws."""
     robust = Robust(0.9, 0.93, 0.92, 0.94, 10_000, True, 0.2, 0.02, {}, (), (), "it holds")
-    found = verbs.optimum._estimated(replace(optimum, robust=robust), ())
+    found = verbs.optimum.estimated(replace(optimum, robust=robust), ())
     told = found.to_dict()["reserve"]["yield"]
     assert [told[key] for key in ("value", "lower", "upper", "draws")] == [0.93, 0.92, 0.94, 10_000]
     assert page.verdict(found)["state"] == "met"
@@ -166,7 +166,7 @@ def test_the_yield_asked_for_is_told_by_its_own_sample(optimum):
 
 def test_an_interrupted_search_says_why_there_is_no_yield(optimum):
     """The best so far is kept at once: nothing is drawn."""
-    found = verbs.optimum._estimated(replace(optimum, status="interrupted"), ())
+    found = verbs.optimum.estimated(replace(optimum, status="interrupted"), ())
     assert found.best_evaluation.yield_estimate.value is None
     assert "interrupted" in found.to_dict()["reserve"]["why"]
 
