@@ -13,6 +13,7 @@ from actuator_opt.design.materials import load_library
 from actuator_opt.design.template import init_text
 from actuator_opt.design.writer import to_yaml
 from actuator_opt.errors import InputError
+from actuator_opt.joints.kinds import JOINTS
 
 GOOD = init_text("test")
 HOLLOW = "  inner_diameter: 4 mm         # 0 = solid\n"
@@ -68,7 +69,8 @@ def test_options_of_a_wall():
                 "  allowed_angles: [0 deg, 45 deg, 90 deg]\n  model: layered  "),
         ("      angle: 20 deg\n", "      angle: -20 deg\n      balanced: false\n"
                                   "      ply_thickness: 0.2 mm\n"),
-        ("  type: bond                   # or thread, tie_rods\n  material: epoxy_structural\n",
+        (f"  type: bond                   # or {', '.join(JOINTS.names[1:])}\n"
+         "  material: epoxy_structural\n",
          "  type: tie_rods\n  material: steel_bolt_10_9\n  preload: 20 kN\n  thread:\n"
          "    diameter: 4 mm\n    pitch: 0.7 mm\n"),
     )  # fmt: skip

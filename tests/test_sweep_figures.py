@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from itertools import combinations
@@ -327,6 +328,8 @@ def test_every_figure_of_a_sweep_is_whole(kind):
         file.stem for file in folder.glob("*.py") if "\nFIGURE = " in file.read_text("utf-8")
     }
     assert modules == {*SWEEP_FIGURES.values()}
+    assert len(modules) == len(SWEEP_FIGURES)
+    assert all(re.fullmatch(r"[a-z_]+", word) for word in SWEEP_FIGURES)
 
 
 def test_a_figure_that_forgets_a_piece_is_refused():

@@ -238,6 +238,19 @@ class _Retention(Section):
     preload: Annotated[float | None, Of("force", "total tie-rod tension without pressure")] = None
 
 
+def _own_fields() -> dict[str, Any]:
+    """The keys that single joints add, each with its quantity."""
+    own = {
+        field.key: field for joint in JOINTS.values() for field in joint.fields if field.quantity
+    }
+    for key in own.keys() & _Retention.model_fields.keys():
+        raise ValueError(f"joint field {key}: every joint has it, so it states no quantity")
+    return {
+        key: (Annotated[float | None, Of(field.quantity, field.help)], None)
+        for key, field in own.items()
+    }
+
+
 if TYPE_CHECKING:
     Retention: TypeAlias = _Retention
 else:  # with the keys that single joints add
@@ -246,12 +259,7 @@ else:  # with the keys that single joints add
         __base__=_Retention,
         __doc__=_Retention.__doc__,
         __module__=__name__,
-        **{
-            field.key: (Annotated[float | None, Of(field.quantity, field.help)], None)
-            for joint in JOINTS.values()
-            for field in joint.fields
-            if field.quantity
-        },
+        **_own_fields(),
     )
 
 

@@ -72,7 +72,10 @@ def sweep_figures(swept: Swept, kinds: Sequence[str], show: Sequence[str] = ()) 
     drawn, metrics = Drawn(swept), chosen(swept.study, show)
     found: dict[str, Ink] = {}
     for kind in dict.fromkeys(kinds):
-        found |= figure(kind).draw(drawn, metrics, bool(show))
+        pictures = figure(kind).draw(drawn, metrics, bool(show))
+        if doubled := found.keys() & pictures.keys():
+            raise ValueError(f"figure {kind}: another one draws {', '.join(doubled)} too")
+        found |= pictures
     return found
 
 
