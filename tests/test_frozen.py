@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import pytest
 from frozen import FROZEN, ROOT, TOOLS, compared
 from frozen_cases import SHIPPED, cases, commands
@@ -33,6 +36,16 @@ def test_every_case_is_frozen_and_nothing_else_is() -> None:
     assert frozen == {f"{case.name}.txt" for case in CASES}
     assert len(frozen) == len(CASES)
     assert TOOLS.is_file()
+
+
+def test_texts_without_numbers_of_models_are_frozen() -> None:
+    """Help, schema, faults, start files and checks, which no other processor rounds otherwise."""
+    words = ["help", "schema/", "faults/", "init/", "check/"]
+    script = ROOT / "tests" / "frozen.py"
+    done = subprocess.run(
+        [sys.executable, script, *words], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 OLD = 'a 1.5\n"mass": 0.25,\n--- file out/a.pdf: ' + 64 * "a" + "\n"
