@@ -37,7 +37,7 @@ SOME = 4096
 _SELECT = "SELECT key, numbers, failure, checksum FROM rows WHERE study = ?"
 
 
-class Kept(NamedTuple):
+class StoredRows(NamedTuple):
     """One study of a database; `texts` are those that its rows may take, by PATH."""
 
     number: int
@@ -58,7 +58,7 @@ class Reader:
     def __init__(self, connection: sqlite3.Connection, path: Path) -> None:
         self.connection, self.path = connection, path
 
-    def study(self, number: int | None = None) -> Kept:
+    def study(self, number: int | None = None) -> StoredRows:
         """The study of a number, or the newest.
 
         Raises
@@ -84,7 +84,7 @@ class Reader:
         if not rows:
             raise refused(self.path, f"study {number} has no rows yet", "let its sweep run first")
         failures = self._failures(number, Seals(hashed, len(told)))
-        return Kept(number, hashed, name, design, told, rows, failures, self._texts(number))
+        return StoredRows(number, hashed, name, design, told, rows, failures, self._texts(number))
 
     def _failures(self, number: int, seals: Seals) -> dict[str, int]:
         """How often each reason made a design fail, the commonest first, by rows that are whole."""
@@ -129,7 +129,7 @@ class Reader:
             found[path] = (*found.get(path, ()), text)
         return found
 
-    def rows(self, study: Kept) -> Iterator[tuple[list[bytes], Array]]:
+    def rows(self, study: StoredRows) -> Iterator[tuple[list[bytes], Array]]:
         """Keys and numbers of the rows that did not fail, some at once, by their key.
 
         A key is a hash, so that every n-th row is an even sample of the study. Damaged rows are

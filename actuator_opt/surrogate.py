@@ -18,7 +18,7 @@ from .numeric import Array, clip
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class Interpolation:
     """What the costly function tells at one point.
 
     Parameters
@@ -129,7 +129,7 @@ class Surrogate:
 
 
 def surrogate(
-    function: Callable[[dict[str, float]], Answer],
+    function: Callable[[dict[str, float]], Interpolation],
     *,
     base: Mapping[str, float],
     axes: Sequence[Axis],
@@ -178,7 +178,7 @@ def _fitted(
     axes: Sequence[Axis],
     points: Sequence[Mapping[str, float]],
     values: Sequence[np.ndarray],
-    answers: Sequence[Answer],
+    answers: Sequence[Interpolation],
 ) -> np.ndarray:
     """Coefficients (terms of every axis, outputs) that meet values, and slopes where asked."""
     rows, told = [_basis(axes, points)], [np.array(values)]

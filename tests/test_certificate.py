@@ -11,7 +11,7 @@ from certificate_cases import HEAVIER, case
 from actuator_opt.optimisation.certificate.bounding import Bounding
 from actuator_opt.optimisation.certificate.box import Box, Layout
 from actuator_opt.optimisation.certificate.certify import certify
-from actuator_opt.optimisation.certificate.search import Search
+from actuator_opt.optimisation.certificate.search import BoxSearch
 
 FREE_PRESSURE = (
     ("variables.supply.pressure.lower", "150 bar"),
@@ -133,7 +133,7 @@ def test_no_design_lies_below_the_bound(some):
     bounding = Bounding(found.layout, found.relaxed.objective)
     heard: list[float] = []
     best = math.log(HEAVIER * found.objective)
-    bound = Search(found.layout, bounding, best, most=5).run(heard.append).bound
+    bound = BoxSearch(found.layout, bounding, best, most=5).run(heard.append).bound
     masses = found.actuator.problem.rows(designs.T)[0]
     assert math.exp(bound) <= masses.min()
     assert heard == sorted(heard)
@@ -175,5 +175,5 @@ def test_nothing_is_left_below_what_is_proven():
     """A box without a design no worse than a tenth of the best is empty, or bound above it."""
     found = case(*CASES["steel"])
     bounding = Bounding(found.layout, found.relaxed.objective)
-    bound = Search(found.layout, bounding, math.log(0.1 * found.objective), most=3).run()
+    bound = BoxSearch(found.layout, bounding, math.log(0.1 * found.objective), most=3).run()
     assert bound.closed

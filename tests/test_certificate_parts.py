@@ -16,7 +16,7 @@ from actuator_opt.optimisation.certificate.builder import Builder
 from actuator_opt.optimisation.certificate.intervals import narrow, tighten
 from actuator_opt.optimisation.certificate.plain import straighten
 from actuator_opt.optimisation.certificate.relaxation import Relaxation, Unknown
-from actuator_opt.optimisation.certificate.search import Search
+from actuator_opt.optimisation.certificate.search import BoxSearch
 from actuator_opt.optimisation.certificate.shapes import SHAPES, Mixed, Table, Tables
 from actuator_opt.optimisation.certificate.signomial import Form, Signomial
 from actuator_opt.symbolic import Graph
@@ -57,7 +57,7 @@ def test_published_optimum_is_proven(problem):
     """The bound of the published problem closes on its known optimum, and is not above it."""
     layout, form = problem
     best = math.log(ABOVE + KNOWN)
-    found = Search(layout, Bounding(layout, form), best, most=400).run()
+    found = BoxSearch(layout, Bounding(layout, form), best, most=400).run()
     assert found.closed
     assert math.exp(found.bound) == pytest.approx(ABOVE + KNOWN, rel=2e-4)
     assert math.exp(found.bound) <= ABOVE + KNOWN
@@ -67,7 +67,7 @@ def test_a_better_design_that_does_not_exist_is_not_found(problem):
     """Given a worse best known value, the bound still is not above the true optimum."""
     layout, form = problem
     best = math.log(ABOVE + KNOWN + 1.0)
-    found = Search(layout, Bounding(layout, form), best, most=60).run()
+    found = BoxSearch(layout, Bounding(layout, form), best, most=60).run()
     assert math.exp(found.bound) <= (ABOVE + KNOWN) * (1 + 1e-6)
 
 

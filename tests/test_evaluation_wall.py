@@ -54,9 +54,9 @@ def _done(path):
 def _layers(subject, values):
     """Tube layers and strengths per climate, from the material's own numbers."""
     from actuator_opt.evaluation import plies
-    from actuator_opt.evaluation.allow import Stock
+    from actuator_opt.evaluation.allow import MaterialValues
 
-    stock = Stock(values, subject.materials, subject.factors, subject.constants)
+    stock = MaterialValues(values, subject.materials, subject.factors, subject.constants)
     states = plies.climates(values, subject.design)
     layup = subject.design.barrel.layup
     return plies.layers(values, stock, layup, "barrel.layup", states, []), states

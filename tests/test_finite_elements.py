@@ -61,7 +61,7 @@ def held(section, *conditions):
     for nodes, component, value in conditions:
         unknown = 2 * np.flatnonzero(nodes) + component
         bounds.lower[unknown] = bounds.upper[unknown] = value
-    problem = equilibrium.Problem(section, bounds, lambda state, places, pressure: state.wet)
+    problem = equilibrium.ElementProblem(section, bounds, lambda state, places, pressure: state.wet)
     return equilibrium.solve(problem, problem.start(), 0.0)
 
 

@@ -23,7 +23,7 @@ from actuator_opt.identification.bootstrap import (
 )
 from actuator_opt.identification.identify import identify
 from actuator_opt.identification.lugre_windows import windows
-from actuator_opt.identification.many_fits import Search, relaxed
+from actuator_opt.identification.many_fits import FitSearch, relaxed
 from actuator_opt.identification.points import Point
 from actuator_opt.identification.stribeck_fit import fit_stribeck
 
@@ -180,7 +180,7 @@ def test_many_fits_are_those_of_one():
         lambda x, at: model(x) - data[at],
         slopes,
         np.tile([1.0, 1.0], (20, 1)),
-        Search(("a", "b"), low, high),
+        FitSearch(("a", "b"), low, high),
         60,
     )
     for one, value, mine in zip(data, cost, found, strict=True):

@@ -8,7 +8,7 @@ import actuator_opt as ao
 from actuator_opt.evaluation.kernel import compute
 from actuator_opt.evaluation.limits import all_limits, default_limits
 from actuator_opt.evaluation.provenance import function_of, model_of
-from actuator_opt.evaluation.rows import Computed
+from actuator_opt.evaluation.rows import MetricArrays
 from actuator_opt.metrics import METRICS, metric, table
 from actuator_opt.metrics.metric import CRITERION, CheckLine, Least, MetricRow
 from actuator_opt.metrics.table import ROWS
@@ -79,7 +79,7 @@ def test_doubled_rows_and_checks_are_refused():
 def test_an_undeclared_metric_cannot_be_computed():
     """The message says where its row belongs."""
     with pytest.raises(KeyError, match=r"metric span: add its row to metrics/table\.py"):
-        Computed().put("span", 1.0)
+        MetricArrays().put("span", 1.0)
 
 
 @pytest.mark.parametrize("file", DESIGNS, ids=lambda file: file.stem)

@@ -37,7 +37,7 @@ from actuator_opt.reporting.blocks import column, table
 from actuator_opt.reporting.ink import Ink
 from actuator_opt.reporting.origin import Origin
 from actuator_opt.simulation.integrate import Event
-from actuator_opt.simulation.result import Flow, Row, Second
+from actuator_opt.simulation.result import Flow, RequirementResult, Second
 
 ORIGIN = Origin(case.SOURCE, "a.yaml", "simulate a.yaml", "12ab")
 ABSURD = f"{'a' * 70} {'many words without an end ' * 8}".strip()
@@ -313,7 +313,7 @@ def test_a_limit_without_reserve_is_no_green_verdict():
     """Of a requirement met with a margin of 0 % badge and row say so."""
     found = replace(case.simulated("step"), second=None)
     assert simulation_rows.sound(found)
-    row = Row("overshoot", "max", 0.2, 0.2, 0.0, True)
+    row = RequirementResult("overshoot", "max", 0.2, 0.2, 0.0, True)
     for margin, state, words in (
         (0.0, "checks", "REQUIREMENTS MET, 1 LIMIT WITHOUT RESERVE"),
         (0.1, "met", "REQUIREMENTS MET"),

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from actuator_opt.numeric import STEP
-from actuator_opt.surrogate import Answer, Axis, surrogate
+from actuator_opt.surrogate import Axis, Interpolation, surrogate
 
 AXES = (Axis("speed", 1e-3, 1.0, 5), Axis("pressure", 1e5, 4e7, 4))
 BASE = {"speed": 0.1, "pressure": 1e6, "modulus": 8e6}
@@ -16,7 +16,7 @@ def smooth(point):
     u, p = np.log(point["speed"]), np.log(point["pressure"])
     scale = (point["modulus"] / 8e6) ** 0.5
     values = scale * np.array([1 + u**4 - p**3 * u, 2 - u * p])
-    return Answer(values, {"modulus": 0.5 * values, "speed": values, "pressure": values})
+    return Interpolation(values, {"modulus": 0.5 * values, "speed": values, "pressure": values})
 
 
 @given(st.floats(1e-3, 1.0), st.floats(1e5, 4e7))
@@ -63,7 +63,7 @@ def test_points_without_an_answer_are_left_out():
         def function(point):
             seen.append(point)
             if len(seen) <= count:
-                return Answer(np.zeros(2), {}, why="did not converge")
+                return Interpolation(np.zeros(2), {}, why="did not converge")
             return smooth(point)
 
         return surrogate(function, base=BASE, axes=AXES)
@@ -101,7 +101,7 @@ def test_slopes_are_met_too():
 
     def wave(point):
         value = np.array([np.exp(np.log(point["speed"]) / 3)])
-        return Answer(value, {"speed": value / 3})
+        return Interpolation(value, {"speed": value / 3})
 
     axis = Axis("speed", 0.08, 0.125, 2, hermite=True)
     fitted = surrogate(wave, base={"speed": 0.1}, axes=(axis,))

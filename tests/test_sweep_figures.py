@@ -21,7 +21,7 @@ from actuator_opt.reporting import sweep_figure
 from actuator_opt.reporting.ink import Ink
 from actuator_opt.reporting.sweep_contour import contour_figure
 from actuator_opt.reporting.sweep_figures import sweep_figures
-from actuator_opt.reporting.sweep_marks import Drawn
+from actuator_opt.reporting.sweep_marks import SweepFigureData
 from actuator_opt.reporting.ucurves import STYLES, differences_drawn
 from actuator_opt.variants import sample
 from actuator_opt.variants.field import field
@@ -213,7 +213,7 @@ def test_contours_are_whole_and_clear(swept):
     """Every boundary is named at its line or by a letter of the key."""
     grid = field(swept.study)
     lines = list(grid.boundaries())
-    drawn = Drawn(swept)
+    drawn = SweepFigureData(swept)
     for metric in PAIR:
         ink = contour_figure(drawn, grid, lines, metric)
         assert not overlaps(ink)

@@ -14,7 +14,7 @@ import pytest
 
 from actuator_opt import verbs
 from actuator_opt.design.materials import load_library
-from actuator_opt.evaluation.film import Row, slopes, solve
+from actuator_opt.evaluation.film import FilmRow, slopes, solve
 from actuator_opt.evaluation.seal_contact import seal_contact
 from actuator_opt.evaluation.study import trends
 from actuator_opt.evaluation.study.trends import FACTORS
@@ -53,7 +53,7 @@ def said(found, factor):
 
 def solved(ring, *, outward=False):
     """The film of one ring; pulled, the faces run inwards."""
-    return solve(Row((ring,), outward))
+    return solve(FilmRow((ring,), outward))
 
 
 def on_film(found, names, of_ring):
@@ -394,7 +394,7 @@ def test_first_order_is_that_of_films_solved_again(name, found, factor, number):
     for change in (1.02, 1 / 1.02):
         friction = 0.0
         for ring in found.rings:
-            row = Row((ring.at(**{number: change * ring[number]}),), False)
+            row = FilmRow((ring.at(**{number: change * ring[number]}),), False)
             friction += solve(row, solved(ring)).friction()
         sums.append(friction)
     again = math.log(sums[0] / sums[1]) / (2 * math.log(1.02))

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from .build import evaluate, prepare
-from .kernel import Subject, compute, without_films
+from .kernel import PreparedDesign, compute, without_films
 from .result import Check, Evaluation, Metric, Requirement
 
 __all__ = [
     "Check",
     "Evaluation",
     "Metric",
+    "PreparedDesign",
     "Requirement",
-    "Subject",
     "compute",
     "evaluate",
     "prepare",

@@ -44,7 +44,7 @@ def allowances(
     return factors
 
 
-class Stock:
+class MaterialValues:
     """The materials of a design: their numbers (possibly varied) and their allowables."""
 
     def __init__(

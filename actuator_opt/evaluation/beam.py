@@ -17,7 +17,7 @@ from . import weight
 from .barrel import Wall
 from .geometry import Geometry
 from .rods import Rod
-from .state import State, overhang
+from .state import LoadState, overhang
 from .values import Values
 
 FIXED_PINNED = 0.6992
@@ -51,7 +51,7 @@ class Beam:
         return bent + self.moment * (share - near) / (1 - NEAR) ** 2
 
 
-def lengths(g: Geometry, state: State) -> tuple[Array, Array]:
+def lengths(g: Geometry, state: LoadState) -> tuple[Array, Array]:
     """Lengths of the cylinder, and of the rod outside it, from eye to eye."""
     cylinder = g.eye_offset + 2 * g.plate + g.barrel_length
     return cylinder, maximum(state.reach + g.rod_extension + g.eye_offset, LEAST)
@@ -65,7 +65,7 @@ def derive(
     v: Values,
     design: Design,
     g: Geometry,
-    state: State,
+    state: LoadState,
     wall: Wall,
     rod: Rod,
     parts: Mapping[str, Array],
@@ -114,7 +114,7 @@ def _weight(
     v: Values,
     design: Design,
     g: Geometry,
-    state: State,
+    state: LoadState,
     rod: Rod,
     parts: Mapping[str, Array],
     lengths: tuple[Array, Array],

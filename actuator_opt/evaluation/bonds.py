@@ -13,13 +13,13 @@ from ..joints.joint import Thermal
 from ..joints.overlap import Overlap, mismatch
 from ..models.rod import section_area
 from ..numeric import Array, maximum
-from .allow import Stock
+from .allow import MaterialValues
 from .rods import Rod
-from .rows import Computed
+from .rows import MetricArrays
 from .values import Values
 
 
-def fittings(v: Values, stock: Stock, design: Design, rod: Rod) -> Overlap | str:
+def fittings(v: Values, stock: MaterialValues, design: Design, rod: Rod) -> Overlap | str:
     """The end fittings inside a laminated rod, or why there are none."""
     fitting = design.rod.fitting
     if fitting is None:
@@ -51,7 +51,9 @@ def fitting_area(v: Values, design: Design, rod: Rod) -> Array:
     )
 
 
-def thermal(v: Values, design: Design, bonds: Mapping[str, Thermal | str], out: Computed) -> None:
+def thermal(
+    v: Values, design: Design, bonds: Mapping[str, Thermal | str], out: MetricArrays
+) -> None:
     """Strength over edge shear without load, from joining to the coldest and the hottest.
 
     `bonds` by place, or why there is none.

@@ -21,7 +21,7 @@ from ..version import VERSION
 from . import doubts, outline, standard_parts, study
 from .allow import allowances, extremes
 from .governing import governing
-from .kernel import Pass, Subject, compute
+from .kernel import ModelRun, PreparedDesign, compute
 from .limits import Limit, all_limits, check_limits, default_limits
 from .plugin import Plugin
 from .provenance import model_of
@@ -33,7 +33,7 @@ from .result import (
     StrokeCurve,
 )
 from .rings import Ring
-from .rows import ALL_CASES, Computed, Row, by_case, rows_of
+from .rows import ALL_CASES, LimitRow, MetricArrays, by_case, rows_of
 from .study import dynamics
 from .values import Values, of_case
 
@@ -68,7 +68,7 @@ def prepare(
     design: Design,
     materials: Library | Mapping[str, Material] | None = None,
     plugins: tuple[Plugin, ...] = (),
-) -> Subject:
+) -> PreparedDesign:
     """A design with the materials it names and all its numbers, ready to evaluate.
 
     Parameters
@@ -94,10 +94,10 @@ def prepare(
         temperatures=extremes(design, numbers),
         wet=design.environment is None or design.environment.wet,
     )
-    return Subject(design, materials, numbers, factors, plugins)
+    return PreparedDesign(design, materials, numbers, factors, plugins)
 
 
-def spec_hash(subject: Subject) -> str:
+def spec_hash(subject: PreparedDesign) -> str:
     """Hash of everything that decides the result: design, material numbers, version."""
     design = subject.design.model_dump(mode="json")
     if not design["uncertainty"]:  # what is not stated leaves the hash of older designs alone
@@ -112,7 +112,7 @@ def spec_hash(subject: Subject) -> str:
 
 
 @np.errstate(all="ignore")  # what has no finite answer is reported as such
-def evaluate(subject: Subject) -> Evaluation:
+def evaluate(subject: PreparedDesign) -> Evaluation:
     """Every metric, requirement and check of one design."""
     v = subject.values()
     done = compute(subject, v)
@@ -150,7 +150,7 @@ def evaluate(subject: Subject) -> Evaluation:
     )
 
 
-def _friction_parts(computed: Computed, v: Values, case: str | None) -> dict[str, float]:
+def _friction_parts(computed: MetricArrays, v: Values, case: str | None) -> dict[str, float]:
     """Running friction of each seal in a case; parts that rub nowhere are left out."""
     found = {}
     for label, array in computed.friction_parts.items():
@@ -166,7 +166,7 @@ def _finite(value: float) -> bool:
 
 
 def _metric(
-    name: str, computed: Computed, v: Values, subject: Subject, outside: set[str]
+    name: str, computed: MetricArrays, v: Values, subject: PreparedDesign, outside: set[str]
 ) -> Metric:
     rows: list[tuple[float, str, str]] = []
     for place, array in computed.metrics.get(name, {}).items():
@@ -208,7 +208,7 @@ def _metric(
     )
 
 
-def _worst(rows: Iterable[Row]) -> Row | None:
+def _worst(rows: Iterable[LimitRow]) -> LimitRow | None:
     """The row of least margin; NaN counts as worst."""
     return min(
         rows,
@@ -217,7 +217,7 @@ def _worst(rows: Iterable[Row]) -> Row | None:
     )
 
 
-def _requirement(limit: Limit, computed: Computed, v: Values) -> Requirement:
+def _requirement(limit: Limit, computed: MetricArrays, v: Values) -> Requirement:
     row = _worst(rows_of(limit, computed, v))
     bound = float(np.squeeze(limit.value(v)))
     if row is None or not _finite(float(row.value[0])):
@@ -250,7 +250,7 @@ def _requirement(limit: Limit, computed: Computed, v: Values) -> Requirement:
 
 def _checks(
     design: Design,
-    computed: Computed,
+    computed: MetricArrays,
     v: Values,
     requirements: tuple[Requirement, ...],
     rings: tuple[Ring, ...],
@@ -271,7 +271,7 @@ def _check(
     name: str,
     metric: MetricRow,
     limit: Limit | None,
-    computed: Computed,
+    computed: MetricArrays,
     v: Values,
     requirements: tuple[Requirement, ...],
 ) -> Check:
@@ -315,7 +315,7 @@ def _against(check: Check) -> str:
     return f"{quantity.text(check.value)}, should be {word} {quantity.text(check.limit)}"
 
 
-def _curve(done: Pass, v: Values, case: str | None) -> StrokeCurve:
+def _curve(done: ModelRun, v: Values, case: str | None) -> StrokeCurve:
     """Stiffness over the stroke in the governing case."""
     stroke = float(np.squeeze(done.geometry.stroke))
     index = v.cases.index(case) if case in v.cases else 0

@@ -13,7 +13,7 @@ from ..models import accumulator, elements, holding_valve, line_ends, lines, one
 from ..models.line_ends import LineEnd
 from ..numeric import Array, maximum, where
 from .geometry import Geometry
-from .state import State
+from .state import LoadState
 from .values import Values
 
 Chamber = Literal["a", "b"]
@@ -50,7 +50,7 @@ def wall_compliance(v: Values, line: Line, at: str) -> Array:
     )
 
 
-def branches(v: Values, design: Design, state: State) -> dict[Chamber, Branch]:
+def branches(v: Values, design: Design, state: LoadState) -> dict[Chamber, Branch]:
     """The lines of chambers a and b, with the oil as it moves through them."""
     throttled = design.ports.throttle is not None
     modulus = {"a": state.bulk_modulus_a, "b": state.bulk_modulus_b}
@@ -121,7 +121,7 @@ class Edges(NamedTuple):
     """Centred, A-T and B-T."""
 
 
-def valve_edges(v: Values, design: Design, state: State) -> Edges:
+def valve_edges(v: Values, design: Design, state: LoadState) -> Edges:
     """The edges of the design's valve in every load case."""
     assert design.valve is not None
     at = "valve."
@@ -141,7 +141,7 @@ def valve_edges(v: Values, design: Design, state: State) -> Edges:
     )
 
 
-def linear_valve(v: Values, design: Design, state: State, leakage: Array) -> LinearValve | None:
+def linear_valve(v: Values, design: Design, state: LoadState, leakage: Array) -> LinearValve | None:
     """Valve at the held pressures, its spool where it feeds its own leakage and the piston's."""
     if design.valve is None:
         return None
@@ -173,7 +173,7 @@ def linear_valve(v: Values, design: Design, state: State, leakage: Array) -> Lin
 
 
 def throttle_conductances(
-    v: Values, design: Design, state: State, geometry: Geometry
+    v: Values, design: Design, state: LoadState, geometry: Geometry
 ) -> dict[Chamber, Ways]:
     """Conductance of the one-way valves at the flow of the case's speed, by the piston's way."""
     if design.ports.throttle is None:
@@ -228,7 +228,7 @@ def line_end(
 
 
 def accumulator_ends(
-    v: Values, design: Design, state: State, chamber: Chamber
+    v: Values, design: Design, state: LoadState, chamber: Chamber
 ) -> tuple[LineEnd, ...]:
     """Every accumulator on the line of a chamber."""
     found = []

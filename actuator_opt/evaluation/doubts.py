@@ -14,7 +14,7 @@ from ..models import laminate
 from . import joint, motion_range, oil, oil_range, proportions, seal_doubts, springs
 from .barrel import LAMINATES, kind
 from .beam import NEAR
-from .kernel import Pass, Subject
+from .kernel import ModelRun, PreparedDesign
 from .provenance import describe, model_of
 from .result import Metric, ModelUse, Unverified
 from .rings import Ring
@@ -24,12 +24,12 @@ LONGEST_LIFE = 1e9
 """Cycles up to which stress-life lines have data [Shigley2011]."""
 
 
-def kind_of(subject: Subject) -> str:
+def kind_of(subject: PreparedDesign) -> str:
     """The wall model a design uses."""
     return kind(subject.design, subject.materials)
 
 
-def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
+def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tuple[str, str]]:
     """(metric, sentence) for everything used outside its range or doubtful."""
     g = done.geometry
     thin = float(np.max(done.wall.thin_ratio))
@@ -82,7 +82,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
         )
 
 
-def _measured(subject: Subject, v: Values) -> Iterable[tuple[str, str]]:
+def _measured(subject: PreparedDesign, v: Values) -> Iterable[tuple[str, str]]:
     """Values that lie outside what a test record said of them."""
     for path, known in subject.design.measured.items():
         value = float(np.real(np.squeeze(v[path]))) if path in v else None
@@ -95,7 +95,7 @@ def _measured(subject: Subject, v: Values) -> Iterable[tuple[str, str]]:
             )
 
 
-def _wall_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:
+def _wall_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str, str]]:
     """What the wall model leaves out."""
     laminated = kind_of(subject) in LAMINATES
     environment = subject.design.environment
@@ -124,7 +124,7 @@ def _wall_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:
             )
 
 
-def _rod_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:
+def _rod_warnings(subject: PreparedDesign, done: ModelRun) -> Iterable[tuple[str, str]]:
     """What the strength of the rod leaves out."""
     rod = done.rod
     if rod.layers and not rod.cured:
@@ -145,7 +145,7 @@ def _rod_warnings(subject: Subject, done: Pass) -> Iterable[tuple[str, str]]:
             )
 
 
-def _bond_warnings(done: Pass) -> Iterable[tuple[str, str]]:
+def _bond_warnings(done: ModelRun) -> Iterable[tuple[str, str]]:
     """The bond that force and temperature together load most, where they exceed its strength."""
     metrics = done.computed.metrics
     sums = {}
@@ -168,7 +168,7 @@ def _bond_warnings(done: Pass) -> Iterable[tuple[str, str]]:
 
 def models(
     metrics: dict[str, Metric],
-    subject: Subject,
+    subject: PreparedDesign,
     rings: tuple[Ring, ...],
     outside: set[str],
     said: Iterable[str],
@@ -213,7 +213,7 @@ def models(
         )
 
 
-def unverified(subject: Subject, v: Values) -> Iterable[Unverified]:
+def unverified(subject: PreparedDesign, v: Values) -> Iterable[Unverified]:
     """Library values this design uses that nobody checked against their source."""
     for name, material in subject.materials.items():
         for key in material.unverified:

@@ -7,13 +7,13 @@ from ..joints.joint import Fatigue
 from ..models import density, end_stop, endurance, rod
 from ..numeric import Array, maximum, where
 from . import rod_strength
-from .allow import Stock
+from .allow import MaterialValues
 from .barrel import Wall
 from .geometry import Geometry
 from .joint import Demand
 from .rods import Rod
-from .rows import Computed
-from .state import State
+from .rows import MetricArrays
+from .state import LoadState
 from .strength import Held
 from .values import Values
 
@@ -24,15 +24,15 @@ THREAD_NOTCH = 3.0
 def compute(
     v: Values,
     design: Design,
-    stock: Stock,
+    stock: MaterialValues,
     g: Geometry,
-    state: State,
+    state: LoadState,
     wall: Wall,
     section: Rod,
     held: Held | None,
     stop: Demand,
     net: Array,
-    out: Computed,
+    out: MetricArrays,
 ) -> None:
     """Every life and service metric; `net` is the force of every case, `stop` runs into a stop."""
     supply = v["supply.pressure"]
@@ -48,7 +48,7 @@ def compute(
 
 def _endurance(
     v: Values,
-    stock: Stock,
+    stock: MaterialValues,
     design: Design,
     wall: Wall,
     section: Rod,
@@ -56,7 +56,7 @@ def _endurance(
     supply: Array,
     push: Array,
     pull: Array,
-    out: Computed,
+    out: MetricArrays,
 ) -> None:
     """Pressure-cycle life of metal parts: wall layers, rod (push/pull), thread roots."""
     cycles = wall.cycles | rod_strength.cycles(design, section, supply, push, pull)
@@ -104,11 +104,11 @@ def _end_stop(
     v: Values,
     design: Design,
     g: Geometry,
-    state: State,
+    state: LoadState,
     supply: Array,
     stop: Demand,
     net: Array,
-    out: Computed,
+    out: MetricArrays,
 ) -> None:
     """Energy and peak pressure where the piston runs into its stop at the case's speed.
 
@@ -139,13 +139,13 @@ def _end_stop(
 
 def _trapped(
     v: Values,
-    stock: Stock,
+    stock: MaterialValues,
     design: Design,
     g: Geometry,
-    state: State,
+    state: LoadState,
     wall: Wall,
     supply: Array,
-    out: Computed,
+    out: MetricArrays,
 ) -> None:
     """Pressure of oil that warms between blocked ports."""
     environment = design.environment
@@ -171,7 +171,7 @@ def _trapped(
         out.put("trapped_factor", v["supply.proof_ratio"] * supply / (supply + jump))
 
 
-def _layers(stock: Stock, wall: Wall, out: Computed) -> None:
+def _layers(stock: MaterialValues, wall: Wall, out: MetricArrays) -> None:
     """What only a wall of several layers has: liner and fibres, cold and in service."""
     ranges, strains = {}, {}
     for place, cycle in wall.cycles.items():
@@ -203,7 +203,7 @@ def _layers(stock: Stock, wall: Wall, out: Computed) -> None:
             out.skip(metric, why)
 
 
-def _service(v: Values, stock: Stock, design: Design, out: Computed) -> None:
+def _service(v: Values, stock: MaterialValues, design: Design, out: MetricArrays) -> None:
     """Distance of the temperature range to what every material bears."""
     if design.environment is None:
         out.skip("temperature_margin", "no temperature range stated: add environment")
@@ -219,7 +219,7 @@ def _service(v: Values, stock: Stock, design: Design, out: Computed) -> None:
 
 
 def _clearance(
-    v: Values, stock: Stock, design: Design, g: Geometry, wall: Wall, out: Computed
+    v: Values, stock: MaterialValues, design: Design, g: Geometry, wall: Wall, out: MetricArrays
 ) -> None:
     """Radial clearance of piston in barrel and rod in head, coldest and hottest.
 

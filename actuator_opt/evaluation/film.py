@@ -69,7 +69,7 @@ SHARED = ("speed", "viscosity", "viscosity_coefficient")
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class FilmRow:
     """One or two rings of floats that share the oil, from the sealed side outwards.
 
     `outward`: their counterface moves to the outer side.
@@ -94,7 +94,7 @@ class Row:
             found[f"{i}.squeeze_left"] = maximum(ring["squeeze_left"], LEAST_SQUEEZE)
         return found
 
-    def at(self, point: Mapping[str, Array]) -> Row:
+    def at(self, point: Mapping[str, Array]) -> FilmRow:
         """The row at a point of `inputs`; both rings then see the full pressure difference."""
         shared = {name: point[name] for name in SHARED if name in point}
         shared["outer_pressure"] = point["outer"] - ATMOSPHERIC_PRESSURE
@@ -103,7 +103,7 @@ class Row:
             {name.partition(".")[2]: x for name, x in point.items() if name.startswith(f"{i}.")}
             for i in range(len(self.rings))
         ]
-        return Row(
+        return FilmRow(
             tuple(ring.at(**shared, **x) for ring, x in zip(self.rings, own, strict=True)),
             self.outward,
         )
@@ -199,7 +199,7 @@ class Solved:
     pair : of two rings: the pressure between them, how well the flows match
     """
 
-    row: Row
+    row: FilmRow
     films: tuple[Film, ...]
     why: str = ""
     pair: Tandem | None = None
@@ -221,7 +221,7 @@ class Solved:
         return float(sum(self.row.frictions(self.values)))
 
 
-def solve(row: Row, last: Solved | None = None) -> Solved:
+def solve(row: FilmRow, last: Solved | None = None) -> Solved:
     """The films of a row, begun from those of a near one."""
     if len(row.rings) == 1:
         if opened := _opened(row.rings[0]):
@@ -245,7 +245,7 @@ def _opened(ring: Ring) -> str:
     return f"{pressure / 1e6:.4g} MPa opens the contact of the {ring.label}: its load is too small"
 
 
-def _tandem(row: Row, start: Tandem | None) -> Tandem:
+def _tandem(row: FilmRow, start: Tandem | None) -> Tandem:
     first, second = row.rings
 
     def element(ring: Ring) -> SealElement:

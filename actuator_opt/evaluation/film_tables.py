@@ -20,8 +20,8 @@ import numpy as np
 from ..design.model import Design
 from ..errors import Diagnostic, Unsolvable
 from ..numeric import Array
-from ..surrogate import Answer, Axis, Surrogate, surrogate
-from .film import Row, Solved, ring_films, slopes as film_slopes, solve
+from ..surrogate import Axis, Interpolation, Surrogate, surrogate
+from .film import FilmRow, Solved, ring_films, slopes as film_slopes, solve
 from .rings import Place, Ring
 from .values import Values, of_case
 
@@ -77,7 +77,7 @@ class Table:
     """The surrogate of a row's films in one case, and how far it is off."""
 
     surrogate: Surrogate
-    row: Row
+    row: FilmRow
     errors: Mapping[str, float]
     """Largest relative difference of friction, flow and film thickness to films solved at the
     design and in the box (of the flow: over the largest there)."""
@@ -87,7 +87,7 @@ class Table:
 
     def running(self, rings: Sequence[Ring]) -> tuple[Running, ...]:
         """The films at the numbers of the rings, as arrays (designs,) or floats."""
-        inputs = Row(tuple(rings), self.row.outward).inputs()
+        inputs = FilmRow(tuple(rings), self.row.outward).inputs()
         values = self.surrogate(inputs)
         slopes = self.surrogate(inputs, slope="speed") / inputs["speed"]
         films, by_speed = ring_films(values), ring_films(slopes)
@@ -112,7 +112,7 @@ class Table:
 class _Walker:
     """Films at points near each other, each begun from the one before."""
 
-    def __init__(self, row: Row) -> None:
+    def __init__(self, row: FilmRow) -> None:
         self.row = row
         self.last: Solved | None = None
         self.names: list[str] = []
@@ -123,17 +123,17 @@ class _Walker:
         self.last = self.last if found.why else found
         return found
 
-    def __call__(self, point: dict[str, float]) -> Answer:
+    def __call__(self, point: dict[str, float]) -> Interpolation:
         """Values of the films with their slopes."""
         found = self.solve(point)
         if found.why:
-            return Answer(np.zeros(1), {}, why=found.why)
+            return Interpolation(np.zeros(1), {}, why=found.why)
         by_input = film_slopes(found, self.names or list(point))
         self.names = [name for name, row in by_input.items() if np.nan_to_num(row).any()]
-        return Answer(found.values, by_input)
+        return Interpolation(found.values, by_input)
 
 
-def table(row: Row, samples: Sequence[Row]) -> Table:
+def table(row: FilmRow, samples: Sequence[FilmRow]) -> Table:
     """The surrogate of a row over the box that other rows span.
 
     Raises
@@ -155,7 +155,7 @@ def table(row: Row, samples: Sequence[Row]) -> Table:
     return Table(found, row, _errors(walker, found, points), float(here.values[-2]))
 
 
-def _unsolved(row: Row, why: str) -> Unsolvable:
+def _unsolved(row: FilmRow, why: str) -> Unsolvable:
     first = row.rings[0]
     message = f"the oil film of the {first.label} has no solution: {why}"
     remedy = 'write "friction: coefficient", or bring squeeze, pressure, speed nearer to practice'
@@ -167,7 +167,7 @@ def _axes(
     walker: _Walker,
     base: Mapping[str, float],
     others: Sequence[Mapping[str, Array]],
-    here: Answer,
+    here: Interpolation,
 ) -> tuple[Axis, ...]:
     """The speed, and the inputs whose extent the first order follows worst."""
     spans = {
@@ -190,7 +190,7 @@ def _axes(
 
 
 def _missed(
-    walker: _Walker, base: Mapping[str, float], here: Answer, name: str, end: float
+    walker: _Walker, base: Mapping[str, float], here: Interpolation, name: str, end: float
 ) -> float:
     """How far the first order in an input misses drag and load at its end, over the load."""
     solved = walker.solve({**base, name: end})
@@ -274,7 +274,7 @@ def tables(
     Parameters
     ----------
     design : the design
-    values : its numbers, some of them replaced by arrays (`Subject.values`)
+    values : its numbers, some of them replaced by arrays (`PreparedDesign.values`)
     rings_of : its sealing rings at such numbers
     """
     here = rings_of(values())
@@ -290,7 +290,7 @@ def tables(
         place, case, stroke = key
         sampled = of_place(others, place)
         rows = [
-            Row(on_stroke([floats(r, case, k) for r in sampled], stroke), row.outward)
+            FilmRow(on_stroke([floats(r, case, k) for r in sampled], stroke), row.outward)
             for k in range(count)
         ]
         found[key] = _table(pickle.dumps((row, [r for r in rows if _finite(r)])))
@@ -313,7 +313,7 @@ def unsolved(design: Design, rings: tuple[Ring, ...]) -> dict[Key, Table]:
     return found
 
 
-def _rows(design: Design, rings: tuple[Ring, ...]) -> Iterator[tuple[Key, Row]]:
+def _rows(design: Design, rings: tuple[Ring, ...]) -> Iterator[tuple[Key, FilmRow]]:
     """The row of rings behind every film of a design, by its table."""
     places: tuple[Place, ...] = ("piston", "rod")
     for place in places:
@@ -322,11 +322,11 @@ def _rows(design: Design, rings: tuple[Ring, ...]) -> Iterator[tuple[Key, Row]]:
             if not own or of_case(own[0]["speed"], case) == 0:
                 continue
             for stroke, outward in _outward(place, one.direction == "push").items():
-                row = Row(on_stroke([floats(r, case) for r in own], stroke), outward)
+                row = FilmRow(on_stroke([floats(r, case) for r in own], stroke), outward)
                 yield (place, case, stroke), row
 
 
-def _finite(row: Row) -> bool:
+def _finite(row: FilmRow) -> bool:
     return all(np.isfinite(list(ring.numbers.values())).all() for ring in row.rings)
 
 

@@ -10,10 +10,10 @@ from ..design.material import Material
 from ..design.model import Design
 from ..models import extrusion, gland, gland_range
 from ..numeric import Array, maximum, minimum, real, where
-from .allow import Stock
+from .allow import MaterialValues
 from .geometry import Geometry
 from .rings import Ring
-from .state import State
+from .state import LoadState
 from .values import Values
 
 ROOM = 293.15
@@ -26,9 +26,9 @@ EXTRUSION_TABLE = "sealanddesign"
 def metrics(
     v: Values,
     design: Design,
-    stock: Stock,
+    stock: MaterialValues,
     geometry: Geometry,
-    state: State,
+    state: LoadState,
     ring: Ring,
     growth: Array,
 ) -> dict[str, Array]:
@@ -69,7 +69,7 @@ def _fill(ring: Ring) -> Array:
     )
 
 
-def clearances(geometry: Geometry, state: State, ring: Ring) -> tuple[Array, Array]:
+def clearances(geometry: Geometry, state: LoadState, ring: Ring) -> tuple[Array, Array]:
     """Radial clearance behind a ring, and how far side load pushes its part over, by case."""
     clearance = geometry.piston_clearance if ring.name == "piston" else geometry.head_clearance
     return clearance, where(real(state.side_load) > 0, 1.0, 0.0) * clearance
@@ -96,7 +96,9 @@ def squeezes(ring: Ring, *, growth: Array, aside: Array, ratio: Array) -> tuple[
     )
 
 
-def volume_ratio(v: Values, design: Design, stock: Stock, ring: Ring, temperature: Array) -> Array:
+def volume_ratio(
+    v: Values, design: Design, stock: MaterialValues, ring: Ring, temperature: Array
+) -> Array:
     """Ring over groove volume at a temperature, relative to assembly; 1 where not known."""
     expansion = stock.get(ring.element.compound, "volume_expansion")
     part = design.piston if ring.name == "piston" else design.head
@@ -111,7 +113,7 @@ def volume_ratio(v: Values, design: Design, stock: Stock, ring: Ring, temperatur
     )
 
 
-def _extrusion(v: Values, stock: Stock, ring: Ring, gap: Array) -> Array:
+def _extrusion(v: Values, stock: MaterialValues, ring: Ring, gap: Array) -> Array:
     """Largest gap that the seal or its back-up ring bears at supply pressure, over the gap."""
     pressure, element = v["supply.pressure"], ring.element
     if stock.material(element.compound).properties.get("extrusion_gap_max") is None:
@@ -141,7 +143,7 @@ def _stated_end(material: Material) -> float:
     return limit.arguments[-1] if limit.points else math.inf
 
 
-def _stated(stock: Stock, name: str, pressure: Array) -> Array:
+def _stated(stock: MaterialValues, name: str, pressure: Array) -> Array:
     """A material's own limit of the gap at a pressure; 0 where it states none."""
     limit = stock.material(name).properties.get("extrusion_gap_max")
     if limit is None:

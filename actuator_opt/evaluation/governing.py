@@ -10,9 +10,9 @@ import numpy as np
 
 from ..numeric import Array, maximum, minimum, where
 from ..quantities import Sense
-from .kernel import Subject
+from .kernel import PreparedDesign
 from .limits import margin
-from .rows import Computed, by_case
+from .rows import MetricArrays, by_case
 from .values import Values
 
 
@@ -25,7 +25,7 @@ def worst_of(aim: Sense) -> Sense:
     return "max" if aim == "min" else "min"
 
 
-def sense_of(metric: str, subject: Subject) -> Sense | None:
+def sense_of(metric: str, subject: PreparedDesign) -> Sense | None:
     """Whether the smallest ("min") or the largest value of a metric governs a design.
 
     1. The worst value of an objective governs: the largest where it is minimised.
@@ -45,7 +45,9 @@ def sense_of(metric: str, subject: Subject) -> Sense | None:
     return "max" if required.min is None else "min"
 
 
-def extreme(computed: Computed, metric: str, cases: tuple[str, ...], sense: Sense) -> Array | None:
+def extreme(
+    computed: MetricArrays, metric: str, cases: tuple[str, ...], sense: Sense
+) -> Array | None:
     """The smallest or largest value over load cases and places (designs,), SI.
 
     NaN where one of them has no number, None where the metric is not computed.
@@ -62,7 +64,7 @@ def extreme(computed: Computed, metric: str, cases: tuple[str, ...], sense: Sens
     return found
 
 
-def governing(metric: str, computed: Computed, v: Values, subject: Subject) -> Array:
+def governing(metric: str, computed: MetricArrays, v: Values, subject: PreparedDesign) -> Array:
     """The governing value of a metric of every design (designs,), SI.
 
     Infinite where nothing loads the part; NaN where a value has no number, or the metric is not

@@ -9,12 +9,14 @@ from ..numeric import Array, absolute, maximum, real, where
 from .circuit import wall_compliance
 from .film_tables import Running
 from .geometry import Geometry
-from .rows import Computed
-from .state import State
+from .rows import MetricArrays
+from .state import LoadState
 from .values import Values
 
 
-def compute_damping(geometry: Geometry, state: State, friction: Friction, out: Computed) -> Array:
+def compute_damping(
+    geometry: Geometry, state: LoadState, friction: Friction, out: MetricArrays
+) -> Array:
     """Oil damping (pipe form and annular gaps); returns the incremental damping of all."""
     g = geometry
     viscosity = 0.5 * (state.dynamic_viscosity_a + state.dynamic_viscosity_b)
@@ -40,9 +42,9 @@ def compute_leakage(
     v: Values,
     design: Design,
     geometry: Geometry,
-    state: State,
+    state: LoadState,
     film: Running | None,
-    out: Computed,
+    out: MetricArrays,
 ) -> Array:
     """Leakage across the piston in motion; returns its conductance.
 
@@ -89,7 +91,7 @@ LINE_METRICS = (
 
 
 def compute_flow(
-    v: Values, design: Design, geometry: Geometry, state: State, out: Computed
+    v: Values, design: Design, geometry: Geometry, state: LoadState, out: MetricArrays
 ) -> None:
     """Flow, port and line velocities and pressure drop."""
     flow = {
@@ -112,7 +114,7 @@ def compute_flow(
 
 
 def _compute_lines(
-    v: Values, design: Design, state: State, flow: dict[str, Array], out: Computed
+    v: Values, design: Design, state: LoadState, flow: dict[str, Array], out: MetricArrays
 ) -> None:
     """Velocity, pressure drop, hammer and resonance of the lines, by the flow of their chamber."""
     velocity, drop, hammer = {}, {}, {}

@@ -16,7 +16,7 @@ from ..models import linkage
 from ..numeric import Array, absolute, clip, minimum, real, sqrt, where
 from .geometry import Geometry
 from .limits import ENDS, OWN_PLACE
-from .rows import Computed
+from .rows import MetricArrays
 from .values import Values, stacked
 
 LARGEST, WORST, WORKING = "largest lever arm", "worst", "working"
@@ -180,7 +180,7 @@ def compute(
     joint: Joint | None,
     positions: Sequence[Array | None],
     net: Array,
-    out: Computed,
+    out: MetricArrays,
 ) -> None:
     """Torque and range of the joint; `net` is the force that every case delivers."""
     if joint is None:

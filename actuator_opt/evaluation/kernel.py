@@ -33,7 +33,7 @@ from . import (
     strength,
     weight,
 )
-from .allow import Stock
+from .allow import MaterialValues
 from .barrel import Wall
 from .beam import Beam
 from .film_tables import Key, Table
@@ -42,8 +42,8 @@ from .limits import ENDS
 from .plugin import Plugin, with_own
 from .rings import Ring
 from .rods import Rod
-from .rows import Computed
-from .state import State
+from .rows import MetricArrays
+from .state import LoadState
 from .values import Values
 
 STROKES: tuple[film_tables.Stroke, ...] = ("drive", "return")
@@ -51,7 +51,7 @@ STROKES: tuple[film_tables.Stroke, ...] = ("drive", "return")
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
+class PreparedDesign:
     """A design with its materials and all its numbers by PATH (materials' included)."""
 
     design: Design
@@ -91,12 +91,12 @@ class Subject:
 
 
 @dataclass(frozen=True, slots=True)
-class Pass:
+class ModelRun:
     """One pass over the models, with the intermediate results the Evaluation draws on."""
 
-    computed: Computed
+    computed: MetricArrays
     geometry: Geometry
-    state: State
+    state: LoadState
     wall: Wall
     rings: tuple[Ring, ...]
     rod: Rod
@@ -115,9 +115,9 @@ class Pass:
 class Base:
     """What everything else stands on: dimensions, load cases, the wall under them, the seals."""
 
-    stock: Stock
+    stock: MaterialValues
     geometry: Geometry
-    state: State
+    state: LoadState
     wall: Wall
     rings: tuple[Ring, ...]
 
@@ -126,17 +126,19 @@ class Base:
 class Implicit:
     """The models that are no closed expression of the dimensions: a bound puts its own there."""
 
-    wall: Callable[[Values, Design, Stock, Geometry, State], Wall] = barrel_module.compute
+    wall: Callable[[Values, Design, MaterialValues, Geometry, LoadState], Wall] = (
+        barrel_module.compute
+    )
     critical_load: beam_module.CriticalLoad = beam_module.critical_load
 
 
 IMPLICIT = Implicit()
 
 
-def base(subject: Subject, v: Values, implicit: Implicit = IMPLICIT) -> Base:
+def base(subject: PreparedDesign, v: Values, implicit: Implicit = IMPLICIT) -> Base:
     """Dimensions, state, wall and seals of the designs in `v`."""
     design = subject.design
-    stock = Stock(v, subject.materials, subject.factors, subject.constants)
+    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     g = geometry_module.derive(v, design)
     case_state = state.derive(v, design, stock, g)
     wall = implicit.wall(v, design, stock, g, case_state)
@@ -163,7 +165,9 @@ class Statics:
     leakage: Array
 
 
-def statics(subject: Subject, v: Values, out: Computed, implicit: Implicit = IMPLICIT) -> Statics:
+def statics(
+    subject: PreparedDesign, v: Values, out: MetricArrays, implicit: Implicit = IMPLICIT
+) -> Statics:
     """Every metric that needs no search along the stroke, put into `out`."""
     design = subject.design
     found = base(subject, v, implicit)
@@ -220,14 +224,14 @@ def statics(subject: Subject, v: Values, out: Computed, implicit: Implicit = IMP
     )
 
 
-def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -> Pass:
+def compute(subject: PreparedDesign, v: Values, wanted: Container[str] | None = None) -> ModelRun:
     """Every metric of the designs in `v`; invalid designs come out as NaN.
 
     Where `wanted` names the metrics that are needed, costly ones beside them may be left out.
     """
     design = subject.design
     with np.errstate(all="ignore"):
-        out = Computed()
+        out = MetricArrays()
         s = statics(subject, v, out)
         case_state = s.base.state
         weakest = springs.compute(s.springs, s.moving, out)
@@ -241,7 +245,7 @@ def compute(subject: Subject, v: Values, wanted: Container[str] | None = None) -
             out.metrics[plugin.name] = {"": answer.value}
             if answer.raised:
                 out.skip(plugin.name, answer.raised)
-    return Pass(
+    return ModelRun(
         computed=out,
         geometry=s.base.geometry,
         state=case_state,
@@ -270,7 +274,7 @@ def _at_stops(
     rod: Rod,
     breakaway: Array,
     parts: dict[str, Array],
-    out: Computed,
+    out: MetricArrays,
 ) -> None:
     """Stiffness and frequency with what a joint asks at either stop, a row for each."""
     s = found.state
@@ -283,7 +287,7 @@ def _at_stops(
         budget = springs.springs(
             v, design, found.geometry, held, found.wall, rod, breakaway, branches
         )
-        own = Computed()
+        own = MetricArrays()
         springs.compute(budget, _moving(s.asked[end].mass, parts), own)
         for name in AT_STOPS:
             out.metrics[name][f"loaded as {end}"] = own.metrics[name][""]
@@ -292,7 +296,7 @@ def _at_stops(
 
 
 @np.errstate(all="ignore")
-def without_films(subject: Subject) -> Subject:
+def without_films(subject: PreparedDesign) -> PreparedDesign:
     """A subject whose oil films are not solved: NaN stands wherever a film decides.
 
     Which metrics there are and which numbers are read is the same with films and without.
@@ -303,7 +307,7 @@ def without_films(subject: Subject) -> Subject:
     return replace(subject, films=film_tables.unsolved(subject.design, rings))
 
 
-def _films(subject: Subject) -> dict[Key, Table]:
+def _films(subject: PreparedDesign) -> dict[Key, Table]:
     """The tables of the oil films, made at the first call."""
     design = subject.design
     if not film_tables.films_asked(design):
@@ -314,7 +318,7 @@ def _films(subject: Subject) -> dict[Key, Table]:
     return subject.films
 
 
-def _manufacture(v: Values, subject: Subject, out: Computed) -> None:
+def _manufacture(v: Values, subject: PreparedDesign, out: MetricArrays) -> None:
     """Margins of the process that lays the plies."""
     angles, spare = geometry_module.makeable(v, subject.design, subject.materials)
     for name, values, limit in (
@@ -327,7 +331,7 @@ def _manufacture(v: Values, subject: Subject, out: Computed) -> None:
             out.skip(name, f"no layer states a {limit} that can be made")
 
 
-def _forces(g: Geometry, s: State, friction: Friction, out: Computed) -> Array:
+def _forces(g: Geometry, s: LoadState, friction: Friction, out: MetricArrays) -> Array:
     sides = {
         "pressure_a": s.moving_a,
         "pressure_b": s.moving_b,

@@ -10,9 +10,9 @@ import numpy as np
 from ..numeric import Array
 from .build import TOLERANCE
 from .governing import governing
-from .kernel import Subject, compute
+from .kernel import PreparedDesign, compute
 from .limits import Limit, all_limits
-from .rows import Computed, rows_of
+from .rows import MetricArrays, rows_of
 from .values import Values
 
 
@@ -40,7 +40,7 @@ class Many:
 
 @np.errstate(all="ignore")  # what has no finite answer is NaN
 def evaluate_many(
-    subject: Subject,
+    subject: PreparedDesign,
     varied: Mapping[str, Array],
     count: int,
     wanted: Container[str] | None = None,
@@ -71,7 +71,7 @@ def evaluate_many(
 
 
 @np.errstate(all="ignore")
-def margins_of(subject: Subject, varied: Mapping[str, Array], count: int) -> Array:
+def margins_of(subject: PreparedDesign, varied: Mapping[str, Array], count: int) -> Array:
     """The margin of every limit of such designs, (limits, designs), in the order of `limits_of`.
 
     Infinity where a limit does not apply, NaN where it has no finite answer.
@@ -84,7 +84,9 @@ def margins_of(subject: Subject, varied: Mapping[str, Array], count: int) -> Arr
     return found
 
 
-def margins_many(subject: Subject, varied: Mapping[str, Array], count: int) -> dict[str, Array]:
+def margins_many(
+    subject: PreparedDesign, varied: Mapping[str, Array], count: int
+) -> dict[str, Array]:
     """The margin of every limit (designs,) of designs that differ in some numbers, by its name.
 
     Infinite where it asks nothing of a design; minus infinity where it cannot be known.
@@ -97,7 +99,7 @@ def margins_many(subject: Subject, varied: Mapping[str, Array], count: int) -> d
 
 
 def _margins(
-    limits: Sequence[Limit], computed: Computed, v: Values, count: int
+    limits: Sequence[Limit], computed: MetricArrays, v: Values, count: int
 ) -> Iterator[tuple[int, Array]]:
     """Number of a limit, with its margins (designs,) in one case at one place."""
     for number, limit in enumerate(limits):
@@ -105,13 +107,15 @@ def _margins(
             yield number, np.broadcast_to(row.margin, (count,))
 
 
-def limits_of(subject: Subject) -> tuple[Limit, ...]:
+def limits_of(subject: PreparedDesign) -> tuple[Limit, ...]:
     """Requirements and checks that a feasible design meets."""
     every = all_limits(subject.design, subject.plugins)
     return tuple(limit for limit in every if limit.origin != "advice")
 
 
-def _governing(name: str, computed: Computed, v: Values, subject: Subject, count: int) -> Array:
+def _governing(
+    name: str, computed: MetricArrays, v: Values, subject: PreparedDesign, count: int
+) -> Array:
     """The governing value of every design (count,); infinity, unlimited, is no value."""
     found = governing(name, computed, v, subject)
     return np.broadcast_to(np.where(np.isfinite(found), found, np.nan), (count,))

@@ -19,9 +19,9 @@ from ..models.linear import LinearActuator, Side
 from ..numeric import Array, angle, magnitude, maximum, real, where
 from . import circuit
 from .circuit import CHAMBERS, Branch, Chamber, LinearValve, Ways
-from .rows import Computed
+from .rows import MetricArrays
 from .springs import Springs, weakest_per_chamber
-from .state import State
+from .state import LoadState
 from .values import Values
 
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -113,7 +113,7 @@ class Motion:
 def derive(
     v: Values,
     design: Design,
-    state: State,
+    state: LoadState,
     springs: Springs,
     branches: dict[Chamber, Branch],
     mass: Array,
@@ -156,7 +156,7 @@ def compute(
     design: Design,
     motion: Motion,
     wanted: Container[str] | None,
-    out: Computed,
+    out: MetricArrays,
 ) -> dict[str, Array]:
     """Damping ratio, dynamic stiffness and the position loop; returns the places asked.
 
@@ -192,7 +192,7 @@ def _dynamic_stiffness(
     model: LinearActuator,
     names: list[str],
     positions: Array,
-    out: Computed,
+    out: MetricArrays,
 ) -> None:
     shaken = np.array([case.frequency is not None for case in design.load_cases])
     if not shaken.any():
@@ -213,7 +213,7 @@ def _position_loop(
     names: list[str],
     positions: Array,
     wanted: Container[str] | None,
-    out: Computed,
+    out: MetricArrays,
 ) -> None:
     """Margins and bandwidth at every place, in both directions of the spool."""
     directions = np.array([True, False]).reshape(-1, 1, 1, 1)

@@ -9,9 +9,9 @@ import numpy as np
 from ..design.model import Design
 from ..numeric import Array
 from .motion import Motion
-from .rows import Computed
+from .rows import MetricArrays
 from .springs import weakest_per_chamber
-from .state import State
+from .state import LoadState
 from .values import Values
 
 LEAST_DAMPING = 0.005
@@ -24,7 +24,7 @@ admittance of a closed line, 7 % of one held at constant pressure)."""
 
 
 def warnings(
-    v: Values, design: Design, motion: Motion, state: State, out: Computed
+    v: Values, design: Design, motion: Motion, state: LoadState, out: MetricArrays
 ) -> Iterable[tuple[str, str]]:
     """(metric, sentence) where the linear model is used outside its range."""
     slowest = float(np.min(np.real(motion.damping)))
@@ -53,7 +53,7 @@ def _weakest_gain(motion: Motion) -> Array:
     return np.min(np.stack(np.broadcast_arrays(*gains)), axis=0)
 
 
-def _loop(v: Values, motion: Motion, out: Computed) -> Iterable[tuple[str, str]]:
+def _loop(v: Values, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, str]]:
     """The position loop swings, hardly damped or behind its resonance, or nothing drives it."""
     damped = min(float(np.min(np.real(x))) for x in out.metrics["damping_ratio"].values())
     if 0 <= damped < LEAST_DAMPING:
@@ -96,7 +96,9 @@ def _loop(v: Values, motion: Motion, out: Computed) -> Iterable[tuple[str, str]]
         )
 
 
-def _ports(v: Values, design: Design, motion: Motion, state: State) -> Iterable[tuple[str, str]]:
+def _ports(
+    v: Values, design: Design, motion: Motion, state: LoadState
+) -> Iterable[tuple[str, str]]:
     """What ends the lines counts less than one might think."""
     if design.valve is not None and design.ports.end == "closed":
         for metric in ("damping_ratio", "dynamic_stiffness"):
@@ -123,7 +125,7 @@ def _ports(v: Values, design: Design, motion: Motion, state: State) -> Iterable[
             )
 
 
-def _lines(design: Design, motion: Motion, out: Computed) -> Iterable[tuple[str, str]]:
+def _lines(design: Design, motion: Motion, out: MetricArrays) -> Iterable[tuple[str, str]]:
     """Lines too long for one element at the frequencies asked."""
     asked = {f"load case {case.name}": case.frequency or 0.0 for case in design.load_cases}
     if motion.spool is not None:

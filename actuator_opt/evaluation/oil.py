@@ -16,13 +16,13 @@ from ..design.model import FluidSection
 from ..models import density as density_models, fluid
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from ..numeric import Array
-from .allow import Stock
+from .allow import MaterialValues
 from .values import Values
 
 Law: TypeAlias = Callable[..., Array]
 
 
-def alone(material: Material, **choices: object) -> tuple[Values, FluidSection, Stock]:
+def alone(material: Material, **choices: object) -> tuple[Values, FluidSection, MaterialValues]:
     """What the functions below take, for an oil of the library outside a design.
 
     Parameters
@@ -37,11 +37,11 @@ def alone(material: Material, **choices: object) -> tuple[Values, FluidSection, 
         "fluid.polytropic_index": section.polytropic_index,
     }
     v = Values(numbers, ())
-    return v, section, Stock(v, {material.name: material}, {}, {})
+    return v, section, MaterialValues(v, {material.name: material}, {}, {})
 
 
 def pure_bulk_modulus(
-    v: Values, section: FluidSection, stock: Stock, temperature: Array, pressure: Array
+    v: Values, section: FluidSection, stock: MaterialValues, temperature: Array, pressure: Array
 ) -> Array:
     """Tangent bulk modulus of the oil without air."""
     oil = stock.material(section.material)
@@ -49,13 +49,13 @@ def pure_bulk_modulus(
     return law.modulus(_properties(stock, oil.name), temperature, pressure)
 
 
-def _properties(stock: Stock, name: str) -> Callable[[str], Array]:
+def _properties(stock: MaterialValues, name: str) -> Callable[[str], Array]:
     """Properties of an oil by their name."""
     return lambda key: stock.get(name, key)
 
 
 def bulk_modulus(
-    v: Values, section: FluidSection, stock: Stock, temperature: Array, pressure: Array
+    v: Values, section: FluidSection, stock: MaterialValues, temperature: Array, pressure: Array
 ) -> Array:
     """Tangent bulk modulus of the oil with its entrained air."""
     return fluid.effective_bulk_modulus(
@@ -69,7 +69,7 @@ def bulk_modulus(
 def density(
     v: Values,
     section: FluidSection,
-    stock: Stock,
+    stock: MaterialValues,
     temperature: Array,
     pressure: Array | None = None,
 ) -> Array:
@@ -92,7 +92,7 @@ def density(
 
 
 def kinematic_viscosity(
-    v: Values, section: FluidSection, stock: Stock, temperature: Array
+    v: Values, section: FluidSection, stock: MaterialValues, temperature: Array
 ) -> Array:
     """Kinematic viscosity at zero gauge pressure, from the oil's table scaled with its value."""
     oil = stock.material(section.material)
@@ -109,7 +109,7 @@ def kinematic_viscosity(
 
 
 def dynamic_viscosity(
-    v: Values, section: FluidSection, stock: Stock, temperature: Array, pressure: Array
+    v: Values, section: FluidSection, stock: MaterialValues, temperature: Array, pressure: Array
 ) -> Array:
     """Dynamic viscosity at a temperature and a pressure."""
     viscosity = fluid.dynamic_viscosity(
@@ -119,7 +119,9 @@ def dynamic_viscosity(
     return under_pressure(section, stock, viscosity, temperature, pressure)
 
 
-def pressure_law(section: FluidSection, stock: Stock, temperature: Array) -> tuple[str, Array]:
+def pressure_law(
+    section: FluidSection, stock: MaterialValues, temperature: Array
+) -> tuple[str, Array]:
     """Name of the law of viscosity over pressure, and its coefficient at a temperature."""
     name = section.material
     oil = stock.material(name)
@@ -131,7 +133,11 @@ def pressure_law(section: FluidSection, stock: Stock, temperature: Array) -> tup
 
 
 def under_pressure(
-    section: FluidSection, stock: Stock, viscosity: Array, temperature: Array, pressure: Array
+    section: FluidSection,
+    stock: MaterialValues,
+    viscosity: Array,
+    temperature: Array,
+    pressure: Array,
 ) -> Array:
     """Dynamic viscosity at a pressure, from the one at zero gauge pressure."""
     law, coefficient = pressure_law(section, stock, temperature)
@@ -140,7 +146,7 @@ def under_pressure(
     )
 
 
-def vapour_pressure(stock: Stock, name: str, temperature: Array) -> Array | None:
+def vapour_pressure(stock: MaterialValues, name: str, temperature: Array) -> Array | None:
     """Vapour pressure (absolute) at a temperature; None where the library states none."""
     stated = stock.get(name, "vapour_pressure")
     if stated is None:

@@ -14,12 +14,14 @@ from ..models import fluid
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from ..numeric import minimum, real
 from . import oil as oil_laws
-from .allow import Stock
-from .rows import Computed
-from .state import State
+from .allow import MaterialValues
+from .rows import MetricArrays
+from .state import LoadState
 
 
-def compute(section: FluidSection, stock: Stock, state: State, out: Computed) -> None:
+def compute(
+    section: FluidSection, stock: MaterialValues, state: LoadState, out: MetricArrays
+) -> None:
     """Distance of the chambers from the boiling of the oil, in every case."""
     limit = oil_laws.vapour_pressure(stock, section.material, state.temperature)
     if limit is None:
@@ -33,7 +35,7 @@ def compute(section: FluidSection, stock: Stock, state: State, out: Computed) ->
 
 
 def warnings(
-    section: FluidSection, oil: Material, cases: Sequence[str], state: State
+    section: FluidSection, oil: Material, cases: Sequence[str], state: LoadState
 ) -> Iterable[tuple[str, str]]:
     """(metric, sentence) for every use of the oil outside what it, or a law of it, is known for."""
     yield from _temperatures(oil, cases, state)
@@ -57,7 +59,9 @@ def warnings(
         )
 
 
-def _temperatures(oil: Material, cases: Sequence[str], state: State) -> Iterable[tuple[str, str]]:
+def _temperatures(
+    oil: Material, cases: Sequence[str], state: LoadState
+) -> Iterable[tuple[str, str]]:
     """Load cases outside the temperatures and viscosities the oil is known or made for."""
     low = oil.numbers.get("temperature_min", -np.inf)
     high = oil.numbers.get("temperature_max", np.inf)

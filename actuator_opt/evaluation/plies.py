@@ -20,7 +20,7 @@ from ..models.layered_tube import TubeLayer
 from ..models.solid_ply import Solid, solid_stiffness
 from ..models.strength_modes import PlyRatios, PlyStrength, Stress
 from ..numeric import Array, maximum, real
-from .allow import Stock
+from .allow import MaterialValues
 from .values import Values
 
 _STRENGTHS = (
@@ -154,7 +154,7 @@ def climates(v: Values, design: Design) -> tuple[Climate, ...]:
 
 def layers(
     v: Values,
-    stock: Stock,
+    stock: MaterialValues,
     layup: Sequence[Ply],
     at: str,
     states: Sequence[Climate],

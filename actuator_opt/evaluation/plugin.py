@@ -90,7 +90,7 @@ class Plugin:
         metrics: Mapping[str, Mapping[str, Array]],
         *,
         lenient: bool = False,
-    ) -> Answer:
+    ) -> PluginValue:
         """The metric of every design; NaN, with a reason, where the function raised.
 
         A function that raises for many designs at once is asked for each alone, so that one it
@@ -111,7 +111,7 @@ class Plugin:
                 if not lenient and np.isnan(answer.value).all():
                     raise
                 return answer
-            return Answer(_checked(self, found, values, count))
+            return PluginValue(_checked(self, found, values, count))
 
     def _asked(
         self,
@@ -132,7 +132,7 @@ class Plugin:
         metrics: Mapping[str, Mapping[str, Array]],
         count: int,
         first: PluginError,
-    ) -> Answer:
+    ) -> PluginValue:
         nothing = np.full(1, np.nan * (1 + 1j) if _complex(values) else np.nan)
         columns: list[Array] = []
         raised: list[PluginError] = []
@@ -146,7 +146,7 @@ class Plugin:
         if len(raised) == len(columns):
             raised = [first]
         value = np.concatenate(np.broadcast_arrays(*(columns or [nothing])), axis=-1)
-        return Answer(value, str(raised[0].diagnostics[0]) if raised else "")
+        return PluginValue(value, str(raised[0].diagnostics[0]) if raised else "")
 
 
 def with_own(plugins: Iterable[Plugin]) -> dict[str, Quantity]:
@@ -155,7 +155,7 @@ def with_own(plugins: Iterable[Plugin]) -> dict[str, Quantity]:
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class PluginValue:
     """What a user's function yields, and what it raised for some of the designs."""
 
     value: Array

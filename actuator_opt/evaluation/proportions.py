@@ -19,7 +19,7 @@ from ..joints.kinds import JOINTS
 from ..numeric import Array
 from . import geometry
 from .geometry import Geometry, end_at
-from .kernel import Subject
+from .kernel import PreparedDesign
 from .retention import Numbers, joint_of
 from .values import Values
 
@@ -265,7 +265,7 @@ TABLE: tuple[Proportion, ...] = (
 
 
 @np.errstate(all="ignore")  # what has no finite answer is said elsewhere
-def warnings(subject: Subject, v: Values, g: Geometry | None = None) -> Iterator[str]:
+def warnings(subject: PreparedDesign, v: Values, g: Geometry | None = None) -> Iterator[str]:
     """A sentence for each value that is out of all proportion."""
     g = geometry.derive(v, subject.design) if g is None else g
     for proportion in TABLE:

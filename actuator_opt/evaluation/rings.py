@@ -12,11 +12,11 @@ from ..models import elastomer, gland
 from ..numeric import Array, absolute, maximum, where
 from ..seals.seal_type import SealSizes
 from . import oil
-from .allow import Stock
+from .allow import MaterialValues
 from .barrel import SEAL_STEP
 from .geometry import Geometry
 from .grooves import Groove
-from .state import State
+from .state import LoadState
 from .values import Values
 
 Place = Literal["piston", "rod"]
@@ -91,7 +91,12 @@ def face_modulus(v: Values, compound: str, law: str, temperature: Array) -> Arra
 
 
 def rings(
-    v: Values, design: Design, stock: Stock, geometry: Geometry, state: State, growth: Array
+    v: Values,
+    design: Design,
+    stock: MaterialValues,
+    geometry: Geometry,
+    state: LoadState,
+    growth: Array,
 ) -> tuple[Ring, ...]:
     """Every sealing element; the first of a place carries the pressure.
 

@@ -16,17 +16,17 @@ from ..models import beam_column, rod, shell_buckling, yielding
 from ..models.strength_modes import Stress, load_multiplier
 from ..numeric import Array, maximum, where
 from . import plies
-from .allow import Stock
+from .allow import MaterialValues
 from .barrel import Cycle
 from .beam import Beam
 from .geometry import Geometry
 from .rods import FORCE, OUTSIDE, WARMTH, Rod
-from .rows import Computed
-from .state import State
+from .rows import MetricArrays
+from .state import LoadState
 
 
 def yields(
-    stock: Stock, design: Design, g: Geometry, state: State, section: Rod, beam: Beam
+    stock: MaterialValues, design: Design, g: Geometry, state: LoadState, section: Rod, beam: Beam
 ) -> dict[str, Array]:
     """Yield over working stress of a rod of one metal, at the pressure of every case."""
     if section.layers:
@@ -42,7 +42,13 @@ def yields(
 
 
 def compute(
-    design: Design, section: Rod, beam: Beam, supply: Array, push: Array, pull: Array, out: Computed
+    design: Design,
+    section: Rod,
+    beam: Beam,
+    supply: Array,
+    push: Array,
+    pull: Array,
+    out: MetricArrays,
 ) -> None:
     """Strength of the layers, and of the wall against local buckling."""
     bent = beam.under(push)
@@ -68,7 +74,7 @@ def _layers(
     supply: Array,
     push: Array,
     pull: Array,
-    out: Computed,
+    out: MetricArrays,
 ) -> None:
     """Strength ratio of every layer, mode and direction; both sides of the bent rod."""
     if not section.layers:

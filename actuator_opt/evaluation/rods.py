@@ -23,7 +23,7 @@ from ..models.shell_buckling import shell_modulus
 from ..models.strength_modes import Stress
 from ..numeric import Array, real, sqrt as root
 from . import plies
-from .allow import Stock
+from .allow import MaterialValues
 from .geometry import Geometry
 from .plies import Climate, Layer
 from .values import Values
@@ -85,12 +85,12 @@ def end_material(design: Design) -> str:
     return (fitting.material if fitting is not None else None) or design.rod.material
 
 
-def derive(v: Values, design: Design, stock: Stock, g: Geometry) -> Rod:
+def derive(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
     """The section of a design's rod."""
     return _tube(v, design, stock, g) if design.rod.layup else _bar(v, design, stock, g)
 
 
-def _bar(v: Values, design: Design, stock: Stock, g: Geometry) -> Rod:
+def _bar(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
     """A bar or tube of one material."""
     name = design.rod.material
     modulus = stock.get(name, "youngs_modulus", "youngs_modulus_1")
@@ -116,7 +116,7 @@ def _bar(v: Values, design: Design, stock: Stock, g: Geometry) -> Rod:
     )
 
 
-def _tube(v: Values, design: Design, stock: Stock, g: Geometry) -> Rod:
+def _tube(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Rod:
     """The exact layered tube."""
     missing: list[str] = []
     states = plies.climates(v, design)

@@ -18,7 +18,7 @@ UNLIMITED = 1e300
 
 
 @dataclass(slots=True)
-class Computed:
+class MetricArrays:
     """What a kernel computed: metric → place → array, and why a metric could not be computed.
 
     Arrays are floats, (designs,), (cases, 1) or (cases, designs). A place is a ply, a seal or a
@@ -52,7 +52,7 @@ class Computed:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class LimitRow:
     """One limit in one case at one place: `value`, `limit` and `margin` are (designs,)."""
 
     limit_of: Limit
@@ -72,7 +72,7 @@ class Row:
 
 
 def by_case(
-    computed: Computed, metric: str, array: Array, cases: tuple[str, ...], place: str = ""
+    computed: MetricArrays, metric: str, array: Array, cases: tuple[str, ...], place: str = ""
 ) -> Iterator[tuple[str, Array]]:
     """Split a computed array into (case name, (designs,) array) where the metric applies."""
     array = np.asarray(array)
@@ -85,7 +85,7 @@ def by_case(
             yield case, array[i]
 
 
-def rows_of(limit: Limit, computed: Computed, v: Values) -> Iterator[Row]:
+def rows_of(limit: Limit, computed: MetricArrays, v: Values) -> Iterator[LimitRow]:
     """Every row of one limit; none where the metric was not computed."""
     bound = limit.value(v)
     for place, array in computed.metrics.get(limit.metric, {}).items():
@@ -96,7 +96,7 @@ def rows_of(limit: Limit, computed: Computed, v: Values) -> Iterator[Row]:
                 continue
             unlimited = real(value) == np.inf
             finite = where(unlimited, UNLIMITED, value)
-            yield Row(
+            yield LimitRow(
                 limit_of=limit,
                 case=case,
                 place=place,

@@ -15,7 +15,7 @@ from ..models import (
 )
 from .film_tables import Table
 from .gland_check import extrusion_end
-from .kernel import Pass, Subject
+from .kernel import ModelRun, PreparedDesign
 from .provenance import describe
 from .result import ModelUse
 from .rings import Ring
@@ -32,7 +32,7 @@ _SURROGATES = {
 }
 
 
-def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str]]:
+def warnings(subject: PreparedDesign, v: Values, done: ModelRun) -> Iterable[tuple[str, str]]:
     """(metric, text) of everything doubtful about the seals."""
     for ring in done.rings:
         yield from _contact(subject, ring)
@@ -43,7 +43,7 @@ def warnings(subject: Subject, v: Values, done: Pass) -> Iterable[tuple[str, str
         yield from _film(f"film of the {place} seals ({v.cases[case]}, {stroke})", table)
 
 
-def _contact(subject: Subject, ring: Ring) -> Iterable[tuple[str, str]]:
+def _contact(subject: PreparedDesign, ring: Ring) -> Iterable[tuple[str, str]]:
     """Laws out of their range, a compound the fluid attacks, a contact that is lost."""
     liquid, compound = subject.design.fluid.material, ring.element.compound
     if not ring.element.contact:
@@ -69,7 +69,7 @@ def _contact(subject: Subject, ring: Ring) -> Iterable[tuple[str, str]]:
         )
 
 
-def _leak_at_rest(subject: Subject) -> Iterable[tuple[str, str]]:
+def _leak_at_rest(subject: PreparedDesign) -> Iterable[tuple[str, str]]:
     """An averaged film of a rod seal that passes oil on the stroke in."""
     if any(
         place == "rod" and not table.row.outward and table.flow > 0
@@ -101,7 +101,9 @@ def _film(name: str, table: Table) -> Iterable[tuple[str, str]]:
         )
 
 
-def _limits(subject: Subject, done: Pass, ring: Ring, supply: float) -> Iterable[tuple[str, str]]:
+def _limits(
+    subject: PreparedDesign, done: ModelRun, ring: Ring, supply: float
+) -> Iterable[tuple[str, str]]:
     """Pressure and speed beyond what the compound bears, extrusion beyond its data."""
     compound = subject.materials[ring.element.compound]
     known = compound.numbers
@@ -126,7 +128,9 @@ def _limits(subject: Subject, done: Pass, ring: Ring, supply: float) -> Iterable
         )
 
 
-def models(rings: Iterable[Ring], subject: Subject, said: Iterable[str]) -> Iterable[ModelUse]:
+def models(
+    rings: Iterable[Ring], subject: PreparedDesign, said: Iterable[str]
+) -> Iterable[ModelUse]:
     """The models of every sealing ring. `said` are the warnings' texts."""
     said = tuple(said)
     for ring in rings:

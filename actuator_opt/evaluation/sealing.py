@@ -15,28 +15,28 @@ from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..numeric import Array, absolute, maximum, real, where
 from ..seals.contact import SealContact
 from . import gland_check
-from .allow import Stock
+from .allow import MaterialValues
 from .barrel import SEAL_STEP, Wall
 from .film_tables import Key, Running, Stroke, Table, of_place, running as run
 from .geometry import Geometry
 from .grooves import Groove
 from .rings import INCOMPRESSIBLE, Place, Ring, face_modulus, places
-from .rows import Computed
+from .rows import MetricArrays
 from .seal_contact import seal_contact
-from .state import State, side_reactions
+from .state import LoadState, side_reactions
 from .values import Values
 
 
 def compute(
     v: Values,
     design: Design,
-    stock: Stock,
+    stock: MaterialValues,
     geometry: Geometry,
-    state: State,
+    state: LoadState,
     wall: Wall,
     rings: tuple[Ring, ...],
     films: Films,
-    out: Computed,
+    out: MetricArrays,
 ) -> Friction:
     """Gland, contact and friction metrics of every seal; returns the cylinder's friction."""
     full_growth = SEAL_STEP * wall.growth
@@ -103,7 +103,7 @@ def films_of(
 
 
 def compute_film(
-    geometry: Geometry, state: State, there: Films, back: Films, out: Computed
+    geometry: Geometry, state: LoadState, there: Films, back: Films, out: MetricArrays
 ) -> None:
     """What the films of both strokes say together: oil left outside, pressure between seals.
 
@@ -150,7 +150,7 @@ def _share(ring: Ring, films: Films) -> Ring:
     return ring.at(pressure=absolute(held))
 
 
-def _beside(v: Values, design: Design, geometry: Geometry, state: State) -> Friction:
+def _beside(v: Values, design: Design, geometry: Geometry, state: LoadState) -> Friction:
     """Coulomb friction of wipers, and of guide rings under the side load."""
     total: Array = sum((one.friction for one in wipers(v, design, geometry, state)), 0.0)
     carried = side_reactions(geometry, state)
@@ -173,7 +173,7 @@ class WiperFriction(NamedTuple):
 
 
 def wipers(
-    v: Values, design: Design, geometry: Geometry, state: State
+    v: Values, design: Design, geometry: Geometry, state: LoadState
 ) -> tuple[WiperFriction, ...]:
     """Friction of every wiper: the lip of a U-cup without pressure."""
     found = []

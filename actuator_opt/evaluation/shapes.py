@@ -18,7 +18,7 @@ from ..numeric import Array
 from . import geometry as geometry_module, outline
 from .geometry import Geometry
 from .grooves import Groove
-from .kernel import Subject
+from .kernel import PreparedDesign
 from .result import Outline
 
 MOST = 24
@@ -69,7 +69,7 @@ class Shapes:
 
 
 def shapes(
-    subject: Subject,
+    subject: PreparedDesign,
     varied: Mapping[str, Array],
     count: int,
     hidden: tuple[str, ...] = (),
@@ -107,7 +107,9 @@ def shapes(
 
 
 def same_dimensions(
-    one: tuple[Subject, Mapping[str, Array]], other: tuple[Subject, Mapping[str, Array]], count: int
+    one: tuple[PreparedDesign, Mapping[str, Array]],
+    other: tuple[PreparedDesign, Mapping[str, Array]],
+    count: int,
 ) -> bool:
     """Whether two prepared designs with what varies have the same dimensions."""
     found = []
@@ -123,7 +125,7 @@ def same_dimensions(
 class _Parts:
     """One design of many: the outlines at its dimensions."""
 
-    subject: Subject
+    subject: PreparedDesign
     geometry: Geometry
     dimensions: Array
     hidden: tuple[str, ...]

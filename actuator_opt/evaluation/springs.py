@@ -16,8 +16,8 @@ from .barrel import Wall
 from .circuit import Branch, Chamber
 from .geometry import Geometry
 from .rods import Rod
-from .rows import Computed
-from .state import State
+from .rows import MetricArrays
+from .state import LoadState
 from .values import Values
 
 
@@ -192,7 +192,7 @@ def springs(
     v: Values,
     design: Design,
     geometry: Geometry,
-    state: State,
+    state: LoadState,
     wall: Wall,
     rod: Rod,
     breakaway: Array,
@@ -286,7 +286,7 @@ def _softest(curve: Callable[[Array], Array], stroke: Array) -> Array:
     return middle
 
 
-def compute(s: Springs, moving_mass: Array, out: Computed) -> Array:
+def compute(s: Springs, moving_mass: Array, out: MetricArrays) -> Array:
     """Stiffness and frequency metrics; returns the position of least stiffness."""
     position = weakest(s)
     parts = s.compliances(position)

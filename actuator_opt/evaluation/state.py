@@ -12,14 +12,14 @@ from ..design.model import Design
 from ..models import retention, stiffness
 from ..numeric import Array, where
 from . import joint as joint_module, oil
-from .allow import Stock
+from .allow import MaterialValues
 from .geometry import Geometry
 from .joint import WORST, Demand, Joint
 from .values import Values, stacked
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class LoadState:
     """Load-case quantities, (cases, 1) or (cases, designs); pressures are gauge.
 
     Moving: the driven chamber at the case pressure (default: supply), the other at return.
@@ -56,12 +56,12 @@ class State:
     bulk_modulus_b: Array
 
 
-def overhang(g: Geometry, state: State) -> Array:
+def overhang(g: Geometry, state: LoadState) -> Array:
     """Distance of the rod eye from the middle of the head bearing, at the case's position."""
     return state.reach + g.rod_extension + g.eye_offset + (g.head_length + g.plate) / 2
 
 
-def side_reactions(g: Geometry, state: State) -> dict[str, Array]:
+def side_reactions(g: Geometry, state: LoadState) -> dict[str, Array]:
     """Side force that rod and piston guide carry."""
     head, piston = retention.guide_forces(
         side_force=state.side_load, overhang=overhang(g, state), span=g.bearing_span
@@ -118,8 +118,8 @@ def _holding(
 
 
 def holding(
-    v: Values, design: Design, stock: Stock, geometry: Geometry, s: State, end: str
-) -> State:
+    v: Values, design: Design, stock: MaterialValues, geometry: Geometry, s: LoadState, end: str
+) -> LoadState:
     """The state with what the load asks at one stop of a joint, held there."""
     force = s.asked[end].force
     holding_a, holding_b = _holding(v, design, geometry, s.push, force)
@@ -133,7 +133,7 @@ def holding(
     )
 
 
-def derive(v: Values, design: Design, stock: Stock, geometry: Geometry) -> State:
+def derive(v: Values, design: Design, stock: MaterialValues, geometry: Geometry) -> LoadState:
     """State of every load case of a design."""
     push = np.array([[case.direction == "push"] for case in design.load_cases])
     joint = joint_module.derive(v, design, geometry)
@@ -148,7 +148,7 @@ def derive(v: Values, design: Design, stock: Stock, geometry: Geometry) -> State
     density = oil.density(v, design.fluid, stock, temperature)
     dynamic = kinematic * density
     moving_a, moving_b = where(push, driven, drain), where(push, drain, driven)
-    return State(
+    return LoadState(
         push=push,
         joint=joint,
         positions=positions,

@@ -17,15 +17,15 @@ from ..joints.overlap import Overlap
 from ..models import end_plate, retention, rod
 from ..numeric import Array, real, where
 from . import bonds, rod_strength
-from .allow import Stock
+from .allow import MaterialValues
 from .barrel import Wall, load_path
 from .beam import Beam
 from .geometry import Geometry, end_at
 from .grooves import Groove, taken
 from .retention import Numbers, clamped, joint_of
 from .rods import Rod
-from .rows import Computed
-from .state import State, side_reactions
+from .rows import MetricArrays
+from .state import LoadState, side_reactions
 from .values import Values
 
 HOLE = 2.0
@@ -43,7 +43,7 @@ class Held:
     loaded: Loaded
 
 
-def held(v: Values, design: Design, stock: Stock, g: Geometry, wall: Wall) -> Held | None:
+def held(v: Values, design: Design, stock: MaterialValues, g: Geometry, wall: Wall) -> Held | None:
     """The joint of a design under the largest force; None where it states no retention."""
     joint = joint_of(design)
     if joint is None:
@@ -63,14 +63,14 @@ def held(v: Values, design: Design, stock: Stock, g: Geometry, wall: Wall) -> He
 def compute(
     v: Values,
     design: Design,
-    stock: Stock,
+    stock: MaterialValues,
     g: Geometry,
-    state: State,
+    state: LoadState,
     wall: Wall,
     section: Rod,
     beam: Beam,
     held: Held | None,
-    out: Computed,
+    out: MetricArrays,
 ) -> None:
     """Every strength metric."""
     supply = v["supply.pressure"]
@@ -108,7 +108,7 @@ def _pressure_factors(
     supply: Array,
     yields: Mapping[str, Array],
     bursts: Mapping[str, Array],
-    out: Computed,
+    out: MetricArrays,
 ) -> None:
     """What the barrel bears over working and proof pressure, its thread included.
 
@@ -134,7 +134,7 @@ def _pressure_factors(
 
 
 def _fitting_yield(
-    v: Values, stock: Stock, design: Design, section: Rod, push: Array
+    v: Values, stock: MaterialValues, design: Design, section: Rod, push: Array
 ) -> dict[str, Array]:
     """Yield over working stress of the rod's fittings."""
     strength = stock.allowable(section.end_material, "yield_strength")
@@ -144,7 +144,7 @@ def _fitting_yield(
 
 
 def _rod_end(
-    v: Values, stock: Stock, design: Design, section: Rod, pull: Array, out: Computed
+    v: Values, stock: MaterialValues, design: Design, section: Rod, pull: Array, out: MetricArrays
 ) -> None:
     strength = stock.allowable(section.end_material, "yield_strength")
     if design.rod.thread is None or strength is None:
@@ -161,7 +161,7 @@ def _rod_end(
     out.put("thread_factor", strength / stress)
 
 
-def _retention(found: Strength | str, out: Computed) -> None:
+def _retention(found: Strength | str, out: MetricArrays) -> None:
     """What holds caps and head: elastic limit and breaking load over the largest axial force."""
     if isinstance(found, str):
         out.skip("retention_factor", found)
@@ -171,7 +171,7 @@ def _retention(found: Strength | str, out: Computed) -> None:
         out.put("retention_burst_factor", dict(found.burst))
 
 
-def own(held: Held | None, out: Computed) -> None:
+def own(held: Held | None, out: MetricArrays) -> None:
     """The joint's own metrics; those of other joints have a reason."""
     found = {} if held is None else held.joint.own(held.loaded)
     for joint in JOINTS.values():
@@ -182,7 +182,7 @@ def own(held: Held | None, out: Computed) -> None:
                 out.skip(name, absent)
 
 
-def _fittings(stock: Stock, bond: Overlap | str, push: Array, out: Computed) -> None:
+def _fittings(stock: MaterialValues, bond: Overlap | str, push: Array, out: MetricArrays) -> None:
     """Bond of the rod's fittings under the push, which is larger than any pull."""
     if isinstance(bond, str):
         out.skip("fitting_factor", bond)
@@ -190,7 +190,9 @@ def _fittings(stock: Stock, bond: Overlap | str, push: Array, out: Computed) -> 
         out.put("fitting_factor", bond.edge_factors(stock, push))
 
 
-def _caps(stock: Stock, design: Design, g: Geometry, supply: Array, out: Computed) -> None:
+def _caps(
+    stock: MaterialValues, design: Design, g: Geometry, supply: Array, out: MetricArrays
+) -> None:
     """Bending of the end plates; the head's plate and plug bend as one turned part.
 
     The cap hangs on its joint while the piston stands at the far end; on a
@@ -231,7 +233,7 @@ def _caps(stock: Stock, design: Design, g: Geometry, supply: Array, out: Compute
     out.put("cap_factor", {place: strength / stress for place, stress in stresses.items()})
 
 
-def _pins(v: Values, stock: Stock, design: Design, push: Array, out: Computed) -> None:
+def _pins(v: Values, stock: MaterialValues, design: Design, push: Array, out: MetricArrays) -> None:
     if design.clevis is None:
         out.skip("pin_factor", "no clevis stated: add clevis")
         return
@@ -251,7 +253,9 @@ def _guided(grooves: Sequence[Groove], length: Array) -> Array:
     return length - taken(grooves)[0]
 
 
-def _guides(stock: Stock, design: Design, g: Geometry, state: State, out: Computed) -> None:
+def _guides(
+    stock: MaterialValues, design: Design, g: Geometry, state: LoadState, out: MetricArrays
+) -> None:
     out.put("bearing_overlap", g.bearing_span / g.rod_diameter)
     carried = side_reactions(g, state)
     pressures = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..design.model import Design
 from ..models import mass
 from ..numeric import Array
-from .allow import Stock
+from .allow import MaterialValues
 from .bonds import fitting_hole
 from .geometry import Geometry, end_at
 from .retention import Numbers, joint_of
@@ -101,7 +101,7 @@ def _rod_ends(v: Values, design: Design, rod: Rod) -> Array:
 
 
 def parts(
-    v: Values, design: Design, stock: Stock, geometry: Geometry, rod: Rod
+    v: Values, design: Design, stock: MaterialValues, geometry: Geometry, rod: Rod
 ) -> dict[str, Array]:
     """Mass of every dry part, kg."""
     g = geometry

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import fluid
-from .equilibrium import NotConverged, State
+from .equilibrium import ElementState, NotConverged
 from .material import Floats
 from .mesh import Integers
 from .pair import Booleans
@@ -43,7 +43,7 @@ def level_pair(section: Section, nodes: int, middle: float) -> tuple[int, int]:
     return left, right
 
 
-def wall_pressing(section: Section, state: State) -> Floats:
+def wall_pressing(section: Section, state: ElementState) -> Floats:
     """Force with which walls above and below press every node."""
     force = state.reaction.reshape(-1, 2)[:, 1]
     lower = state.at_lower.reshape(-1, 2)[:, 1]
@@ -51,7 +51,7 @@ def wall_pressing(section: Section, state: State) -> Floats:
 
 
 def barriers(
-    section: Section, state: State, places: Floats, pressing: Floats, pressure: float
+    section: Section, state: ElementState, places: Floats, pressing: Floats, pressure: float
 ) -> Floats:
     """Contact pressure at every node from the force on it and the fluid behind it."""
     length = np.abs(fluid.shares(section, places)[:, 0]) * section.radii(places)
@@ -65,7 +65,7 @@ def both_ways(boundary: Integers, start: int) -> tuple[Integers, Integers]:
 
 
 def reached(
-    chain: Integers, barrier: Floats, state: State, pressure: float
+    chain: Integers, barrier: Floats, state: ElementState, pressure: float
 ) -> tuple[Integers, int | None]:
     """Nodes of a chain that the fluid reaches, and the place of the outer side wall in it.
 
@@ -90,7 +90,7 @@ def reached(
 
 def profile_on_face(
     section: Section,
-    state: State,
+    state: ElementState,
     places: Floats,
     boundary: Integers,
     held: Booleans,

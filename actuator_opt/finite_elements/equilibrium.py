@@ -50,7 +50,7 @@ class Bounds:
 
 
 @dataclass(slots=True)
-class State:
+class ElementState:
     """Unknowns, what touches what, and the fluid: enough to go on from.
 
     Parameters
@@ -73,9 +73,9 @@ class State:
     reaction: Floats
     level_force: float = 0.0
 
-    def copy(self) -> State:
+    def copy(self) -> ElementState:
         """An independent copy."""
-        return State(
+        return ElementState(
             self.values.copy(),
             self.at_lower.copy(),
             self.at_upper.copy(),
@@ -87,14 +87,14 @@ class State:
         )
 
 
-WetPart = Callable[["State", Floats, float], Floats]
+WetPart = Callable[["ElementState", Floats, float], Floats]
 """Share of the pressure at every node, from state, node places and pressure."""
 FIRST_STEP, SHORTEST_STEP, GROWTH = 0.1, 1e-3, 1.5
 """Steps of pressure over modulus: the first, the shortest, and the growth after a success."""
 
 
 @dataclass(slots=True)
-class Problem:
+class ElementProblem:
     """Bodies, a pair that may touch, and where the fluid goes.
 
     Parameters
@@ -116,11 +116,11 @@ class Problem:
     iterations: int = 0
     worst_residual: float = 0.0
 
-    def start(self) -> State:
+    def start(self) -> ElementState:
         """Nothing moved, nothing touches."""
         size, count = self.section.displacements, len(self.pair.upper) if self.pair else 0
         none = np.zeros(size, dtype=bool)
-        return State(
+        return ElementState(
             np.zeros(self.section.unknowns),
             none,
             none.copy(),
@@ -135,7 +135,7 @@ class NotConverged(Exception):
     """A load step that Newton's method could not make; the text says why."""
 
 
-def _update_walls(problem: Problem, state: State, force: Floats, pull: float) -> bool:
+def _update_walls(problem: ElementProblem, state: ElementState, force: Floats, pull: float) -> bool:
     """Hold what passes its bound, release what is pulled more; whether anything changed."""
     bounds, moved = problem.bounds, state.values[: problem.section.displacements]
     held = bounds.lower == bounds.upper
@@ -158,7 +158,7 @@ class _Links:
     force: Floats
 
 
-def _links(problem: Problem, state: State, places: Floats) -> _Links:
+def _links(problem: ElementProblem, state: ElementState, places: Floats) -> _Links:
     """The conditions of a state; none is an empty matrix."""
     unknowns = problem.section.unknowns
     none = csc_matrix((unknowns, unknowns))
@@ -181,7 +181,11 @@ def _links(problem: Problem, state: State, places: Floats) -> _Links:
 
 
 def _step(
-    problem: Problem, state: State, force: Floats, stiffness: csc_matrix, links: _Links
+    problem: ElementProblem,
+    state: ElementState,
+    force: Floats,
+    stiffness: csc_matrix,
+    links: _Links,
 ) -> tuple[Floats, Floats, float]:
     """Newton's step of the unknowns and of the links' forces, and the largest error before it."""
     section, bounds = problem.section, problem.bounds
@@ -212,7 +216,7 @@ def _step(
     return move, solution[len(free) :], float(np.max(np.abs(right), initial=0.0))
 
 
-def _damped(problem: Problem, state: State, move: Floats) -> float:
+def _damped(problem: ElementProblem, state: ElementState, move: Floats) -> float:
     """Share of a step that neither moves too far nor turns an element inside out."""
     section = problem.section
     longest = float(np.max(np.abs(move[: section.displacements])))
@@ -226,7 +230,7 @@ def _damped(problem: Problem, state: State, move: Floats) -> float:
 
 
 @np.errstate(all="ignore")  # a trial that turns elements inside out is judged by its balance
-def solve(problem: Problem, start: State, pressure: float) -> State:
+def solve(problem: ElementProblem, start: ElementState, pressure: float) -> ElementState:
     """Equilibrium under a fluid pressure within the walls, from a neighbouring state.
 
     Raises
@@ -273,7 +277,9 @@ def solve(problem: Problem, start: State, pressure: float) -> State:
     raise NotConverged(f"no equilibrium within {MOST_ITERATIONS} iterations")
 
 
-def raise_pressure(problem: Problem, state: State, reached: float, wanted: float) -> State:
+def raise_pressure(
+    problem: ElementProblem, state: ElementState, reached: float, wanted: float
+) -> ElementState:
     """Equilibrium at a higher pressure, in steps as long as Newton's method can make them.
 
     Raises

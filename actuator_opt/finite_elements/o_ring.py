@@ -18,7 +18,7 @@ from .contact import (
     reached,
     wall_pressing,
 )
-from .equilibrium import Bounds, NotConverged, Problem, State
+from .equilibrium import Bounds, ElementProblem, ElementState, NotConverged
 from .material import Floats, MooneyRivlin
 from .mesh import disc
 from .path import SQUEEZE_STEP, check_inputs, follow
@@ -51,11 +51,11 @@ class RoundRing:
         self.boundary = boundary_nodes(self.section, 0)
         level = level_pair(self.section, len(mesh.nodes), 0.5)
         bounds = Bounds.none(self.section)
-        self.problem = Problem(self.section, bounds, self.wet_part, level)
+        self.problem = ElementProblem(self.section, bounds, self.wet_part, level)
         self.centre = middle_node(self.section, len(mesh.nodes))
         bounds.lower[2 * self.boundary + 1] = -self.section.nodes[self.boundary, 1]
 
-    def wet_part(self, state: State, places: Floats, pressure: float) -> Floats:
+    def wet_part(self, state: ElementState, places: Floats, pressure: float) -> Floats:
         """The fluid comes from the left and goes along both sides of the ring."""
         pressing = wall_pressing(self.section, state)
         barrier = barriers(self.section, state, places, pressing, pressure)
@@ -68,7 +68,7 @@ class RoundRing:
             raise NotConverged("the fluid passes the ring")
         return wet
 
-    def mount(self, squeeze: float, groove_width: float) -> State:
+    def mount(self, squeeze: float, groove_width: float) -> ElementState:
         """Bring the groove's bottom down, its outer wall to the ring: frictionless, so no matter.
 
         The middle keeps its place along the cylinder until then.
@@ -82,7 +82,7 @@ class RoundRing:
             self.problem.steps += 1
         return self._lean(state, groove_width)
 
-    def _lean(self, state: State, groove_width: float) -> State:
+    def _lean(self, state: ElementState, groove_width: float) -> ElementState:
         """Both side walls; a narrow groove squeezes the ring between them."""
         bounds, place = self.problem.bounds, self.section.places(state.values)
         bounds.lower[2 * self.centre], bounds.upper[2 * self.centre] = -np.inf, np.inf
@@ -97,11 +97,13 @@ class RoundRing:
             return equilibrium.solve(self.problem, state, 0.0)
         return state
 
-    def release(self, state: State) -> State:
+    def release(self, state: ElementState) -> ElementState:
         """The ring leans on the outer wall already."""
         return state
 
-    def contact(self, state: State, pressure: float, length: float, modulus: float) -> Contact:
+    def contact(
+        self, state: ElementState, pressure: float, length: float, modulus: float
+    ) -> Contact:
         """The contact on the sliding face with its dimensions."""
         places = self.section.places(state.values)
         force = state.reaction.reshape(-1, 2)

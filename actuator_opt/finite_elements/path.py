@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from ..errors import ActuatorError, Diagnostic
-from .equilibrium import NotConverged, Problem, State, raise_pressure
+from .equilibrium import ElementProblem, ElementState, NotConverged, raise_pressure
 from .material import MooneyRivlin
 from .result import Contact, SealSolution
 
@@ -60,15 +60,17 @@ def check_inputs(
 class Seal(Protocol):
     """A seal that can be mounted, released against the groove's outer wall, and looked at."""
 
-    problem: Problem
+    problem: ElementProblem
 
-    def mount(self, squeeze: float, groove_width: float) -> State:
+    def mount(self, squeeze: float, groove_width: float) -> ElementState:
         """Equilibrium in the groove without pressure."""
 
-    def release(self, state: State) -> State:
+    def release(self, state: ElementState) -> ElementState:
         """The seal against the outer side wall, held by nothing else."""
 
-    def contact(self, state: State, pressure: float, length: float, modulus: float) -> Contact:
+    def contact(
+        self, state: ElementState, pressure: float, length: float, modulus: float
+    ) -> Contact:
         """The contact on the sliding face with its dimensions."""
 
 

@@ -18,7 +18,7 @@ from .contact import (
     reached,
     wall_pressing,
 )
-from .equilibrium import Bounds, NotConverged, Problem, State
+from .equilibrium import Bounds, ElementProblem, ElementState, NotConverged
 from .material import Floats, MooneyRivlin
 from .mesh import SlideRing, disc, slide_ring
 from .pair import Pair
@@ -73,7 +73,7 @@ class StepRing:
         self.pair = Pair(self.round, self.section.edges[1][back])
         level = level_pair(self.section, len(round_mesh.nodes), middle)
         bounds = Bounds.none(self.section)
-        self.problem = Problem(self.section, bounds, self.wet_part, level, self.pair)
+        self.problem = ElementProblem(self.section, bounds, self.wet_part, level, self.pair)
         self.centre = middle_node(self.section, len(round_mesh.nodes))
         at_end = self.flat[nodes[self.flat, 0] > -1e-9]
         self.end = int(at_end[np.argmin(np.abs(nodes[at_end, 1] - shape.thickness / 2))])
@@ -86,7 +86,7 @@ class StepRing:
         self.groove_width = math.inf
         self.back_wet: Floats = np.zeros(len(nodes))
 
-    def wet_part(self, state: State, places: Floats, pressure: float) -> Floats:
+    def wet_part(self, state: ElementState, places: Floats, pressure: float) -> Floats:
         """The fluid passes left of both rings, and between them up to their contact."""
         pressing = wall_pressing(self.section, state)
         pressing[self.round] += state.pair_force
@@ -130,7 +130,7 @@ class StepRing:
     def _hold(self, unknown: int, value: float) -> None:
         self.problem.bounds.lower[unknown] = self.problem.bounds.upper[unknown] = value
 
-    def mount(self, squeeze: float, groove_width: float) -> State:
+    def mount(self, squeeze: float, groove_width: float) -> ElementState:
         """Bring the groove's bottom down on the rubber ring in the middle of the slide ring."""
         self.groove_width = groove_width
         nodes, bounds, problem = self.section.nodes, self.problem.bounds, self.problem
@@ -144,7 +144,7 @@ class StepRing:
             problem.steps += 1
         return state
 
-    def release(self, state: State) -> State:
+    def release(self, state: ElementState) -> ElementState:
         """Move the rubber ring to the outer side wall; both rings lean on it, nothing is held."""
         nodes, bounds, problem = self.section.nodes, self.problem.bounds, self.problem
         distance = -float(np.max(self.section.places(state.values)[self.round, 0]))
@@ -164,7 +164,9 @@ class StepRing:
         state.at_upper[[2 * first, 2 * self.end]] = True
         return state
 
-    def contact(self, state: State, pressure: float, length: float, modulus: float) -> Contact:
+    def contact(
+        self, state: ElementState, pressure: float, length: float, modulus: float
+    ) -> Contact:
         """The contact on the rod with its dimensions."""
         places = self.section.places(state.values)
         force = state.reaction.reshape(-1, 2)

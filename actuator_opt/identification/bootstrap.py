@@ -33,7 +33,7 @@ from .balance import Sliding
 from .conditioning import Motion
 from .lugre_problem import BENDS, LOGARITHMIC, STEP, SYMBOLS, TRAVELS, LuGreFit, sizes
 from .lugre_windows import LAG, Windows, windows
-from .many_fits import Search, relaxed
+from .many_fits import FitSearch, relaxed
 from .points import SETTLED, Point
 from .stribeck_fit import EXPONENTS, SPEEDS, STATIC_MOST, Steady, StribeckFit
 
@@ -257,7 +257,7 @@ def _search(
     values: Mapping[str, float],
     largest: float,
     ends: Mapping[str, tuple[float, float]],
-) -> Search:
+) -> FitSearch:
     """Ends of the search; an optimum at one lies within it."""
     usual = {
         "static": (0.0, STATIC_MOST * largest),
@@ -269,7 +269,7 @@ def _search(
     best = searched(names, values)
     pairs = [usual.get(name, (-np.inf, np.inf)) for name in names]
     low = np.minimum([one[0] for one in pairs], best)
-    return Search(names, low, np.maximum([one[1] for one in pairs], best))
+    return FitSearch(names, low, np.maximum([one[1] for one in pairs], best))
 
 
 def searched(names: Sequence[str], values: Mapping[str, float]) -> Array:
@@ -310,7 +310,7 @@ def _scales(rng: np.random.Generator, freedom: int, count: int) -> Array:
 
 def _bounded(
     parameters: Mapping[str, Parameter],
-    search: Search,
+    search: FitSearch,
     found: Array,
     values: Mapping[str, float],
     spare: int,

@@ -15,7 +15,7 @@ from ..least_squares import NORMAL
 from .balance import Sliding
 from .conditioning import Motion
 from .doubtful import PARTED, agreed, opened, widened
-from .lugre_problem import LOGARITHMIC, SYMBOLS, TRAVELS, USUAL, LuGreFit, Problem
+from .lugre_problem import LOGARITHMIC, SYMBOLS, TRAVELS, USUAL, LuGreFit, LugreProblem
 from .lugre_windows import Windows, no_windows, windows
 from .points import SETTLED, SETTLING, Point
 from .stribeck_fit import EXPONENT, OTHER, StribeckFit, held_error
@@ -85,7 +85,7 @@ def fit_lugre(
     if curve_known is None:
         fit = _level(found, lag_known, seen)
     else:
-        problem = Problem(found, points, curve_known, lag_known, seen)
+        problem = LugreProblem(found, points, curve_known, lag_known, seen)
         fit = problem.solve()
         if "stribeck_speed" in fit.parameters and not np.isfinite(fit.parameters["coulomb"].upper):
             fit = _parted(fit, points, curve_known, found, lag_known, seen)
@@ -102,7 +102,7 @@ def fit_lugre(
 
 def _level(found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
     """The model of windows alone: one level of friction, or one that falls from F_S."""
-    fit = Problem(found, (), None, lag_known, lag_seen).solve()
+    fit = LugreProblem(found, (), None, lag_known, lag_seen).solve()
     slid = fit.misfit + found.largest > SLID * fit.values["coulomb"]
     if slid:
         falling = _falling(found, lag_known, lag_seen, EXPONENT)
@@ -137,7 +137,7 @@ def _falling(
 ) -> LuGreFit:
     """The model of windows alone with a level that falls, its exponent held where one is given."""
     held = None if exponent is None else {"exponent": exponent}
-    return Problem(found, (), None, lag_known, lag_seen, falling=True, held=held).solve()
+    return LugreProblem(found, (), None, lag_known, lag_seen, falling=True, held=held).solve()
 
 
 def _any_exponent(fit: LuGreFit, found: Windows, lag_known: bool, lag_seen: bool) -> LuGreFit:
@@ -186,7 +186,7 @@ def _parted(
 ) -> LuGreFit:
     """F_S and sigma_0 with what they move by if F_C and sigma_2, not parted, are held."""
     held = {"viscous": 0.0, "exponent": EXPONENT}
-    other = Problem(found, points, stribeck, lag_known, lag_seen, held=held).solve()
+    other = LugreProblem(found, points, stribeck, lag_known, lag_seen, held=held).solve()
     more = {
         name: abs(other.values[name] - fit.values[name])
         for name in ("static", "bristle_stiffness")

@@ -86,7 +86,7 @@ def sizes(names: Sequence[str], largest: float, steady: Steady | None) -> Array:
     return np.array([size.get(name, 1.0) for name in names])
 
 
-class Problem:
+class LugreProblem:
     """Residuals of points and windows over the searched parameters."""
 
     def __init__(

@@ -19,7 +19,7 @@ LOST = 1e3
 thousandth of the undamped one)."""
 
 
-class Search(NamedTuple):
+class FitSearch(NamedTuple):
     """Searched numbers with their ends."""
 
     names: tuple[str, ...]
@@ -31,7 +31,7 @@ def relaxed(
     misfit: Callable[[Array, Array], Array],
     slopes: Callable[[Array], Array],
     rows: Array,
-    search: Search,
+    search: FitSearch,
     steps: int,
 ) -> tuple[Array, Array]:
     """Least squares of many problems at once, each from its row, within the ends.

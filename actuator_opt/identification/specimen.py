@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from ..errors import Diagnostic, InputError
-from ..evaluation import Subject, compute
+from ..evaluation import PreparedDesign, compute
 from ..models import column, rod
 
 Part = Literal["rod", "barrel"]
@@ -104,7 +104,7 @@ class Specimen:
         return None if self.height is None else strain * self.span**2 / (6 * self.height)
 
 
-def specimen_of(subject: Subject, part: Part, span: float) -> Specimen:
+def specimen_of(subject: PreparedDesign, part: Part, span: float) -> Specimen:
     """A part of a design as a bar; of one metal its moduli too, G = E/(2 (1 + nu)).
 
     Parameters

@@ -18,7 +18,7 @@ from ..models.flow_factors import (
 from ..models.rough_surface import film_ratio_under_contact
 from ..numeric import Array, real
 from .inputs import Contact, fault
-from .newton import Bed, Outcome, State, contact_pressure, follow, newton, weights
+from .newton import Bed, FilmState, Outcome, contact_pressure, follow, newton, weights
 from .reynolds import Flow, Vector, flux
 
 LEAST_CONTACT = 1e-12
@@ -38,7 +38,7 @@ class Film:
     contact: Contact
     converged: bool
     reason: str
-    state: State
+    state: FilmState
     viscous_drag: float  # [N/m], positive against a positive speed
     contact_load: float  # int p_c dx [N/m]
     flow: float  # [m^2/s]
@@ -128,7 +128,7 @@ def _bed(contact: Contact, pressure: float, film: float, ratio: Array) -> Bed:
     )
 
 
-def outputs(flow: Flow, bed: Bed, state: State) -> tuple[Array, Array, Array, Array]:
+def outputs(flow: Flow, bed: Bed, state: FilmState) -> tuple[Array, Array, Array, Array]:
     """Viscous drag and contact load [N/m], flow [m^2/s] and mean film [m] of a state."""
     sliding, pushing = 1.0, 1.0
     if flow.rod_share is not None:
@@ -154,7 +154,7 @@ def _slope(values: Vector) -> Vector:
     return (len(values) - 1) * np.concatenate([rise[:1], inner, rise[-1:]])
 
 
-def _at_rest(contact: Contact, bed: Bed) -> State:
+def _at_rest(contact: Contact, bed: Bed) -> FilmState:
     """A first guess: a straight pressure, and a film whose asperities carry the rest."""
     nodes = len(contact.static_pressure)
     straight = np.linspace(bed.sealed, bed.outer, nodes)
@@ -163,7 +163,7 @@ def _at_rest(contact: Contact, bed: Bed) -> State:
     left = np.maximum(bed.static_pressure - pressure, LEAST_CONTACT * bed.stiffness)
     ratio = film_ratio_under_contact(contact_pressure=left, stiffness=bed.stiffness)
     film = np.maximum(ratio, 0.3)
-    return State(pressure, _starved(np.zeros(nodes), contact), film, 0.0)
+    return FilmState(pressure, _starved(np.zeros(nodes), contact), film, 0.0)
 
 
 def _starved(cavitation: Vector, contact: Contact) -> Vector:
@@ -172,16 +172,16 @@ def _starved(cavitation: Vector, contact: Contact) -> Vector:
     return np.concatenate([ends[0], cavitation[1:-1], ends[1]])
 
 
-def _rescaled(start: Film, contact: Contact) -> State:
+def _rescaled(start: Film, contact: Contact) -> FilmState:
     """State of another film in the scales of this contact."""
     pressure = (start.pressure - contact.cavitation_pressure) / pressure_scale(contact)
     ratio = start.contact.surface.roughness / contact.surface.roughness
     state = start.state
     cavitation = _starved(state.cavitation, contact)
-    return State(pressure, cavitation, state.film * ratio, state.shift * ratio)
+    return FilmState(pressure, cavitation, state.film * ratio, state.shift * ratio)
 
 
-def _solved(contact: Contact, state: State) -> Outcome:
+def _solved(contact: Contact, state: FilmState) -> Outcome:
     return newton(*scaled(contact), state)
 
 
@@ -195,7 +195,7 @@ def _cold(contact: Contact) -> Outcome:
         return outcome
     sign = -1.0 if contact.speed < 0 else 1.0
 
-    def at(speed: float, state: State) -> Outcome:
+    def at(speed: float, state: FilmState) -> Outcome:
         flow, _ = scaled(replace(contact, speed=sign * speed))
         return newton(flow, bed, state)
 
@@ -218,7 +218,7 @@ def solve_film(contact: Contact, start: Film | None = None) -> Film:
     wrong = fault(contact)
     if wrong:
         nothing = np.full(np.shape(contact.static_pressure), np.nan)
-        return _film(contact, Outcome(State(nothing, nothing, nothing, np.nan), wrong, 0, 1, 1))
+        return _film(contact, Outcome(FilmState(nothing, nothing, nothing, np.nan), wrong, 0, 1, 1))
     nodes = len(contact.static_pressure)
     if start is not None and start.converged and len(start.state.film) == nodes:
         outcome = _solved(contact, _rescaled(start, contact))

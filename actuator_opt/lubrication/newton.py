@@ -56,7 +56,7 @@ class Bed:
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class FilmState:
     """Scaled pressure, cavitated fraction, film and rigid shift."""
 
     pressure: Vector
@@ -80,7 +80,7 @@ class Residual:
 class Outcome:
     """Where Newton's method ended; `reason` is empty when it converged."""
 
-    state: State
+    state: FilmState
     reason: str
     iterations: int
     mass_residual: float
@@ -119,7 +119,7 @@ def contact_pressure(bed: Bed, film: Vector) -> Vector:
     return bed.stiffness * asperity_integral(film_ratio=film / bed.roughness_ratio)
 
 
-def residual(flow: Flow, bed: Bed, state: State) -> Residual:
+def residual(flow: Flow, bed: Bed, state: FilmState) -> Residual:
     """Residuals of a state, real or under a complex step."""
     pressure, theta = state.pressure, state.cavitation
     excess = pressure + contact_pressure(bed, state.film) - bed.static_pressure
@@ -136,7 +136,7 @@ def residual(flow: Flow, bed: Bed, state: State) -> Residual:
     )
 
 
-def _complementarity_slopes(state: State) -> tuple[Vector, Vector]:
+def _complementarity_slopes(state: FilmState) -> tuple[Vector, Vector]:
     pressure, theta = state.pressure[1:-1], state.cavitation[1:-1]
     root = np.hypot(pressure, theta)
     safe = np.where(root > 0, root, 1.0)
@@ -171,7 +171,7 @@ def _widened(bands: tuple[Vector, Vector, Vector]) -> Vector:
 class Linear:
     """The linearised equations at a state; `solve` gives the change that cancels residuals."""
 
-    def __init__(self, flow: Flow, bed: Bed, state: State) -> None:
+    def __init__(self, flow: Flow, bed: Bed, state: FilmState) -> None:
         nodes = self.nodes = flow.nodes
         slope = faces(flow, state.pressure, state.cavitation, state.film)
         self.softness = np.zeros(nodes)  # d(contact pressure)/d(film)
@@ -229,7 +229,7 @@ class Linear:
             matrix[nodes, :nodes] = weights(nodes)
         return matrix
 
-    def solve(self, residuals: list[Residual]) -> list[State]:
+    def solve(self, residuals: list[Residual]) -> list[FilmState]:
         """Changes of the state that cancel each residual to first order."""
         nodes, full = self.nodes, ~self.empty
         holes = np.flatnonzero(self.empty) + 1
@@ -252,18 +252,20 @@ class Linear:
             inner = theta[1:-1]
             inner[full] -= self.over_pressure[full] / self.over_theta[full] * pressure[1:-1][full]
             theta[holes] = row[nodes + 1 :]
-            changes.append(State(pressure, theta, film, row[nodes]))
+            changes.append(FilmState(pressure, theta, film, row[nodes]))
         return changes
 
 
-def _allowed(state: State, change: State) -> float:
+def _allowed(state: FilmState, change: FilmState) -> float:
     """Part of a Newton step that neither closes the film nor throws the pressure away."""
     fall = np.max(-change.film / state.film)
     jump = np.max(np.abs(change.pressure))
     return float(min(1.0, _CLOSED / max(fall, 1e-300), _PRESSURE_STEP / max(jump, 1e-300)))
 
 
-def _measures(flow: Flow, bed: Bed, state: State, found: Residual) -> tuple[float, float, float]:
+def _measures(
+    flow: Flow, bed: Bed, state: FilmState, found: Residual
+) -> tuple[float, float, float]:
     """Relative flux spread, load residual, and the largest of the other scaled residuals."""
     passing = flux(flow, state.pressure, state.cavitation, state.film)
     carried = abs(flow.drive) * np.min(flow.gap(state.film)[1])
@@ -274,13 +276,13 @@ def _measures(flow: Flow, bed: Bed, state: State, found: Residual) -> tuple[floa
     return spread, load, max(film, ends, np.max(np.abs(found.complementarity)))
 
 
-def newton(flow: Flow, bed: Bed, state: State) -> Outcome:
+def newton(flow: Flow, bed: Bed, state: FilmState) -> Outcome:
     """Solve the film from a starting state; a lost trial ends with a reason, not with a warning."""
     with np.errstate(all="ignore"):
         return _newton(flow, bed, state)
 
 
-def _newton(flow: Flow, bed: Bed, state: State) -> Outcome:
+def _newton(flow: Flow, bed: Bed, state: FilmState) -> Outcome:
     spread = load = np.inf
     for iteration in range(MOST_ITERATIONS + 1):
         found = residual(flow, bed, state)
@@ -296,7 +298,7 @@ def _newton(flow: Flow, bed: Bed, state: State) -> Outcome:
         except np.linalg.LinAlgError:
             return Outcome(state, "the linearised film is singular", iteration, spread, load)
         part = _allowed(state, change)
-        state = State(
+        state = FilmState(
             state.pressure + part * change.pressure,
             state.cavitation + part * change.cavitation,
             state.film + part * change.film,
@@ -308,7 +310,7 @@ def _newton(flow: Flow, bed: Bed, state: State) -> Outcome:
 
 
 def follow(
-    solve: Callable[[float, State], Outcome], state: State, first: float, last: float
+    solve: Callable[[float, FilmState], Outcome], state: FilmState, first: float, last: float
 ) -> Outcome:
     """Follow a film from a first to a last positive value, in factors that adapt.
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..numeric import STEP
 from .film import Film, outputs, scaled
 from .inputs import Contact
-from .newton import Linear, Residual, State, residual
+from .newton import FilmState, Linear, Residual, residual
 from .reynolds import Vector
 
 
@@ -55,9 +55,9 @@ def _imaginary(found: Residual) -> Residual:
     return Residual(flow, complementarity, bent, float(np.imag(found.load)) / STEP, ends)
 
 
-def _moved(state: State, change: State) -> State:
+def _moved(state: FilmState, change: FilmState) -> FilmState:
     """A state with its change as a complex step."""
-    return State(
+    return FilmState(
         state.pressure + 1j * STEP * change.pressure,
         state.cavitation + 1j * STEP * change.cavitation,
         state.film + 1j * STEP * change.film,

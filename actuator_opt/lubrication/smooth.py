@@ -9,7 +9,7 @@ import numpy as np
 
 from .film import outputs
 from .inputs import Elastic, Lubricant
-from .newton import Bed, Outcome, State, follow, kernel, newton, weights
+from .newton import Bed, FilmState, Outcome, follow, kernel, newton, weights
 from .reynolds import Flow, Vector
 
 _NARROWEST = 0.04
@@ -109,7 +109,7 @@ def solve_gap(gap: Gap, nodes: int = 0) -> SmoothFilm:
     reason = fault(gap)
     if reason:
         nothing = np.full(len(gap.profile), np.nan)
-        lost = Outcome(State(nothing, nothing, nothing, np.nan), reason, 0, 1.0, 1.0)
+        lost = Outcome(FilmState(nothing, nothing, nothing, np.nan), reason, 0, 1.0, 1.0)
         return _found(gap, 1.0, 1.0, lost)
     if gap.line_load is None:
         film = float(np.mean(gap.profile))
@@ -164,7 +164,7 @@ def _held(gap: Gap, film: float) -> SmoothFilm:
     pressure = _scales(gap)
     flow, bed = _scaled(gap, film, pressure)
     ends = np.linspace(bed.sealed, bed.outer, flow.nodes)
-    start = State(ends, np.zeros(flow.nodes), gap.profile / film, 0.0)
+    start = FilmState(ends, np.zeros(flow.nodes), gap.profile / film, 0.0)
     return _found(gap, film, pressure, newton(flow, bed, start))
 
 
@@ -179,7 +179,7 @@ def _loaded(gap: Gap) -> SmoothFilm:
     film = math.sqrt(8 * viscosity * abs(gap.speed) / (9 * rise))
     speed, taken = abs(gap.speed), 0
 
-    def at(value: float, state: State) -> Outcome:
+    def at(value: float, state: FilmState) -> Outcome:
         return newton(
             *_scaled(replace(gap, speed=math.copysign(value, gap.speed)), film, pressure), state
         )
@@ -194,7 +194,7 @@ def _loaded(gap: Gap) -> SmoothFilm:
     return _found(gap, film, pressure, replace(outcome, reason=reason, iterations=taken))
 
 
-def _dry(gap: Gap, flow: Flow, bed: Bed, least: float) -> State:
+def _dry(gap: Gap, flow: Flow, bed: Bed, least: float) -> FilmState:
     """Half an ellipse of pressure as wide as the contact of a cylinder, and the film over it."""
     place = np.linspace(0, 1, flow.nodes)
     ends = bed.sealed + (bed.outer - bed.sealed) * place
@@ -208,7 +208,7 @@ def _dry(gap: Gap, flow: Flow, bed: Bed, least: float) -> State:
     pressure = ends + carried * ellipse / (weights(flow.nodes) @ ellipse)
     bent = bed.rest_film + bed.compliance * (kernel(flow.nodes) @ (pressure - bed.static_pressure))
     shift = least - float(np.min(bent))
-    return State(pressure, np.zeros(flow.nodes), bent + shift, shift)
+    return FilmState(pressure, np.zeros(flow.nodes), bent + shift, shift)
 
 
 def _found(gap: Gap, film: float, pressure: float, outcome: Outcome, taken: int = 0) -> SmoothFilm:

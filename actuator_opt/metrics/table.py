@@ -2,7 +2,7 @@
 
 The evaluation, the check list, the optimiser's limits, warnings, tables, reports, the JSON Schema
 and the help read this table. A metric is added by a row here and a line that computes it
-(`Computed.put`).
+(`MetricArrays.put`).
 """
 
 from __future__ import annotations

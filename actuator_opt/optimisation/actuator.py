@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..errors import Diagnostic, InputError
-from ..evaluation import Subject, compute
+from ..evaluation import PreparedDesign, compute
 from ..evaluation.governing import extreme, worst_of
 from ..evaluation.limits import all_limits, margin
-from ..evaluation.rows import UNLIMITED, Computed, Row, rows_of
+from ..evaluation.rows import UNLIMITED, LimitRow, MetricArrays, rows_of
 from ..evaluation.values import Values as Numbers
 from ..numeric import Array, real, where
 from ..quantities import Sense
@@ -39,7 +39,7 @@ class Goal:
         """The metric, where there is only one."""
         return next(iter(self.weights)) if len(self.weights) == 1 else None
 
-    def value(self, computed: Computed, cases: tuple[str, ...]) -> Array:
+    def value(self, computed: MetricArrays, cases: tuple[str, ...]) -> Array:
         """The objective of every design, to be minimised."""
         total: Array = 0.0
         for metric, weight in self.weights.items():
@@ -52,7 +52,7 @@ class Goal:
         return self.sign * objective
 
 
-def worst_value(computed: Computed, metric: str, cases: tuple[str, ...], aim: Sense) -> Array:
+def worst_value(computed: MetricArrays, metric: str, cases: tuple[str, ...], aim: Sense) -> Array:
     """The worst value of an objective over load cases and places, (designs,).
 
     Raises
@@ -73,7 +73,7 @@ def worst_value(computed: Computed, metric: str, cases: tuple[str, ...], aim: Se
     return worst
 
 
-def goal_of(subject: Subject) -> Goal:
+def goal_of(subject: PreparedDesign) -> Goal:
     """The objective of a design; weighted metrics are divided by their present value."""
     objective = subject.design.objective
     sign = 1.0 if objective.aim == "min" else -1.0
@@ -98,7 +98,7 @@ class Refusals:
     missing: dict[str, int] = field(default_factory=dict)
     raised: dict[str, str] = field(default_factory=dict)
 
-    def add(self, computed: Computed, count: int) -> None:
+    def add(self, computed: MetricArrays, count: int) -> None:
         """Count one evaluation."""
         self.points += count
         sound = np.isfinite(np.broadcast_to(computed.metrics["mass"][""], (count,)))
@@ -123,11 +123,11 @@ class Refusals:
 class ActuatorProblem:
     """A design with variables, as the generic solver sees it, and back."""
 
-    subject: Subject
+    subject: PreparedDesign
     goal: Goal
     paths: tuple[str, ...]
-    rows: tuple[Row, ...]
-    fixed: tuple[Row, ...]
+    rows: tuple[LimitRow, ...]
+    fixed: tuple[LimitRow, ...]
     """Rows no variable changes: met or missed for good."""
     problem: BoxProblem
     wanted: frozenset[str] | None
@@ -149,7 +149,7 @@ class ActuatorProblem:
         self,
         points: Array,
         parameters: Mapping[str, Array] | None = None,
-        seen: list[Computed] | None = None,
+        seen: list[MetricArrays] | None = None,
     ) -> Values:
         """Objective and constraint margins of points (variables, designs).
 
@@ -181,8 +181,8 @@ def _bounded(margin: Array) -> Array:
 
 
 def _margins(
-    wanted: tuple[Row, ...],
-    computed: Computed,
+    wanted: tuple[LimitRow, ...],
+    computed: MetricArrays,
     numbers: Numbers,
     count: int,
     reserves: Mapping[str, float],
@@ -209,7 +209,7 @@ def _margins(
 
 
 @np.errstate(all="ignore")  # what has no finite answer is the solver's to judge
-def build(subject: Subject, fault: Fault | None = None) -> ActuatorProblem:
+def build(subject: PreparedDesign, fault: Fault | None = None) -> ActuatorProblem:
     """The optimisation problem of a design.
 
     Parameters

@@ -8,12 +8,12 @@ from dataclasses import replace
 
 from ..design import Design
 from ..design.choice_list import left_out
-from .choices import EQUAL, Search
+from .choices import EQUAL, ChoiceSearch
 from .quick_look import Look
 from .result import Choices, Combination, How
 
 
-def record(found: Search, design: Design) -> Choices:
+def record(found: ChoiceSearch, design: Design) -> Choices:
     """Every combination, the best first.
 
     Parameters

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from ..errors import InputError
 from .branch_and_bound import Found, Memory, at, search
-from .choices import Search, Settings, many_starts
+from .choices import ChoiceSearch, Settings, many_starts
 from .identical_problems import Evidence
 from .quick_look import Look
 from .rounding import RUNNERS_UP, Sizes, Wanted, sizes_of
@@ -33,7 +33,7 @@ class Sized:
     memory: Memory
 
 
-def best_of_sizes(choices: Search, wanted: Wanted, settings: Settings) -> Sized | None:
+def best_of_sizes(choices: ChoiceSearch, wanted: Wanted, settings: Settings) -> Sized | None:
     """The combination with the best design of listed sizes, solved from many starts.
 
     Where none has any, that with the best continuous optimum; None where no variable has sizes.
@@ -55,7 +55,7 @@ def best_of_sizes(choices: Search, wanted: Wanted, settings: Settings) -> Sized 
     return winner
 
 
-def _searched(choices: Search, wanted: Wanted, settings: Settings) -> Iterator[Sized]:
+def _searched(choices: ChoiceSearch, wanted: Wanted, settings: Settings) -> Iterator[Sized]:
     """Every combination that is worth it, searched for something better than those before."""
     error: InputError | None = None
     memories: dict[object, Memory] = {}

@@ -19,10 +19,10 @@ from ..design.choice_list import combinations
 from ..design.material import Material
 from ..design.materials import load_library
 from ..errors import Diagnostic, InputError
-from ..evaluation import Subject, compute, prepare
+from ..evaluation import PreparedDesign, compute, prepare
 from ..evaluation.build import names_of_materials
 from ..evaluation.limits import all_limits
-from ..evaluation.rows import Row, rows_of
+from ..evaluation.rows import LimitRow, rows_of
 from .actuator import ActuatorProblem, Goal, build, goal_of
 from .descents import FEASIBLE
 from .quick_look import DOUBTFUL, Look, Start, hessian_of, look_quickly
@@ -65,7 +65,7 @@ class Settings:
 
 
 @dataclass
-class Search:
+class ChoiceSearch:
     """All combinations of a design's choices."""
 
     goal: Goal
@@ -106,7 +106,7 @@ class Search:
         return [first, *(look for look in looks if look is not first)]
 
 
-def possible(subject: Subject) -> list[Look]:
+def possible(subject: PreparedDesign) -> list[Look]:
     """Every combination of the choices, with its design or why there is none.
 
     Raises
@@ -152,7 +152,7 @@ def _require_one(looks: Sequence[Look]) -> None:
 
 
 @np.errstate(all="ignore")  # what has no finite answer is never the best
-def search(subject: Subject, settings: Settings, most: int = MOST_SOLVED) -> Search:
+def search(subject: PreparedDesign, settings: Settings, most: int = MOST_SOLVED) -> ChoiceSearch:
     """Look at every combination of the choices, solve the best ones from many starts.
 
     Parameters
@@ -166,7 +166,7 @@ def search(subject: Subject, settings: Settings, most: int = MOST_SOLVED) -> Sea
     InputError
         no combination is a possible design
     """
-    found = Search(goal_of(subject), possible(subject))
+    found = ChoiceSearch(goal_of(subject), possible(subject))
     moving = bool(subject.design.variables)
     for look in found.looks:
         if look.subject is None:
@@ -192,7 +192,7 @@ def _with_goal(actuator: ActuatorProblem, goal: Goal) -> ActuatorProblem:
     return replace(shared, problem=replace(actuator.problem, evaluate=shared.evaluate))
 
 
-def _missed_checks(rows: Sequence[Row]) -> frozenset[str]:
+def _missed_checks(rows: Sequence[LimitRow]) -> frozenset[str]:
     return frozenset(
         row.limit_of.name
         for row in rows
@@ -223,7 +223,7 @@ def _evaluate(look: Look, goal: Goal) -> None:
         raise InputError(Diagnostic(message, path="objective"))
 
 
-def _look_at_all(found: Search, settings: Settings) -> None:
+def _look_at_all(found: ChoiceSearch, settings: Settings) -> None:
     """A quick look at every combination, in half of the time there is."""
     began = time.perf_counter()
     for look in found.looks:
@@ -239,11 +239,11 @@ def _look_at_all(found: Search, settings: Settings) -> None:
             look.hessian = hessian_of(look)
 
 
-def _any(found: Search) -> bool:
+def _any(found: ChoiceSearch) -> bool:
     return any(look.x is not None for look in found.looks)
 
 
-def _starts(found: Search, look: Look) -> list[Start]:
+def _starts(found: ChoiceSearch, look: Look) -> list[Start]:
     """Where the combinations that differ in the fewest values ended.
 
     A neighbour that meets everything is gone down from; one as near that does not tells best how
@@ -274,7 +274,7 @@ def _starts(found: Search, look: Look) -> list[Start]:
     return starts or ([] if own is None else [Start(own, descend=True)])
 
 
-def _solve_best(found: Search, settings: Settings, most: int) -> None:
+def _solve_best(found: ChoiceSearch, settings: Settings, most: int) -> None:
     """Many starts for the winner and for what comes near it, best first."""
     second = True
     for _ in range(most):
@@ -297,7 +297,7 @@ def _solve_best(found: Search, settings: Settings, most: int) -> None:
         many_starts(best, settings)
 
 
-def _promising(found: Search) -> Look | None:
+def _promising(found: ChoiceSearch) -> Look | None:
     """The next combination worth many starts; None where the rest is clearly worse."""
     ranked, mendable = found.ranked(), found.mendable()
     best = ranked[0]

@@ -22,7 +22,7 @@ from ..design.model import Design
 from ..design.seals import BACK_UPS, Seal
 from ..design.variable import Variable
 from ..errors import InputError
-from ..evaluation import Subject, prepare
+from ..evaluation import PreparedDesign, prepare
 from ..evaluation.build import names_of_materials
 from ..joints.kinds import JOINTS
 from ..numeric import STEP, Array
@@ -332,7 +332,7 @@ def _missed(problem: BoxProblem, x: Vector) -> float:
 
 
 def _vocabulary(
-    subject: Subject, library: Library, gains: Mapping[str, float], places: set[str]
+    subject: PreparedDesign, library: Library, gains: Mapping[str, float], places: set[str]
 ) -> Iterator[tuple[str, str, dict[str, str]]]:
     """PATHs of words and materials that take part in the conflict, what to try, and beside what.
 

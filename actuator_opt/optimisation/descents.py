@@ -33,7 +33,7 @@ LOCAL_EVALUATIONS = 150
 
 
 @dataclass
-class Found:
+class SearchResult:
     """A point that runs ended on: how far it is from optimal, what led there, how often."""
 
     point: Point
@@ -53,7 +53,7 @@ class Descents:
     def __init__(self, evaluator: Evaluator, seed: int) -> None:
         self.evaluator = evaluator
         self.seed = seed
-        self.optima: list[Found] = []
+        self.optima: list[SearchResult] = []
         self.records: list[StartRecord] = []
         self.warnings: list[str] = []
         self.least: list[Point] = []
@@ -77,7 +77,7 @@ class Descents:
             return np.inf
         return kkt.check(self.evaluator, point, objective_scale=self.objective_scale).residual
 
-    def same(self, point: Point) -> Found | None:
+    def same(self, point: Point) -> SearchResult | None:
         """Return the optimum already found that a point has run into."""
         for optimum in self.optima:
             known = optimum.point
@@ -126,7 +126,7 @@ class Descents:
             self.descend(found, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
             return
         if found.violation < least * (1 - NEARER):
-            self.optima.append(Found(found, self.residual(found), RESTORATION))
+            self.optima.append(SearchResult(found, self.residual(found), RESTORATION))
         self.least.append(found)
         if found.violation > least * (1 + ELSEWHERE):
             self.descend(found, "LD_SLSQP", linear=False, most=LOCAL_EVALUATIONS)
@@ -136,7 +136,7 @@ class Descents:
                 StartRecord(start.x, found.objective, found.violation, RESTORATION, used)
             )
 
-    def finish(self, point: Point, algorithm: str) -> Found:
+    def finish(self, point: Point, algorithm: str) -> SearchResult:
         """Polish a point and enter it among the optima."""
         better = polish(self.evaluator, point)
         if better is not point:
@@ -145,17 +145,17 @@ class Descents:
         if known is not None:
             known.hits += 1
             return known
-        optimum = Found(better, self.residual(better), algorithm)
+        optimum = SearchResult(better, self.residual(better), algorithm)
         self.optima.append(optimum)
         return optimum
 
-    def best(self, others: Sequence[Found] = ()) -> Found | None:
+    def best(self, others: Sequence[SearchResult] = ()) -> SearchResult | None:
         """Feasible points by objective, then the least infeasible, of the optima and others.
 
         A point whose optimality is proven wins over one that is better by rounding only.
         """
 
-        def rank(optimum: Found) -> tuple[float, float]:
+        def rank(optimum: SearchResult) -> tuple[float, float]:
             point = optimum.point
             if not point.valid:
                 return (np.inf, np.inf)

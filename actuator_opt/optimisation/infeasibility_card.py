@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..design import quantity_of
-from ..evaluation.rows import Row
+from ..evaluation.rows import LimitRow
 from ..metrics import METRICS
 from ..quantities import Quantity
 from .actuator import ActuatorProblem
@@ -158,12 +158,12 @@ def entry_of(actuator: ActuatorProblem, relaxed: Relaxation) -> dict[str, Any]:
     return entry | _texts(shown, limit, needed, upwards=sense == "max")
 
 
-def _guards(row: Row) -> bool:
+def _guards(row: LimitRow) -> bool:
     """Whether a limit guards safety: every one of the check list, and every factor."""
     return row.limit_of.origin == "check" or row.limit_of.metric.endswith("_factor")
 
 
-def _relaxed(row: Row, limit: float, amount: float) -> float:
+def _relaxed(row: LimitRow, limit: float, amount: float) -> float:
     """The limit that would do after giving up a margin `amount`."""
     step = amount * (abs(limit) or 1.0)
     return limit - step if row.limit_of.sense == "min" else limit + step

@@ -28,7 +28,7 @@ RADIUS = 0.5
 
 
 @dataclass(frozen=True)
-class State:
+class NewtonState:
     """A point on the way, with what the next step needs."""
 
     point: Point
@@ -39,7 +39,7 @@ class State:
     scale: float
 
 
-def state_at(evaluator: Evaluator, point: Point) -> State:
+def state_at(evaluator: Evaluator, point: Point) -> NewtonState:
     """A point with its multipliers and how far it is from optimal."""
     m = evaluator.constraint_count
     jacobian = evaluator.jacobian(point)
@@ -50,7 +50,7 @@ def state_at(evaluator: Evaluator, point: Point) -> State:
     rest = jacobian[0] - near.gradients.T @ held - equalities.T @ free
     slack = float(held @ np.maximum(near.margins, 0.0))
     measure = (float(np.linalg.norm(rest)) + slack) / scale + point.violation
-    return State(point, near, held, free, measure, scale)
+    return NewtonState(point, near, held, free, measure, scale)
 
 
 def polish(
@@ -82,7 +82,7 @@ def polish(
     return start
 
 
-def _acceptable(evaluator: Evaluator, first: State, found: State) -> bool:
+def _acceptable(evaluator: Evaluator, first: NewtonState, found: NewtonState) -> bool:
     """No less feasible, and no costlier than the start plus the price of what it violated."""
     if found.point.violation > max(FEASIBLE, first.point.violation):
         return False
@@ -95,7 +95,7 @@ def _acceptable(evaluator: Evaluator, first: State, found: State) -> bool:
     return found.point.objective <= first.point.objective + 2 * owed + room
 
 
-def _advance(evaluator: Evaluator, state: State) -> State | None:
+def _advance(evaluator: Evaluator, state: NewtonState) -> NewtonState | None:
     """One accepted step, or None where no step helps."""
     point, space = state.point, evaluator.space
     step, price = quadratic_step(
@@ -161,7 +161,7 @@ def quadratic_step(
     return shift + basis @ inner, 2 * max(held.max(initial=0.0), free.max(initial=0.0)) + 1.0
 
 
-def convex_hessian(evaluator: Evaluator, state: State) -> Vector:
+def convex_hessian(evaluator: Evaluator, state: NewtonState) -> Vector:
     """Scaled Hessian of the Lagrangian, made positive definite without changing the step.
 
     Adding multiples of the active rows' outer products leaves the solution on those rows as it

@@ -11,10 +11,10 @@ import numpy as np
 from ..bounds import FRONT
 from ..design.model import Objective
 from ..errors import Diagnostic, InputError, UsageError
-from ..evaluation import Subject, compute, evaluate
+from ..evaluation import PreparedDesign, compute, evaluate
 from ..evaluation.build import spec_hash
 from ..evaluation.governing import governing
-from ..evaluation.rows import Computed
+from ..evaluation.rows import MetricArrays
 from ..numeric import Array
 from ..quantities import Quantity
 from ..suggest import remedy
@@ -64,19 +64,19 @@ class _Many:
     actuator: ActuatorProblem
     goals: tuple[Goal, ...]
     wished: tuple[Wish, ...]
-    subject: Subject
+    subject: PreparedDesign
     """As asked about, with its own objective."""
 
     def evaluate(self, points: Array) -> Values:
         """Objectives, to be minimised, and margins."""
         cases = self.actuator.subject.cases
-        done: list[Computed] = []
+        done: list[MetricArrays] = []
         found = self.actuator.evaluate(points, seen=done)
         return replace(found, objective=[goal.value(done[0], cases) for goal in self.goals])
 
 
 def pareto(
-    subject: Subject,
+    subject: PreparedDesign,
     objectives: Sequence[str],
     *,
     count: int = 50,
@@ -111,7 +111,7 @@ def pareto(
     return _result(many, found, seed, began)
 
 
-def _problem(subject: Subject, wished: tuple[Wish, ...], fault: Fault | None) -> _Many:
+def _problem(subject: PreparedDesign, wished: tuple[Wish, ...], fault: Fault | None) -> _Many:
     """The problem, each objective of which exists and moves.
 
     Raises

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..design.choice_list import Value
-from ..evaluation import Subject
+from ..evaluation import PreparedDesign
 from . import elastic, kkt, nlopt_wrapper
 from .actuator import ActuatorProblem
 from .descents import FEASIBLE
@@ -55,7 +55,7 @@ class Look:
 
     order: int
     values: Mapping[str, Value]
-    subject: Subject | None = None
+    subject: PreparedDesign | None = None
     actuator: ActuatorProblem | None = None
     fault: str = ""
     """Why there is no such design."""

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from ..design.build import with_values
 from ..errors import InputError
-from ..evaluation import Evaluation, Subject, evaluate, prepare
+from ..evaluation import Evaluation, PreparedDesign, evaluate, prepare
 from ..evaluation.result import Requirement
 from ..quantities import Quantity
 from .infeasibility_card import change_text
@@ -177,8 +177,8 @@ def active(one: Optimisation) -> list[str]:
 
 
 def redesign(
-    before: Subject,
-    after: Subject,
+    before: PreparedDesign,
+    after: PreparedDesign,
     learned: Sequence[Mapping[str, tuple[float, float]]],
     *,
     seed: int = 0,
@@ -210,7 +210,9 @@ def redesign(
 
 
 def _bounds(
-    subject: Subject, middle: Evaluation, learned: Sequence[Mapping[str, tuple[float, float]]]
+    subject: PreparedDesign,
+    middle: Evaluation,
+    learned: Sequence[Mapping[str, tuple[float, float]]],
 ) -> dict[str, tuple[float | None, float | None]]:
     """Values of the requirements between the bounds of what was measured."""
     values = {row.name: row.value for row in middle.requirements}

@@ -6,12 +6,12 @@ import time
 from dataclasses import dataclass, replace
 
 from ..design import quantity_of
-from ..evaluation import Evaluation, Subject, evaluate
+from ..evaluation import Evaluation, PreparedDesign, evaluate
 from .actuator import ActuatorProblem, Fault, build, idle_metrics, require_movable_objective
 from .certified import certified, enumerated
 from .choice_record import record
 from .choice_sizes import Sized, best_of_sizes
-from .choices import MOST_SOLVED, Search, Settings, search
+from .choices import MOST_SOLVED, ChoiceSearch, Settings, search
 from .infeasibility_card import explained
 from .outcome import Outcome, Solution
 from .price_table import sensitivities
@@ -34,7 +34,7 @@ to one optimum, and where poles and margins are asked the sweep is most of the t
 
 
 def optimise(
-    subject: Subject,
+    subject: PreparedDesign,
     *,
     fault: Fault | None = None,
     algorithm: str = "auto",
@@ -111,7 +111,7 @@ def optimise(
 
 
 def result_of(
-    subject: Subject,
+    subject: PreparedDesign,
     actuator: ActuatorProblem,
     solution: Solution,
     *,
@@ -161,7 +161,7 @@ def _follow(
 
 
 def _result(
-    subject: Subject,
+    subject: PreparedDesign,
     actuator: ActuatorProblem,
     after: _After,
     choices: Choices | None,
@@ -215,7 +215,7 @@ def _idle(actuator: ActuatorProblem) -> tuple[str, ...]:
 
 
 def _enumerated(
-    subject: Subject, found: Search, choices: Choices, seed: int, began: float
+    subject: PreparedDesign, found: ChoiceSearch, choices: Choices, seed: int, began: float
 ) -> Optimisation:
     """The best combination of the choices, where nothing else may move."""
     best = found.ranked()[0]

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..progress import tell
 from . import kkt, nlopt_wrapper
-from .descents import FEASIBLE, LOCAL_EVALUATIONS, RESIDUAL, Descents, Found
+from .descents import FEASIBLE, LOCAL_EVALUATIONS, RESIDUAL, Descents, SearchResult
 from .evaluator import Evaluator, LimitReached, Point
 from .outcome import LocalOptimum, Outcome, Solution
 from .problem import BoxProblem, Vector
@@ -151,7 +151,7 @@ def _chosen_path(search: Descents, points: list[Point], chosen: str) -> None:
 
 def _fixed(search: Descents) -> Solution:
     point = search.evaluator.point(np.empty(0))
-    search.optima.append(Found(point, 0.0, "none"))
+    search.optima.append(SearchResult(point, 0.0, "none"))
     return _conclude(search, _nothing(search.evaluator))
 
 
@@ -208,7 +208,7 @@ def _conclude(search: Descents, swept: Sweep) -> Solution:
     )
 
 
-def _best_seen(search: Descents, swept: Sweep) -> Found:
+def _best_seen(search: Descents, swept: Sweep) -> SearchResult:
     """The best of all points: also of those a run passed, of the sweep, the start or the middle."""
     evaluator = search.evaluator
     space, start = evaluator.space, evaluator.problem.start
@@ -218,12 +218,12 @@ def _best_seen(search: Descents, swept: Sweep) -> Found:
     seen = [evaluator.point(z) for z in (*swept.z[:, :1].T.copy(), rest)]
     if evaluator.best is not None:
         seen.insert(0, evaluator.best)
-    best = search.best([Found(p, search.residual(p), "best point seen") for p in seen])
+    best = search.best([SearchResult(p, search.residual(p), "best point seen") for p in seen])
     assert best is not None
     return best
 
 
-def _settle(search: Descents, best: Found) -> tuple[Point, tuple[str, ...]]:
+def _settle(search: Descents, best: SearchResult) -> tuple[Point, tuple[str, ...]]:
     """Put variables without effect back to their start, or the middle of their bounds."""
     evaluator = search.evaluator
     space, problem = evaluator.space, evaluator.problem

@@ -11,7 +11,7 @@ import numpy as np
 from ..evaluation.reserve import count_words
 from ..quantities import RESULTS, SCENARIOS, Quantity
 from ..simulation.loops import LOOPS, loop_of
-from ..simulation.result import Row, Simulation
+from ..simulation.result import RequirementResult, Simulation
 from . import text
 from .optimum import sentence
 from .origin import tile
@@ -55,7 +55,7 @@ class Shown(NamedTuple):
     name: str
     label: str
     value: float | None
-    row: Row | None
+    row: RequirementResult | None
 
     @property
     def quantity(self) -> Quantity:
@@ -104,7 +104,9 @@ def results(found: Simulation) -> list[Shown]:
     shown = []
     for name in RESULTS:
         value = known(name, found.values.get(name))
-        rows: Sequence[Row | None] = [one for one in found.requirements if one.metric == name]
+        rows: Sequence[RequirementResult | None] = [
+            one for one in found.requirements if one.metric == name
+        ]
         if value is None and not rows:
             continue
         shown += [Shown(name, label(name), value, row) for row in rows or [None]]

@@ -12,7 +12,7 @@ import numpy as np
 from ..numeric import Array
 from ..quantities import RESULTS
 from ..simulation.harmonic import harmonic_fit
-from ..simulation.result import Shaken, Simulation, Window
+from ..simulation.result import HarmonicLoad, Simulation, Window
 from .figures import Axes, required
 from .identification_axes import SURE, Box, band, error_bar, even_ticks
 from .ink import BLUE, WHITE, Ink, text_width
@@ -33,7 +33,7 @@ Limits = Sequence[tuple[str, float]]
 
 
 @dataclass(frozen=True, slots=True)
-class Along:
+class StrokeProfile:
     """Windows of one run as they are drawn: place, size and phase with their errors, by style."""
 
     words: str
@@ -51,7 +51,7 @@ def travelled(windows: Sequence[Window], stroke: float) -> bool:
     return max(places) - min(places) > MOVED * stroke
 
 
-def along(words: str, shaken: Shaken, over: str, style: dict[str, Any]) -> Along:
+def along(words: str, shaken: HarmonicLoad, over: str, style: dict[str, Any]) -> StrokeProfile:
     """Windows over the stroke (mm) or over time (s), in kN/mm and degrees.
 
     An error of the stiffness turns it by the same share at most: that is the phase's.
@@ -63,7 +63,7 @@ def along(words: str, shaken: Shaken, over: str, style: dict[str, Any]) -> Along
     turn = PHASE.to_display(1.0)
     phases = np.unwrap([float(np.angle(one.stiffness)) for one in order])
     scale = STIFFNESS.to_display(1.0)
-    return Along(
+    return StrokeProfile(
         words,
         place,
         [scale * k for k in size],
@@ -82,7 +82,7 @@ def limits_of(found: Simulation, metric: str) -> Limits:
 def stiffness_panels(
     ink: Ink,
     boxes: tuple[Box, Box],
-    runs: Sequence[Along],
+    runs: Sequence[StrokeProfile],
     over: str,
     *,
     static: Static | None = None,
@@ -110,7 +110,7 @@ def stiffness_panels(
     )  # fmt: skip
 
 
-def _across(runs: Sequence[Along]) -> tuple[float, float]:
+def _across(runs: Sequence[StrokeProfile]) -> tuple[float, float]:
     places = [x for one in runs for x in one.place]
     low, high = min(places), max(places)
     spare = 0.04 * (high - low) or 0.5

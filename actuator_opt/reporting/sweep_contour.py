@@ -18,7 +18,7 @@ from .figures import Axes
 from .identification_axes import even_ticks, spaced
 from .ink import BLACK, BLUE, GREY, PALE, POINT, RED, WHITE, Ink, Point, hatch, text_width
 from .sweep_figure import SweepFigure
-from .sweep_marks import ORIGINS, Drawn, heading
+from .sweep_marks import ORIGINS, SweepFigureData, heading
 from .text import trimmed
 from .wall_figures import GREEN, OCHRE
 
@@ -103,7 +103,9 @@ def _even(line: Sequence[Point]) -> Array:
     return np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1)
 
 
-def contour_figure(drawn: Drawn, field: Field, boundaries: Sequence[Boundary], metric: str) -> Ink:
+def contour_figure(
+    drawn: SweepFigureData, field: Field, boundaries: Sequence[Boundary], metric: str
+) -> Ink:
     """Contours of one metric, the lines where limits are just met, the missed side hatched.
 
     Raises
@@ -152,7 +154,7 @@ def contour_figure(drawn: Drawn, field: Field, boundaries: Sequence[Boundary], m
     return ink
 
 
-def _notes(drawn: Drawn, field: Field) -> str:
+def _notes(drawn: SweepFigureData, field: Field) -> str:
     counts = drawn.counts()
     every = f"; {len(field.xs)} by {len(field.ys)} of them drawn" if field.thinned else ""
     return f"{counts}{every}. Hatched: some limit is missed."
@@ -253,7 +255,7 @@ def _frame(axes: Axes, across: str, up: str) -> None:
 
 
 def _name(
-    drawn: Drawn,
+    drawn: SweepFigureData,
     labels: _Labels,
     edges: dict[int, list[list[Point]]],
     styles: dict[int, dict[str, Any]],
@@ -282,7 +284,9 @@ def _say(ink: Ink, at: Point, words: str, color: str, *, bold: bool = False) -> 
     ink.text(*at, words, size=_SIZE, anchor="center", color=color, bold=bold)
 
 
-def _below(ink: Ink, drawn: Drawn, field: Field, key: Sequence[tuple[str, str]], y: float) -> float:
+def _below(
+    ink: Ink, drawn: SweepFigureData, field: Field, key: Sequence[tuple[str, str]], y: float
+) -> float:
     """What the marks mean, and the limits without a line; the height of the figure."""
     x = 2.0
     marks = [("contour", _METRIC), ("limit just met", STYLES[0])]
@@ -316,7 +320,7 @@ def _below(ink: Ink, drawn: Drawn, field: Field, key: Sequence[tuple[str, str]],
     return y + 4.0
 
 
-def _everywhere(drawn: Drawn, field: Field) -> list[str]:
+def _everywhere(drawn: SweepFigureData, field: Field) -> list[str]:
     """Requirements that every node meets."""
     found = []
     for k, margins in enumerate(field.margins):
@@ -327,7 +331,7 @@ def _everywhere(drawn: Drawn, field: Field) -> list[str]:
     return found
 
 
-def _draw(drawn: Drawn, metrics: Sequence[str], asked: bool) -> dict[str, Ink]:
+def _draw(drawn: SweepFigureData, metrics: Sequence[str], asked: bool) -> dict[str, Ink]:
     """A picture of every metric asked for, else of the first."""
     grid = field_of(drawn.study)
     lines = list(grid.boundaries())

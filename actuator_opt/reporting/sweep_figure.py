@@ -11,7 +11,7 @@ from ..errors import Diagnostic, UsageError
 from ..suggest import remedy, shown
 from ..variants.chunk import Study
 from .ink import Ink
-from .sweep_marks import Drawn
+from .sweep_marks import SweepFigureData
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class SweepFigure:
     every: bool
     lines: bool
     check: Callable[[Study, Sequence[str]], None]
-    draw: Callable[[Drawn, Sequence[str], bool], Mapping[str, Ink]]
+    draw: Callable[[SweepFigureData, Sequence[str], bool], Mapping[str, Ink]]
 
 
 def figure(kind: str) -> SweepFigure:

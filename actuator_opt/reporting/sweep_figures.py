@@ -14,7 +14,7 @@ from . import writer
 from .image import images
 from .ink import Ink
 from .sweep_figure import figure
-from .sweep_marks import Drawn
+from .sweep_marks import SweepFigureData
 
 USUAL = 5
 """Metrics shown where none is chosen, at most."""
@@ -69,7 +69,7 @@ def sweep_figures(swept: Swept, kinds: Sequence[str], show: Sequence[str] = ()) 
         no feasible design, or a metric without values
     """
     watched(swept.study, kinds, show)
-    drawn, metrics = Drawn(swept), chosen(swept.study, show)
+    drawn, metrics = SweepFigureData(swept), chosen(swept.study, show)
     found: dict[str, Ink] = {}
     for kind in dict.fromkeys(kinds):
         pictures = figure(kind).draw(drawn, metrics, bool(show))

@@ -62,7 +62,7 @@ class Track:
         return found
 
 
-class Drawn:
+class SweepFigureData:
     """A sweep as its figures see it."""
 
     def __init__(self, swept: Swept) -> None:
@@ -198,7 +198,7 @@ def _nth(step: int) -> str:
     return f"{step}{'th' if step % 100 in (11, 12, 13) else ending}"
 
 
-def heading(ink: Ink, drawn: Drawn, words: str, notes: str) -> float:
+def heading(ink: Ink, drawn: SweepFigureData, words: str, notes: str) -> float:
     """The name of the design and what is drawn; the height it takes."""
     room = ink.width - 4.0
     title = fitted(f"{drawn.study.design.name}: {words}", room * 0.88, 9.0)

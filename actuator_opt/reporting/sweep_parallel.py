@@ -12,7 +12,7 @@ from .figures import fitted
 from .identification_axes import even_range, even_ticks
 from .ink import BLACK, GREY, RED, WHITE, Ink, Point, text_width
 from .sweep_figure import SweepFigure, fits
-from .sweep_marks import BETTER, INFEASIBLE, Drawn, Rows, Track, heading, two_lines
+from .sweep_marks import BETTER, INFEASIBLE, Rows, SweepFigureData, Track, heading, two_lines
 from .text import SENSES, trimmed
 
 MOST = 1000
@@ -20,7 +20,7 @@ MOST = 1000
 _LEFT, _RIGHT, _GAP, _TALL, _SIZE = 16.0, 14.0, 25.0, 82.0, 6.3
 
 
-def parallel_figure(drawn: Drawn, metrics: Sequence[str]) -> Ink:
+def parallel_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
     """What varies, the objective, metrics; every design a line, the best one bold.
 
     Raises
@@ -131,7 +131,7 @@ def _axis(
 
 def _limits(
     ink: Ink,
-    drawn: Drawn,
+    drawn: SweepFigureData,
     at: tuple[float, float, float],
     track: Track,
     span: tuple[float, float],

@@ -14,7 +14,7 @@ from .figures import Axes, fitted
 from .identification_axes import even_range, even_ticks, spaced
 from .ink import BLACK, GREY, PALE, RED, WHITE, Ink, text_width
 from .sweep_figure import SweepFigure
-from .sweep_marks import BETTER, INFEASIBLE, Drawn, heading
+from .sweep_marks import BETTER, INFEASIBLE, SweepFigureData, heading
 
 MOST = 2000
 """Designs drawn of the feasible, and of the others, in a panel (a choice)."""
@@ -27,7 +27,7 @@ PARETO: dict[str, Any] = {"stroke": RED, "pen": 0.4}
 LIMIT: dict[str, Any] = {"stroke": BLACK, "pen": 0.2, "dash": (1.6, 0.9)}
 
 
-def scatter_figure(drawn: Drawn, metrics: Sequence[str]) -> Ink:
+def scatter_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
     """A panel for every pair of metrics.
 
     Raises
@@ -93,12 +93,12 @@ def _pairs(metrics: Sequence[str]) -> list[tuple[str, str]]:
     return [(metrics[c], metrics[r]) for r in range(1, len(metrics)) for c in range(r)]
 
 
-def _front(drawn: Drawn, first: str, second: str) -> tuple[Array, bool]:
+def _front(drawn: SweepFigureData, first: str, second: str) -> tuple[Array, bool]:
     return drawn.swept.sample.front(drawn.study, (first, second))
 
 
 def _told(
-    drawn: Drawn, metrics: Sequence[str], lines: dict[tuple[str, str], tuple[Array, bool]]
+    drawn: SweepFigureData, metrics: Sequence[str], lines: dict[tuple[str, str], tuple[Array, bool]]
 ) -> str:
     """Which way each metric is better, and what the Pareto lines are of."""
     ways = {name: better(drawn.study, name) for name in metrics}
@@ -126,7 +126,9 @@ def _span(feasible: Array, every: Sequence[Array]) -> tuple[float, float]:
     return even_range([low, high])
 
 
-def _frame(drawn: Drawn, axes: Axes, across: str, up: str, first: bool, last: bool) -> None:
+def _frame(
+    drawn: SweepFigureData, axes: Axes, across: str, up: str, first: bool, last: bool
+) -> None:
     """Grid and ticks; names and numbers on the outside of the matrix alone."""
     ink, bottom, right = axes.ink, axes.top + axes.height, axes.left + axes.width
     small = axes.height < 30
@@ -163,7 +165,7 @@ def _points(axes: Axes, values: Array, fill: str, half: float) -> None:
     axes.ink.path(shapes, stroke=None, fill=fill, closed=True)
 
 
-def _limits(drawn: Drawn, axes: Axes, metric: str, *, upright: bool) -> None:
+def _limits(drawn: SweepFigureData, axes: Axes, metric: str, *, upright: bool) -> None:
     """A dashed line at every limit on a metric."""
     low, high = axes.x_range if upright else axes.y_range
     for _, value in drawn.limits_on(metric):
@@ -178,7 +180,9 @@ def _limits(drawn: Drawn, axes: Axes, metric: str, *, upright: bool) -> None:
             axes.ink.line((axes.left, y), (axes.left + axes.width, y), **LIMIT)
 
 
-def _line(drawn: Drawn, axes: Axes, pair: tuple[str, str], values: Array, exact: bool) -> None:
+def _line(
+    drawn: SweepFigureData, axes: Axes, pair: tuple[str, str], values: Array, exact: bool
+) -> None:
     """The Pareto line as stairs: what is worse than some design in both metrics lies behind it."""
     if not values.shape[1]:
         return

@@ -7,14 +7,14 @@ from ..evaluation import evaluate
 from .fallback import wrap
 from .ink import Ink
 from .sweep_figure import SweepFigure, fits
-from .sweep_marks import Drawn, heading, value_words
+from .sweep_marks import SweepFigureData, heading, value_words
 from .text import limit_text, margin_text
 from .ucurves import MOST, SIZE, STYLES, Required, curves_drawn, has_points
 
 NBSP = "\N{NO-BREAK SPACE}"
 
 
-def ucurves_figure(drawn: Drawn) -> Ink:
+def ucurves_figure(drawn: SweepFigureData) -> Ink:
     """The U-curves of the best designs with the stiffness required, and what each of them is.
 
     Raises
@@ -48,7 +48,7 @@ def ucurves_figure(drawn: Drawn) -> Ink:
     return ink
 
 
-def _key(drawn: Drawn, ink: Ink, y: float, count: int) -> float:
+def _key(drawn: SweepFigureData, ink: Ink, y: float, count: int) -> float:
     """What varies in each of the designs."""
     tracks = [drawn.axis(axis.path) for axis in drawn.study.plan.axes]
     for k in range(count):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ..metrics import METRICS
 from ..quantities import RESULTS, Quantity
 from ..simulation.sensitivity import Effect, Parameter, Sensitivities
-from ..simulation.verification import Row, Verification
+from ..simulation.verification import Verification, VerifiedRequirement
 from . import text
 from .blocks import ExtraTable
 from .optimum import sentence
@@ -53,17 +53,17 @@ class Line(NamedTuple):
     """Experiment and reason; empty where there is nothing to say."""
 
 
-def quantity(row: Row) -> Quantity:
+def quantity(row: VerifiedRequirement) -> Quantity:
     """What a requirement limits."""
     return (RESULTS if row.origin == "scenario" else METRICS)[row.metric]
 
 
-def label(row: Row) -> str:
+def label(row: VerifiedRequirement) -> str:
     """A requirement in few words."""
     return row.metric.replace("_", " ")
 
 
-def line(row: Row) -> Line:
+def line(row: VerifiedRequirement) -> Line:
     """A requirement with both tiers."""
     known = quantity(row)
     state = "met" if row.met else "missed" if row.value is not None else "not_checked"
@@ -82,14 +82,14 @@ def line(row: Row) -> Line:
 _HOLDS = {"met": "yes", "missed": "no", "not_checked": "not known"}
 
 
-def _beside(row: Row) -> bool:
+def _beside(row: VerifiedRequirement) -> bool:
     """Whether the linear tier is clearly worse where no experiment can stand."""
     if row.stated is None or row.linear is None:
         return False
     return abs(row.stated - row.linear) > BESIDE * abs(row.stated)
 
 
-def _said(row: Row) -> str:
+def _said(row: VerifiedRequirement) -> str:
     parts = [row.why]
     if row.origin == "design":
         parts = [row.where, row.how, row.why]
@@ -146,15 +146,15 @@ def verification_rows(found: Verification) -> tuple[ExtraTable, ...]:
     return tuple(tables)
 
 
-def _where(row: Row) -> str:
+def _where(row: VerifiedRequirement) -> str:
     return pretty(row.where) or DASH
 
 
-def _how(row: Row) -> str:
+def _how(row: VerifiedRequirement) -> str:
     return pretty(row.how) or DASH
 
 
-def _why(row: Row) -> str:
+def _why(row: VerifiedRequirement) -> str:
     return pretty(row.why) or DASH
 
 

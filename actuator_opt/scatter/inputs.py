@@ -22,7 +22,7 @@ from ..design.material import Property, Spread
 from ..design.standards import citation, tables
 from ..design.tolerances import source
 from ..errors import Diagnostic, InputError
-from ..evaluation import Subject, compute
+from ..evaluation import PreparedDesign, compute
 from ..models.elastomer import MODULUS_LAWS
 from ..quantities import Quantity
 from .draw import Distribution, about
@@ -71,7 +71,7 @@ class Input:
         }  # fmt: skip
 
 
-def inputs(subject: Subject) -> tuple[Input, ...]:
+def inputs(subject: PreparedDesign) -> tuple[Input, ...]:
     """Every number of a design that scatters, by PATH.
 
     Raises
@@ -90,7 +90,7 @@ def inputs(subject: Subject) -> tuple[Input, ...]:
     return tuple(one for _, one in sorted(kept.items()) if one.distribution.shape != "fixed")
 
 
-def read_by_models(subject: Subject) -> set[str]:
+def read_by_models(subject: PreparedDesign) -> set[str]:
     """PATHs that the models read, the factor on a modulus by hardness among them."""
     factors = {f"materials.{name}.{_FACTOR}": np.ones(2) for name in _compounds(subject)}
     values = subject.values(factors)
@@ -101,7 +101,7 @@ def read_by_models(subject: Subject) -> set[str]:
 # ---- what the file states ----
 
 
-def _stated(subject: Subject, path: str, entry: dict[str, Any], is_read: bool) -> Input:
+def _stated(subject: PreparedDesign, path: str, entry: dict[str, Any], is_read: bool) -> Input:
     quantity = quantity_of(path, subject.design)
     at = f"uncertainty.{path}.distribution"
     value = subject.numbers.get(path, 1.0 if path.endswith(_FACTOR) else None)
@@ -118,7 +118,7 @@ def _stated(subject: Subject, path: str, entry: dict[str, Any], is_read: bool) -
     return Input(path, quantity, value, drawn, "design", words)
 
 
-def _measured(subject: Subject) -> Iterator[Input]:
+def _measured(subject: PreparedDesign) -> Iterator[Input]:
     for path, bounds in subject.design.measured.items():
         quantity, value = quantity_of(path, subject.design), subject.numbers.get(path)
         deviation = (bounds.upper - bounds.lower) / (2 * NORMAL_95)
@@ -132,7 +132,7 @@ def _measured(subject: Subject) -> Iterator[Input]:
 # ---- libraries ----
 
 
-def _library(subject: Subject) -> Iterator[Input]:
+def _library(subject: PreparedDesign) -> Iterator[Input]:
     """Scatter that libraries state of properties, and of seals that state their own."""
     for name, material in subject.materials.items():
         for key, entry in material.properties.items():
@@ -148,7 +148,7 @@ def _library(subject: Subject) -> Iterator[Input]:
     yield from _moduli(subject)
 
 
-def _property(subject: Subject, path: str, entry: Property, name: str) -> Iterator[Input]:
+def _property(subject: PreparedDesign, path: str, entry: Property, name: str) -> Iterator[Input]:
     value = subject.numbers[path]
     if entry.spread is None or value == 0:
         return
@@ -174,11 +174,11 @@ def _shape(spread: Spread, value: float) -> tuple[str, dict[str, float]]:
 _FACTOR = "hardness_modulus_factor"
 
 
-def _compounds(subject: Subject) -> list[str]:
+def _compounds(subject: PreparedDesign) -> list[str]:
     return [name for name, one in subject.materials.items() if one.kind == "seal"]
 
 
-def _moduli(subject: Subject) -> Iterator[Input]:
+def _moduli(subject: PreparedDesign) -> Iterator[Input]:
     """Modulus over that of the law a ring uses: between the laws of the registry, in logarithms."""
     laws: dict[str, set[str]] = {}
     for place in ("piston", "rod"):
@@ -204,7 +204,7 @@ def _moduli(subject: Subject) -> Iterator[Input]:
 # ---- practice ----
 
 
-def _practice(subject: Subject) -> Iterator[Input]:
+def _practice(subject: PreparedDesign) -> Iterator[Input]:
     """Diameters, walls, angles and air, where nobody says more."""
     table: Mapping[str, str] = tables()["scatter_of_dimensions"]
     origin = f"{citation(table['source'])}"

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import Diagnostic, InputError
-from ..evaluation import Subject, compute
+from ..evaluation import PreparedDesign, compute
 from ..evaluation.governing import governing
 from ..evaluation.limits import Limit, all_limits
-from ..evaluation.rows import UNLIMITED, Computed, rows_of
+from ..evaluation.rows import UNLIMITED, MetricArrays, rows_of
 from ..evaluation.values import Values
 from ..optimisation.problem import Vector
 from .inputs import Input
@@ -47,7 +47,7 @@ class Model:
     """
 
     def __init__(
-        self, subject: Subject, inputs: Sequence[Input], metrics: Sequence[str] = ()
+        self, subject: PreparedDesign, inputs: Sequence[Input], metrics: Sequence[str] = ()
     ) -> None:
         self.subject = replace(without_basis(subject, inputs), lenient=True)
         self.inputs = tuple(inputs)
@@ -111,7 +111,7 @@ def _rows(arrays: Sequence[Vector], count: int) -> Vector:
     return found
 
 
-def _margin(limit: Limit, computed: Computed, numbers: Values, count: int) -> Vector:
+def _margin(limit: Limit, computed: MetricArrays, numbers: Values, count: int) -> Vector:
     """The least margin of a limit over cases and places (n,); NaN where one has no number."""
     least = np.full(count, np.inf)
     seen = False
@@ -120,7 +120,7 @@ def _margin(limit: Limit, computed: Computed, numbers: Values, count: int) -> Ve
     return np.where(least > UNLIMITED / 1e6, np.inf, least) if seen else np.full(count, np.nan)
 
 
-def _require_metrics(metrics: Sequence[str], computed: Computed) -> None:
+def _require_metrics(metrics: Sequence[str], computed: MetricArrays) -> None:
     for name in metrics:
         if not computed.metrics.get(name):
             why = computed.why.get(name, "no such metric of this design")
@@ -128,7 +128,7 @@ def _require_metrics(metrics: Sequence[str], computed: Computed) -> None:
             raise InputError(Diagnostic(f"{name} cannot be followed: {why}", remedy))
 
 
-def without_basis(subject: Subject, inputs: Sequence[Input]) -> Subject:
+def without_basis(subject: PreparedDesign, inputs: Sequence[Input]) -> PreparedDesign:
     """The subject without the basis knock-down of strengths that are drawn.
 
     A knock-down from a mean to an allowable is there for the scatter: who draws the strength has

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ..evaluation import Subject
+from ..evaluation import PreparedDesign
 from ..evaluation.film_tables import films_asked
 from .inputs import Input
 
 
-def notes(subject: Subject, found: Sequence[Input]) -> tuple[str, ...]:
+def notes(subject: PreparedDesign, found: Sequence[Input]) -> tuple[str, ...]:
     """What to know of the draws of a design."""
     return tuple(_notes(subject, found))
 
 
-def _notes(subject: Subject, found: Sequence[Input]) -> Iterator[str]:
+def _notes(subject: PreparedDesign, found: Sequence[Input]) -> Iterator[str]:
     drawn = {one.path for one in found}
     strengths = sorted(path for path in drawn if "strength" in path)
     if not found:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..errors import ActuatorError
-from ..evaluation import Evaluation, Subject
+from ..evaluation import Evaluation, PreparedDesign
 from ..evaluation.film_tables import films_asked
 from ..evaluation.reserve import YieldEstimate
 from .inputs import inputs
@@ -15,7 +15,7 @@ DRAWS = 500
 search."""
 
 
-def quick_yield(subject: Subject, evaluation: Evaluation, *, seed: int = 0) -> YieldEstimate:
+def quick_yield(subject: PreparedDesign, evaluation: Evaluation, *, seed: int = 0) -> YieldEstimate:
     """The yield of a design from `DRAWS` independent draws: the first of those of `uncertainty`.
 
     Parameters

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from ..design.model import Design
 from ..errors import Diagnostic, UsageError
-from ..evaluation import Subject, prepare
+from ..evaluation import PreparedDesign, prepare
 from ..metrics import of_metric
 from ..optimisation.result import Certificate, Optimisation
 from ..optimisation.robustness import Robust, Round
@@ -28,7 +28,7 @@ from .model import TOLERANCE, Model
 from .study import draw
 
 Held: TypeAlias = npt.NDArray[Any]
-Search = Callable[[Subject, bool], Optimisation]
+Search = Callable[[PreparedDesign, bool], Optimisation]
 """An ordinary optimum of a subject; with prices or without."""
 
 LEAST, MOST = 0.5, 0.9999
@@ -73,7 +73,9 @@ class _Seen:
         return found
 
 
-def robust(subject: Subject, target: float, search: Search, *, seed: int = 0) -> Optimisation:
+def robust(
+    subject: PreparedDesign, target: float, search: Search, *, seed: int = 0
+) -> Optimisation:
     """The best design whose limits all hold with a stated probability.
 
     Parameters
@@ -107,7 +109,7 @@ def require(target: float) -> None:
         raise UsageError(Diagnostic(message, f"write {LEAST:g} to {MOST:g}, e.g. 0.99"))
 
 
-def _without_choices(subject: Subject, plain: Optimisation) -> Subject:
+def _without_choices(subject: PreparedDesign, plain: Optimisation) -> PreparedDesign:
     """The subject with the choices that its plain optimum made, and what scatters with them."""
     if not subject.design.choices:
         return subject
@@ -119,7 +121,7 @@ def _without_choices(subject: Subject, plain: Optimisation) -> Subject:
     return replace(_prepared(design, subject), reserves=subject.reserves)
 
 
-def _prepared(design: Design, subject: Subject) -> Subject:
+def _prepared(design: Design, subject: PreparedDesign) -> PreparedDesign:
     found = prepare(design, plugins=subject.plugins)
     return replace(found, lenient=True)
 
@@ -150,7 +152,7 @@ class _Way:
     """The sequence of optima."""
 
     def __init__(
-        self, subject: Subject, target: float, search: Search, seed: int, plain: Optimisation
+        self, subject: PreparedDesign, target: float, search: Search, seed: int, plain: Optimisation
     ) -> None:
         self.subject, self.target, self.search, self.seed = subject, target, search, seed
         self.plain = plain

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..evaluation import Subject
+from ..evaluation import PreparedDesign
 from ..evaluation.build import spec_hash
 from ..optimisation.problem import Vector
 from ..progress import tell
@@ -32,7 +32,7 @@ POINTS = (0.01, 0.05, 0.5, 0.95, 0.99)
 
 
 def uncertainty(
-    subject: Subject,
+    subject: PreparedDesign,
     *,
     count: int = COUNT,
     seed: int = 0,

@@ -16,7 +16,7 @@ from ..symbolic import Expression, Symbol
 from .loops import LOOPS, loop_of
 from .parts import chambers, friction, load_cylinder, motion, motor, ports, signals, valve
 from .parts.circuit import Circuit, Start
-from .parts.control import Measured, command, inner
+from .parts.control import Feedback, command, inner
 from .parts.signals import Records
 from .parts.supply import Source
 from .system import System
@@ -96,7 +96,7 @@ def assemble(
     return circuit
 
 
-def _command(circuit: Circuit, measured: Measured) -> Expression:
+def _command(circuit: Circuit, measured: Feedback) -> Expression:
     """Signal to the valve: free, stated over time, or the controller's."""
     system, loop, control = circuit.system, circuit.loop, circuit.scenario.control
     circuit.measured = measured.value
@@ -148,7 +148,7 @@ def _motor(circuit: Circuit) -> None:
     shaft = motor.shaft(system)
     value = shaft.angle if circuit.loop == "shaft_angle" else shaft.speed
     across = begin.pressure_a - begin.pressure_b
-    wish = _command(circuit, Measured(value, shaft.speed, a - b, across))
+    wish = _command(circuit, Feedback(value, shaft.speed, a - b, across))
     flows = _driven(circuit, wish, (a, b))
     motor.turn(
         circuit,
@@ -177,7 +177,7 @@ def _cylinder(circuit: Circuit) -> None:
     feed: tuple[Expression, Expression] = (0.0, 0.0)
     if ends == "valve":
         ratio = plant.area_b / plant.area_a
-        measured = Measured(
+        measured = Feedback(
             speed if circuit.loop == "speed" else position,
             speed,
             a.pressure - ratio * b.pressure,

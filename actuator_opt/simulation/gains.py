@@ -9,7 +9,7 @@ from math import copysign, inf, isfinite, radians
 import numpy as np
 
 from ..design.scenario.model import Control, Scenario
-from ..design.scenario.signals import Part
+from ..design.scenario.signals import SignalSegment
 from ..errors import Diagnostic, InputError
 from ..evaluation.study.plant import Plant
 from ..models.tuning import ControllerGains, margin_rules, ziegler_nichols
@@ -129,7 +129,7 @@ def _loops(
     return loops, words
 
 
-def _places(parts: Sequence[Part], start: float, stroke: float) -> list[float]:
+def _places(parts: Sequence[SignalSegment], start: float, stroke: float) -> list[float]:
     """Where a position reference begins, and where each of its parts leads to."""
     places, reached = {start}, start
     for part in sorted(parts, key=lambda one: one.start or 0.0):

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..design.scenario.model import Scenario
 from ..design.scenario.shapes import SHAPES
-from ..design.scenario.signals import Part
+from ..design.scenario.signals import SignalSegment
 from ..errors import InputError
 from ..evaluation.study.plant import Plant
 from ..models.fluid import ATMOSPHERIC_PRESSURE
@@ -18,7 +18,7 @@ from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import Event
 from .loops import Loop, loop_of
 from .parts.signals import Records, acts_after, frequencies
-from .result import Balance, Row, Servo, Shaken, Window
+from .result import Balance, HarmonicLoad, RequirementResult, Servo, Window
 from .step_response import step_metrics
 
 LAST = 0.1
@@ -28,7 +28,7 @@ RISE = 4
 _STEP = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 
 
-def reference(scenario: Scenario) -> tuple[Loop | None, Sequence[Part]]:
+def reference(scenario: Scenario) -> tuple[Loop | None, Sequence[SignalSegment]]:
     """The loop of a scenario and the parts of its reference."""
     loop = loop_of(scenario.control)
     return loop, () if loop is None else getattr(scenario.control, loop)
@@ -64,13 +64,16 @@ def servo(scenario: Scenario, time: Array, signals: Mapping[str, Array]) -> Serv
 
 def shaken(
     scenario: Scenario, time: Array, signals: Mapping[str, Array]
-) -> tuple[Shaken | None, str]:
+) -> tuple[HarmonicLoad | None, str]:
     """Dynamic stiffness along the stroke where sines of one frequency shake the rod, or why not."""
     none = "no sine shakes the rod"
     if "position" not in signals:
         return None, none
     load = scenario.load
-    parts: list[Part] = [*load.force, *(load.drive.position if load.drive is not None else ())]
+    parts: list[SignalSegment] = [
+        *load.force,
+        *(load.drive.position if load.drive is not None else ()),
+    ]
     parts += load.cylinder.signal if load.cylinder is not None else ()
     sines = [part for part in parts if "frequency" in SHAPES[part.shape].needed]
     tones = set(frequencies(sines))
@@ -88,7 +91,7 @@ def shaken(
         found = tuple(_window(t[one], x[one], -force[one], tone) for one in pieces)
     except InputError as error:
         return None, error.diagnostics[0].message
-    return Shaken(tone, found), ""
+    return HarmonicLoad(tone, found), ""
 
 
 def _window(time: Array, position: Array, force: Array, frequency: float) -> Window:
@@ -125,7 +128,7 @@ def values(
     balance: Balance,
     events: Sequence[Event],
     step: Servo | None,
-    dynamic: Shaken | None,
+    dynamic: HarmonicLoad | None,
     still: str,
     records: Records,
 ) -> tuple[dict[str, float | None], dict[str, str]]:
@@ -174,7 +177,7 @@ def values(
     return found, {name: reason for name, reason in why.items() if found[name] is None}
 
 
-def _settled_from(parts: Sequence[Part], duration: float) -> float:
+def _settled_from(parts: Sequence[SignalSegment], duration: float) -> float:
     """After one period of the slowest sine, or at once."""
     tones = frequencies(parts)
     begin = min(part.start for part in parts)
@@ -210,7 +213,7 @@ def _stop_speed(time: Array, speed: Array, events: Sequence[Event]) -> float | N
 
 def requirements(
     scenario: Scenario, found: Mapping[str, float | None], why: Mapping[str, str]
-) -> tuple[Row, ...]:
+) -> tuple[RequirementResult, ...]:
     """Every limit of the scenario against its result."""
     rows = []
     for metric, limit in scenario.requirements.items():
@@ -222,9 +225,11 @@ def requirements(
             if value is None and metric == "stop_speed" and sense == "max":
                 value = 0.0  # no stop is met
             if value is None:
-                rows.append(Row(metric, sense, bound, None, None, False, why.get(metric, "")))
+                rows.append(
+                    RequirementResult(metric, sense, bound, None, None, False, why.get(metric, ""))
+                )
                 continue
             gap = value - bound if sense == "min" else bound - value
             margin = gap / abs(bound) if bound else gap
-            rows.append(Row(metric, sense, bound, value, margin, margin >= -1e-6))
+            rows.append(RequirementResult(metric, sense, bound, value, margin, margin >= -1e-6))
     return tuple(rows)

@@ -68,7 +68,7 @@ class Window:
 
 
 @dataclass(frozen=True, slots=True)
-class Shaken:
+class HarmonicLoad:
     """Dynamic stiffness at the frequency of the load."""
 
     frequency: float
@@ -88,7 +88,7 @@ class Servo:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class RequirementResult:
     """A requirement on the simulation."""
 
     metric: str
@@ -132,10 +132,10 @@ class Simulation:
     balance: Balance
     values: Mapping[str, float | None]
     why: Mapping[str, str]
-    requirements: tuple[Row, ...]
+    requirements: tuple[RequirementResult, ...]
     tuned: Tuned | None
     servo: Servo | None
-    shaken: Shaken | None
+    shaken: HarmonicLoad | None
     events: tuple[Event, ...]
     notes: tuple[str, ...]
     second: Second | None = None
@@ -188,7 +188,7 @@ class Simulation:
                 for name, value in self.values.items()
             },
             "requirements": [
-                {name: getattr(row, name) for name in Row.__dataclass_fields__}
+                {name: getattr(row, name) for name in RequirementResult.__dataclass_fields__}
                 for row in self.requirements
             ],
             "balance": {

@@ -14,7 +14,7 @@ import numpy as np
 from ..design.scenario.model import SAMPLES, Scenario
 from ..design.scenario.recorded import recorded_notes
 from ..evaluation.build import spec_hash
-from ..evaluation.kernel import Subject
+from ..evaluation.kernel import PreparedDesign
 from ..evaluation.study.plant import Plant, plant
 from ..models.supply import relief_flow
 from ..numeric import Array
@@ -51,7 +51,7 @@ WARN_PLANE = 0.02
 
 def simulate(
     scenario: Scenario,
-    subject: Subject,
+    subject: PreparedDesign,
     *,
     records: Records | None = None,
     verify: bool = False,
@@ -278,7 +278,7 @@ def _reach(own: Plant, signals: Mapping[str, Array]) -> Iterator[str]:
         )
 
 
-def spec_of(subject: Subject, scenario: Scenario) -> str:
+def spec_of(subject: PreparedDesign, scenario: Scenario) -> str:
     """Hash of everything that decides the result."""
     content = json.dumps(scenario.model_dump(mode="json"), sort_keys=True, default=str)
     text = spec_hash(subject) + content

@@ -19,7 +19,7 @@ from ..design.scenario.model import Scenario
 from ..design.structure import Loc, child, child_at, leaves, number_of
 from ..errors import Diagnostic, InputError, Unsolvable
 from ..evaluation.build import prepare
-from ..evaluation.kernel import Subject
+from ..evaluation.kernel import PreparedDesign
 from ..evaluation.study.plant import plant
 from ..progress import steps
 from ..quantities import RESULTS, Quantity
@@ -128,7 +128,7 @@ class Sensitivities:
 
 def sensitivities(
     scenario: Scenario,
-    subject: Subject,
+    subject: PreparedDesign,
     names: Sequence[str] | None = None,
     *,
     step: float = STEP,
@@ -210,13 +210,13 @@ class _Bench:
     """A scenario around a design, to be run with other numbers."""
 
     scenario: Scenario
-    subject: Subject
+    subject: PreparedDesign
     records: Records
     tuned: Tuned | None
     runs: int = 0
 
     @classmethod
-    def of(cls, scenario: Scenario, subject: Subject, records: Records) -> _Bench:
+    def of(cls, scenario: Scenario, subject: PreparedDesign, records: Records) -> _Bench:
         """With the gains as they are."""
         return cls(scenario, subject, records, tune(scenario, plant(subject), records))
 

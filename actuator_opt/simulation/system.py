@@ -33,7 +33,7 @@ VACUUM = 1e-6
 
 
 @dataclass(slots=True)
-class State:
+class SystemState:
     """A state with its start, the error that is let pass, and its rate."""
 
     name: str
@@ -77,7 +77,7 @@ class System:
     """The equations; `compiled` makes them run."""
 
     graph: Graph = field(default_factory=Graph)
-    states: list[State] = field(default_factory=list)
+    states: list[SystemState] = field(default_factory=list)
     switches: list[Switch] = field(default_factory=list)
     instants: list[Instant] = field(default_factory=list)
     signals: list[Signal] = field(default_factory=list)
@@ -96,7 +96,7 @@ class System:
     def state(self, name: str, initial: float, *, tolerance: float) -> Symbol:
         """A new state; `rate` gives it its equation."""
         symbol = self.graph.variable(f"y_{len(self.states)}")
-        self.states.append(State(name, symbol, float(initial), tolerance))
+        self.states.append(SystemState(name, symbol, float(initial), tolerance))
         return symbol
 
     def pressure(self, name: str, initial: float) -> Symbol:

@@ -12,7 +12,7 @@ import numpy as np
 from ..design import Design, with_values
 from ..design.paths import quantity_of
 from ..errors import Diagnostic, InputError
-from ..evaluation import Subject, prepare
+from ..evaluation import PreparedDesign, prepare
 from ..evaluation.allow import extremes
 from ..evaluation.many import Many, evaluate_many
 from ..evaluation.plugin import Plugin, with_own
@@ -60,7 +60,9 @@ class Designs:
     apart: tuple[str, ...] = field(init=False)
     contradicts: bool = field(init=False, default=False)
     """Whether some value of an axis contradicts the rest of the design, as its file would say."""
-    _subjects: dict[tuple[object, ...], Subject | str] = field(default_factory=dict, repr=False)
+    _subjects: dict[tuple[object, ...], PreparedDesign | str] = field(
+        default_factory=dict, repr=False
+    )
 
     def __post_init__(self) -> None:
         same = self._same_extremes()
@@ -80,7 +82,7 @@ class Designs:
         own = with_own(self.plugins)
         return with_values(self.design, dict(values), metrics=own)
 
-    def made(self, values: Mapping[str, float | str]) -> Subject:
+    def made(self, values: Mapping[str, float | str]) -> PreparedDesign:
         """As `changed`, prepared."""
         return prepare(self.changed(values), plugins=self.plugins)
 
@@ -172,7 +174,9 @@ class Designs:
             fixed = {paths[k]: float(x) for k, x in zip(apart, set_apart, strict=True)}
             yield every, int(variant), fixed
 
-    def groups(self, points: Points) -> Iterator[tuple[Array, Subject | str, dict[str, Array]]]:
+    def groups(
+        self, points: Points
+    ) -> Iterator[tuple[Array, PreparedDesign | str, dict[str, Array]]]:
         """Points of one prepared design, with the arrays that vary; why, where there is none."""
         paths = [axis.path for axis in self.plan.numeric]
         for every, variant, fixed in self.alike(points):
@@ -186,7 +190,7 @@ class Designs:
                 }
                 yield places, subject, varied
 
-    def _prepared(self, variant: int, fixed: dict[str, float]) -> Subject | str:
+    def _prepared(self, variant: int, fixed: dict[str, float]) -> PreparedDesign | str:
         """A prepared design, or why there is none; the last few are kept."""
         key = (variant, *fixed.values())
         if key not in self._subjects:

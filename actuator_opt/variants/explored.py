@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from ..database import Rows
-from ..database_reader import Kept, Reader, reading
+from ..database_reader import Reader, StoredRows, reading
 from ..design import Design, read_design
 from ..errors import Diagnostic, InputError
-from ..evaluation import Subject
+from ..evaluation import PreparedDesign
 from ..evaluation.limits import Limit
 from ..evaluation.many import limits_of, margins_many
 from ..evaluation.plugin import Plugin, with_own
@@ -48,7 +48,7 @@ class Explored:
     `variant` is the number of each row's texts; `margins` is (limits, rows).
     """
 
-    kept: Kept
+    kept: StoredRows
     study: Study
     variants: tuple[dict[str, str], ...]
     variant: Array
@@ -135,7 +135,7 @@ def explored(
     )
 
 
-def _none_whole(kept: Kept, path: Path) -> InputError:
+def _none_whole(kept: StoredRows, path: Path) -> InputError:
     """Why a study has no numbers."""
     if not kept.failures:
         message = f"study {kept.number}: its rows are damaged"
@@ -172,7 +172,7 @@ def explored_designs(
     numbers = study.evaluated(0, Points(variant, values)).rows.numbers
     limits, margins, groups = _evaluated(study, variant, numbers)
     return Explored(
-        Kept(0, study.hash, design.name, study.text, study.columns, len(points), {}, {}),
+        StoredRows(0, study.hash, design.name, study.text, study.columns, len(points), {}, {}),
         study,
         ({},),
         variant,
@@ -198,8 +198,8 @@ def _evaluated(
     paths = [axis.path for axis in study.plan.numeric]
     limits: dict[str, Limit] = {}
     margins: dict[str, Array] = {}
-    alone: list[tuple[Array, Subject]] = []
-    shared: dict[int, tuple[list[Array], Subject]] = {}
+    alone: list[tuple[Array, PreparedDesign]] = []
+    shared: dict[int, tuple[list[Array], PreparedDesign]] = {}
     points = Points(variant, numbers[:, : len(paths)].T)
     for places, subject, varied in study.designs.groups(points):
         if isinstance(subject, str):
@@ -228,7 +228,7 @@ def _hidden(study: Study) -> tuple[str, ...]:
     return ("rod.fitting",) if moved else ()
 
 
-def _variants(kept: Kept, path: Path) -> tuple[dict[str, str], ...]:
+def _variants(kept: StoredRows, path: Path) -> tuple[dict[str, str], ...]:
     if math.prod(len(texts) for texts in kept.texts.values()) > VARIANTS:
         message = f"study {kept.number} has over {VARIANTS} combinations of texts"
         raise InputError(Diagnostic(message, "vary fewer of them", str(path)))
@@ -238,7 +238,7 @@ def _variants(kept: Kept, path: Path) -> tuple[dict[str, str], ...]:
     )
 
 
-def _study(kept: Kept, plugins: tuple[Plugin, ...], path: Path, ends: Array) -> Study:
+def _study(kept: StoredRows, plugins: tuple[Plugin, ...], path: Path, ends: Array) -> Study:
     """The study that made the rows, of the design that the database keeps.
 
     Its plan takes the texts, and numbers in the order of the columns, each between the `ends` it
@@ -271,7 +271,7 @@ def _another(path: Path) -> InputError:
 
 
 def _thinned(
-    reader: Reader, kept: Kept, study: Study, good: int, most: int
+    reader: Reader, kept: StoredRows, study: Study, good: int, most: int
 ) -> tuple[list[bytes], Array, int]:
     """Rows spread evenly over the study, and its best; and how many are whole."""
     step = -(-good // most)

@@ -10,7 +10,7 @@ from pathlib import Path
 from ..design import Design, LoadedDesign, Source, read_design, with_values
 from ..design.reader import TEXT
 from ..errors import Diagnostic, InputError
-from ..evaluation import Subject, compute, prepare
+from ..evaluation import PreparedDesign, compute, prepare
 from ..evaluation.plugin import Plugin, View, collect, load, with_own
 
 Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
@@ -24,7 +24,7 @@ class Actuator:
     source: Source | None = None
     plugins: tuple[Plugin, ...] = ()
 
-    def subject(self) -> Subject:
+    def subject(self) -> PreparedDesign:
         """The design with its materials and numbers, ready for the models."""
         return prepare(self.design, plugins=self.plugins)
 
@@ -133,7 +133,9 @@ def located(actuator: Actuator) -> Iterator[None]:
         ) from None
 
 
-def answered(design: Actuator | Design | str | Path, plugins: Plugins) -> tuple[Actuator, Subject]:
+def answered(
+    design: Actuator | Design | str | Path, plugins: Plugins
+) -> tuple[Actuator, PreparedDesign]:
     """Any form of a design, ready for the models; raises `InputError` as `unanswered`."""
     actuator = as_actuator(design, plugins)
     subject = actuator.subject()
@@ -143,7 +145,7 @@ def answered(design: Actuator | Design | str | Path, plugins: Plugins) -> tuple[
     return actuator, subject
 
 
-def unanswered(actuator: Actuator, subject: Subject) -> list[Diagnostic]:
+def unanswered(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
     """Requirements on metrics that this design does not have."""
     if not actuator.design.requirements:
         return []

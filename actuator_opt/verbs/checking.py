@@ -10,7 +10,7 @@ from typing import NamedTuple
 from ..design import Design, is_scenario
 from ..design.reader import TEXT, opened
 from ..errors import ActuatorError, Diagnostic, InputError
-from ..evaluation import Subject, without_films
+from ..evaluation import PreparedDesign, without_films
 from .actuator import Actuator, Plugins, as_actuator, place, read, unanswered
 from .simulations import read_scenario
 
@@ -65,7 +65,7 @@ def examine(
     return Examined(faults, [] if faults else _out_of_proportion(subject))
 
 
-def _of_models(actuator: Actuator, subject: Subject) -> list[Diagnostic]:
+def _of_models(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
     """Requirements that no model answers, variables that none reads, choices that exclude all."""
     try:
         faults = unanswered(actuator, subject)
@@ -84,7 +84,7 @@ def _of_models(actuator: Actuator, subject: Subject) -> list[Diagnostic]:
     return []
 
 
-def _out_of_proportion(subject: Subject) -> list[str]:
+def _out_of_proportion(subject: PreparedDesign) -> list[str]:
     from ..evaluation import proportions
 
     return list(proportions.warnings(subject, subject.values()))

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..design import Design
-from ..evaluation import Evaluation, Subject, evaluate as evaluate_subject, prepare
+from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
 from ..evaluation.plugin import Plugin
 from ..evaluation.reserve import YieldEstimate
 from .actuator import Actuator, Plugins, answered, as_actuator, located, place
@@ -79,7 +79,7 @@ def optimise(
 
     actuator, subject = answered(design, plugins)
 
-    def search(subject: Subject, last: bool) -> Optimisation:
+    def search(subject: PreparedDesign, last: bool) -> Optimisation:
         return run(
             subject,
             fault=place(actuator),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypedDict, Unpack
 
 from ..design import Design, Source
 from ..errors import Diagnostic, UsageError
-from ..evaluation import Evaluation, Subject, prepare
+from ..evaluation import Evaluation, PreparedDesign, prepare
 from ..evaluation.plugin import with_own
 from ..metrics import METRICS
 from .actuator import Actuator, as_actuator
@@ -29,7 +29,7 @@ _LAST_SECOND = 253_402_300_799
 """End of the year 9999, the last a date can hold."""
 
 
-def _seal_studies(subject: Subject) -> list[SealStudy]:
+def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
     """The seal sheets of a report: every place of the design that asks for an oil film."""
     from ..evaluation.study.seal import study
 

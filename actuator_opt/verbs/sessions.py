@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..design import Design, canonical, get, quantity_of
 from ..errors import Diagnostic, InputError, UsageError
-from ..evaluation import Subject
+from ..evaluation import PreparedDesign
 from ..quantities import Quantity
 from ..suggest import remedy
 from ..tables import aligned
@@ -407,7 +407,7 @@ class Session:
                 ) from None
         return name
 
-    def _built(self, actuator: Actuator) -> tuple[Subject, ActuatorProblem]:
+    def _built(self, actuator: Actuator) -> tuple[PreparedDesign, ActuatorProblem]:
         from ..optimisation.actuator import build
 
         subject = actuator.subject()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..design import Design
 from ..errors import Diagnostic, InputError, UsageError
-from ..evaluation import Subject, compute
+from ..evaluation import PreparedDesign, compute
 from ..store import require_apart, writing as cannot_write
 from .actuator import Actuator, Plugins, as_actuator, unanswered
 from .reports import file_name
@@ -147,7 +147,7 @@ def writing(
         yield each
 
 
-def _require_objective(subject: Subject) -> None:
+def _require_objective(subject: PreparedDesign) -> None:
     """Refuse an objective that the design has no value of; raises `InputError`."""
     from ..optimisation.actuator import goal_of
 

@@ -38,7 +38,7 @@ from actuator_opt.reporting.study import rounded, study_sheets, write_study
 from actuator_opt.reporting.text import NARROW, fixed, number
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.harmonic import harmonic_fit
-from actuator_opt.simulation.result import Shaken
+from actuator_opt.simulation.result import HarmonicLoad
 from actuator_opt.tables import aligned
 from actuator_opt.verbs import simulate
 
@@ -322,7 +322,7 @@ def along(runs: Sequence[Simulation]) -> Simulation:
     """Runs around several places as one along the stroke: the last window of each."""
     shaken_ones = [one.shaken for one in runs if one.shaken is not None]
     windows = tuple(one.windows[-1] for one in shaken_ones)
-    return replace(runs[0], shaken=Shaken(shaken_ones[0].frequency, windows))
+    return replace(runs[0], shaken=HarmonicLoad(shaken_ones[0].frequency, windows))
 
 
 def full_throttle(places: Sequence[float]) -> Data:

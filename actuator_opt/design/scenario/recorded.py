@@ -13,7 +13,7 @@ from ..structure import child_at, entries
 from .model import Scenario
 from .shapes import SHAPES, Records, sampled
 from .signal_faults import part_lists
-from .signals import Part
+from .signals import SignalSegment
 
 WIDE: Final = 1.5
 """Steps of an evenly sampled record from which on samples are missing between two (a choice)."""
@@ -33,7 +33,7 @@ class Gap(NamedTuple):
     """Samples."""
 
 
-def recorded_parts(scenario: Scenario) -> Iterator[tuple[str, Part, str]]:
+def recorded_parts(scenario: Scenario) -> Iterator[tuple[str, SignalSegment, str]]:
     """PATH, part and dimension of its values, of every part that is a record."""
     for loc, section in part_lists().items():
         kind = entries(section)["value"].kind

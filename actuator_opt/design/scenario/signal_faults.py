@@ -14,7 +14,7 @@ from ..structure import Loc, entries
 from ..view import View, without_effect
 from .model import FEWEST_SAMPLES, MOST_SAMPLES, SAMPLES, Scenario
 from .shapes import SHAPES
-from .signals import Part
+from .signals import SignalSegment
 
 _SLACK = 1e-9
 """Rounding of times, relative."""
@@ -36,7 +36,7 @@ def part_lists(
     for name, entry in entries(section).items():
         if entry.section is None:
             continue
-        if entry.shape == "list" and issubclass(entry.section, Part):
+        if entry.shape == "list" and issubclass(entry.section, SignalSegment):
             found[*loc, name] = entry.section
         elif entry.shape == "section":
             found |= part_lists(entry.section, (*loc, name))

@@ -10,7 +10,7 @@ from . import words
 from .kinds import FileName, Label
 
 
-class Part(Section):
+class SignalSegment(Section):
     """A part of a signal; the parts of a list add up."""
 
     shape: words.Shape
@@ -25,43 +25,43 @@ class Part(Section):
     scale: Annotated[float, Of("factor", "factor on a record")] = 1.0
 
 
-class Signal(Part):
+class Signal(SignalSegment):
     """A part of the valve's signal."""
 
     value: Annotated[float | None, Of("signal_value", "height, or amplitude of a sine")] = None
 
 
-class Position(Part):
+class Position(SignalSegment):
     """A part of a position over time."""
 
     value: Annotated[float | None, Of("position_value", "height, or amplitude of a sine")] = None
 
 
-class Speed(Part):
+class Speed(SignalSegment):
     """A part of a speed over time."""
 
     value: Annotated[float | None, Of("speed_value", "height, or amplitude of a sine")] = None
 
 
-class Force(Part):
+class Force(SignalSegment):
     """A part of the load's force, positive against extension."""
 
     value: Annotated[float | None, Of("force_value", "height, or amplitude of a sine")] = None
 
 
-class Torque(Part):
+class Torque(SignalSegment):
     """A part of a load's torque on a shaft or joint."""
 
     value: Annotated[float | None, Of("torque_value", "height, or amplitude of a sine")] = None
 
 
-class ShaftSpeed(Part):
+class ShaftSpeed(SignalSegment):
     """A part of a shaft's speed over time."""
 
     value: Annotated[float | None, Of("shaft_speed_value", "height, or amplitude of a sine")] = None
 
 
-class ShaftAngle(Part):
+class ShaftAngle(SignalSegment):
     """A part of a shaft's angle over time."""
 
     value: Annotated[float | None, Of("shaft_angle_value", "height, or amplitude of a sine")] = None

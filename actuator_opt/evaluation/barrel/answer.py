@@ -19,11 +19,11 @@ from ..geometry import Geometry
 from ..plies import Layer
 
 PRESSURE, FORCE, WARMTH = range(3)
-"""Unit loads of an `Answer`."""
+"""Unit loads of an `WallSolution`."""
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class WallSolution:
     """How the wall answers unit loads: ply stresses (faces, layers, loads, designs) and stiffness.
 
     `walls` are the layers' stiffness in tube axes, as `rod.layered_section` takes them.
@@ -36,7 +36,7 @@ class Answer:
     walls: Sequence[Sequence[Array]]
 
 
-def exact_answer(layers: Sequence[Layer], g: Geometry) -> Answer:
+def exact_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
     """The layered tube under its three unit loads."""
     tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=g.inner_radius)
     unit = np.eye(3)
@@ -51,7 +51,7 @@ def exact_answer(layers: Sequence[Layer], g: Geometry) -> Answer:
         other = ply_stresses_at_faces(tube=tube, state=state, opposite=True)
         one, two, three, slip = (np.concatenate([a, b]) for a, b in zip(stress, other, strict=True))
         stress = (one, two, three, slip)
-    return Answer(
+    return WallSolution(
         stress=stress,
         growth=state.bore_displacement,
         axial=state.axial_strain,
@@ -60,7 +60,7 @@ def exact_answer(layers: Sequence[Layer], g: Geometry) -> Answer:
     )
 
 
-def thin_answer(layers: Sequence[Layer], g: Geometry) -> Answer:
+def thin_answer(layers: Sequence[Layer], g: Geometry) -> WallSolution:
     """The membrane at mid-radius for stresses, at the bore for growth."""
     reduced, turned, loads = [], [], []
     for layer in layers:
@@ -112,7 +112,7 @@ def thin_answer(layers: Sequence[Layer], g: Geometry) -> Answer:
         rows.append(np.stack(np.broadcast_arrays(one, two, pressed, slip)))
     stress = np.stack(rows, axis=1)[:, None]
     near_axial, near_hoop = strains(g.inner_radius)
-    return Answer(
+    return WallSolution(
         stress=(stress[0], stress[1], stress[2], stress[3]),
         growth=g.inner_radius * near_hoop,
         axial=near_axial,

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 
 from ...design.material import Material
 from ...design.model import Design
-from ..allow import Stock
+from ..allow import MaterialValues
 from ..geometry import Geometry
-from ..state import State
+from ..state import LoadState
 from ..values import Values
 from . import laminate, metal
 from .wall import Wall
@@ -29,7 +29,9 @@ def kind(design: Design, materials: Mapping[str, Material]) -> str:
     return "isotropic" if len(design.barrel.layup) == 1 and first.isotropic else "layered"
 
 
-def compute(v: Values, design: Design, stock: Stock, geometry: Geometry, state: State) -> Wall:
+def compute(
+    v: Values, design: Design, stock: MaterialValues, geometry: Geometry, state: LoadState
+) -> Wall:
     """The wall of a design under its supply pressure."""
     model = kind(design, stock.materials)
     if model in LAMINATES:

@@ -18,20 +18,20 @@ from ...models.autofrettage import Autofrettage, autofrettage
 from ...models.strength_modes import Stress, load_multiplier
 from ...numeric import Array, maximum, real, where
 from .. import plies
-from ..allow import Stock
+from ..allow import MaterialValues
 from ..distinct import distinct
 from ..geometry import Geometry
 from ..plies import Climate, Layer
-from ..state import State
+from ..state import LoadState
 from ..values import Values
 from . import load_path
-from .answer import FORCE, PRESSURE, WARMTH, Answer, exact_answer, thin_answer
+from .answer import FORCE, PRESSURE, WARMTH, WallSolution, exact_answer, thin_answer
 from .load_path import LoadPath, Swelling
 from .wall import Cycle, Wall
 
 
 def compute(
-    v: Values, design: Design, stock: Stock, g: Geometry, state: State, *, exact: bool
+    v: Values, design: Design, stock: MaterialValues, g: Geometry, state: LoadState, *, exact: bool
 ) -> Wall:
     """The wall of several layers, or of plies."""
     missing: list[str] = []
@@ -86,7 +86,7 @@ def compute(
 class _Rest:
     """What holds the wall without pressure: cooling from the cure, tie rods, autofrettage."""
 
-    answer: Answer
+    answer: WallSolution
     states: Sequence[Climate]
     path: LoadPath
     autofrettage: Autofrettage | None
@@ -139,7 +139,7 @@ def _autofrettage(
     )
 
 
-def _load(answer: Answer, rows: list[int], axial: Array) -> Stress:
+def _load(answer: WallSolution, rows: list[int], axial: Array) -> Stress:
     """Stress per pressure of some layers under every load path, (faces, layers, 1, paths, designs).
 
     `axial` is the axial force per pressure, (paths, designs).

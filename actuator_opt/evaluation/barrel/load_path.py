@@ -15,10 +15,10 @@ from ...design.model import Design
 from ...joints.joint import Clamp
 from ...models import barrel_ends
 from ...numeric import Array, maximum
-from ..allow import Stock
+from ..allow import MaterialValues
 from ..geometry import Geometry, end_at
 from ..retention import Numbers, clamped, joint_of
-from ..state import State
+from ..state import LoadState
 from ..values import Values
 
 NONE = "no axial load"
@@ -65,7 +65,12 @@ def largest_area(design: Design, g: Geometry) -> Array:
 
 
 def derive(
-    v: Values, design: Design, stock: Stock, g: Geometry, state: State, swelling: Swelling
+    v: Values,
+    design: Design,
+    stock: MaterialValues,
+    g: Geometry,
+    state: LoadState,
+    swelling: Swelling,
 ) -> LoadPath:
     """The load path of a design, once the wall's own stiffness is known."""
     if design.cylinder.mount.startswith("cap"):
@@ -84,7 +89,7 @@ def derive(
     return _clamped(v, design, stock, g, state, swelling, worst, cases)
 
 
-def clamp_stiffness(v: Values, design: Design, stock: Stock, g: Geometry) -> Array:
+def clamp_stiffness(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Array:
     """Axial stiffness of what clamps the barrel between both ends."""
     joint = joint_of(design)
     assert joint is not None
@@ -95,9 +100,9 @@ def clamp_stiffness(v: Values, design: Design, stock: Stock, g: Geometry) -> Arr
 def _clamped(
     v: Values,
     design: Design,
-    stock: Stock,
+    stock: MaterialValues,
     g: Geometry,
-    state: State,
+    state: LoadState,
     swelling: Swelling,
     worst: dict[str, Array],
     cases: Array,

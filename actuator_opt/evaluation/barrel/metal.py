@@ -7,9 +7,9 @@ from math import pi
 from ...design.model import Design
 from ...models import barrel, barrel_ends, column, rod, yielding
 from ...numeric import Array, maximum
-from ..allow import Stock
+from ..allow import MaterialValues
 from ..geometry import Geometry
-from ..state import State
+from ..state import LoadState
 from ..values import Values
 from . import load_path
 from .load_path import LoadPath, Swelling
@@ -17,7 +17,13 @@ from .wall import Cycle, Wall
 
 
 def compute(
-    v: Values, design: Design, stock: Stock, g: Geometry, state: State, *, as_published: bool
+    v: Values,
+    design: Design,
+    stock: MaterialValues,
+    g: Geometry,
+    state: LoadState,
+    *,
+    as_published: bool,
 ) -> Wall:
     """The wall of one isotropic layer."""
     name = design.barrel.layup[0].material
@@ -66,7 +72,7 @@ def compute(
 
 
 def _strengths(
-    stock: Stock, name: str, g: Geometry, path: LoadPath, supply: Array, wall: Wall
+    stock: MaterialValues, name: str, g: Geometry, path: LoadPath, supply: Array, wall: Wall
 ) -> None:
     """Yield and burst pressures of every load path, and the stress of a pressure pulse."""
     size = {"inner_radius": g.inner_radius, "outer_radius": g.outer_radius}

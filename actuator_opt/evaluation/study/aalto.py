@@ -17,9 +17,9 @@ from ...design.model import Design
 from ...models import fluid
 from ...numeric import Array
 from .. import oil
-from ..allow import Stock
+from ..allow import MaterialValues
 from ..build import prepare
-from ..kernel import Pass, compute
+from ..kernel import ModelRun, compute
 from ..springs import Springs
 
 Topology = Literal["per_chamber", "aalto_as_published"]
@@ -101,7 +101,7 @@ def variant(
     return evaluated(changed).springs
 
 
-def evaluated(design: Design) -> Pass:
+def evaluated(design: Design) -> ModelRun:
     """One pass over the models."""
     subject = prepare(design)
     return compute(subject, subject.values())
@@ -114,7 +114,7 @@ def temperature_of(design: Design, viscosity: float) -> float:
     """
     subject = prepare(design)
     v = subject.values()
-    stock = Stock(v, subject.materials, subject.factors, subject.constants)
+    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     warm = np.linspace(253.15, 393.15, 1401)
     found = np.log(np.ravel(oil.kinematic_viscosity(v, design.fluid, stock, warm)))
     return float(np.interp(-np.log(viscosity), -found, warm, left=np.nan, right=np.nan))

@@ -19,7 +19,7 @@ from ...models import elements, linear, lines, loop, one_way_valve, orifice, res
 from ...models.line_ends import CONSTANT_PRESSURE, LineEnd, antiresonance_frequency
 from ...numeric import Array
 from ..circuit import CHAMBERS, Chamber, Ways
-from ..kernel import Pass
+from ..kernel import ModelRun
 from .aalto import MARGIN, PAPER, evaluated, first, temperature_of
 
 End = Literal["constant_pressure", "reducing_valve"]
@@ -131,7 +131,7 @@ class Bench:
         self.throttle = design.ports.throttle or THROTTLE
         self.valve = valve or design.ports.reducing_valve or VALVE
         ports = Ports(end="reducing_valve", throttle=self.throttle, reducing_valve=self.valve)
-        self.done: Pass = evaluated(design.model_copy(update={"ports": ports}))
+        self.done: ModelRun = evaluated(design.model_copy(update={"ports": ports}))
         geometry, state = self.done.geometry, self.done.state
         self.stroke = float(np.squeeze(geometry.stroke))
         self.areas = {"a": float(geometry.area_a), "b": float(geometry.area_b)}

@@ -15,10 +15,10 @@ from ...design.materials import load_library
 from ...models import barrel, barrel_ends, laminate, liner, ply
 from ...models.layered_tube import layered_tube, tube_state
 from ...numeric import Array
-from ..allow import Stock, allowances, extremes
+from ..allow import MaterialValues, allowances, extremes
 from ..barrel import Wall, laminate as laminated
 from ..geometry import Geometry
-from ..kernel import Pass, Subject
+from ..kernel import ModelRun, PreparedDesign
 from ..plies import Layer
 from ..values import Values
 
@@ -173,7 +173,7 @@ def thicknesses(
 
 
 def differences(
-    subject: Subject, v: Values, stock: Stock, done: Pass, *, exact: bool
+    subject: PreparedDesign, v: Values, stock: MaterialValues, done: ModelRun, *, exact: bool
 ) -> tuple[Difference, ...]:
     """The wall by both laminate theories; `exact` says which one the design uses."""
     other = laminated.compute(v, subject.design, stock, done.geometry, done.state, exact=not exact)
@@ -222,7 +222,11 @@ def settling(layers: Sequence[Layer], g: Geometry) -> Settling:
 
 
 def metal_tubes(
-    subject: Subject, v: Values, layers: Sequence[Layer], densities: Sequence[float], done: Pass
+    subject: PreparedDesign,
+    v: Values,
+    layers: Sequence[Layer],
+    densities: Sequence[float],
+    done: ModelRun,
 ) -> tuple[MetalTube, ...]:
     """The design's wall, and the thinnest barrel of each of `METALS` for the same duty.
 
@@ -262,7 +266,7 @@ def metal_tubes(
     )
 
 
-def _stock_of(subject: Subject, name: str) -> Stock:
+def _stock_of(subject: PreparedDesign, name: str) -> MaterialValues:
     """One library metal with the knock-downs of this design's temperatures."""
     material = subject.materials.get(name) or load_library().get(name)
     numbers = {f"materials.{name}.{key}": value for key, value in material.numbers.items()}
@@ -274,11 +278,11 @@ def _stock_of(subject: Subject, name: str) -> Stock:
         temperatures=extremes(subject.design, subject.numbers),
         wet=environment is None or environment.wet,
     )
-    return Stock(Values(numbers, ()), {name: material}, factors, {})
+    return MaterialValues(Values(numbers, ()), {name: material}, factors, {})
 
 
 def metal_tube(
-    stock: Stock,
+    stock: MaterialValues,
     name: str,
     *,
     inner_radius: float,

@@ -13,10 +13,10 @@ from ...models import forces
 from ...numeric import Array
 from ...seals.contact import SealContact
 from .. import oil
-from ..allow import Stock
+from ..allow import MaterialValues
 from ..barrel import SEAL_STEP
 from ..film_tables import floats
-from ..kernel import Subject, compute
+from ..kernel import PreparedDesign, compute
 from ..rings import Ring
 from ..seal_contact import seal_contact
 from ..sealing import WiperFriction, wipers
@@ -204,12 +204,12 @@ def _first(parts: dict[str, Array]) -> list[Array]:
     return [np.atleast_2d(np.asarray(one))[:1] for one in parts.values()]
 
 
-def bench(subject: Subject) -> Bench:
+def bench(subject: PreparedDesign) -> Bench:
     """What a record of the design is read with; its oil and temperature are the first case's."""
     v = subject.values()
     done = compute(subject, v)
     g = done.geometry
-    stock = Stock(v, subject.materials, subject.factors, subject.constants)
+    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     temperature = _first_of(done.state.temperature)
 
     def bulk_modulus(pressure: Array) -> Array:

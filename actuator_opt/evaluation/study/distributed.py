@@ -14,7 +14,7 @@ from ...models.line_ends import LineEnd
 from ...numeric import Array
 from ..circuit import CHAMBERS, Chamber, wall_compliance
 from ..motion import Motion
-from ..state import State
+from ..state import LoadState
 from ..values import Values, of_case
 
 
@@ -30,7 +30,7 @@ def _end(end: LineEnd, frequencies: Array, index: int) -> Array:
 def port_admittance(
     v: Values,
     design: Design,
-    state: State,
+    state: LoadState,
     motion: Motion,
     chamber: Chamber,
     index: int,
@@ -82,7 +82,7 @@ def port_admittance(
 def dynamic_stiffness(
     v: Values,
     design: Design,
-    state: State,
+    state: LoadState,
     motion: Motion,
     index: int,
     position: float,

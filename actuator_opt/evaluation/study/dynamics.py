@@ -15,7 +15,7 @@ from ...design.model import Design
 from ...models import dynamics, linear, loop
 from ...numeric import Array
 from ...polynomial import Polynomial, add, at_frequency, roots, scale
-from ..kernel import Pass, Subject
+from ..kernel import ModelRun, PreparedDesign
 from ..motion import Motion
 from ..values import Values, of_case
 from . import distributed
@@ -135,7 +135,9 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def study(subject: Subject, v: Values, done: Pass, case: str | None) -> DynamicsStudy | None:
+def study(
+    subject: PreparedDesign, v: Values, done: ModelRun, case: str | None
+) -> DynamicsStudy | None:
     """Dynamics of one design in the case of least stiffness; None where nothing moves."""
     motion = done.motion
     index = v.cases.index(case) if case in v.cases else 0
@@ -193,7 +195,7 @@ def _damping_ratio(motion: Motion, there: Array, index: int) -> float:
     return of_case(motion.mode(motion.model(there), there).damping_ratio, index)
 
 
-def _loops(done: Pass, design: Design) -> list[_Loop]:
+def _loops(done: ModelRun, design: Design) -> list[_Loop]:
     """Every loop that governs a margin or the bandwidth, with what it governs."""
     rows: dict[tuple[int, str], tuple[str, ...]] = {}
     for metric in ("gain_margin", "phase_margin", "bandwidth"):
@@ -203,7 +205,7 @@ def _loops(done: Pass, design: Design) -> list[_Loop]:
     return [_Loop.of(done, *row, governs=metrics) for row, metrics in rows.items()]
 
 
-def _shaken(design: Design, done: Pass) -> tuple[ShakenCase, ...]:
+def _shaken(design: Design, done: ModelRun) -> tuple[ShakenCase, ...]:
     """Every shaken case at its place of least dynamic stiffness."""
     found = []
     for i, case in enumerate(design.load_cases):
@@ -217,7 +219,7 @@ def _shaken(design: Design, done: Pass) -> tuple[ShakenCase, ...]:
 
 
 def _distributed(
-    v: Values, design: Design, done: Pass, index: int, position: float, frequencies: Array
+    v: Values, design: Design, done: ModelRun, index: int, position: float, frequencies: Array
 ) -> Array | None:
     if not design.lines:
         return None
@@ -245,7 +247,7 @@ def _poles(model: linear.LinearActuator, index: int) -> tuple[Pole, ...]:
     return tuple(sorted(rows, key=lambda pole: pole.frequency))
 
 
-def _worst(done: Pass, metric: str, design: Design) -> tuple[int, str] | None:
+def _worst(done: ModelRun, metric: str, design: Design) -> tuple[int, str] | None:
     """Case and place of a metric's least value; None where it was not computed."""
     shaken = [case.frequency is not None for case in design.load_cases]
     rows = [
@@ -317,7 +319,7 @@ class _Loop:
     governs: tuple[str, ...]
 
     @classmethod
-    def of(cls, done: Pass, index: int, place: str, governs: tuple[str, ...]) -> _Loop:
+    def of(cls, done: ModelRun, index: int, place: str, governs: tuple[str, ...]) -> _Loop:
         """From the names of the metrics' rows."""
         direction, _, where = place.partition(", ")
         position = np.asarray(done.places[where])
@@ -335,7 +337,9 @@ class _Loop:
         ]
 
 
-def _loop(subject: Subject, v: Values, done: Pass, at: _Loop, frequencies: Array) -> LoopStudy:
+def _loop(
+    subject: PreparedDesign, v: Values, done: ModelRun, at: _Loop, frequencies: Array
+) -> LoopStudy:
     """What one loop does over frequency, with its figures from the metrics."""
 
     def of(metric: str) -> float:

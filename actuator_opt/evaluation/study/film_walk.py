@@ -13,7 +13,7 @@ from ...models import friction
 from ...numeric import Array
 from ...seals.contact import SealContact
 from ..barrel import SEAL_STEP
-from ..film import Row, Solved, ring_films, solve
+from ..film import FilmRow, Solved, ring_films, solve
 from ..film_tables import floats, of_place
 from ..kernel import Base
 from ..rings import Place, Ring
@@ -52,7 +52,7 @@ class Sealing:
         """Growth of the counterface at a pressure difference [m]."""
         return self.growth * (pressure + float(self.rings[-1]["outer_pressure"]))
 
-    def row(self, pressure: float, speed: float, **changes: float) -> Row:
+    def row(self, pressure: float, speed: float, **changes: float) -> FilmRow:
         """The rings at a pressure difference and speed; `changes` are of the first."""
         grown = self.grown(pressure)
         rings = []
@@ -60,7 +60,7 @@ class Sealing:
             left = ring["squeeze"] - grown / ring["section"]
             rings.append(ring.at(pressure=pressure, speed=speed, squeeze_left=left))
         rings[0] = rings[0].at(**changes)
-        return Row(tuple(rings), self.outward)
+        return FilmRow(tuple(rings), self.outward)
 
     def alone(self, index: int) -> Sealing:
         """One of the rings without the others."""

@@ -12,7 +12,7 @@ from math import nan, pi
 import numpy as np
 
 from ...models.rough_surface import asperity_pressure
-from ..film import Row, solve
+from ..film import FilmRow, solve
 from .huang import Sealings
 from .huang_trend import FILM_SPEED
 
@@ -67,7 +67,7 @@ def readings(found: Sealings) -> Readings:
     )
 
 
-def _swapped(row: Row) -> Row:
+def _swapped(row: FilmRow) -> FilmRow:
     """The same surfaces, the rough one on the rod: the composite roughness stays."""
     rings = [
         ring.at(

@@ -11,9 +11,9 @@ from ...design.model import Design
 from ...models import end_stop, lines, linkage
 from ...numeric import Array, absolute, maximum
 from .. import circuit, oil
-from ..allow import Stock
+from ..allow import MaterialValues
 from ..circuit import CHAMBERS, Chamber
-from ..kernel import Pass, Subject, compute
+from ..kernel import ModelRun, PreparedDesign, compute
 from ..springs import OIL, Give
 from ..values import Values
 from .bench import Bench, bench
@@ -187,7 +187,7 @@ class Plant:
         return self.mass + (0.0 if joint is None else float(joint[1].mass))
 
 
-def plant(subject: Subject) -> Plant:
+def plant(subject: PreparedDesign) -> Plant:
     """The plant of a design, at the temperature of its first load case.
 
     Friction of an oil film is taken as dry, by its coefficient.
@@ -243,15 +243,15 @@ def _one(value: Array) -> float:
     return float(np.ravel(np.real(np.asarray(value)))[0])
 
 
-def _extra(done: Pass) -> float:
+def _extra(done: ModelRun) -> float:
     """Length of the barrel that neither stroke nor parts take."""
     g = done.geometry
     return _one(g.barrel_length - g.piston_length - g.head_length - g.stroke)
 
 
-def _oil(subject: Subject, v: Values, own: Bench, supply: float) -> Oil:
+def _oil(subject: PreparedDesign, v: Values, own: Bench, supply: float) -> Oil:
     section, temperature = subject.design.fluid, own.temperature
-    stock = Stock(v, subject.materials, subject.factors, subject.constants)
+    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
 
     def modulus(pressure: float) -> float:
         return _one(oil.pure_bulk_modulus(v, section, stock, temperature, pressure))
@@ -273,7 +273,7 @@ def _oil(subject: Subject, v: Values, own: Bench, supply: float) -> Oil:
     )
 
 
-def _valve(v: Values, design: Design, done: Pass) -> ValveData | None:
+def _valve(v: Values, design: Design, done: ModelRun) -> ValveData | None:
     if design.valve is None:
         return None
     edges = circuit.valve_edges(v, design, done.state)
@@ -288,7 +288,7 @@ def _valve(v: Values, design: Design, done: Pass) -> ValveData | None:
     )
 
 
-def _lines(v: Values, design: Design, done: Pass, chamber: Chamber) -> LineData:
+def _lines(v: Values, design: Design, done: ModelRun, chamber: Chamber) -> LineData:
     branch = circuit.branches(v, design, done.state)[chamber]
     throttled = design.ports.throttle is not None
     volumes, walls = [0.0, 0.0], [0.0, 0.0]
@@ -312,7 +312,7 @@ def _lines(v: Values, design: Design, done: Pass, chamber: Chamber) -> LineData:
     )
 
 
-def _throttle(v: Values, design: Design, done: Pass) -> dict[str, float] | None:
+def _throttle(v: Values, design: Design, done: ModelRun) -> dict[str, float] | None:
     found = _numbers(v, design.ports.throttle, "ports.throttle.")
     if found is None:
         return None

@@ -17,9 +17,9 @@ from ...models import elastomer
 from ...models.fluid import ATMOSPHERIC_PRESSURE
 from .. import contact_elements, gland_check
 from ..barrel import SEAL_STEP
-from ..film import Row, Solved, solve
+from ..film import FilmRow, Solved, solve
 from ..film_tables import floats, of_place
-from ..kernel import Base, Subject, base
+from ..kernel import Base, PreparedDesign, base
 from ..rings import Place, Ring
 from ..seal_contact import seal_contact
 from ..values import of_case
@@ -58,7 +58,7 @@ MAP_SHARES = (0.02, 0.1, 0.25, 0.5, 0.75, 1.0)
 
 
 def study(
-    subject: Subject,
+    subject: PreparedDesign,
     place: Place,
     *,
     speed: float | None = None,
@@ -132,7 +132,9 @@ def study(
     )
 
 
-def with_elements(subject: Subject, place: Place) -> tuple[Subject, tuple[Contact, ...]]:
+def with_elements(
+    subject: PreparedDesign, place: Place
+) -> tuple[PreparedDesign, tuple[Contact, ...]]:
     """The same design with contact profiles by finite elements for the seal of a place, and these.
 
     Of two rings the first; a second keeps its closed form.
@@ -172,7 +174,7 @@ def _case(ring: Ring, speed: float | None) -> int:
     return int(np.argmax(held))
 
 
-def _point(row: Row, temperature: float) -> SealPoint:
+def _point(row: FilmRow, temperature: float) -> SealPoint:
     solved = solve(row)
     between, first = solved.between, row.rings[0]
     shared = solved.row.between(between) if solved.films else row.rings
@@ -221,7 +223,7 @@ def _bounds(solved: Solved) -> tuple[float, float]:
             )
             for ring in solved.row.rings
         )
-        other = solve(Row(scaled, solved.row.outward), solved)
+        other = solve(FilmRow(scaled, solved.row.outward), solved)
         if other.why:
             return nan, nan
         found.append(other.friction())
@@ -265,7 +267,7 @@ def _ring_point(ring: Ring, solved: Solved, index: int) -> RingPoint:
 
 
 def _squeezes(
-    subject: Subject, found: Base, own: Sequence[Ring], growth: float
+    subject: PreparedDesign, found: Base, own: Sequence[Ring], growth: float
 ) -> Sequence[SqueezeRow]:
     """Squeeze over tolerance at coldest, case and hottest, without and with pressure."""
     design, v = subject.design, subject.values()

@@ -27,10 +27,10 @@ from ...models.layered_tube import (
 from ...models.strength_modes import Stress, load_multiplier
 from ...numeric import Array
 from .. import plies
-from ..allow import Stock
+from ..allow import MaterialValues
 from ..barrel import LAMINATES, Wall, kind
 from ..geometry import Geometry
-from ..kernel import Pass, Subject
+from ..kernel import ModelRun, PreparedDesign
 from ..plies import Climate, Layer
 from ..values import Values
 from . import alternatives
@@ -99,7 +99,7 @@ class _Used:
     values: Array
 
 
-def study(subject: Subject, v: Values, done: Pass) -> WallStudy | None:
+def study(subject: PreparedDesign, v: Values, done: ModelRun) -> WallStudy | None:
     """The wall of one evaluated design; None where the paper's own barrel model is in use.
 
     Parameters
@@ -110,7 +110,7 @@ def study(subject: Subject, v: Values, done: Pass) -> WallStudy | None:
     design, model = subject.design, kind(subject.design, subject.materials)
     if model not in (*LAMINATES, "isotropic"):
         return None
-    stock = Stock(v, subject.materials, subject.factors, subject.constants)
+    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     states = plies.climates(v, design)
     layers = plies.layers(v, stock, design.barrel.layup, "barrel.layup", states, [])
     if any(layer.expansions is None for layer in layers):
@@ -145,7 +145,7 @@ def study(subject: Subject, v: Values, done: Pass) -> WallStudy | None:
 
 
 def _layer_rows(
-    subject: Subject, stock: Stock, layers: Sequence[Layer], inner: float
+    subject: PreparedDesign, stock: MaterialValues, layers: Sequence[Layer], inner: float
 ) -> tuple[LayerRow, ...]:
     rows = []
     kinds: dict[str, Literal["composite", "polymer"]] = {"ply": "composite", "polymer": "polymer"}
@@ -338,7 +338,7 @@ def _ladder(
     v: Values,
     layers: Sequence[Layer],
     states: Sequence[Climate],
-    done: Pass,
+    done: ModelRun,
     criterion: str,
     *,
     exact: bool,

@@ -24,7 +24,7 @@ from ...seals import o_ring
 from ...seals.kinds import SIZES
 from ..build import prepare
 from ..film_tables import floats
-from ..kernel import Subject, base, compute
+from ..kernel import PreparedDesign, base, compute
 from ..rings import Place, Ring
 from ..seal_contact import seal_contact
 from ..values import Values, of_case
@@ -232,7 +232,7 @@ def _fitted(design: Design, replaced: Sequence[Place], model: str) -> Design:
     )
 
 
-def _model(subject: Subject) -> Model:
+def _model(subject: PreparedDesign) -> Model:
     """Friction of a design of one load case, and how every factor moves it."""
     nothing = (math.nan,) * len(FACTORS)
     try:
@@ -251,7 +251,7 @@ def _model(subject: Subject) -> Model:
     return Model(float(row[0]), of_case(breakaway, 0), tuple(float(slope) for slope in slopes))
 
 
-def _moved(subject: Subject) -> dict[str, np.ndarray]:
+def _moved(subject: PreparedDesign) -> dict[str, np.ndarray]:
     """PATHs with a column for the design and one for each factor a step up and a step down."""
     v = subject.values()
     widths = {f"seals.{r.name}.groove_width": r["groove_width"] for r in base(subject, v).rings}
@@ -265,7 +265,7 @@ def _moved(subject: Subject) -> dict[str, np.ndarray]:
     return varied
 
 
-def _paths(subject: Subject, factor: Factor, v: Values) -> Sequence[str]:
+def _paths(subject: PreparedDesign, factor: Factor, v: Values) -> Sequence[str]:
     """PATHs of a factor in a design; a groove's width may be left to its default."""
     found = [
         path.format(

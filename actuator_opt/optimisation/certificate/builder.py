@@ -12,7 +12,7 @@ import numpy as np
 from ...symbolic import Symbol
 from .intervals import branch, extreme
 from .lone import CAUTION, SAMPLES, Leads, function
-from .relaxation import Curve, Relaxation, Row, Unknown
+from .relaxation import ConstraintRow, Curve, Relaxation, Unknown
 from .shapes import FAR, Kind, Mixed, Table
 from .signomial import Form, Signomial
 
@@ -248,7 +248,7 @@ class Builder:
         if minus:
             most = math.inf
             whole, rest = (self.found.total(side, 0.0, most) for side in (plus, minus))
-            self.found.rows.append(Row(rest, whole))
+            self.found.rows.append(ConstraintRow(rest, whole))
 
     def _difference(
         self, plus: Sequence[Form], minus: Sequence[Form], low: float, high: float
@@ -281,7 +281,7 @@ class Builder:
         pick = max if larger else min
         out = self.found.atom(*ends, lambda y: pick(a.at(y), b.at(y)))
         for one in (a, b):
-            self.found.rows.append(Row(one, out) if larger else Row(out, one))
+            self.found.rows.append(ConstraintRow(one, out) if larger else ConstraintRow(out, one))
         return s, out
 
     def _of_function(self, node: Symbol) -> tuple[float, Form]:

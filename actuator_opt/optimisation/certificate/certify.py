@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from ...evaluation.kernel import Pass, compute
+from ...evaluation.kernel import ModelRun, compute
 from ...symbolic.bounds import bounds_of
 from ...symbolic.order import needed
 from ..actuator import ActuatorProblem
@@ -23,8 +23,8 @@ from .builder import Builder
 from .intervals import Empty, narrow, tighten
 from .lone import ranges
 from .plain import straighten
-from .relaxation import Relaxation, Row, Unknown
-from .search import GUARD, Found, Search
+from .relaxation import ConstraintRow, Relaxation, Unknown
+from .search import GUARD, BoxSearch, Found
 from .signomial import Form
 from .trace import Claim, Traced, trace, variable
 
@@ -55,7 +55,7 @@ class Relaxed:
     variables: dict[str, Form]
     covered: tuple[Claim, ...]
     dropped: dict[str, str]
-    unknowns: dict[str, Callable[[Pass], float]]
+    unknowns: dict[str, Callable[[ModelRun], float]]
     """What the further unknowns are in an evaluated design, by name."""
 
     def atoms(self, actuator: ActuatorProblem, x: Vector) -> Vector:
@@ -121,7 +121,7 @@ def _largest(builder: Builder, values: Sequence[Any]) -> Form:
         return forms[0]
     low, high = (max(ends) for ends in zip(*map(bounds_of, values), strict=True))
     found = builder.found.atom(low, high, lambda y: max(form.at(y) for form in forms))
-    builder.found.rows += [Row(form, found) for form in forms]
+    builder.found.rows += [ConstraintRow(form, found) for form in forms]
     return found
 
 
@@ -180,14 +180,14 @@ def _coarse(
     return relaxed, search.run(report)
 
 
-def _search(traced: Traced, most: float, until: float, boxes: float) -> tuple[Relaxed, Search]:
+def _search(traced: Traced, most: float, until: float, boxes: float) -> tuple[Relaxed, BoxSearch]:
     """The search for designs whose objective is no more than `most`."""
     relaxed = relax(traced, most)
     layout = Layout(relaxed.relaxation)
     bounding = Bounding(layout, relaxed.objective)
     atoms = [form.powers[0][0] for form in relaxed.variables.values()]
     goal = math.log(most)
-    return relaxed, Search(layout, bounding, goal, variables=atoms, until=until, most=boxes)
+    return relaxed, BoxSearch(layout, bounding, goal, variables=atoms, until=until, most=boxes)
 
 
 def _meets(layout: Layout, y: Vector) -> bool:

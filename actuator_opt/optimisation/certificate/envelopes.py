@@ -10,17 +10,17 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...design.model import Design
-from ...evaluation import Subject, beam, plies
-from ...evaluation.allow import Stock
+from ...evaluation import PreparedDesign, beam, plies
+from ...evaluation.allow import MaterialValues
 from ...evaluation.barrel import LAMINATES, Swelling, Wall, compute, kind, load_path
 from ...evaluation.barrel.load_path import LoadPath
 from ...evaluation.geometry import Geometry
-from ...evaluation.kernel import Implicit, Pass, Statics
+from ...evaluation.kernel import Implicit, ModelRun, Statics
 from ...evaluation.retention import clamped
 from ...evaluation.rods import Rod
-from ...evaluation.rows import Computed
+from ...evaluation.rows import MetricArrays
 from ...evaluation.springs import Springs
-from ...evaluation.state import State
+from ...evaluation.state import LoadState
 from ...evaluation.values import Values
 from ...joints.joint import Clamp
 from ...models import column, rod as rod_models, stepped, tube_bounds
@@ -43,12 +43,12 @@ CONTRACTION = 0.2
 """Contraction of a wall over its axial strain in the bound on its stiffness; any number holds."""
 
 
-class Problem(Protocol):
+class EnvelopeProblem(Protocol):
     """Where envelopes leave their unknowns and what is known of them."""
 
     facts: list[tuple[Any, Any]]
 
-    def unknown(self, name: str, exact: Callable[[Pass], float]) -> Symbol:
+    def unknown(self, name: str, exact: Callable[[ModelRun], float]) -> Symbol:
         """A further unknown, above zero."""
 
 
@@ -57,9 +57,9 @@ class Envelopes:
 
     def __init__(
         self,
-        problem: Problem,
-        subject: Subject,
-        there: Pass,
+        problem: EnvelopeProblem,
+        subject: PreparedDesign,
+        there: ModelRun,
         decays: Sequence[Sequence[float]],
         case: int,
     ) -> None:
@@ -80,7 +80,7 @@ class Envelopes:
         rows = np.atleast_2d(np.asarray(value, dtype=float))
         return float(rows[min(self.case, len(rows) - 1), 0])
 
-    def unknown(self, name: str, exact: Callable[[Pass], Array]) -> Symbol:
+    def unknown(self, name: str, exact: Callable[[ModelRun], Array]) -> Symbol:
         """An unknown of this load case."""
         return self.problem.unknown(f"{name}_{self.case}", lambda done: self.number(exact(done)))
 
@@ -124,7 +124,9 @@ class Envelopes:
 
         return critical
 
-    def laminate(self, v: Values, design: Design, stock: Stock, g: Geometry, state: State) -> Wall:
+    def laminate(
+        self, v: Values, design: Design, stock: MaterialValues, g: Geometry, state: LoadState
+    ) -> Wall:
         """A laminated wall: growth and axial stiffness unknown between their bounds.
 
         Its swelling is that of a wall that is held: growth without axial strain, stretch without
@@ -232,7 +234,7 @@ class Envelopes:
         }
 
     @staticmethod
-    def joint(done: Statics, out: Computed) -> None:
+    def joint(done: Statics, out: MetricArrays) -> None:
         """The joint of caps and head where its factor itself is not convex."""
         held = done.held
         if held is None or held.joint.envelope is None:
@@ -246,9 +248,9 @@ class Envelopes:
         self,
         v: Values,
         design: Design,
-        stock: Stock,
+        stock: MaterialValues,
         g: Geometry,
-        state: State,
+        state: LoadState,
         swelling: Swelling,
     ) -> LoadPath:
         """Axial force in a laminated wall; between tie rods its share is unknown."""
@@ -286,19 +288,21 @@ def refuse(design: Design) -> None:
             raise Unknown(f"{what} has no envelope yet")
 
 
-def layered(subject: Subject) -> bool:
+def layered(subject: PreparedDesign) -> bool:
     """Whether the wall of a design is of layers."""
     return kind(subject.design, subject.materials) in LAMINATES
 
 
-def decays(subject: Subject, v: Values, there: Pass, free: Container[str]) -> list[list[float]]:
+def decays(
+    subject: PreparedDesign, v: Values, there: ModelRun, free: Container[str]
+) -> list[list[float]]:
     """How the displacement falls through the parts of each layer of an evaluated design.
 
     A layer whose angle is one of the PATHs `free` is one part.
     """
     if not layered(subject):
         return []
-    stock = Stock(v, subject.materials, subject.factors, subject.constants)
+    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     plain = plies.layers(v, stock, subject.design.barrel.layup, "barrel.layup", (), [])
     counts = [1 if f"barrel.layup[{k}].angle" in free else PARTS for k in range(len(plain))]
     parts = [
@@ -328,7 +332,7 @@ def _contracting(wall: Sequence[Array], contraction: float) -> Array:
     return zz - 2 * contraction * (zt + zr) + contraction**2 * (tt + 2 * tr + rr)
 
 
-def _bearable(v: Values, design: Design, stock: Stock, g: Geometry) -> Array | None:
+def _bearable(v: Values, design: Design, stock: MaterialValues, g: Geometry) -> Array | None:
     """Pressure that no laminated wall bears before its first damage.
 
     None where it is not proven: another criterion, autofrettage, strengths not stated, or a ply

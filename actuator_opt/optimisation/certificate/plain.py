@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from .relaxation import Curve, Link, Product, Relaxation, Row
+from .relaxation import ConstraintRow, Curve, Link, Product, Relaxation
 from .shapes import Table
 from .signomial import Form, Powers
 
@@ -83,4 +83,4 @@ def straighten(found: Relaxation) -> None:
         scale = found.reach(whole)[1]
         own = plain.term(whole, scale)
         sums = plain.term(part, scale) + plain.term(rest, scale)
-        found.rows += [Row(own, sums), Row(sums, own)]
+        found.rows += [ConstraintRow(own, sums), ConstraintRow(sums, own)]

@@ -54,7 +54,7 @@ Maker: TypeAlias = Callable[[Sequence[float]], float]
 """Logarithm of an atom from those made before."""
 
 
-class Row(NamedTuple):
+class ConstraintRow(NamedTuple):
     """low <= high."""
 
     low: Form
@@ -71,7 +71,7 @@ class Relaxation:
     makers: list[Maker] = field(default_factory=list)
     lower: list[float] = field(default_factory=list)
     upper: list[float] = field(default_factory=list)
-    rows: list[Row] = field(default_factory=list)
+    rows: list[ConstraintRow] = field(default_factory=list)
     curves: list[Curve] = field(default_factory=list)
     splits: list[tuple[Form, Form, Form]] = field(default_factory=list)
     """Every sum: whole, and its two parts."""

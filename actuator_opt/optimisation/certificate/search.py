@@ -54,7 +54,7 @@ class Found:
     closed: bool
 
 
-class Search:
+class BoxSearch:
     """A search by splitting the box of least bound where its relaxation is loosest.
 
     Parameters

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from ...evaluation.kernel import Pass, Statics, compute, statics
+from ...evaluation.kernel import ModelRun, Statics, compute, statics
 from ...evaluation.limits import Limit
-from ...evaluation.rows import Computed
+from ...evaluation.rows import MetricArrays
 from ...evaluation.values import Values
 from ...symbolic import Graph, Symbol
 from ..actuator import ActuatorProblem
@@ -48,7 +48,7 @@ class Traced:
     graph: Graph
     variables: dict[str, Symbol]
     """The design's, by PATH."""
-    unknowns: dict[str, tuple[Symbol, Callable[[Pass], float]]] = field(default_factory=dict)
+    unknowns: dict[str, tuple[Symbol, Callable[[ModelRun], float]]] = field(default_factory=dict)
     """Further unknowns of envelopes by name, with what they are in an evaluated design."""
     objectives: list[Any] = field(default_factory=list)
     """The objective is at least each of these."""
@@ -57,7 +57,7 @@ class Traced:
     """Pairs of values: the first is at least the second, by nature."""
     dropped: dict[str, str] = field(default_factory=dict)
 
-    def unknown(self, name: str, exact: Callable[[Pass], float]) -> Symbol:
+    def unknown(self, name: str, exact: Callable[[ModelRun], float]) -> Symbol:
         """A further unknown, above zero; `exact` finds it in an evaluated design."""
         if name not in self.unknowns:
             self.unknowns[name] = self.graph.variable(name, (0.0, math.inf)), exact
@@ -104,7 +104,7 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
         one = replace(subject, design=design)
         values = Values(subject.numbers, one.cases, found.variables)
         envelopes = Envelopes(found, subject, there, falls, i)
-        out = Computed()
+        out = MetricArrays()
         try:
             with np.errstate(all="ignore"):
                 done = statics(one, values, out, envelopes.implicit())
@@ -122,13 +122,13 @@ def trace(actuator: ActuatorProblem, x: Vector) -> Traced:
     return found
 
 
-def _least_proof(done: Pass) -> float:
+def _least_proof(done: ModelRun) -> float:
     """The least proof factor of all places."""
     return min(float(np.min(value)) for value in done.computed.metrics["proof_factor"].values())
 
 
 def _along_the_stroke(
-    envelopes: Envelopes, done: Statics, out: Computed, positions: tuple[float, ...]
+    envelopes: Envelopes, done: Statics, out: MetricArrays, positions: tuple[float, ...]
 ) -> Iterator[tuple[Any, Any]]:
     """Stiffness is no more than at some positions.
 
@@ -160,7 +160,7 @@ def _collect(
     actuator: ActuatorProblem,
     found: Traced,
     limits: list[Limit],
-    out: Computed,
+    out: MetricArrays,
     values: Values,
     *,
     first: bool,
@@ -194,7 +194,7 @@ def _collect(
             found.dropped[limit.name] = "its model is no closed expression"
 
 
-def _applying(out: Computed, metric: str, case: str) -> Iterator[tuple[str, Any]]:
+def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, Any]]:
     """Traced values of a metric where it applies."""
     for place, value in out.metrics.get(metric, {}).items():
         applies = out.applies_at.get((metric, place), out.applies.get(metric))
@@ -202,7 +202,7 @@ def _applying(out: Computed, metric: str, case: str) -> Iterator[tuple[str, Any]
             yield place, value.item() if isinstance(value, np.ndarray) else value
 
 
-def _positions(there: Pass) -> tuple[float, ...]:
+def _positions(there: ModelRun) -> tuple[float, ...]:
     """Where the design is softest, as shares of the stroke, of all load cases."""
     shares = np.ravel(there.weakest / there.geometry.stroke)
     return tuple(sorted({round(float(share), 6) for share in shares if np.isfinite(share)}))

@@ -16,7 +16,7 @@ from ..descents import RESIDUAL
 from ..problem import Vector
 from . import dominance, references
 from .line import between
-from .search import Search
+from .search import FrontSearch
 
 WIDEST = 3.0
 """Largest gap between neighbours, over the median one."""
@@ -46,7 +46,7 @@ class Gap:
     jump: bool
 
 
-def chosen(search: Search, count: int) -> dominance.Indices:
+def chosen(search: FrontSearch, count: int) -> dominance.Indices:
     """So many designs, farthest apart, along the first objective; all are optimal."""
     kept = np.array([k for k in search.chosen() if search.residual(k) <= RESIDUAL], dtype=np.intp)
     units = search.units[:, kept]
@@ -62,7 +62,7 @@ def chosen(search: Search, count: int) -> dominance.Indices:
     return kept[dominance.thinned(units, first, count)]
 
 
-def wide(search: Search, kept: dominance.Indices) -> list[Gap]:
+def wide(search: FrontSearch, kept: dominance.Indices) -> list[Gap]:
     """The wide gaps between designs of two objectives, in their order."""
     units = search.units[:, kept]
     sizes = np.sqrt((np.diff(units, axis=1) ** 2).sum(axis=0))
@@ -74,7 +74,7 @@ def wide(search: Search, kept: dominance.Indices) -> list[Gap]:
     ]
 
 
-def close(search: Search, count: int) -> None:
+def close(search: FrontSearch, count: int) -> None:
     """Put designs of two objectives into wide gaps until there are none but jumps."""
     for number in range(MOST_ROUNDS):
         kept = chosen(search, count)
@@ -92,7 +92,7 @@ def close(search: Search, count: int) -> None:
             return
 
 
-def middles(search: Search, count: int) -> list[int]:
+def middles(search: FrontSearch, count: int) -> list[int]:
     """A design at the middle level of each wide gap, the widest first."""
     kept, found = chosen(search, count), []
     for gap in sorted(wide(search, kept), key=lambda one: -one.size):
@@ -103,7 +103,7 @@ def middles(search: Search, count: int) -> list[int]:
     return found
 
 
-def lost(search: Search, kept: dominance.Indices) -> int:
+def lost(search: FrontSearch, kept: dominance.Indices) -> int:
     """Levels at which no design was found and that none is near: in a gap that is no jump."""
     units = search.units[:, kept]
     if len(units) > 2:
@@ -123,7 +123,7 @@ def _pairs(kept: dominance.Indices) -> Iterator[tuple[int, int]]:
     return zip(kept[:-1].tolist(), kept[1:].tolist(), strict=True)
 
 
-def _among(search: Search, left: int, right: int) -> dominance.Indices:
+def _among(search: FrontSearch, left: int, right: int) -> dominance.Indices:
     """The designs at levels from those of one to those of another, in their order."""
     levels = np.array([one.level[0] for one in search.designs])
     low, high = sorted((levels[left], levels[right]))
@@ -132,7 +132,7 @@ def _among(search: Search, left: int, right: int) -> dominance.Indices:
     return np.asarray(order[within], dtype=np.intp)
 
 
-def _pieces(search: Search, left: int, right: int) -> Vector:
+def _pieces(search: FrontSearch, left: int, right: int) -> Vector:
     """The most that the front may measure between neighbouring levels from one to another."""
     among = _among(search, left, right)
     levels = np.array([search.designs[k].level[0] for k in among])

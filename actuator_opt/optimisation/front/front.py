@@ -20,7 +20,7 @@ from .line import fill_line
 from .objectives import Conditions, Objectives
 from .overlooked import OVERLOOKED, better
 from .plane import fill_plane
-from .search import Search
+from .search import FrontSearch
 from .tracer import Tracer
 
 
@@ -93,7 +93,7 @@ def front(objectives: Objectives, settings: Settings) -> Front | NoEnd:
     tracer, x = normalised(objectives, checked, found)
     if x.shape[1] == 1:
         return _single(tracer, x, warnings)
-    search = Search(tracer, tracer.begun(x), found.others)
+    search = FrontSearch(tracer, tracer.begun(x), found.others)
     _fill(search, settings.count)
     searched = improved = 0
     for again in range(2 if settings.checks else 0):
@@ -116,7 +116,7 @@ def front(objectives: Objectives, settings: Settings) -> Front | NoEnd:
     return _finished(search, settings.count, warnings, searched, improved)
 
 
-def _fill(search: Search, count: int) -> None:
+def _fill(search: FrontSearch, count: int) -> None:
     """Find so many designs, evenly spread."""
     if len(search.tracer.ideal) == 2:
         fill_line(search, count)
@@ -125,7 +125,7 @@ def _fill(search: Search, count: int) -> None:
         fill_plane(search, count)
 
 
-def _places(search: Search, settings: Settings) -> list[int]:
+def _places(search: FrontSearch, settings: Settings) -> list[int]:
     """Indices of designs to search anew for: evenly along the front, and one in each wide gap."""
     inner = [k for k in search.chosen() if search.designs[k].held][1:-1]
     picked = np.linspace(0, len(inner) - 1, settings.checks + 2)[1:-1].round().astype(int)
@@ -136,7 +136,7 @@ def _places(search: Search, settings: Settings) -> list[int]:
 
 
 def _finished(
-    search: Search, count: int, warnings: tuple[str, ...], checked: int, improved: int
+    search: FrontSearch, count: int, warnings: tuple[str, ...], checked: int, improved: int
 ) -> Front:
     """The designs handed out, with what others they dominate and how evenly they lie."""
     tracer, kept = search.tracer, even.chosen(search, count)

@@ -9,7 +9,7 @@ import numpy as np
 from ...progress import tell
 from ..problem import Vector
 from . import references
-from .search import Search
+from .search import FrontSearch
 from .tracer import Design, Start
 
 GROWTH = 10
@@ -19,7 +19,7 @@ MOST_ROUNDS = 12
 """Most rounds: a front in one piece takes two or three."""
 
 
-def fill_line(search: Search, count: int) -> None:
+def fill_line(search: FrontSearch, count: int) -> None:
     """Designs between two anchors until there are enough, wherever the front is longest."""
     for number in range(MOST_ROUNDS):
         missing = count - len(search.chosen())
@@ -37,7 +37,7 @@ def fill_line(search: Search, count: int) -> None:
     search.cross()
 
 
-def between(search: Search, places: Sequence[float] | Vector) -> list[Start]:
+def between(search: FrontSearch, places: Sequence[float] | Vector) -> list[Start]:
     """Starts at places u between the designs known, from those next to them."""
     search.sort()
     known = [one.level[0] for one in search.designs]

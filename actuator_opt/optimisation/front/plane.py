@@ -17,7 +17,7 @@ from ...progress import tell
 from ..problem import Vector
 from . import dominance, references
 from .dominance import Indices, distances
-from .search import JUMP, Search
+from .search import JUMP, FrontSearch
 from .tracer import BETTER, HELD, Design, Start
 
 Place = tuple[int, ...]
@@ -60,7 +60,7 @@ NEIGHBOURS = 14
 """Designs next to one that a hole may lie between."""
 
 
-def fill_plane(search: Search, count: int) -> None:
+def fill_plane(search: FrontSearch, count: int) -> None:
     """Designs all over the front, more than asked for, evenly spread."""
     objectives, most = search.tracer.objectives.count, RESERVE * count + 60
     if len(search.designs) == objectives:
@@ -84,7 +84,7 @@ def fill_plane(search: Search, count: int) -> None:
             break
 
 
-def _nearest(search: Search, steps: int) -> list[Place]:
+def _nearest(search: FrontSearch, steps: int) -> list[Place]:
     """The places of a lattice next to the designs known."""
     found: set[Place] = set()
     for one in search.designs:
@@ -95,7 +95,7 @@ def _nearest(search: Search, steps: int) -> list[Place]:
     return sorted(found)
 
 
-def _flooded(search: Search, begun: Iterable[Place], steps: int, most: int) -> int:
+def _flooded(search: FrontSearch, begun: Iterable[Place], steps: int, most: int) -> int:
     """Try these places, and those next to every one that has a design; how many have."""
     tried: set[Place] = set()
     waiting, held = list(begun), 0
@@ -112,7 +112,7 @@ def _flooded(search: Search, begun: Iterable[Place], steps: int, most: int) -> i
     return held
 
 
-def _beside(search: Search, level: Vector) -> Start:
+def _beside(search: FrontSearch, level: Vector) -> Start:
     """A start from the designs next to a level, the nearer the more."""
     away = distances(search.plane, level - level.mean())
     near = np.argsort(away, kind="stable")[: len(level)]
@@ -123,7 +123,7 @@ def _beside(search: Search, level: Vector) -> Start:
     return Start(level, np.ones(len(level)), search.tracer.to_t(z, t), some[0].hessian)
 
 
-def _all_bettered(search: Search, found: Sequence[Design | None]) -> list[Design]:
+def _all_bettered(search: FrontSearch, found: Sequence[Design | None]) -> list[Design]:
     """Each design, with those objectives bettered that cost the others nothing, at its own level.
 
     An objective that its level does not hold back has no price; with the others held where they
@@ -149,14 +149,14 @@ def _all_bettered(search: Search, found: Sequence[Design | None]) -> list[Design
     return search.tracer.placed(done)
 
 
-def _freed(search: Search, one: Design, firm: npt.NDArray[np.bool_]) -> Start:
+def _freed(search: FrontSearch, one: Design, firm: npt.NDArray[np.bool_]) -> Start:
     """A start to better the other objectives, the firm ones held where they are."""
     level, way = np.where(firm, one.unit + HOLD, one.level), (~firm).astype(float)
     t = float((one.unit - one.level)[~firm].max())
     return Start(level, way, search.tracer.to_t(one.point.z, t), one.hessian)
 
 
-def _renormalised(search: Search) -> bool:
+def _renormalised(search: FrontSearch) -> bool:
     """Whether the range of the front is another than thought, and all is normalised by it now."""
     units = search.units[:, search.chosen()]
     low, wide = units.min(axis=1), np.ptp(units, axis=1)
@@ -166,7 +166,7 @@ def _renormalised(search: Search) -> bool:
     return True
 
 
-def _fill_holes(search: Search, count: int) -> None:
+def _fill_holes(search: FrontSearch, count: int) -> None:
     """Levels between neighbours that lie farthest apart, until there are enough designs."""
     tried: set[tuple[int, int]] = set()
     seen: list[Design] = []  # kept, for an id is that of another design once its own is gone
@@ -191,7 +191,7 @@ def _key(designs: Sequence[Design], pair: tuple[int, int]) -> tuple[int, int]:
     return id(designs[pair[0]]), id(designs[pair[1]])
 
 
-def _apart(search: Search, chosen: Indices) -> list[tuple[int, int]]:
+def _apart(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
     """Neighbours with no other design between them, those farthest apart first."""
     units, plane = search.units[:, chosen], search.plane[:, chosen]
     found: dict[tuple[int, int], float] = {}
@@ -206,7 +206,7 @@ def _apart(search: Search, chosen: Indices) -> list[tuple[int, int]]:
     return sorted(found, key=lambda pair: -found[pair])
 
 
-def _middle(search: Search, one: Design, other: Design) -> Start:
+def _middle(search: FrontSearch, one: Design, other: Design) -> Start:
     """A start at the level midway between two designs."""
     level = (one.unit + other.unit) / 2
     level = level - level.mean() + 1 / len(level)
@@ -215,7 +215,7 @@ def _middle(search: Search, one: Design, other: Design) -> Start:
     return Start(level, np.ones(len(level)), search.tracer.to_t(z, t), one.hessian)
 
 
-def _crossed(search: Search) -> bool:
+def _crossed(search: FrontSearch) -> bool:
     """Try designs from others that are nearly as good in every objective with other variables.
 
     Whether any was merely local.
@@ -244,7 +244,7 @@ def _elsewhere(one: Design, new: Design) -> bool:
     return bool(far and new.point.objective < one.point.objective + BETTER)
 
 
-def _doubtful(search: Search, chosen: Indices) -> list[tuple[int, int]]:
+def _doubtful(search: FrontSearch, chosen: Indices) -> list[tuple[int, int]]:
     """Pairs of a design and the one that comes nearest to bettering it from another valley."""
     units = search.units[:, chosen]
     z = np.stack([search.designs[k].point.z[:-1] for k in chosen], axis=1)

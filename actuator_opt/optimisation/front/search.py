@@ -22,7 +22,7 @@ JUMP = 5.0
 
 
 @dataclass
-class Search:
+class FrontSearch:
     """The designs so far, and what else is known."""
 
     tracer: Tracer

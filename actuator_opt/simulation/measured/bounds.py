@@ -8,7 +8,7 @@ import numpy as np
 
 from ...least_squares import Known, known
 from ...numeric import Array
-from .problem import STEPS, Problem
+from .problem import STEPS, RecordFitProblem
 
 STEADIEST: Final = 0.97
 """Largest correlation of neighbouring samples that the bandwidth counts, as is usual."""
@@ -18,7 +18,7 @@ ORDERS: Final = 10
 """Highest order of an autoregression of residuals (a choice)."""
 
 
-def bounds(problem: Problem, x: Array) -> Known:
+def bounds(problem: RecordFitProblem, x: Array) -> Known:
     """What the residuals tell of the searched values.
 
     cov = H^-1 S H^-1, H = J^T J, S the covariance of J^T r by three counts, none of which it falls
@@ -59,7 +59,7 @@ def _larger(first: Array, second: Array) -> Array:
     return found
 
 
-def _by_time(problem: Problem, rows: Array) -> Array:
+def _by_time(problem: RecordFitProblem, rows: Array) -> Array:
     """Rows of samples, those of one instant added up, in the order of time."""
     times = np.concatenate([t for t, _ in problem.used.values()])
     instants, place = np.unique(times, return_inverse=True)
@@ -89,7 +89,7 @@ def _summed(moments: Array, width: float) -> Array:
     return total
 
 
-def _coloured(problem: Problem, left: Array, rest: Array) -> Array:
+def _coloured(problem: RecordFitProblem, left: Array, rest: Array) -> Array:
     """Covariance of U^T r where every channel's residuals are an autoregression."""
     from scipy.linalg import matmul_toeplitz  # slow to import, rarely needed
 

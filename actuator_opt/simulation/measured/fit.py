@@ -23,7 +23,7 @@ from ..run import run
 from .bounds import bounds
 from .file import Measured
 from .parameters import Entry, entries
-from .problem import Problem
+from .problem import RecordFitProblem
 from .record import Overlay, overlay
 
 MISFIT: Final = 2.0
@@ -148,7 +148,7 @@ def fit(
     begin = perf_counter()
     own = entries(names, scenario, plant)
     gains = tune(scenario, plant, records) if tuned is None else tuned
-    problem = Problem(scenario, plant, records, gains, measured, own)
+    problem = RecordFitProblem(scenario, plant, records, gains, measured, own)
     first = problem.lag(problem.start)
     dense = {"sample_time": problem.step}
     start = run(scenario.model_copy(update=dense), plant, records, gains, spec=spec)
@@ -181,7 +181,7 @@ def fit(
     )  # fmt: skip
 
 
-def _natural(one: Entry, told: Known, problem: Problem) -> Parameter:
+def _natural(one: Entry, told: Known, problem: RecordFitProblem) -> Parameter:
     """A parameter of its own size from the searched one.
 
     Bounds are those of the parameter itself, not of its logarithm: what it does, an air content or
@@ -200,7 +200,7 @@ def _natural(one: Entry, told: Known, problem: Problem) -> Parameter:
     return rated(value, low, high, value * x.standard_error)
 
 
-def _edge(problem: Problem, x: Array, k: int) -> Literal["lower", "upper"] | None:
+def _edge(problem: RecordFitProblem, x: Array, k: int) -> Literal["lower", "upper"] | None:
     """The end of its range at which a parameter lies."""
     room = EDGE * (problem.high[k] - problem.low[k])
     if x[k] - problem.low[k] < room:

@@ -54,7 +54,7 @@ ROUGH, SHARP = 1e-4, 1e-8
 """Share by which a search ends, on the way and at last: of the cost, and of a step (choices)."""
 
 
-class Problem:
+class RecordFitProblem:
     """Weighted residuals over the searched values: logarithms of positive parameters, else theirs.
 
     Parameters

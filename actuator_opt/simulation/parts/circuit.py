@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ...design.scenario.model import Scenario
-from ...design.scenario.signals import Part
+from ...design.scenario.signals import SignalSegment
 from ...evaluation.study.plant import Plant
 from ...models.tuning import ControllerGains
 from ...symbolic import Expression, Symbol
@@ -58,7 +58,7 @@ class Circuit:
     centre: float = 0.0
     """Signal that centres the spool [V]."""
 
-    def course(self, parts: Sequence[Part]) -> Expression:
+    def course(self, parts: Sequence[SignalSegment]) -> Expression:
         """A signal of the scenario over time."""
         return signals.signal(self.system, parts, self.records)
 

@@ -17,7 +17,7 @@ RATE_TIME = 1e-4
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class Feedback:
     """What the controller sees."""
 
     value: Expression
@@ -28,7 +28,7 @@ class Measured:
     load_pressure_start: float = 0.0
 
 
-def inner(circuit: Circuit, wish: Expression, measured: Measured) -> Expression:
+def inner(circuit: Circuit, wish: Expression, measured: Feedback) -> Expression:
     """A wish less what the inner loops take off it: speed, and changes of the load pressure."""
     system, stated = circuit.system, circuit.scenario.control
     if stated is None:
@@ -43,7 +43,7 @@ def inner(circuit: Circuit, wish: Expression, measured: Measured) -> Expression:
 
 
 def command(
-    circuit: Circuit, reference: Expression, measured: Measured, scale: float
+    circuit: Circuit, reference: Expression, measured: Feedback, scale: float
 ) -> Expression:
     """Signal to the valve; `scale` is a typical error of the loop, for tolerances."""
     system, stated, gains = circuit.system, circuit.scenario.control, circuit.gains

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...design.scenario.shapes import SHAPES, Records as Records, height
-from ...design.scenario.signals import Part
+from ...design.scenario.signals import SignalSegment
 from ...numeric import Array
 from ...symbolic import Expression, Namespace, jacobian
 from ..system import System
@@ -37,7 +37,7 @@ class _Clock:
         return self.system.graph.table(course, self.time, slope)
 
 
-def signal(system: System, parts: Sequence[Part], records: Records) -> Expression:
+def signal(system: System, parts: Sequence[SignalSegment], records: Records) -> Expression:
     """The sum of the parts at the system's time; zero without parts."""
     total: Expression = 0.0
     for part in parts:
@@ -82,22 +82,22 @@ def rate(system: System, expression: Expression) -> Expression:
     return jacobian([expression], [system.time])[0][0]
 
 
-def steady_value(parts: Sequence[Part]) -> float:
+def steady_value(parts: Sequence[SignalSegment]) -> float:
     """Final value of a signal: the parts whose value lasts."""
     return sum(height(part) for part in parts if SHAPES[part.shape].lasts)
 
 
-def at_start(parts: Sequence[Part], records: Records) -> float:
+def at_start(parts: Sequence[SignalSegment], records: Records) -> float:
     """Value of a signal as the time begins; a record that is not given counts as nothing."""
     return sum(SHAPES[part.shape].initial(part, records) for part in parts)
 
 
-def acts_after(part: Part, moment: float, records: Records) -> bool:
+def acts_after(part: SignalSegment, moment: float, records: Records) -> bool:
     """Whether a part of a signal changes after an instant."""
     return SHAPES[part.shape].changes_after(part, moment, records)
 
 
-def frequencies(parts: Sequence[Part]) -> tuple[float, ...]:
+def frequencies(parts: Sequence[SignalSegment]) -> tuple[float, ...]:
     """Frequencies of the sines of a signal [Hz]."""
     return tuple(
         part.frequency

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...design.scenario.model import Scenario
-from ...evaluation.kernel import Pass, Subject, compute
+from ...evaluation.kernel import ModelRun, PreparedDesign, compute
 from ...evaluation.result import Requirement
 from ...evaluation.study.plant import Plant, plant
 from ...evaluation.values import of_case
@@ -52,11 +52,11 @@ class LoopFigures(NamedTuple):
 class LinearTier:
     """The linear model of a design, to be asked anywhere on the stroke."""
 
-    subject: Subject
-    done: Pass
+    subject: PreparedDesign
+    done: ModelRun
 
     @classmethod
-    def of(cls, subject: Subject) -> LinearTier:
+    def of(cls, subject: PreparedDesign) -> LinearTier:
         """One pass over the models."""
         return cls(subject, compute(subject, subject.values()))
 

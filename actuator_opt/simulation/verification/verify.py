@@ -17,7 +17,7 @@ from typing import Any, Final, Literal
 from ...design.scenario.model import Load, Scenario
 from ...errors import InputError, Unsolvable
 from ...evaluation.build import evaluate
-from ...evaluation.kernel import Subject
+from ...evaluation.kernel import PreparedDesign
 from ...evaluation.result import Requirement
 from ...metrics import METRICS
 from ...progress import steps
@@ -45,7 +45,7 @@ TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class VerifiedRequirement:
     """A requirement in both tiers, SI."""
 
     origin: Literal["design", "scenario"]
@@ -75,7 +75,7 @@ class Verification:
     """All requirements of a design and a scenario in time."""
 
     name: str
-    rows: tuple[Row, ...]
+    rows: tuple[VerifiedRequirement, ...]
     simulation: Simulation
     """The scenario itself."""
     runs: int
@@ -90,7 +90,7 @@ class Verification:
     def to_dict(self) -> dict[str, Any]:
         """As plain data for JSON, SI; None for what has no finite value."""
         rows = [
-            {name: _plain(getattr(row, name)) for name in Row.__dataclass_fields__}
+            {name: _plain(getattr(row, name)) for name in VerifiedRequirement.__dataclass_fields__}
             for row in self.rows
         ]
         return {
@@ -111,7 +111,7 @@ def _plain(value: Any) -> Any:
 
 def verify(
     scenario: Scenario,
-    subject: Subject,
+    subject: PreparedDesign,
     *,
     records: Records | None = None,
     result: Simulation | None = None,
@@ -143,7 +143,8 @@ def verify(
     asked = [one for one in evaluate(subject).requirements if one.metric in DYNAMIC]
     rows = [bench.row(one) for one in steps("verifying each requirement", asked)]
     rows += [
-        Row("scenario", one.metric, one.sense, one.limit, None, None, one.value, None, one.met,
+        VerifiedRequirement(
+            "scenario", one.metric, one.sense, one.limit, None, None, one.value, None, one.met,
             where=scenario.name, how="the scenario itself", why=one.why)
         for one in result.requirements
     ]  # fmt: skip
@@ -204,7 +205,7 @@ class _Bench:
     stands: dict[Spot, Stand] = field(default_factory=dict)
     made: dict[tuple[str, Spot, bool, bool], Measured] = field(default_factory=dict)
 
-    def row(self, asked: Requirement) -> Row:
+    def row(self, asked: Requirement) -> VerifiedRequirement:
         """One requirement of the design in both tiers."""
         spot = self.tier.spot(asked)
         why = self._impossible(asked.metric, spot)
@@ -222,7 +223,7 @@ class _Bench:
         moved = apart(linear, asked.value)
         if moved is not None and abs(moved) > AGREE:
             said.append(self._compared(asked.metric, spot))
-        return Row(
+        return VerifiedRequirement(
             "design",
             asked.metric,
             asked.sense,
