@@ -48,9 +48,9 @@ EVALUATED = fuzz.Input("set", ("evaluate", "-", "--json"), BENCH.encode())
 @pytest.mark.parametrize(
     ("broken", "reason"),
     [
-        (lambda *_: 1 / 0, "exit code 70"),
-        (lambda *_: time.sleep(0) or [None for _ in iter(int, 1)], "of processor time"),
-        (lambda *_: (_ for _ in ()).throw(SystemExit(5)), "exit code 5"),
+        (lambda *_, **__: 1 / 0, "exit code 70"),
+        (lambda *_, **__: time.sleep(0) or [None for _ in iter(int, 1)], "of processor time"),
+        (lambda *_, **__: (_ for _ in ()).throw(SystemExit(5)), "exit code 5"),
     ],
 )
 def test_the_fuzz_finds(broken, reason, tmp_path, monkeypatch):
