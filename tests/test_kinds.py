@@ -26,6 +26,8 @@ from actuator_opt.design.schema import json_schema
 from actuator_opt.design.seals import SealElement
 from actuator_opt.design.template import init_text
 from actuator_opt.errors import InputError
+from actuator_opt.evaluation import prepare
+from actuator_opt.evaluation.study.plant import plant
 from actuator_opt.friction import coefficient
 from actuator_opt.friction.kinds import LAWS as FRICTION_LAWS
 from actuator_opt.friction.law import FrictionLaw
@@ -339,6 +341,25 @@ def test_slope_of_a_law_is_its_derivative(law):
     breakaway = float(law.breakaway(seal, 100.0))
     assert breakaway >= 100.0
     assert breakaway == pytest.approx(float(law.level(seal, 100.0, 0.0)), rel=1e-12)
+
+
+def test_a_simulation_reads_the_numbers_of_the_law(monkeypatch):
+    """Where friction does not fall with speed, a Stribeck speed has no weight."""
+    constant = replace(
+        coefficient.LAW,
+        breakaway=lambda seal, coulomb: coulomb,
+        level=lambda seal, coulomb, speed: coulomb + 0.0 * speed,
+        slope=lambda seal, coulomb, speed: 0.0 * (coulomb + speed),
+    )
+    plants = {}
+    for name, law in (("coefficient", coefficient.LAW), ("constant", constant)):
+        monkeypatch.setitem(FRICTION_LAWS, "coefficient", law)
+        for speed in ("1 mm/s", "100 mm/s"):
+            rod = block(o_ring.TYPE, stribeck_speed=speed)
+            design = ao.read(text(block(o_ring.TYPE), rod)).design
+            plants[name, speed] = plant(prepare(design)).seals.stribeck_speed
+    assert plants["coefficient", "1 mm/s"] < plants["coefficient", "100 mm/s"]
+    assert plants["constant", "1 mm/s"] == plants["constant", "100 mm/s"]
 
 
 def test_no_law_is_a_copy_of_another():

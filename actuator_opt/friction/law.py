@@ -63,8 +63,9 @@ class FrictionLaw:
     compound : further numbers of the compound that it reads
     coefficient : Coulomb coefficient of friction at a contact [-]
     breakaway : friction at the begin of a motion, of the Coulomb friction [N]
-    level : friction over speed without its viscous part, of Coulomb friction [N] and speed [m/s]
-    slope : its derivative by speed [N s/m]
+    level : friction over speed without its viscous part, of Coulomb friction [N] and speed [m/s];
+        of the shape that both broadcast to
+    slope : its derivative by speed [N s/m], of that shape
     film : friction on a solved oil film, which is None where it was not solved; None: the law needs
         no film. A law with a film states its dry friction too, for records and simulations
     """

@@ -14,6 +14,7 @@ from .. import circuit, oil
 from ..allow import MaterialValues
 from ..circuit import CHAMBERS, Chamber
 from ..kernel import ModelRun, PreparedDesign, compute
+from ..rings import Ring
 from ..springs import OIL, Give
 from ..values import Values
 from .bench import Bench, bench
@@ -338,7 +339,7 @@ def _seals(v: Values, own: Bench, supply: float) -> SealData:
     loads = [(ring, force) for ring, force in own.normal_forces(p_a, p_b)]
     coulomb = own.coulomb(p_a, p_b)
     static, _ = own.sliding(0.0 * p_a, p_a, p_b)
-    weights = [float(np.mean((ring["breakaway_ratio"] - 1) * force)) for ring, force in loads]
+    weights = [float(np.mean(_falling(ring) * force)) for ring, force in loads]
     speeds = [float(ring["stribeck_speed"]) for ring, _ in loads]
     falling = sum(weights) > 0
     return SealData(
@@ -348,6 +349,11 @@ def _seals(v: Values, own: Bench, supply: float) -> SealData:
         viscous=sum(float(ring["viscous_friction"]) for ring, _ in loads),
         bristle_travel=float(v["stiffness.seal_deflection"]),
     )
+
+
+def _falling(ring: Ring) -> Array:
+    """What of a seal's friction falls with speed, over its Coulomb friction, by its law [-]."""
+    return ring.element.friction_law.breakaway(ring.sizes, 1.0) - 1.0
 
 
 def _plane(p_a: Array, p_b: Array, force: Array) -> Plane:
