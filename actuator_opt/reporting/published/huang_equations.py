@@ -43,7 +43,7 @@ TRACES: tuple[Trace, ...] = (
         10,
         10,
         "shear stress of asperities",
-        ("evaluation.film.Row",),
+        ("evaluation.film.FilmRow",),
         f"{listed([text.trimmed(x) for x in PAPER.dry_friction])} times the contact load, in its "
         "frictions",
     ),
@@ -60,7 +60,7 @@ TRACES: tuple[Trace, ...] = (
         18,
         18,
         "friction of the seals",
-        ("lubrication.film.outputs", "evaluation.film.Row"),
+        ("lubrication.film.outputs", "evaluation.film.FilmRow"),
         "pi d times drag and contact, in its frictions",
     ),
     Trace(
