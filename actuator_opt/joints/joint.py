@@ -6,7 +6,7 @@ Lengths in m, forces in N, stresses in Pa; numbers are floats or arrays (designs
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from ..errors import Fault
@@ -139,6 +139,8 @@ class End:
     barrel_length: Array
     plate: Array
     """Thickness of the end plate."""
+    known: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
+    """What a joint has derived from these numbers, by a word of its own, to use it again."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

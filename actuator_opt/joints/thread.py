@@ -272,7 +272,14 @@ class Thread:
 
 
 def derive(end: End) -> Thread:
-    """The thread of an end."""
+    """The thread of an end, derived once."""
+    if "thread" not in end.known:
+        end.known["thread"] = _derived(end)
+    found: Thread = end.known["thread"]
+    return found
+
+
+def _derived(end: End) -> Thread:
     pitch = end.sizes["thread.pitch"]
     diameter = end.sizes.get("thread.diameter", 2 * end.outer_radius)
     radius, wall = _radius(end), end.sizes["wall"]
@@ -308,7 +315,15 @@ def _strengths(materials: Materials, name: str) -> tuple[Array, Array]:
 
 
 def _judged(loaded: Loaded) -> Thread | str:
-    """The thread of an end, or why it has no factor."""
+    """The thread of an end, or why it has no factor; judged once."""
+    known = loaded.end.known
+    if "judged" not in known:
+        known["judged"] = _verdict(loaded)
+    found: Thread | str = known["judged"]
+    return found
+
+
+def _verdict(loaded: Loaded) -> Thread | str:
     cut, materials = derive(loaded.end), loaded.materials
     for name in (cut.male, cut.female):
         if materials.kind(name) != "metal":
