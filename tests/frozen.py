@@ -65,7 +65,7 @@ LOOKS = [*_FEW, *(look for look in _ALL if look not in _FEW)]
 """How text may look; the first is frozen in full, the others by hash."""
 BRIEF = ("compare", "evaluate/options", "optimise", "pareto", "rerun", "runs", "schema",
          "sensitivity", "uncertainty", "materials/list")  # fmt: skip
-"""Cases in which long texts are cut, as they stand in full in other cases."""
+"""Cases in which long texts are cut: other cases have them in full."""
 SOME = 10
 """Parts that stay of a list of more than twice as many: of curves, and of all in brief cases."""
 LONGEST = 300
@@ -378,7 +378,7 @@ def _drawing(data: dict[str, Any]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class _Book:
-    """How data of a step are told, so that a file holds each long part once."""
+    """The data of a step as text, in which each long part stands once."""
 
     seen: dict[str, str]
     """Where parts stood first in this case."""

@@ -134,7 +134,7 @@ def evaluate(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Every metric, requirement and check of a design as it stands."""
+    """Every metric, requirement and check of a design."""
     from .. import verbs
 
     job = Job(

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from ..design.linkage import closed_length
 from ..design.material import Material
 from ..design.model import Design, Ply
-from ..joints.joint import End, Fit, Sizes
+from ..joints.joint import End, Fit, JointSizes
 from ..models import forces, mass
 from ..numeric import Array, absolute
 from .grooves import Groove, grooves, taken
@@ -119,7 +119,7 @@ def derive(v: Values, design: Design) -> Geometry:
     )
 
 
-def end_at(design: Design, sizes: Sizes, g: Geometry) -> End:
+def end_at(design: Design, sizes: JointSizes, g: Geometry) -> End:
     """The end of the barrel as its joint sees it."""
     return end_of(
         design,

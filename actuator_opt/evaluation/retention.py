@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..design.model import Design, Retention
-from ..joints.joint import End, Joint, Layer, Sizes
+from ..joints.joint import BarrelLayer, End, Joint, JointSizes
 from ..joints.kinds import JOINTS
 from ..numeric import Array
 from .values import Values
@@ -64,7 +64,7 @@ def clamped(design: Design) -> bool:
 
 def end_of(
     design: Design,
-    sizes: Sizes,
+    sizes: JointSizes,
     *,
     inner_radius: Array,
     outer_radius: Array,
@@ -78,7 +78,7 @@ def end_of(
         sizes=sizes,
         material=None if design.retention is None else design.retention.material,
         cap=design.caps.material,
-        layers=tuple(Layer(ply.material, thickness) for ply, thickness in layers),
+        layers=tuple(BarrelLayer(ply.material, thickness) for ply, thickness in layers),
         inner_radius=inner_radius,
         outer_radius=outer_radius,
         barrel_length=barrel_length,

@@ -9,9 +9,9 @@ from . import skirt
 from .joint import (
     End,
     Fatigue,
-    Field,
     Fit,
     Joint,
+    JointField,
     Judged,
     Loaded,
     Materials,
@@ -78,9 +78,9 @@ JOINT = Joint(
     help="skirts glued over it",
     noun="a bond",
     fields=(
-        Field("length"),
-        Field("wall"),
-        Field(
+        JointField("length"),
+        JointField("wall"),
+        JointField(
             "material",
             "missing: a bond needs its adhesive",
             'add e.g. "material: epoxy_structural"',

@@ -23,7 +23,7 @@ ROUNDING = 1e-5
 """Relative room for an optimum that stands on the limit."""
 
 
-class Sizes(Protocol):
+class JointSizes(Protocol):
     """Numbers of the joint by key, such as `thread.pitch`, in SI."""
 
     def __contains__(self, key: object) -> bool: ...
@@ -83,7 +83,7 @@ class Known(Protocol):
         ...
 
 
-class Field(NamedTuple):
+class JointField(NamedTuple):
     """A key of `retention` that a joint uses.
 
     `missing` and `remedy` are said where a file leaves out a key that the joint needs; both empty:
@@ -115,7 +115,7 @@ class Usual(NamedTuple):
     number: Callable[[End], Array]
 
 
-class Layer(NamedTuple):
+class BarrelLayer(NamedTuple):
     """A layer of the barrel."""
 
     material: str
@@ -130,17 +130,17 @@ class End:
     from the bore outwards.
     """
 
-    sizes: Sizes
+    sizes: JointSizes
     material: str | None
     cap: str
-    layers: tuple[Layer, ...]
+    layers: tuple[BarrelLayer, ...]
     inner_radius: Array
     outer_radius: Array
     barrel_length: Array
     plate: Array
     """Thickness of the end plate."""
-    known: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
-    """What a joint has derived from these numbers, by a word of its own, to use it again."""
+    known: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
+    """Results that a joint derives from these numbers and uses again, by a word of its own."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -282,7 +282,7 @@ class Joint:
     help: str
     noun: str
     """As messages name it: `a bond`, or a plural."""
-    fields: tuple[Field, ...]
+    fields: tuple[JointField, ...]
     """Keys of `retention` that it uses; every other one is a fault."""
     kinds: tuple[str, ...]
     """Kinds of material that `retention.material` may be; empty: it has none."""

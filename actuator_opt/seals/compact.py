@@ -18,7 +18,7 @@ from .seal_type import (
     no_faults,
     no_warnings,
 )
-from .sizes import LAND, WIDTH, Field
+from .sizes import LAND, WIDTH, SizeField
 
 
 def contact(seal: SealSizes) -> SealContact:
@@ -59,7 +59,7 @@ TYPE = SealType(
     name="compact",
     title="compact seal",
     help="a rubber body between two guides, sealing both ways",
-    fields=(Field(WIDTH, None), Field(LAND, lambda sizes: 1.0 * sizes["width"])),
+    fields=(SizeField(WIDTH, None), SizeField(LAND, lambda sizes: 1.0 * sizes["width"])),
     faults=no_faults,
     groove=groove,
     contact=contact,

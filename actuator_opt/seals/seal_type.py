@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from ..numeric import Array
 from .contact import SealContact
 from .outline import Shape
-from .sizes import Field
+from .sizes import SizeField
 
 if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution
@@ -133,7 +133,7 @@ class SealType:
     name: str
     title: str
     help: str
-    fields: tuple[Field, ...]
+    fields: tuple[SizeField, ...]
     faults: Callable[[Mapping[str, float]], Iterable[SizeFault]]
     groove: Callable[[Mapping[str, Array]], SealGroove]
     contact: Callable[[SealSizes], SealContact]

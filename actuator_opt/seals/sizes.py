@@ -25,7 +25,7 @@ class Size(NamedTuple):
     example: str
 
 
-class Field(NamedTuple):
+class SizeField(NamedTuple):
     """A size that a seal type has.
 
     Parameters

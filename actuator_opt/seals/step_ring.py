@@ -22,7 +22,7 @@ from .seal_type import (
     SealType,
     SizeFault,
 )
-from .sizes import LAND, RELIEF, TAPER, THICKNESS, WIDTH, Field
+from .sizes import LAND, RELIEF, TAPER, THICKNESS, WIDTH, SizeField
 
 if TYPE_CHECKING:
     from ..finite_elements.result import SealSolution
@@ -161,11 +161,11 @@ TYPE = SealType(
     title="step ring",
     help="a sliding ring of PTFE, pressed on by an O-ring behind it",
     fields=(
-        Field(WIDTH, None),
-        Field(LAND, lambda sizes: LAND_SHARE * sizes["width"]),
-        Field(RELIEF, lambda sizes: (sizes["width"] - sizes["land"]) / 2),
-        Field(TAPER, lambda sizes: TAPER_DEFAULT),
-        Field(THICKNESS, None),
+        SizeField(WIDTH, None),
+        SizeField(LAND, lambda sizes: LAND_SHARE * sizes["width"]),
+        SizeField(RELIEF, lambda sizes: (sizes["width"] - sizes["land"]) / 2),
+        SizeField(TAPER, lambda sizes: TAPER_DEFAULT),
+        SizeField(THICKNESS, None),
     ),
     faults=faults,
     groove=groove,

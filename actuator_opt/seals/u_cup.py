@@ -19,7 +19,7 @@ from .seal_type import (
     SizeFault,
     no_warnings,
 )
-from .sizes import GROOVE_WIDTH, LAND, ROOT_CLEARANCE, THICKNESS, WIDTH, Field
+from .sizes import GROOVE_WIDTH, LAND, ROOT_CLEARANCE, THICKNESS, WIDTH, SizeField
 
 LAND_SHARE = 0.1
 """Land over the lip's length where none is stated: a choice."""
@@ -126,11 +126,11 @@ TYPE = SealType(
     title="U-cup",
     help="two lips that the pressure spreads",
     fields=(
-        Field(WIDTH, None),
-        Field(LAND, lambda sizes: LAND_SHARE * sizes["width"]),
-        Field(ROOT_CLEARANCE, _interference),
-        Field(THICKNESS, None),
-        Field(GROOVE_WIDTH, None),
+        SizeField(WIDTH, None),
+        SizeField(LAND, lambda sizes: LAND_SHARE * sizes["width"]),
+        SizeField(ROOT_CLEARANCE, _interference),
+        SizeField(THICKNESS, None),
+        SizeField(GROOVE_WIDTH, None),
     ),
     faults=faults,
     groove=groove,
