@@ -19,21 +19,7 @@ from typing import TYPE_CHECKING, Any
 from . import version
 
 if TYPE_CHECKING:
-    from .design.materials import load_library as load_library
-    from .errors import (
-        ActuatorError as ActuatorError,
-        Diagnostic as Diagnostic,
-        InputError as InputError,
-    )
-    from .evaluation.plugin import constraint as constraint, metric as metric
-    from .identification import (
-        BendingResult as BendingResult,
-        Identification as Identification,
-        Record as Record,
-        Specimen as Specimen,
-    )
-    from .simulation import Simulation as Simulation
-    from .verbs import (
+    from .api import (
         Actuator as Actuator,
         Calibrated as Calibrated,
         Compared as Compared,
@@ -100,16 +86,30 @@ if TYPE_CHECKING:
         write_simulation as write_simulation,
         write_uncertainty as write_uncertainty,
     )
+    from .base.errors import (
+        ActuatorError as ActuatorError,
+        Diagnostic as Diagnostic,
+        InputError as InputError,
+    )
+    from .design.materials import load_library as load_library
+    from .evaluation.plugin import constraint as constraint, metric as metric
+    from .identification import (
+        BendingResult as BendingResult,
+        Identification as Identification,
+        Record as Record,
+        Specimen as Specimen,
+    )
+    from .simulation import Simulation as Simulation
 
 __version__ = version.VERSION
 
 _PUBLIC = {
     "design.materials": "load_library",
-    "errors": "ActuatorError Diagnostic InputError",
+    "base.errors": "ActuatorError Diagnostic InputError",
     "evaluation.plugin": "constraint metric",
     "identification": "BendingResult Identification Record Specimen",
     "simulation": "Simulation",
-    "verbs": """
+    "api": """
         Actuator Calibrated Compared Comparison Curve Installation Prediction Price Rerun
         Restored Run Session Trial bending calibrate check compare compare_measured
         comparison_json delete_run doctor draw_comparison draw_run draw_sweep evaluate

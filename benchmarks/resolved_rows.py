@@ -12,8 +12,8 @@ import argparse
 import sys
 import time
 
-from actuator_opt import verbs
-from actuator_opt.errors import InputError
+from actuator_opt import api as verbs
+from actuator_opt.base.errors import InputError
 
 SAME = 1e-6
 """Relative difference of two objectives that is none."""

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.bench import bench
 from actuator_opt.identification import Record, identify, parse_record, synthetic
+from actuator_opt.studies.bench import bench
 
 KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
 SPEEDS = (0.0005, 0.001, 0.002, 0.003, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2)

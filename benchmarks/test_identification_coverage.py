@@ -18,8 +18,8 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import bench_oracle as oracle
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.bench import bench as bench_of
 from actuator_opt.identification import Record, Settings, identify
+from actuator_opt.studies.bench import bench as bench_of
 
 COUNT = 200
 LAG = 4e-3

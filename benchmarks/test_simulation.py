@@ -13,13 +13,13 @@ import pytest
 
 import actuator_opt as ao
 from actuator_opt.design.scenario.model import Scenario
-from actuator_opt.evaluation.study.plant import Plant, plant
 from actuator_opt.models.tuning import ControllerGains
 from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.fast import cvodes
 from actuator_opt.simulation.integrate import METHODS, integrate
 from actuator_opt.simulation.methods import RELATIVE
 from actuator_opt.simulation.system import Compiled
+from actuator_opt.studies.plant import Plant, plant
 
 KNEE = Path(__file__).parent.parent / "designs" / "servo_knee.yaml"
 GAINS = ControllerGains(700.0, math.inf, 0.0)

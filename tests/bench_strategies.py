@@ -26,8 +26,8 @@ if __name__ == "__main__":
 
 import problems
 
-from actuator_opt import verbs
-from actuator_opt.errors import UsageError
+from actuator_opt import api as verbs
+from actuator_opt.base.errors import UsageError
 from actuator_opt.optimisation import actuator, nlopt_wrapper
 from actuator_opt.optimisation.descents import FEASIBLE
 from actuator_opt.optimisation.problem import BoxProblem, Space

@@ -123,8 +123,8 @@ class Replay:
 
     @contextlib.contextmanager
     def patched(self) -> Iterator[None]:
-        """Commands call ours: the verbs that ``actuator_opt.verbs`` exports."""
-        from actuator_opt import verbs
+        """Commands call ours: the verbs that ``actuator_opt.api`` exports."""
+        from actuator_opt import api as verbs
 
         with contextlib.ExitStack() as patches:
             for name in verbs.__all__:

@@ -6,7 +6,7 @@ import io
 
 import pytest
 
-from actuator_opt import store
+from actuator_opt.base import files as store
 
 
 class _Full(io.FileIO):

@@ -32,11 +32,11 @@ from unittest import mock
 from cli_runner import BENCH, DESIGNS, Result, one_object, run
 
 import actuator_opt as ao
+from actuator_opt.api.reports import origin
 from actuator_opt.cli import faults
 from actuator_opt.design.template import init_text
-from actuator_opt.reporting.embed import embed
-from actuator_opt.reporting.writer import outcome
-from actuator_opt.verbs.reports import origin
+from actuator_opt.pages.page import outcome
+from actuator_opt.rendering.embed import embed
 
 BOUND = 30.0
 """Seconds of processor time for any of these inputs: a choice, ten times what the slowest takes."""

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.bench import bench
 from actuator_opt.identification import identify, synthetic
 from actuator_opt.identification.record import Record
+from actuator_opt.studies.bench import bench
 
 DESIGN = Path(__file__).parent.parent / "designs" / "knee.yaml"
 SOURCE = DESIGN.read_text(encoding="utf-8")

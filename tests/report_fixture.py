@@ -24,12 +24,7 @@ from actuator_opt.evaluation.result import (
     StrokeCurve,
     Unverified,
 )
-from actuator_opt.optimisation.result import (
-    Infeasibility,
-    Kkt,
-    Optimisation,
-    VariableResult,
-)
+from actuator_opt.optimisation.result import Infeasibility, Kkt, Optimisation, VariableResult
 from actuator_opt.optimisation.sensitivity import Sensitivity
 
 SOURCE = """name: robot knee

@@ -5,11 +5,7 @@ from __future__ import annotations
 from math import inf
 
 from actuator_opt.models.line_ends import LineEnd, end_admittance
-from actuator_opt.models.transmission_line import (
-    LineMatrix,
-    input_admittance,
-    input_impedance,
-)
+from actuator_opt.models.transmission_line import LineMatrix, input_admittance, input_impedance
 
 OIL = {"density": 870.0, "dynamic_viscosity": 0.04}
 SLIT = {"hydraulic_diameter": 1e-3, "turbulent_coefficient": 0.65, "laminar_coefficient": 0.157}

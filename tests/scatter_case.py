@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import actuator_opt as ao
-from actuator_opt.scatter.inputs import inputs
+from actuator_opt.uncertainties.inputs import inputs
 
 KNEE = (Path(__file__).parents[1] / "designs" / "knee.yaml").read_text(encoding="utf-8")
 PLAIN = re.sub(r"requirements:\n(?:  .*\n|\n)+?(?=waivers)", "", KNEE, flags=re.MULTILINE)

@@ -12,16 +12,16 @@ from functools import cache
 import numpy as np
 
 import actuator_opt as ao
+from actuator_opt.base.symbolic import vectorised
 from actuator_opt.design.scenario.model import Scenario
 from actuator_opt.evaluation.springs import Give
-from actuator_opt.evaluation.study import plant as plants
-from actuator_opt.evaluation.study.plant import LineData, Oil, Plane, Plant, SealData, ValveData
 from actuator_opt.models.tuning import ControllerGains
 from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.integrate import Trajectory, integrate
 from actuator_opt.simulation.parts.circuit import Circuit
 from actuator_opt.simulation.system import Compiled
-from actuator_opt.symbolic import vectorised
+from actuator_opt.studies import plant as plants
+from actuator_opt.studies.plant import LineData, Oil, Plane, Plant, SealData, ValveData
 
 BAR = 1e5
 LITRE = 1 / 60000  # l/min in m^3/s

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.design.circuit import ReducingValve
-from actuator_opt.evaluation.study import aalto, aalto_dynamic, aalto_static
+from actuator_opt.replicas import aalto, aalto_dynamic, aalto_static
 
 DESIGN = Path(__file__).parents[1] / "designs" / "aalto_40_25_220.yaml"
 AREA_A, AREA_B = pi / 4 * 0.040**2, pi / 4 * (0.040**2 - 0.025**2)

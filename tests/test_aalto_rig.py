@@ -14,9 +14,9 @@ import yaml
 from script_loader import script
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.aalto_dynamic import Bench
+from actuator_opt.api import simulate
+from actuator_opt.replicas.aalto_dynamic import Bench
 from actuator_opt.simulation import Simulation
-from actuator_opt.verbs import simulate
 
 ROOT = Path(__file__).parents[1]
 SCENARIOS = ROOT / "designs" / "scenarios"

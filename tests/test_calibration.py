@@ -11,10 +11,10 @@ from hypothesis import given, settings, strategies as st
 from identification_case import DESIGN, identified
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.bench import bench
 from actuator_opt.identification import calibration
 from actuator_opt.identification.points import Point
 from actuator_opt.identification.stribeck_fit import fit_stribeck
+from actuator_opt.studies.bench import bench
 
 SPEEDS = (5e-4, 1e-3, 2e-3, 3e-3, 5e-3, 1e-2, 3e-2, 0.1, 0.2)
 PRESSURES = ((10e5, 5e5), (120e5, 5e5))

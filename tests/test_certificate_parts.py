@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, strategies as st
 
+from actuator_opt.base.symbolic import Graph
 from actuator_opt.optimisation.certificate.bounding import Bounding
 from actuator_opt.optimisation.certificate.box import Box, Layout
 from actuator_opt.optimisation.certificate.builder import Builder
@@ -19,7 +20,6 @@ from actuator_opt.optimisation.certificate.relaxation import Relaxation, Unknown
 from actuator_opt.optimisation.certificate.search import BoxSearch
 from actuator_opt.optimisation.certificate.shapes import SHAPES, Mixed, Table, Tables
 from actuator_opt.optimisation.certificate.signomial import Form, Signomial
-from actuator_opt.symbolic import Graph
 
 ROUNDING = 1e-9
 KNOWN = -83.2497

@@ -14,13 +14,13 @@ from cli_runner import DESIGNS, evaluated, refused, run
 from hypothesis import given, settings, strategies as st
 
 import actuator_opt as ao
-from actuator_opt import units
+from actuator_opt.base import units
+from actuator_opt.base.errors import InputError
 from actuator_opt.design import choice_list, read_design
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.writer import to_yaml
-from actuator_opt.errors import InputError
-from actuator_opt.reporting.choices_table import block, heads, terminal
-from actuator_opt.reporting.page import page
+from actuator_opt.pages.choices_table import block, heads, terminal
+from actuator_opt.pages.page import page
 
 BENCH = cli_runner.BENCH.replace("12.2 %", "16 %")
 """The bench design with rings squeezed enough for every check of the seals."""

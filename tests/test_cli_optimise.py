@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from cli_runner import BENCH, KNEE, bench, evaluated, refused, run
 
+from actuator_opt.base.errors import InputError
 from actuator_opt.design import read_design, with_values
-from actuator_opt.errors import InputError
 
 KEYS = {
     "name", "version", "spec_hash", "metrics", "checks", "requirements", "warnings", "unverified",

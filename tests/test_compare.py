@@ -11,8 +11,8 @@ from cli_runner import BENCH, DESIGNS, run
 from hypothesis import given, settings, strategies as st
 
 import actuator_opt as ao
-from actuator_opt.reporting.compare_figure import comparison_figure, comparison_ucurves
-from actuator_opt.reporting.compare_text import comparison_text, sentences
+from actuator_opt.pages.compare_figure import comparison_figure, comparison_ucurves
+from actuator_opt.pages.compare_text import comparison_text, sentences
 
 SMALL = BENCH.replace("  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n", "")
 SHIPPED = sorted(DESIGNS.glob("*.yaml"))

@@ -14,13 +14,8 @@ from hypothesis import given, settings, strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.signal import sosfilt
 
-from actuator_opt.errors import InputError
-from actuator_opt.identification.conditioning import (
-    condition,
-    low_pass,
-    pass_cutoff,
-    zero_phase,
-)
+from actuator_opt.base.errors import InputError
+from actuator_opt.identification.conditioning import condition, low_pass, pass_cutoff, zero_phase
 from actuator_opt.identification.record import Record
 from actuator_opt.identification.spectrum import spectrum
 

@@ -16,15 +16,15 @@ import servo_oracle as oracle
 from course_case import AREA_A, AREA_B, BAR, LITRE, RPM, SUPPLY
 from servo_oracle_parts import Controller, steps
 
+from actuator_opt.api.simulations import Trial, read_scenario, simulate
 from actuator_opt.evaluation.springs import Give
-from actuator_opt.evaluation.study.plant import Plant, plant
 from actuator_opt.models.tuning import ControllerGains
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.gains import tune
 from actuator_opt.simulation.linearise import Linear, ultimate
 from actuator_opt.simulation.run import run
-from actuator_opt.verbs.simulations import Trial, read_scenario, simulate
+from actuator_opt.studies.plant import Plant, plant
 
 SCENARIOS = Path(__file__).parents[1] / "designs" / "scenarios"
 ALL = sorted(path.stem for path in SCENARIOS.glob("course_*.yaml"))

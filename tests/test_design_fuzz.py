@@ -10,10 +10,10 @@ import pytest
 from fuzz import WORDS as ODD
 from hypothesis import given, settings, strategies as st
 
+from actuator_opt.base.errors import InputError
 from actuator_opt.design import read_design
 from actuator_opt.design.template import init_text
 from actuator_opt.design.yaml_source import parse
-from actuator_opt.errors import InputError
 
 
 class Names(dict):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from actuator_opt.base.errors import InputError, UsageError
 from actuator_opt.design import (
     Fraction,
     canonical,
@@ -16,7 +17,6 @@ from actuator_opt.design import (
 from actuator_opt.design.build import build
 from actuator_opt.design.template import init_text
 from actuator_opt.design.yaml_source import parse
-from actuator_opt.errors import InputError, UsageError
 
 DESIGN = build(parse(init_text("test"), "f").data).design
 

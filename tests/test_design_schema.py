@@ -8,7 +8,8 @@ import re
 import pytest
 import yaml
 
-from actuator_opt import quantities, units
+from actuator_opt.base import quantities, units
+from actuator_opt.base.errors import InputError
 from actuator_opt.design import read_design
 from actuator_opt.design.build import build
 from actuator_opt.design.kinds import EXAMPLES, ValueFault, example, read_quantity
@@ -17,7 +18,6 @@ from actuator_opt.design.schema import json_schema, quantity_schema
 from actuator_opt.design.structure import entries
 from actuator_opt.design.template import init_text
 from actuator_opt.design.yaml_source import parse
-from actuator_opt.errors import InputError
 from actuator_opt.metrics import METRICS
 
 jsonschema = pytest.importorskip("jsonschema")

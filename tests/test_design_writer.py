@@ -7,7 +7,7 @@ import random
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from actuator_opt import quantities, units
+from actuator_opt.base import quantities, units
 from actuator_opt.design import LoadedDesign, Source, read_design, with_values
 from actuator_opt.design.build import build
 from actuator_opt.design.paths import numbers

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from actuator_opt.base.errors import InputError
 from actuator_opt.design.yaml_source import MAX_BYTES, MAX_DEPTH, MAX_NODES, decode, parse
-from actuator_opt.errors import InputError
 
 
 def fault(text: str):

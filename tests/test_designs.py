@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.optimisation.result import Optimisation
-from actuator_opt.reporting.published import published_tables
+from actuator_opt.replicas import published_tables
 
 DESIGNS = Path(__file__).parents[1] / "designs"
 ALL = sorted(DESIGNS.glob("*.yaml"))

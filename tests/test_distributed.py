@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from actuator_opt.design import read_design
-from actuator_opt.evaluation import compute, prepare
-from actuator_opt.evaluation.study import distributed
+from actuator_opt.evaluation import compute, distributed, prepare
 from actuator_opt.models import linear
 
 LENGTH, INNER, OUTER = 1.5, 8e-3, 12e-3

@@ -11,7 +11,7 @@ import pytest
 from cli_runner import ROOT, run
 
 import actuator_opt as ao
-from actuator_opt.verbs import installation
+from actuator_opt.api import installation
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 
@@ -90,10 +90,10 @@ def test_missing_old_and_broken_packages(monkeypatch):
 
 def test_missing_fonts_and_data(monkeypatch, tmp_path):
     """Without its fonts or its materials nothing can be reported or read."""
-    monkeypatch.setattr("actuator_opt.reporting.writer.font_folders", lambda: [str(tmp_path)])
-    monkeypatch.setattr("actuator_opt.store._PACKAGE", tmp_path / "elsewhere")
+    monkeypatch.setattr("actuator_opt.rendering.paper.font_folders", lambda: [str(tmp_path)])
+    monkeypatch.setattr("actuator_opt.base.files._PACKAGE", tmp_path / "elsewhere")
     monkeypatch.setattr(
-        "actuator_opt.store.data_folder", lambda name: _lost(name, tmp_path / "elsewhere")
+        "actuator_opt.base.files.data_folder", lambda name: _lost(name, tmp_path / "elsewhere")
     )
     rows, ok = found()
     assert not ok

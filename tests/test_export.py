@@ -13,7 +13,8 @@ from full_disk import fill
 from step_reader import StepFile
 
 import actuator_opt as ao
-from actuator_opt import exporting, store
+from actuator_opt import exports
+from actuator_opt.base import files as store
 
 
 @pytest.fixture
@@ -171,7 +172,7 @@ def test_bad_designs_are_told_with_their_line(tmp_path):
 def test_the_verb_takes_any_form_of_a_design(design, tmp_path):
     """A path, an actuator, a design, an evaluation."""
     assert callable(ao.export)
-    assert exporting.FORMATS == ("step", "dxf", "xlsx")
+    assert exports.FORMATS == ("step", "dxf", "xlsx")
     actuator = ao.read(design)
     evaluation = ao.evaluate(actuator)
     contents = []

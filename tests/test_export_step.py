@@ -11,8 +11,8 @@ from hypothesis import given, strategies as st
 from step_reader import StepFile, volume
 
 import actuator_opt as ao
-from actuator_opt.exporting.solids import Body, bodies, joined, sound, tidy
-from actuator_opt.exporting.step import step
+from actuator_opt.exports.solids import Body, bodies, joined, sound, tidy
+from actuator_opt.exports.step import step
 
 SHIPPED = sorted(DESIGNS.glob("*.yaml"))
 

@@ -12,7 +12,7 @@ from formula_reader import Workbook
 from test_export_step import SHIPPED
 
 import actuator_opt as ao
-from actuator_opt.exporting.xlsx import xlsx
+from actuator_opt.exports.xlsx import xlsx
 
 openpyxl = pytest.importorskip("openpyxl")
 

@@ -13,10 +13,10 @@ import pytest
 from cli_runner import BENCH, DESIGNS, KNEE, command, run, spawn, surroundings
 
 import actuator_opt as ao
-from actuator_opt import cli, verbs
-from actuator_opt.errors import InputError
+from actuator_opt import api as verbs, cli
+from actuator_opt.base.errors import InputError
+from actuator_opt.base.plain_json import encoded
 from actuator_opt.evaluation import compute, film_tables as films, without_films
-from actuator_opt.plain_json import encoded
 
 LONG, DIGITS = "a" * 300, "9" * 5000
 """More letters than a file system takes in a name, more digits than Python reads as an integer."""
@@ -76,7 +76,7 @@ def test_a_fault_in_a_worker(tmp_path):
     """A fault in another process reaches the top of this one."""
     script = (
         "import sys\n"
-        "from actuator_opt.variants.chunk import Study\n"
+        "from actuator_opt.sweeps.chunk import Study\n"
         "def chunk(*_): raise TypeError('odd')\n"
         "Study.chunk = chunk\n"
         "from actuator_opt.cli import main\n"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from actuator_opt.errors import ActuatorError
+from actuator_opt.base.errors import ActuatorError
 from actuator_opt.finite_elements import equilibrium, fluid, mesh, o_ring
 from actuator_opt.finite_elements.material import MooneyRivlin, stress, tangent
 from actuator_opt.finite_elements.o_ring import squeezed_ring

@@ -9,12 +9,12 @@ import pytest
 from cli_runner import KNEE, run
 
 import actuator_opt as ao
+from actuator_opt.api import seal
 from actuator_opt.evaluation.kernel import base
 from actuator_opt.evaluation.seal_contact import seal_contact
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.models.contact_profile import o_ring_profile
-from actuator_opt.verbs import seal
 
 SECTION, MODULUS, GROOVE = 3.53e-3, 8e6, 4.82e-3
 

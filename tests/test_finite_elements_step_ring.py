@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from actuator_opt.errors import ActuatorError
+from actuator_opt.base.errors import ActuatorError
 from actuator_opt.finite_elements import fluid, mesh
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.mesh import SlideRing

@@ -9,9 +9,9 @@ import fuzz
 import pytest
 from cli_runner import BENCH, ROOT, run
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
+from actuator_opt.base.errors import EXIT_CODES, ExitCode
 from actuator_opt.cli import streams
-from actuator_opt.errors import EXIT_CODES, ExitCode
 
 COUNT, SEED, PARTS = int(os.environ.get("FUZZ_COUNT", "240")), 20, 8
 

@@ -25,7 +25,8 @@ from actuator_opt.optimisation.actuator import build, goal_of
 from actuator_opt.optimisation.pareto_result import ParetoFront
 from actuator_opt.optimisation.recorded import from_plain, to_plain
 from actuator_opt.optimisation.rounding import design_at
-from actuator_opt.reporting import page, tables, terminal, text
+from actuator_opt.pages import page, tables, terminal
+from actuator_opt.rendering import text
 
 DESIGNS = ("knee", "servo_knee", "aerospace", "aalto_40_25_220", "linkage")
 LINKAGE = "linkage:\n  base_radius: 202.4 mm\n  crank_radius: 151.8 mm\n\nload:\n"

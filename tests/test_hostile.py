@@ -17,11 +17,12 @@ from cli_runner import BENCH, DESIGNS, run
 from test_rerun import FACTS, _pdf
 
 import actuator_opt as ao
-from actuator_opt import run_store, store, verbs
+from actuator_opt import api as verbs
+from actuator_opt.base import files as store, runs as run_store
+from actuator_opt.base.errors import Diagnostic, InputError
+from actuator_opt.base.suggest import escaped
 from actuator_opt.cli import streams
-from actuator_opt.errors import Diagnostic, InputError
-from actuator_opt.reporting.console import Console
-from actuator_opt.suggest import escaped
+from actuator_opt.rendering.console import Console
 
 SMALL = BENCH.replace("  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n", "")
 STEEL = DESIGNS / "steel_baseline.yaml"
@@ -65,7 +66,7 @@ def test_no_record_runs_a_program(place, tmp_path, monkeypatch):
         f"import pathlib; pathlib.Path({str(ran)!r}).touch()\nimport actuator_opt as ao\n"
         "@ao.metric('slenderness')\ndef own(v):\n    return v['cylinder.bore']\n"
     )
-    from actuator_opt.verbs.recorded_runs import sha256
+    from actuator_opt.api.recorded_runs import sha256
 
     files = [{"file": str(plugin), "sha256": sha256(str(plugin))}]
 
@@ -146,7 +147,7 @@ def test_who_may_read_what_is_written(tmp_path):
         record = run_store.write(tmp_path / "runs", "20260101-000000", {"k": 1}, {})
         assert permissions(record) == 0o600
         assert permissions(tmp_path / "runs") == 0o700
-        from actuator_opt.database import Column, opened
+        from actuator_opt.base.database import Column, opened
 
         rows = tmp_path / "rows.db"
         about = {"study": "s", "name": "", "design": "", "version": "1"}

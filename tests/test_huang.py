@@ -11,18 +11,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.design.housings import housings_for
-from actuator_opt.evaluation.study import (
+from actuator_opt.models.damping import flat_gap
+from actuator_opt.replicas import (
     huang,
     huang_parts,
     huang_readings,
     huang_study,
     huang_trend as trend,
 )
-from actuator_opt.evaluation.study.film_walk import film_map
-from actuator_opt.evaluation.study.seal import study as seal_study
-from actuator_opt.models.damping import flat_gap
+from actuator_opt.studies.film_walk import film_map
+from actuator_opt.studies.seal import study as seal_study
 
 DESIGN = Path(__file__).parents[1] / "designs" / "huang_110_80_560.yaml"
 SPEEDS = (0.5e-3, 2.1e-3, 10e-3)

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from actuator_opt.evaluation.study import huang_published as study
 from actuator_opt.models import damping
 from actuator_opt.models.friction import HUANG_TABLE_2
+from actuator_opt.replicas import huang_published as study
 
 TABLE = [  # p, F_S, F_C, delta, v_s, sigma2 as printed, then in SI
     (0.6e6, 2100, 1419, 2, 1.5e-3, 1.1e4),

@@ -12,8 +12,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.bench import bench as bench_of
 from actuator_opt.identification import Settings, identify
+from actuator_opt.studies.bench import bench as bench_of
 
 DESIGNS = Path(__file__).parent.parent / "designs"
 SPEEDS = (0.0007, 0.0013, 0.0025, 0.004, 0.006, 0.01, 0.025, 0.06, 0.12, 0.2)

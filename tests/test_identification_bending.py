@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.signal import lfilter
 
-from actuator_opt.errors import InputError
+from actuator_opt.base.errors import InputError
 from actuator_opt.identification.bending import Specimen, bending
 from actuator_opt.identification.record import Record, parse_record
 from actuator_opt.identification.straight import branches, despiked, term

@@ -12,8 +12,7 @@ from identification_case import sine
 from scipy.optimize import least_squares
 
 import actuator_opt as ao
-from actuator_opt.errors import InputError
-from actuator_opt.evaluation.study.bench import bench
+from actuator_opt.base.errors import InputError
 from actuator_opt.identification import synthetic
 from actuator_opt.identification.bootstrap import (
     LuGreResiduals,
@@ -26,6 +25,7 @@ from actuator_opt.identification.lugre_windows import windows
 from actuator_opt.identification.many_fits import FitSearch, relaxed
 from actuator_opt.identification.points import Point
 from actuator_opt.identification.stribeck_fit import fit_stribeck
+from actuator_opt.studies.bench import bench
 
 KNEE = Path(__file__).parent.parent / "designs" / "knee.yaml"
 AREA = 1e-3

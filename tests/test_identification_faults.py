@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
-from actuator_opt.errors import InputError
-from actuator_opt.evaluation.study.bench import bench as bench_of
+from actuator_opt.base.errors import InputError
 from actuator_opt.identification import (
     Settings,
     conditioning as conditioning_module,
@@ -21,6 +20,7 @@ from actuator_opt.identification import (
     synthetic,
 )
 from actuator_opt.identification.points import SETTLED, steady_points
+from actuator_opt.studies.bench import bench as bench_of
 
 DESIGNS = Path(__file__).parent.parent / "designs"
 TRUTH = oracle.Friction()

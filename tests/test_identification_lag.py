@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.bench import bench
 from actuator_opt.identification import Settings, identify
 from actuator_opt.identification.record import Record
-from actuator_opt.reporting.identification_text import identification_text
+from actuator_opt.pages.identification_text import identification_text
+from actuator_opt.studies.bench import bench
 
 DESIGN = Path(__file__).parent.parent / "designs" / "knee.yaml"
 RUBBER = oracle.Friction(

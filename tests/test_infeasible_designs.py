@@ -8,12 +8,12 @@ from dataclasses import replace
 import pytest
 from cli_runner import DESIGNS, KNEE, bench, run
 
+from actuator_opt.api import read
 from actuator_opt.design.materials import load_library
 from actuator_opt.optimisation.cures import SUBSTITUTES
 from actuator_opt.optimisation.infeasibility_card import KINDS
 from actuator_opt.optimisation.run import optimise
-from actuator_opt.reporting.page import verdict
-from actuator_opt.verbs import read
+from actuator_opt.pages.page import verdict
 
 STEEL = DESIGNS / "steel_baseline.yaml"
 

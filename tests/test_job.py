@@ -11,10 +11,10 @@ import pytest
 from cli_runner import BENCH, DESIGNS, run
 
 import actuator_opt as ao
-from actuator_opt import cli, verbs
+from actuator_opt import api as verbs, cli
+from actuator_opt.api import results
+from actuator_opt.base.errors import ExitCode, UsageError
 from actuator_opt.cli.app import COMMANDS, HIDDEN
-from actuator_opt.errors import ExitCode, UsageError
-from actuator_opt.verbs import results
 
 DATE = "2026-03-04"
 SCENARIO = DESIGNS / "scenarios" / "knee_step.yaml"

@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
-from actuator_opt import joints, kinds
+from actuator_opt import joints
+from actuator_opt.base import kinds
+from actuator_opt.base.errors import InputError
 from actuator_opt.design import read_design, with_values
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.template import init_text
-from actuator_opt.errors import InputError
 from actuator_opt.evaluation import compute
 from actuator_opt.evaluation.provenance import describe, function_of
 from actuator_opt.joints.joint import Joint, check

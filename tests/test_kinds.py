@@ -21,26 +21,26 @@ from seal_designs import evaluated, text
 
 import actuator_opt as ao
 from actuator_opt import friction, seals
+from actuator_opt.base.errors import InputError
+from actuator_opt.base.kinds import UnknownKind, kinds
+from actuator_opt.base.numeric import STEP
+from actuator_opt.base.quantities import INPUTS
 from actuator_opt.design.kinds import Of
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.seals import SealElement
 from actuator_opt.design.template import init_text
-from actuator_opt.errors import InputError
 from actuator_opt.evaluation import prepare
-from actuator_opt.evaluation.study.plant import plant
 from actuator_opt.friction import coefficient
 from actuator_opt.friction.kinds import LAWS as FRICTION_LAWS
 from actuator_opt.friction.law import FrictionLaw
-from actuator_opt.kinds import UnknownKind, kinds
 from actuator_opt.models.elastomer import MODULUS_LAWS
 from actuator_opt.models.seals import LAWS as CONTACT_LAWS
-from actuator_opt.numeric import STEP
-from actuator_opt.quantities import INPUTS
-from actuator_opt.reporting.seal_gland_figure import slots
+from actuator_opt.pages.seal_gland_figure import slots
 from actuator_opt.seals import o_ring
 from actuator_opt.seals.kinds import SIZES, TYPES
 from actuator_opt.seals.seal_type import Room, SealSizes, SealType
 from actuator_opt.seals.sizes import GROOVE_WIDTH
+from actuator_opt.studies.plant import plant
 
 WORDS = {
     "type": TYPES,
@@ -159,7 +159,7 @@ def test_kinds_load_nothing_heavy():
     code = (
         "import sys, actuator_opt.seals.kinds, actuator_opt.friction.kinds\n"
         "heavy = ('scipy', 'matplotlib', 'skfem', 'pydantic', 'actuator_opt.finite_elements',"
-        " 'actuator_opt.evaluation', 'actuator_opt.reporting')\n"
+        " 'actuator_opt.evaluation', 'actuator_opt.pages')\n"
         "print([name for name in heavy if name in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

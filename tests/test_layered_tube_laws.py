@@ -11,9 +11,9 @@ import tube_oracle as oracle
 from hypothesis import HealthCheck, given, settings, strategies as st
 from numpy.polynomial import legendre
 
+from actuator_opt.base.numeric import STEP
 from actuator_opt.models import laminate, ply
 from actuator_opt.models.layered_tube import tube_state, tube_stresses
-from actuator_opt.numeric import STEP
 
 TRIALS = settings(max_examples=40, suppress_health_check=list(HealthCheck))
 ORDER = 8

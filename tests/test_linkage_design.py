@@ -15,13 +15,13 @@ from cli_runner import BENCH
 from hypothesis import given, strategies as st
 
 import actuator_opt as ao
+from actuator_opt.base.errors import InputError
+from actuator_opt.base.numeric import STEP
 from actuator_opt.design import with_values
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.writer import to_yaml
-from actuator_opt.errors import InputError
 from actuator_opt.evaluation import compute
 from actuator_opt.evaluation.joint import at_stop
-from actuator_opt.numeric import STEP
 from actuator_opt.optimisation.actuator import build
 
 CLOSED, STROKE = 0.198, 0.110

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from film_cases import AIR, ROUGH, lip, o_ring_profile
 
+from actuator_opt.base.numeric import STEP
 from actuator_opt.lubrication import (
     Elastic,
     Lubricant,
@@ -18,7 +19,6 @@ from actuator_opt.lubrication import (
     solve_tandem,
 )
 from actuator_opt.models.contact_profile import lip_profile
-from actuator_opt.numeric import STEP
 
 PLACES = np.linspace(0, 1, 121)
 TILT = np.linspace(0, 1, 121)

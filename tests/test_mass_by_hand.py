@@ -27,7 +27,7 @@ from pathlib import Path
 
 import pytest
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.design.materials import load_library
 
 DESIGNS = Path(__file__).parents[1] / "designs"

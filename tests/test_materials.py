@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from actuator_opt import store
+from actuator_opt.base import files as store
+from actuator_opt.base.errors import InputError
+from actuator_opt.base.quantities import MATERIAL_PROPERTIES
 from actuator_opt.design import material_tables
 from actuator_opt.design.material import BASES, CONFIDENCES, compliance_determinant
 from actuator_opt.design.materials import (
@@ -19,10 +21,8 @@ from actuator_opt.design.materials import (
     load_library,
     ply_constants,
 )
-from actuator_opt.errors import InputError
 from actuator_opt.models.fluid import viscosity_astm_d341
 from actuator_opt.models.tait import bulk_modulus_tait
-from actuator_opt.quantities import MATERIAL_PROPERTIES
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ import actuator_opt as ao
 from actuator_opt.design import with_values
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.writer import to_yaml
-from actuator_opt.reporting import tables
+from actuator_opt.pages import tables
 
 KNEE = (Path(__file__).parents[1] / "designs" / "knee.yaml").read_text(encoding="utf-8")
 PATH = "seals.piston.friction_coefficient"

@@ -15,16 +15,16 @@ from simulation_case import scenario
 from test_report_simulation import boxes_collide
 
 import actuator_opt as ao
+from actuator_opt.base.errors import InputError
 from actuator_opt.design.scenario import recorded
-from actuator_opt.errors import InputError
-from actuator_opt.evaluation.study.plant import plant
 from actuator_opt.identification import parse_column
-from actuator_opt.reporting import measured_figures as figures
-from actuator_opt.reporting.measured_figures import drawn, measured_figures
-from actuator_opt.reporting.measured_rows import measured_blocks, measured_text
-from actuator_opt.reporting.simulation_figures import simulation_figure
+from actuator_opt.pages import measured_figures as figures
+from actuator_opt.pages.measured_figures import drawn, measured_figures
+from actuator_opt.pages.measured_rows import measured_blocks, measured_text
+from actuator_opt.pages.simulation_figures import simulation_figure
 from actuator_opt.simulation.measured import Measured, fit, overlay, parse_measured
 from actuator_opt.simulation.parts.signals import acts_after, at_start
+from actuator_opt.studies.plant import plant
 
 REPLAY = f"""\
 name: replay

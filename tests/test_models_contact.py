@@ -10,14 +10,7 @@ from hypothesis import given, strategies as st
 from scipy.integrate import quad, solve_bvp
 from scipy.optimize import nnls
 
-from actuator_opt.models import (
-    compact_seal,
-    contact_profile,
-    elastomer,
-    lip_seal,
-    seals,
-    step_seal,
-)
+from actuator_opt.models import compact_seal, contact_profile, elastomer, lip_seal, seals, step_seal
 
 MATERIAL = {"youngs_modulus": 43e6, "poissons_ratio": 0.48}
 SHAPE = {"lip_thickness": 2e-3, "lip_length": 6e-3}

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
+from actuator_opt.base.errors import InputError
 from actuator_opt.design import housings, standards
 from actuator_opt.design.materials import load_library
-from actuator_opt.errors import InputError
 from actuator_opt.models import extrusion, gland, gland_range
 
 MM, BAR = 1e-3, 1e5

@@ -17,6 +17,7 @@ from hypothesis import given, strategies as st
 from samples_dynamics import model_of
 from test_models_hydraulics_dynamics import CHAMBERS, CONDUCTANCE
 
+from actuator_opt.base.polynomial import at_frequency
 from actuator_opt.models import stiffness
 from actuator_opt.models.line_ends import (
     LineEnd,
@@ -26,7 +27,6 @@ from actuator_opt.models.line_ends import (
 )
 from actuator_opt.models.linear import Side, dynamic_stiffness, linear_actuator
 from actuator_opt.models.loop import poles
-from actuator_opt.polynomial import at_frequency
 
 FREQUENCIES = np.geomspace(0.1, 1000.0, 60)
 SIDE_A = Side(CHAMBERS["area_a"], CHAMBERS["compliance_a"])

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
+from actuator_opt.base.symbolic import Graph, function, jacobian
 from actuator_opt.design.seals import Seal
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.models import contact_profile, seals
-from actuator_opt.symbolic import Graph, function, jacobian
 
 ROOT = Path(__file__).parents[1]
 DEFAULT = Seal.model_fields["law"].default

@@ -10,8 +10,8 @@ import pytest
 from cli_runner import bench
 
 import actuator_opt as ao
-from actuator_opt import verbs
-from actuator_opt.errors import InputError
+from actuator_opt import api as verbs
+from actuator_opt.base.errors import InputError
 from actuator_opt.optimisation.outcome import Outcome
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from actuator_opt.errors import UsageError
+from actuator_opt.base.errors import UsageError
 from actuator_opt.optimisation import nlopt_wrapper
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.outcome import Outcome

@@ -7,7 +7,7 @@ import numpy as np
 import problems
 import pytest
 
-from actuator_opt.errors import InputError
+from actuator_opt.base.errors import InputError
 from actuator_opt.optimisation import solver
 from actuator_opt.optimisation.evaluator import Evaluator
 from actuator_opt.optimisation.kkt import Curvature

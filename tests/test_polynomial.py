@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, strategies as st
 from numpy.polynomial import polynomial as reference
 
-from actuator_opt import polynomial
+from actuator_opt.base import polynomial
 
 COEFFICIENT = st.floats(-1e3, 1e3).filter(lambda value: value == 0 or abs(value) > 1e-3)
 POLYNOMIAL = st.lists(COEFFICIENT, min_size=1, max_size=7).map(tuple)

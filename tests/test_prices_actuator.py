@@ -11,7 +11,7 @@ from cli_runner import BENCH
 from report_fixture import overlaps
 
 import actuator_opt as ao
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.optimisation import actuator as actuator_module
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.price_table import sensitivities
@@ -19,8 +19,9 @@ from actuator_opt.optimisation.prices import prices
 from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Values
 from actuator_opt.optimisation.sensitivity import ranked
 from actuator_opt.optimisation.solver import solve
-from actuator_opt.reporting import prices as told, text
-from actuator_opt.reporting.tornado import tornado
+from actuator_opt.pages import prices as told
+from actuator_opt.pages.tornado import tornado
+from actuator_opt.rendering import text
 
 DESIGNS = Path(__file__).parents[1] / "designs"
 

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from actuator_opt import progress
+from actuator_opt.base import progress
 from actuator_opt.cli import streams
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings, strategies as st
 
-from actuator_opt.errors import InputError
+from actuator_opt.base.errors import InputError
 from actuator_opt.identification.csv_table import decode_record
 from actuator_opt.identification.record import CHANNELS, parse_record
 

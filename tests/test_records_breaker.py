@@ -16,9 +16,9 @@ from identification_case import identified
 from test_calibration import changed, knee, rubbed
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.bench import bench
 from actuator_opt.identification import Record, calibration
 from actuator_opt.identification.stribeck_fit import StribeckFit
+from actuator_opt.studies.bench import bench
 
 RECORD = DESIGNS / "records" / "knee_bench.csv"
 

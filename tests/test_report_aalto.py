@@ -11,12 +11,14 @@ from pathlib import Path
 import pytest
 from report_fixture import overlaps
 
-from actuator_opt import verbs
-from actuator_opt.evaluation.study import aalto, aalto_dynamic, aalto_static
-from actuator_opt.reporting.page import page
-from actuator_opt.reporting.published import (
+from actuator_opt import api as verbs
+from actuator_opt.pages.page import page
+from actuator_opt.replicas import (
+    aalto,
+    aalto_dynamic,
     aalto_equations,
     aalto_figures,
+    aalto_static,
     aalto_tables,
     published_tables,
 )

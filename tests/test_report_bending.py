@@ -9,7 +9,7 @@ import pytest
 
 from actuator_opt.identification.bending import Specimen, bending
 from actuator_opt.identification.record import Record
-from actuator_opt.reporting.bending_text import bending_text
+from actuator_opt.pages.bending_text import bending_text
 
 BAR = {"span": 0.3, "outer_diameter": 0.02, "inner_diameter": 0.016}
 KNOWN = {"shear_modulus": 26e9, "local_compliance": 1e-7, "expected_modulus": 205e9}

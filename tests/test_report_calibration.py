@@ -12,16 +12,16 @@ import pytest
 from identification_case import DESIGN, identified
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.bench import bench
-from actuator_opt.reporting import (
+from actuator_opt.pages import (
     calibration_document as document,
     calibration_figure as figure,
     calibration_rows as rows,
-    fallback,
 )
-from actuator_opt.reporting.blocks import printable
-from actuator_opt.reporting.calibration_text import calibration_text
-from actuator_opt.reporting.origin import Origin
+from actuator_opt.pages.calibration_text import calibration_text
+from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.rendering.blocks import printable
+from actuator_opt.rendering.origin import Origin
+from actuator_opt.studies.bench import bench
 
 ORIGIN = Origin("a: 1\n", "a.yaml", "calibrate r.csv", "12ab")
 

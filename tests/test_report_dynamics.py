@@ -14,19 +14,20 @@ import report_fixture as fixture
 from test_through_wall import text_of
 
 import actuator_opt as ao
-from actuator_opt.reporting import (
+from actuator_opt.pages import (
     bode,
     bode_loop,
     dynamics_page,
-    fallback,
     places,
     stiffness_page,
     terminal,
     write_report,
 )
-from actuator_opt.reporting.figures import AREAS, PARTS, Axes, fills
-from actuator_opt.reporting.ink import BLACK, RED, Ink
-from actuator_opt.reporting.page import page
+from actuator_opt.pages.page import page
+from actuator_opt.pages.stiffness_figure import PARTS, fills
+from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.rendering.axes import AREAS, Axes
+from actuator_opt.rendering.ink import BLACK, RED, Ink
 
 SOURCE = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
 LINES = """

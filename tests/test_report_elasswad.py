@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from report_fixture import overlaps
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.models import barrel, stiffness, stiffness_published
-from actuator_opt.reporting.page import page
-from actuator_opt.reporting.published import elasswad_record, elasswad_tables, published_tables
-from actuator_opt.reporting.published.elasswad_figures import record_figure
+from actuator_opt.pages.page import page
+from actuator_opt.replicas import elasswad_record, elasswad_tables, published_tables
+from actuator_opt.replicas.elasswad_figures import record_figure
 
 DESIGN = Path(__file__).parents[1] / "designs" / "elasswad_knee.yaml"
 SOURCE = {"source_text": "a: 1", "source_name": "a.yaml", "command": "report", "date": None}

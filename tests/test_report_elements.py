@@ -17,17 +17,17 @@ from test_report_seal import TEXTS, area, ink_of
 import actuator_opt as ao
 from actuator_opt.evaluation.contact_elements import closed_form, room
 from actuator_opt.evaluation.kernel import base
-from actuator_opt.evaluation.study.seal import study
 from actuator_opt.finite_elements.material import MooneyRivlin
 from actuator_opt.finite_elements.o_ring import squeezed_ring
 from actuator_opt.finite_elements.result import StressField
-from actuator_opt.reporting import (
+from actuator_opt.pages import (
     seal_elements_figure as drawn,
     seal_rows,
     seal_sheet,
     seal_text,
     stress_bands,
 )
+from actuator_opt.studies.seal import study
 
 COLUMNS = ((11.0, 66.0), (103.0, 66.0))
 """Left end and width of the frames of the lower figure."""

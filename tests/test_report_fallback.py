@@ -6,7 +6,8 @@ import re
 import pytest
 import report_fixture as fixture
 
-from actuator_opt.reporting import embed, fallback, read_attachment, write_report
+from actuator_opt.pages import read_attachment, write_report
+from actuator_opt.rendering import embed, paper_plain as fallback
 
 
 @pytest.fixture

@@ -13,15 +13,15 @@ import numpy as np
 import pytest
 from report_fixture import overlaps
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.evaluation import film
-from actuator_opt.evaluation.study import huang_study
-from actuator_opt.reporting.page import page
-from actuator_opt.reporting.published import (
+from actuator_opt.pages.page import page
+from actuator_opt.replicas import (
     TABLES,
     huang_equations,
     huang_figures,
     huang_panels,
+    huang_study,
     huang_tables,
     huang_text,
 )

@@ -17,8 +17,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from actuator_opt.identification.record import Record
-from actuator_opt.reporting import (
-    fallback,
+from actuator_opt.pages import (
     identification_axes as axes,
     identification_document as document,
     identification_figures as figures,
@@ -28,10 +27,11 @@ from actuator_opt.reporting import (
     identification_text as terminal,
     read_attachment,
 )
-from actuator_opt.reporting.blocks import printable
-from actuator_opt.reporting.figures import Axes
-from actuator_opt.reporting.ink import Ink
-from actuator_opt.reporting.origin import Origin
+from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.rendering.axes import Axes
+from actuator_opt.rendering.blocks import printable
+from actuator_opt.rendering.ink import Ink
+from actuator_opt.rendering.origin import Origin
 
 ORIGIN = Origin(case.SOURCE, "a.yaml", "identify r.csv", "12ab")
 WITH_CURVE = [kind for kind in case.KINDS if kind not in ("pre-sliding", "one speed", "bare")]

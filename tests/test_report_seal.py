@@ -15,9 +15,7 @@ from test_through_wall import text_of
 
 import actuator_opt as ao
 from actuator_opt.evaluation import compute
-from actuator_opt.evaluation.study.seal import study
-from actuator_opt.reporting import (
-    fallback,
+from actuator_opt.pages import (
     seal_document,
     seal_figures,
     seal_gland_figure,
@@ -28,9 +26,11 @@ from actuator_opt.reporting import (
     seal_text,
     write_report,
 )
-from actuator_opt.reporting.ink import Ink
-from actuator_opt.reporting.origin import Origin
-from actuator_opt.reporting.page import page
+from actuator_opt.pages.page import page
+from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.rendering.ink import Ink
+from actuator_opt.rendering.origin import Origin
+from actuator_opt.studies.seal import study
 
 ORIGIN = Origin("a: 1\n", "a.yaml", "x", "12ab")
 RING = """
@@ -535,7 +535,7 @@ def test_the_sheet_is_a_document_with_equal_bytes(tmp_path):
     data = seal_document.sheet_page(one, ORIGIN)
     data |= {"title": "x", "source": "a: 1\n", "source_file": "a.yaml", "run": "{}"}
     assert fallback.render(data, 0)[1]
-    assert ao.reporting.read_attachment(tmp_path / "1" / "s.pdf").source == "a: 1\n"
+    assert ao.rendering.paper.read_attachment(tmp_path / "1" / "s.pdf").source == "a: 1\n"
 
 
 def test_the_report_carries_the_sheets(tmp_path):

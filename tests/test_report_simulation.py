@@ -15,9 +15,9 @@ import pytest
 import simulation_report_case as case
 from test_report_identification import agrees, printed, words_of
 
+from actuator_opt.base.errors import InputError
 from actuator_opt.design.scenario.model import Scenario
-from actuator_opt.errors import InputError
-from actuator_opt.reporting import (
+from actuator_opt.pages import (
     read_attachment,
     simulation_axes,
     simulation_comparison,
@@ -33,9 +33,9 @@ from actuator_opt.reporting import (
     simulation_text,
     simulation_words,
 )
-from actuator_opt.reporting.blocks import column, table
-from actuator_opt.reporting.ink import Ink
-from actuator_opt.reporting.origin import Origin
+from actuator_opt.rendering.blocks import column, table
+from actuator_opt.rendering.ink import Ink
+from actuator_opt.rendering.origin import Origin
 from actuator_opt.simulation.integrate import Event
 from actuator_opt.simulation.result import Flow, RequirementResult, Second
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import report_fixture as fixture
 
-from actuator_opt.reporting import terminal
-from actuator_opt.reporting.console import Console, visible
+from actuator_opt.pages import terminal
+from actuator_opt.rendering.console import Console, visible
 
 SUBJECTS = {
     "evaluation": lambda **s: terminal.evaluation_text(fixture.build_evaluation(), **s),

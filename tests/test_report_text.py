@@ -5,8 +5,9 @@ import doctest
 import pytest
 from hypothesis import given, strategies as st
 
-from actuator_opt import units
-from actuator_opt.reporting import blocks, console, drawing, figures, ink, optimum, text
+from actuator_opt.base import units
+from actuator_opt.pages import drawing, optimum
+from actuator_opt.rendering import axes as figures, blocks, console, ink, text
 
 
 @pytest.mark.parametrize("module", [text, ink, console, drawing, figures, optimum])

@@ -14,7 +14,7 @@ from actuator_opt.optimisation import certified
 from actuator_opt.optimisation.certificate.envelopes import refuse
 from actuator_opt.optimisation.certificate.relaxation import Unknown
 from actuator_opt.optimisation.result import Certificate
-from actuator_opt.reporting import trust
+from actuator_opt.pages import trust
 
 PROVEN = Certificate(
     sentence="no design that meets the covered limits has less than 195 g: within 4.9 %",

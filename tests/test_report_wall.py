@@ -10,10 +10,11 @@ import report_fixture as fixture
 from test_through_wall import evaluated, with_wall
 
 import actuator_opt as ao
-from actuator_opt.reporting import fallback, wall
-from actuator_opt.reporting.ink import Ink
-from actuator_opt.reporting.page import page
-from actuator_opt.reporting.wall_figures import Rung, ladder_figure
+from actuator_opt.pages import wall
+from actuator_opt.pages.page import page
+from actuator_opt.pages.wall_figures import Rung, ladder_figure
+from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.rendering.ink import Ink
 
 SOURCE = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
 NAMES = ("knee.yaml", "aerospace.yaml", "elasswad_knee.yaml", "steel_baseline.yaml", "puck")

@@ -11,15 +11,15 @@ import pytest
 import report_fixture as fixture
 from full_disk import fill
 
-from actuator_opt.errors import InputError
-from actuator_opt.reporting import ExtraTable, read_attachment, write_report
+from actuator_opt.base.errors import InputError
+from actuator_opt.pages import ExtraTable, read_attachment, write_report
 
 HERE = Path(__file__).parent
 NAME = r"a # $ \ * _ @ < > [x](y) `z` {w} ~ // /* é ü θ ≥ "
 SCRIPT = """
 import sys, pathlib
 import report_fixture as fixture
-from actuator_opt.reporting import write_report
+from actuator_opt.pages import write_report
 for file in write_report(fixture.build_optimisation(), folder=pathlib.Path(sys.argv[1]), stem="r",
         source_text=fixture.SOURCE, source_name="knee.yaml", command="c", date=sys.argv[2] or None):
     print(file.path.name, file.sha256)

@@ -18,27 +18,27 @@ import scatter_case as case
 from scipy.special import betaincinv, ndtri
 
 import actuator_opt as ao
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.evaluation import prepare
 from actuator_opt.evaluation.reserve import YieldEstimate, without_reserve
 from actuator_opt.evaluation.result import Check, Unverified
 from actuator_opt.optimisation.recorded import from_plain, to_plain
 from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.optimisation.robustness import Robust
-from actuator_opt.reporting import (
+from actuator_opt.pages import (
     calibration_document,
     compare_text,
-    fallback,
     page,
     pareto_document,
     runs_text,
     tables,
     terminal,
 )
-from actuator_opt.reporting.sweep_text import sweep_text
-from actuator_opt.scatter.draw import normal_quantile
-from actuator_opt.scatter.estimate import exact
-from actuator_opt.scatter.quick import DRAWS, quick_yield
+from actuator_opt.pages.sweep_text import sweep_text
+from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.uncertainties.draw import normal_quantile
+from actuator_opt.uncertainties.estimate import exact
+from actuator_opt.uncertainties.quick import DRAWS, quick_yield
 
 DESIGNS = Path(__file__).parents[1] / "designs"
 DENSITY = "materials.steel_42crmo4.density"
@@ -209,7 +209,7 @@ def test_every_active_limit_has_no_reserve(optimum):
 
 def test_the_verdict_is_amber_where_a_limit_has_no_reserve(optimum):
     """Words and colour on page 1, in the terminal and of print; met and exit code stay."""
-    from actuator_opt.verbs import exit_code
+    from actuator_opt.api import exit_code
 
     count = len(optimum.best_evaluation.tight)
     assert count >= 10

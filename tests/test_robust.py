@@ -10,7 +10,7 @@ from cli_runner import run
 from scipy.stats import norm
 
 import actuator_opt as ao
-from actuator_opt.scatter import robust
+from actuator_opt.uncertainties import robust
 
 SPREAD = 0.2
 """Deviation of the rod's diameter, mm."""
@@ -213,7 +213,7 @@ def test_impossible_targets_are_one_line(target, tmp_path):
 
 def test_the_report_tells_of_it(tmp_path):
     """Sentence on page 1, rounds and reserves as tables."""
-    from actuator_opt.reporting.robust_rows import robust_tables
+    from actuator_opt.pages.robust_rows import robust_tables
 
     found = optimum(0.9)
     way, reserves = robust_tables(found)
@@ -226,7 +226,7 @@ def test_an_interrupt_ends_the_way():
     """Ctrl-C in a round gives the best design of that round, as in any optimisation."""
     from dataclasses import replace
 
-    from actuator_opt.scatter.robust import robust as run_robust
+    from actuator_opt.uncertainties.robust import robust as run_robust
 
     actuator = ao.read(one_wish(), plugins=[thick_rod])
     plain = ao.optimise(actuator, prices=False, starts=1)

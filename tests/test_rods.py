@@ -17,13 +17,13 @@ import tube_oracle as oracle
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.design.materials import load_library
 from actuator_opt.evaluation import rod_strength
 from actuator_opt.evaluation.kernel import compute
 from actuator_opt.models import stepped
 from actuator_opt.optimisation.actuator import build
-from actuator_opt.reporting import drawing
+from actuator_opt.pages import drawing
 
 KNEE = (Path(__file__).parents[1] / "designs" / "knee.yaml").read_text(encoding="utf-8")
 PLY_P = {

@@ -13,18 +13,18 @@ from cli_runner import bench, run
 from hypothesis import given, settings, strategies as st
 
 import actuator_opt as ao
+from actuator_opt.base.errors import InputError
 from actuator_opt.design import read_design
 from actuator_opt.design.model import Ply
-from actuator_opt.errors import InputError
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.branch_and_bound import search
 from actuator_opt.optimisation.listed import Listed
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.rounding import Wanted, misfits, plies, rounded, sizes_of
 from actuator_opt.optimisation.solver import solve
-from actuator_opt.reporting import text
-from actuator_opt.reporting.page import page
-from actuator_opt.reporting.prices import quality
+from actuator_opt.pages.page import page
+from actuator_opt.pages.prices import quality
+from actuator_opt.rendering import text
 
 PLIES = Wanted(whole_plies=True)
 MATERIALS = ao.read(bench()).subject().materials

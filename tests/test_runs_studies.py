@@ -16,11 +16,11 @@ import pytest
 from cli_runner import BENCH, command, run, spawn, surroundings
 
 import actuator_opt as ao
-from actuator_opt import run_store
+from actuator_opt.api import recording
+from actuator_opt.base import runs as run_store
 from actuator_opt.optimisation import recorded
 from actuator_opt.optimisation.pareto_result import ParetoFront
-from actuator_opt.variants.chunk import Study
-from actuator_opt.verbs import recording
+from actuator_opt.sweeps.chunk import Study
 
 SMALL = BENCH.replace("  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n", "").replace(
     "thickness: 1.2 mm", "thickness: 4 mm"

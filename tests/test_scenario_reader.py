@@ -13,7 +13,9 @@ import pytest
 import yaml
 from hypothesis import given, settings, strategies as st
 
-from actuator_opt import quantities, units
+from actuator_opt.base import quantities, units
+from actuator_opt.base.errors import InputError
+from actuator_opt.base.quantities import RESULTS, SCENARIOS
 from actuator_opt.design.kinds import Fraction, ValueFault, example, read_quantity
 from actuator_opt.design.scenario import Scenario, read_design_of, read_scenario
 from actuator_opt.design.scenario.faults import cross_field
@@ -21,8 +23,6 @@ from actuator_opt.design.scenario.signal_faults import SHAPES, part_lists
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.schema_values import quantity_schema
 from actuator_opt.design.structure import entries
-from actuator_opt.errors import InputError
-from actuator_opt.quantities import RESULTS, SCENARIOS
 
 DESIGN = (Path(__file__).parent.parent / "designs" / "servo_knee.yaml").read_text("utf-8")
 

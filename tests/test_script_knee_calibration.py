@@ -13,7 +13,7 @@ import pytest
 from script_loader import script
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.bench import bench
+from actuator_opt.studies.bench import bench
 
 ROOT = Path(__file__).parents[1]
 SCRIPT = ROOT / "designs" / "scripts" / "knee_calibration.py"

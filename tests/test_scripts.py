@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from script_loader import script
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.evaluation.plugin import load
 
 ROOT = Path(__file__).parents[1]

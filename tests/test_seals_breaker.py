@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import actuator_opt as ao
-from actuator_opt.errors import InputError
+from actuator_opt.base.errors import InputError
 
 DESIGNS = Path(__file__).parents[1] / "designs"
 KNEE = DESIGNS / "knee.yaml"

@@ -10,8 +10,8 @@ from hypothesis import HealthCheck, given, settings, strategies as st
 from seal_designs import KINDS, O_RING, STEP, U_CUP, evaluated, text
 
 import actuator_opt as ao
-from actuator_opt import verbs
-from actuator_opt.errors import ActuatorError, InputError
+from actuator_opt import api as verbs
+from actuator_opt.base.errors import ActuatorError, InputError
 from actuator_opt.models.seals import LAWS
 
 PROFILES = (

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import tube_oracle as oracle
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 
 TEXT = """
 name: second reader's knee

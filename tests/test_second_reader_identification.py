@@ -12,10 +12,10 @@ from scipy import signal, stats
 from scipy.optimize import curve_fit
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.bench import bench
-from actuator_opt.fits import fit_double_exponential, fit_power_law
+from actuator_opt.design.material_fits import fit_double_exponential, fit_power_law
 from actuator_opt.identification import Record
 from actuator_opt.identification.conditioning import condition, low_pass, pass_cutoff
+from actuator_opt.studies.bench import bench
 
 DESIGNS = Path(__file__).parent.parent / "designs"
 BORE, ROD, STROKE, SECTION, SQUEEZE = 0.023, 0.013, 0.11, 1.78e-3, 0.14

@@ -37,7 +37,7 @@ from test_second_reader import (
     share,
 )
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 
 ROWS = """
     - {material: al_7075_t6, thickness: 0.7 mm}

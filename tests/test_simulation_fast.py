@@ -12,13 +12,13 @@ import pytest
 import simulation_case as case
 from hypothesis import given, strategies as st
 
-from actuator_opt.errors import InputError, Unsolvable
+from actuator_opt.base.errors import InputError, Unsolvable
+from actuator_opt.base.symbolic import Graph, Namespace, jacobian
 from actuator_opt.models.tuning import ControllerGains
 from actuator_opt.simulation.fast import interruptible, translate
 from actuator_opt.simulation.integrate import integrate
 from actuator_opt.simulation.run import COMPARED
 from actuator_opt.simulation.system import System
-from actuator_opt.symbolic import Graph, Namespace, jacobian
 
 pytestmark = pytest.mark.filterwarnings("ignore:builtin type:DeprecationWarning")
 GAINS = ControllerGains(300.0, math.inf, 0.0)

@@ -27,11 +27,11 @@ from simulation_case import (
     scenario,
 )
 
-from actuator_opt.evaluation.study.plant import Plane, SealData
 from actuator_opt.models.tuning import ControllerGains
 from actuator_opt.simulation.assemble import assemble
 from actuator_opt.simulation.gains import tune
 from actuator_opt.simulation.linearise import Linear, ultimate
+from actuator_opt.studies.plant import Plane, SealData
 
 SHARP = {"sharp": 1e3, "relative": 1e-9}
 HOLD = 70 * BAR * (AREA_A - AREA_B)

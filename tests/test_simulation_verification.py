@@ -11,20 +11,20 @@ import numpy as np
 import pytest
 
 import actuator_opt as ao
+from actuator_opt.base.errors import InputError
 from actuator_opt.design.model import Limit
 from actuator_opt.design.scenario.model import Load, Scenario
-from actuator_opt.errors import InputError
 from actuator_opt.evaluation.build import prepare
 from actuator_opt.evaluation.springs import Give
-from actuator_opt.evaluation.study.plant import Plane, SealData, ValveData, plant
-from actuator_opt.reporting.tables import extra
-from actuator_opt.reporting.verification_rows import sensitivity_rows, verification_rows
-from actuator_opt.reporting.verification_text import sensitivity_text, verification_text
+from actuator_opt.pages.tables import extra
+from actuator_opt.pages.verification_rows import sensitivity_rows, verification_rows
+from actuator_opt.pages.verification_text import sensitivity_text, verification_text
 from actuator_opt.simulation import sensitivity
 from actuator_opt.simulation.sensitivity import sensitivities
 from actuator_opt.simulation.verification import DYNAMIC, experiments, verify
 from actuator_opt.simulation.verification.stand import Stand
 from actuator_opt.simulation.verification.verify import _left_out
+from actuator_opt.studies.plant import Plane, SealData, ValveData, plant
 
 KNEE = Path(__file__).parents[1] / "designs" / "servo_knee.yaml"
 BAR = 1e5

@@ -14,19 +14,19 @@ from hypothesis import given, settings, strategies as st
 from problems import pressure_vessel
 
 import actuator_opt as ao
+from actuator_opt.base.errors import InputError
 from actuator_opt.design import choice_list, read_design
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.size_series import SERIES
 from actuator_opt.design.sizes import groups
 from actuator_opt.design.writer import to_yaml
-from actuator_opt.errors import InputError
 from actuator_opt.optimisation.actuator import build
 from actuator_opt.optimisation.branch_and_bound import search
 from actuator_opt.optimisation.listed import Listed
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
-from actuator_opt.reporting.choices_table import terminal
-from actuator_opt.reporting.whole_plies import notes as rounding_notes
+from actuator_opt.pages.choices_table import terminal
+from actuator_opt.pages.whole_plies import notes as rounding_notes
 
 BORE = "  cylinder.bore:\n    lower: 20 mm\n    upper: 30 mm\n"
 THICKNESS = "  barrel.layup[1].thickness:\n    lower: 0.5 mm\n    upper: 4 mm\n"

@@ -7,7 +7,7 @@ import math
 import bench_strategies
 import pytest
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.optimisation import nlopt_wrapper
 from actuator_opt.optimisation.outcome import Outcome
 from actuator_opt.optimisation.run import SAMPLES

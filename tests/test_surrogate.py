@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from actuator_opt.numeric import STEP
-from actuator_opt.surrogate import Axis, Interpolation, surrogate
+from actuator_opt.base.numeric import STEP
+from actuator_opt.base.surrogate import Axis, Interpolation, surrogate
 
 AXES = (Axis("speed", 1e-3, 1.0, 5), Axis("pressure", 1e5, 4e7, 4))
 BASE = {"speed": 0.1, "pressure": 1e6, "modulus": 8e6}

@@ -21,11 +21,11 @@ import pytest
 from cli_runner import run as cli
 
 import actuator_opt as ao
-from actuator_opt.database import Column, Rows, opened
-from actuator_opt.errors import InputError, UsageError
+from actuator_opt.base.database import Column, Rows, opened
+from actuator_opt.base.errors import InputError, UsageError
 from actuator_opt.evaluation import compute
 from actuator_opt.optimisation.actuator import goal_of
-from actuator_opt.variants import Swept, chunk, run
+from actuator_opt.sweeps import Swept, chunk, run
 
 KNEE = "designs/knee.yaml"
 STEEL = "designs/steel_baseline.yaml"
@@ -279,7 +279,7 @@ def test_a_changed_design_is_another_study(tmp_path):
 SCRIPT = """
 import sys
 import actuator_opt as ao
-from actuator_opt.variants import chunk, run
+from actuator_opt.sweeps import chunk, run
 run.CHUNK = 128
 found = ao.sweep(sys.argv[1], sys.argv[3:], method="lhs", n=4000, store=sys.argv[2], workers=2)
 print(found.requested, found.computed, found.reused)
@@ -441,8 +441,8 @@ def test_a_store_called_memory_is_a_file(tmp_path, monkeypatch):
 
 def test_a_long_axis_takes_no_memory():
     """Its values are found from their numbers, bit for bit those of all of them at once."""
-    from actuator_opt.variants.axes import Axis
-    from actuator_opt.variants.plan import plan
+    from actuator_opt.sweeps.axes import Axis
+    from actuator_opt.sweeps.plan import plan
 
     axis = Axis("p", np.array([0.018, 0.040]), range=True, count=977)
     assert (axis.numbers() == np.linspace(0.018, 0.040, 977)).all()
@@ -465,7 +465,7 @@ import resource, signal, sys
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))
 import actuator_opt as ao
-from actuator_opt.errors import InputError
+from actuator_opt.base.errors import InputError
 try:
     ao.sweep(sys.argv[1], sys.argv[3:], method="lhs", n=9000, store=sys.argv[2], workers=1)
 except InputError as error:
@@ -536,7 +536,7 @@ def test_a_contradiction_between_the_ends_of_a_list_is_no_best(knee):
 
 def test_temperatures_that_leave_strengths_alone_move_together(tmp_path):
     """Within the environment's temperatures oil varies as an array; beyond, designs stand apart."""
-    from actuator_opt.variants.chunk import Study
+    from actuator_opt.sweeps.chunk import Study
 
     for vary, apart in (
         ("fluid.temperature=20..60 degC:5", False),

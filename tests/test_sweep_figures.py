@@ -15,17 +15,17 @@ from hypothesis import given, settings, strategies as st
 from test_sweep import KNEE, NEAR, STEEL, WAYS
 
 import actuator_opt as ao
-from actuator_opt.bounds import SWEEP_FIGURES
-from actuator_opt.errors import InputError, UsageError
-from actuator_opt.reporting import sweep_figure
-from actuator_opt.reporting.ink import Ink
-from actuator_opt.reporting.sweep_contour import contour_figure
-from actuator_opt.reporting.sweep_figures import sweep_figures
-from actuator_opt.reporting.sweep_marks import SweepFigureData
-from actuator_opt.reporting.ucurves import STYLES, differences_drawn
-from actuator_opt.variants import sample
-from actuator_opt.variants.field import field
-from actuator_opt.variants.sample import Pool, better, front
+from actuator_opt.base.bounds import SWEEP_FIGURES
+from actuator_opt.base.errors import InputError, UsageError
+from actuator_opt.pages import sweep_figure
+from actuator_opt.pages.sweep_contour import contour_figure
+from actuator_opt.pages.sweep_figures import sweep_figures
+from actuator_opt.pages.sweep_marks import SweepFigureData
+from actuator_opt.pages.ucurves import STYLES, differences_drawn
+from actuator_opt.rendering.ink import Ink
+from actuator_opt.sweeps import sample
+from actuator_opt.sweeps.field import field
+from actuator_opt.sweeps.sample import Pool, better, front
 
 GRID = ["cylinder.bore=20.6..22 mm:9", "barrel.layup[1].thickness=2.2..3.6 mm:9"]
 PAIR = ("mass", "stiffness_min")
@@ -256,7 +256,7 @@ def test_figures_that_cannot_be_are_refused_before_the_work(
     knee, monkeypatch, vary, how, kinds, show, said
 ):
     """One line each; nothing has run."""
-    monkeypatch.setattr("actuator_opt.variants.run._computed", None)
+    monkeypatch.setattr("actuator_opt.sweeps.run._computed", None)
     with pytest.raises(UsageError) as fault:
         ao.sweep(knee, vary, figures=kinds, show=show, **how)
     assert said in str(fault.value)

@@ -14,12 +14,12 @@ from cli_runner import run as terminal
 from test_sweep import KNEE, NEAR, STEEL, WAYS
 
 import actuator_opt as ao
-from actuator_opt.database import Rows
-from actuator_opt.errors import ActuatorError, InputError, UsageError
-from actuator_opt.reporting import sweep_parquet
-from actuator_opt.reporting.sweep_parquet import SweepParquet
-from actuator_opt.variants import run
-from actuator_opt.variants.chunk import Chunk
+from actuator_opt.base.database import Rows
+from actuator_opt.base.errors import ActuatorError, InputError, UsageError
+from actuator_opt.pages import sweep_parquet
+from actuator_opt.pages.sweep_parquet import SweepParquet
+from actuator_opt.sweeps import run
+from actuator_opt.sweeps.chunk import Chunk
 
 arrow = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
@@ -148,7 +148,7 @@ def test_memory_does_not_grow_with_the_rows(tmp_path):
 def test_without_the_extra_one_line_says_how_to_have_it(tmp_path, monkeypatch):
     """Before the work, and nothing is written."""
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    monkeypatch.setattr("actuator_opt.variants.run._computed", None)
+    monkeypatch.setattr("actuator_opt.sweeps.run._computed", None)
     with pytest.raises(ActuatorError) as fault:
         ao.sweep(KNEE, WAYS, method="lhs", n=4, csv=tmp_path / "r.csv", parquet=tmp_path / "r.pq")
     assert str(fault.value) == "Parquet files need pyarrow; pip install 'actuator-opt[parquet]'"
@@ -160,8 +160,8 @@ import resource, signal, sys
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))
 import actuator_opt as ao
-from actuator_opt.errors import InputError
-from actuator_opt.reporting import sweep_parquet
+from actuator_opt.base.errors import InputError
+from actuator_opt.pages import sweep_parquet
 sweep_parquet.GROUP = int(sys.argv[4])
 vary = ["cylinder.bore=18..26 mm", "rod.outer_diameter=9..13 mm"]
 try:

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.stats import qmc
 
+from actuator_opt.base.errors import InputError, UsageError
 from actuator_opt.design import read_design
-from actuator_opt.errors import InputError, UsageError
-from actuator_opt.variants import plan, read_axis
-from actuator_opt.variants.axes import Axis
+from actuator_opt.sweeps import plan, read_axis
+from actuator_opt.sweeps.axes import Axis
 
 KNEE = read_design("designs/knee.yaml").design.model_copy(update={"variables": {}})
 

@@ -13,8 +13,8 @@ from model_samples import cases, leaves, public_functions
 from test_models_laws import called
 
 import actuator_opt.simulation.parts
-from actuator_opt import numeric
-from actuator_opt.symbolic import Graph, Namespace, Symbol, function, jacobian, vectorised
+from actuator_opt.base import numeric
+from actuator_opt.base.symbolic import Graph, Namespace, Symbol, function, jacobian, vectorised
 
 NOT_TRACED = {
     "autofrettage.autofrettage": "chooses by its numbers",

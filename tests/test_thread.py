@@ -10,7 +10,7 @@ import pytest
 from cli_runner import refused
 
 import actuator_opt as ao
-from actuator_opt.errors import InputError
+from actuator_opt.base.errors import InputError
 from actuator_opt.models import barrel, thread
 from actuator_opt.optimisation.choices import possible
 

@@ -12,13 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from actuator_opt import verbs
+from actuator_opt import api as verbs
 from actuator_opt.design.materials import load_library
 from actuator_opt.evaluation.film import FilmRow, slopes, solve
 from actuator_opt.evaluation.seal_contact import seal_contact
-from actuator_opt.evaluation.study import trends
-from actuator_opt.evaluation.study.trends import FACTORS
-from actuator_opt.reporting.published import aalto_trends
+from actuator_opt.replicas import aalto_trends, trends
+from actuator_opt.replicas.trends import FACTORS
 
 DESIGNS = Path(__file__).parents[1] / "designs"
 NAMES = [factor.name for factor in FACTORS]

@@ -18,9 +18,9 @@ from actuator_opt.design.schema import json_schema
 from actuator_opt.design.standards import tables
 from actuator_opt.design.tolerances import class_limits
 from actuator_opt.design.writer import to_yaml
-from actuator_opt.reporting import uncertainty_document as document
-from actuator_opt.reporting.origin import Origin
-from actuator_opt.reporting.uncertainty_figures import margins_figure, tornado
+from actuator_opt.pages import uncertainty_document as document
+from actuator_opt.pages.uncertainty_figures import margins_figure, tornado
+from actuator_opt.rendering.origin import Origin
 
 BORE, AIR = "cylinder.bore", "fluid.air_content"
 FIBRE = "materials.t700_epoxy.youngs_modulus_1"
@@ -225,7 +225,7 @@ def test_bad_options_are_one_line(options, code, words):
 
 def test_text_in_ascii_and_narrow():
     """Plain ASCII on a narrow terminal: no line beyond it."""
-    from actuator_opt.reporting.uncertainty_text import uncertainty_text
+    from actuator_opt.pages.uncertainty_text import uncertainty_text
 
     found = ao.uncertainty(case.KNEE, count=100, rows=64)
     said = uncertainty_text(found, unicode=False, width=60)

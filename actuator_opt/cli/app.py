@@ -15,7 +15,7 @@ from typing import Annotated, Any
 import typer
 from typer.exceptions import TyperException
 
-from ..errors import EXIT_CODES, ActuatorError, Diagnostic, ExitCode
+from ..base.errors import EXIT_CODES, ActuatorError, Diagnostic, ExitCode
 from ..version import VERSION
 from . import faults, streams
 

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .. import run_store, store
-from ..errors import Diagnostic, ExitCode, UsageError
-from ..suggest import shown
+from ..base import files as store, runs as run_store
+from ..base.errors import Diagnostic, ExitCode, UsageError
+from ..base.suggest import shown
 from . import streams
 from .job import Job
 from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Report, Seed, Set
 
 if TYPE_CHECKING:
-    from ..verbs import Restored
+    from ..api import Restored
 
 
 def _named_file(name: str) -> tuple[str, Path]:
@@ -106,7 +106,7 @@ def check(
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> ExitCode:
     """Name every fault of design and scenario files."""
-    from .. import verbs
+    from .. import api as verbs
 
     job = Job(sets=sets, as_json=as_json, quiet=quiet)
     pairs, faults, said = job.set, list[Diagnostic](), list[str]()
@@ -135,7 +135,7 @@ def evaluate(
     quiet: Quiet = False,
 ) -> ExitCode:
     """Every metric, requirement and check of a design."""
-    from .. import verbs
+    from .. import api as verbs
 
     job = Job(
         design, sets=sets, plugins=plugin, report=report, out=out, date=date,
@@ -158,7 +158,7 @@ def report(
     quiet: Quiet = False,
 ) -> ExitCode:
     """Write the report of a design as it is, or of a run."""
-    from .. import verbs
+    from .. import api as verbs
 
     job = Job(
         design, sets=sets, plugins=plugin, report=True, out=out, date=date,
@@ -175,7 +175,7 @@ def report(
 
 def _restored(job: Job) -> Restored:
     """A recorded run; what differs from then is said."""
-    from .. import verbs
+    from .. import api as verbs
 
     if job.sets:
         raise UsageError(Diagnostic("--set: a run is reported as it was", "name a design instead"))
@@ -207,7 +207,7 @@ def compare(
     quiet: Quiet = False,
 ) -> ExitCode:
     """What differs between designs, and which parts decide."""
-    from .. import verbs
+    from .. import api as verbs
 
     if out is not None:
         store.require_folder(out)
@@ -242,8 +242,8 @@ def export(
     quiet: Quiet = False,
 ) -> ExitCode:
     """Write the design for CAD (STEP, DXF) or Excel (XLSX)."""
-    from .. import verbs
-    from ..exporting import require_formats
+    from .. import api as verbs
+    from ..exports import require_formats
 
     asked = require_formats(formats or [])
     job = Job(
@@ -264,10 +264,10 @@ def schema(
     as_json: Annotated[bool, typer.Option("--json", help="As always: it is JSON.")] = False,
 ) -> None:
     """Print the JSON Schema of design or scenario files."""
+    from ..base.quantities import RESULTS
     from ..design.materials import load_library
     from ..design.schema import json_schema
     from ..metrics import METRICS
-    from ..quantities import RESULTS
 
     if scenario:
         from ..design.scenario import Scenario

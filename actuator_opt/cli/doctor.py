@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sys
 
-from .. import run_store
-from ..errors import ExitCode
+from ..base import runs as run_store
+from ..base.errors import ExitCode
 from . import streams
 from .job import Job
 from .options import REPORTS, Json, Out, Quiet
@@ -13,7 +13,7 @@ from .options import REPORTS, Json, Out, Quiet
 
 def doctor(out: Out = REPORTS, as_json: Json = False, quiet: Quiet = False) -> ExitCode:
     """What this installation has, lacks and may write."""
-    from .. import verbs
+    from .. import api as verbs
 
     found = verbs.doctor(out=out, runs=run_store.folder(), terminal=_terminal())
     return Job(as_json=as_json, quiet=quiet).deliver(found)

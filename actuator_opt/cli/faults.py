@@ -6,8 +6,8 @@ import errno
 import os
 import sys
 
-from ..errors import Diagnostic, ExitCode
-from ..suggest import shown
+from ..base.errors import Diagnostic, ExitCode
+from ..base.suggest import shown
 from ..version import VERSION
 from . import streams
 

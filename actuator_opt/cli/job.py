@@ -10,13 +10,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from .. import store
-from ..errors import ActuatorError, Diagnostic, ExitCode
+from ..base import files as store
+from ..base.errors import ActuatorError, Diagnostic, ExitCode
 from . import streams
 from .options import REPORTS
 
 if TYPE_CHECKING:
-    from ..verbs import Actuator
+    from ..api import Actuator
 
 _T = TypeVar("_T")
 Files = Sequence[Mapping[str, Any]]
@@ -59,7 +59,7 @@ class Job:
         for path in filter(None, (self.csv, self.write)):
             store.require_writable(path)
         if self.report:
-            from ..verbs.reports import date_from_environment, require_date
+            from ..api.reports import date_from_environment, require_date
 
             store.require_folder(self.out)
             if self.date is not None:
@@ -80,7 +80,7 @@ class Job:
     @cached_property
     def actuator(self) -> Actuator:
         """The design, with ``--set`` and ``--plugin``."""
-        from ..verbs import read
+        from ..api import read
 
         return read(self.design, set=self.set, plugins=self.plugins or ())
 
@@ -109,7 +109,7 @@ class Job:
         faults : what could not be done
         also : further results by their key in JSON, shown below the first; None for none
         """
-        from ..verbs import results
+        from ..api import results
 
         also = {name: one for name, one in also.items() if one is not None}
         written = [*files, *self.written(result, **also)]
@@ -133,8 +133,8 @@ class Job:
 
     def written(self, result: object, **also: Any) -> list[dict[str, Any]]:
         """Write the CSV and the report that are asked for."""
-        from .. import verbs
-        from ..verbs import results
+        from .. import api as verbs
+        from ..api import results
 
         if not results.writes(result):
             return []
@@ -145,7 +145,7 @@ class Job:
 
     def keep(self, result: object, **how: Any) -> None:
         """Record the run of a result; where that fails, one line says so and nothing is lost."""
-        from ..verbs import results
+        from ..api import results
 
         try:
             results.keep(result, **self._origin(), **how)

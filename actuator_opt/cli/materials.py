@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from .. import store
-from ..errors import Diagnostic, UsageError
+from ..base import files as store
+from ..base.errors import Diagnostic, UsageError
 from . import streams
 from .options import Json
 
@@ -72,12 +72,12 @@ def show_material(
     else:
         lines = show_lines(material, ascii=not style["unicode"])
         if material.kind == "fluid":
-            from ..reporting.fluid_figure import table_lines
+            from ..pages.fluid_figure import table_lines
 
             lines += ["", *table_lines(material, **style)]
         streams.out("\n".join(lines))
     if out is not None:
-        from ..reporting.fluid_figure import write_figure
+        from ..pages.fluid_figure import write_figure
 
         for path in write_figure(material, out):
             streams.err(f"wrote {path}")

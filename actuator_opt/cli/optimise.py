@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..bounds import CHECKS
-from ..errors import Diagnostic, ExitCode
+from ..base.bounds import CHECKS
+from ..base.errors import Diagnostic, ExitCode
 from .job import Job
 from .options import (
     REPORTS,
@@ -33,8 +33,8 @@ from .options import (
 )
 
 if TYPE_CHECKING:
+    from ..api import Actuator, Trial
     from ..optimisation.result import Optimisation
-    from ..verbs import Actuator, Trial
 
 
 def optimise(
@@ -60,7 +60,7 @@ def optimise(
     quiet: Quiet = False,
 ) -> ExitCode:
     """Find the best design, price its limits, write the report."""
-    from .. import verbs
+    from .. import api as verbs
 
     job = Job(
         design, sets=sets, plugins=plugin, write=write, report=report or not as_json, out=out,
@@ -98,7 +98,7 @@ optimize = optimise
 
 def _scenario(file: str, actuator: Actuator) -> Trial:
     """The scenario to verify the best design in, which must be one for it."""
-    from .. import verbs
+    from .. import api as verbs
 
     trial = verbs.read_scenario(file)
     verbs.fitting(trial, actuator)
@@ -107,7 +107,7 @@ def _scenario(file: str, actuator: Actuator) -> Trial:
 
 def _unsaved(result: Optimisation, write: Path) -> Diagnostic | None:
     """Why there is no best design to save; None where there is one."""
-    from .. import verbs
+    from .. import api as verbs
 
     if verbs.exit_code(result) == ExitCode.MET or result.status == "interrupted":
         return None
@@ -128,7 +128,7 @@ def sensitivity(
     quiet: Quiet = False,
 ) -> ExitCode:
     """What each requirement and parameter costs at the optimum."""
-    from .. import verbs
+    from .. import api as verbs
 
     job = Job(
         design, sets=sets, plugins=plugin, report=report, out=out, date=date,
@@ -170,7 +170,7 @@ def pareto(
     quiet: Quiet = False,
 ) -> ExitCode:
     """Trade two to four objectives: the Pareto front and its knee."""
-    from .. import verbs
+    from .. import api as verbs
 
     job = Job(
         design, sets=sets, plugins=plugin, csv=csv, report=report, out=out, date=date,

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..bounds import SEED, STARTS
-from ..errors import Diagnostic, UsageError
+from ..base.bounds import SEED, STARTS
+from ..base.errors import Diagnostic, UsageError
 
 if TYPE_CHECKING:
-    from ..quantities import Quantity
+    from ..base.quantities import Quantity
 
 DesignFile = Annotated[str, typer.Argument(metavar="DESIGN", help="Design file, or - for stdin.")]
 Set = Annotated[

@@ -8,8 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import Diagnostic, ExitCode, UsageError
-from ..quantities import RECORDS
+from ..base.errors import Diagnostic, ExitCode, UsageError
+from ..base.quantities import RECORDS
 from .job import Job
 from .options import (
     REPORTS,
@@ -142,7 +142,7 @@ def identify(
     quiet: Quiet = False,
 ) -> ExitCode:
     """Friction and damping from a test record, with bounds."""
-    from .. import verbs
+    from .. import api as verbs
 
     job = Job(
         design, [record, *file_of_units(units)], sets=sets, plugins=plugin, csv=csv,
@@ -189,7 +189,7 @@ def calibrate(
     quiet: Quiet = False,
 ) -> ExitCode:
     """Put a record's friction into its design; say what changes."""
-    from .. import verbs
+    from .. import api as verbs
 
     job = Job(
         design, [record, *file_of_units(units)], sets=sets, plugins=plugin, write=write,

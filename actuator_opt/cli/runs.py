@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from .. import run_store, store
-from ..errors import Diagnostic, ExitCode, UsageError
+from ..base import files as store, runs as run_store
+from ..base.errors import Diagnostic, ExitCode, UsageError
 from . import streams
 from .job import Job
 from .options import REPORTS, Json, NoRecord, PluginFile, Quiet
@@ -35,14 +35,14 @@ def list_runs(
     quiet: Quiet = False,
 ) -> None:
     """Recorded runs, the newest first."""
-    from .. import verbs
+    from .. import api as verbs
 
     found, faults = verbs.runs(design=design, command=command)
     rows = [(run.id, dict(run.head)) for run in found]
     told = [{"id": name} | head for name, head in rows]
 
     def text() -> str:
-        from ..reporting.runs_text import runs_table
+        from ..pages.runs_text import runs_table
 
         return runs_table(rows, **streams.style())
 
@@ -76,7 +76,7 @@ def show_run(
     quiet: Quiet = False,
 ) -> None:
     """What was asked, what came out, how the search went."""
-    from .. import verbs
+    from .. import api as verbs
 
     if out is not None:
         store.require_folder(out)
@@ -88,7 +88,7 @@ def show_run(
 @runs.command("delete")
 def delete_run(name: RunName, as_json: Json = False, quiet: Quiet = False) -> None:
     """Delete one recorded run by its id."""
-    from .. import verbs
+    from .. import api as verbs
 
     if name == "last":
         raise UsageError(Diagnostic('"last" is not deleted', "write the id of the run"))
@@ -104,7 +104,7 @@ def prune_runs(
     quiet: Quiet = False,
 ) -> None:
     """Delete all recorded runs but the newest."""
-    from .. import verbs
+    from .. import api as verbs
 
     _say_deleted(verbs.prune_runs(keep=keep), as_json=as_json, quiet=quiet)
 
@@ -126,7 +126,7 @@ def rerun(
     quiet: Quiet = False,
 ) -> ExitCode:
     """Run the command of a report again, from the input it carries."""
-    from .. import verbs
+    from .. import api as verbs
 
     job = Job(
         report=out is not None, out=out or REPORTS, as_json=as_json, quiet=quiet,

@@ -17,13 +17,13 @@ from time import monotonic
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TextIO
 
-from ..errors import Diagnostic, ExitCode, InputError
-from ..progress import watched
-from ..suggest import escaped
-from ..units import whole
+from ..base.errors import Diagnostic, ExitCode, InputError
+from ..base.progress import watched
+from ..base.suggest import escaped
+from ..base.units import whole
 
 if TYPE_CHECKING:
-    from ..reporting.console import Style
+    from ..rendering.console import Style
 
 NARROWEST, WIDEST, USUAL, TERMINAL = 40, 1000, 100, 80
 """Columns: at least, at most, where the output is no terminal, where a terminal does not say."""
@@ -101,7 +101,7 @@ def out(text: str, *, end: str = "\n") -> None:
         return
     own = ""
     if "\x1b" in text and style()["colour"]:
-        from ..reporting.console import PAINT as own  # noqa: N811
+        from ..rendering.console import PAINT as own  # noqa: N811
     _now.printed = True
     try:
         with _whole():
@@ -186,7 +186,7 @@ def watching() -> Iterator[None]:
 
 def out_json(data: dict[str, Any]) -> None:
     """Print one JSON object."""
-    from ..plain_json import encoded
+    from ..base.plain_json import encoded
 
     out(encoded(data, indent=1))
 

@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import Diagnostic, ExitCode, UsageError
-from ..quantities import INPUTS
-from ..store import require_apart
+from ..base.errors import Diagnostic, ExitCode, UsageError
+from ..base.files import require_apart
+from ..base.quantities import INPUTS
 from .job import Job
 from .options import (
     REPORTS,
@@ -75,7 +75,7 @@ def uncertainty(
     quiet: Quiet = False,
 ) -> ExitCode:
     """Yield, indices and tornado from scatter and tolerances."""
-    from .. import verbs
+    from .. import api as verbs
 
     job = Job(
         design, sets=sets, plugins=plugin, csv=csv, report=report, out=out, date=date,
@@ -128,7 +128,7 @@ def seal(
     quiet: Quiet = False,
 ) -> ExitCode:
     """Contact, oil film, friction and leakage of one seal."""
-    from .. import verbs
+    from .. import api as verbs
 
     if place not in ("piston", "rod"):
         raise UsageError(Diagnostic(f'--seal "{place}"', "write piston or rod"))
@@ -210,7 +210,7 @@ def simulate(
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> ExitCode:
     """A scenario over time: servo, pressures, energy."""
-    from .. import verbs
+    from .. import api as verbs
 
     for name, given in (("--fit", fit), ("--column", columns)):
         if given and measured is None:

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..bounds import SWEEP_FIGURES
-from ..errors import ActuatorError, Diagnostic, ExitCode, UsageError
-from ..suggest import shown
-from ..units import whole
+from ..base.bounds import SWEEP_FIGURES
+from ..base.errors import ActuatorError, Diagnostic, ExitCode, UsageError
+from ..base.suggest import shown
+from ..base.units import whole
 from . import streams
 from .job import Job
 from .options import REPORTS, DesignFile, Json, NoRecord, PluginFile, Quiet, Seed, Set
 
 if TYPE_CHECKING:
-    from ..variants import Swept
+    from ..sweeps import Swept
 
 Vary = Annotated[
     list[str] | None,
@@ -106,7 +106,7 @@ def sweep(
     out: Folder = REPORTS,
 ) -> ExitCode:
     """Evaluate many variants of a design."""
-    from .. import verbs
+    from .. import api as verbs
 
     keep = _kept(reduce)
     if show and not figures:
@@ -146,7 +146,7 @@ def _drawn(
     found: Swept, figures: list[str], show: list[str], out: Path
 ) -> tuple[list[dict[str, str]], list[Diagnostic]]:
     """The files of figures, and the faults of the others, told once the sweep's results are."""
-    from .. import verbs
+    from .. import api as verbs
 
     files: list[dict[str, str]] = []
     faults: dict[str, Diagnostic] = {}
@@ -196,7 +196,7 @@ def explore(
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
 ) -> None:
     """Write a kept sweep or a front as one offline HTML page."""
-    from .. import verbs
+    from .. import api as verbs
 
     found = verbs.explore(store, out=out, study=study, rows=rows, plugins=plugin or [])
     files = [file.to_dict() for file in found]

@@ -8,10 +8,10 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import ValidationError
 
-from .. import suggest
-from ..errors import Diagnostic, Fault, InputError
+from ..base import suggest
+from ..base.errors import Diagnostic, Fault, InputError
+from ..base.quantities import Quantity
 from ..metrics import METRICS
-from ..quantities import Quantity
 from . import choice_list, wishes
 from .faults import cross_field, material_faults
 from .kinds import Fraction, Of, ValueFault, example, what

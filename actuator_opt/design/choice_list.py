@@ -13,9 +13,9 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
-from .. import suggest
-from ..errors import Fault
-from ..quantities import Quantity
+from ..base import suggest
+from ..base.errors import Fault
+from ..base.quantities import Quantity
 from .kinds import Fraction, MaterialName, Text, ValueFault, what
 from .material import ROLES
 from .model import Design

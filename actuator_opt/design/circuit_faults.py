@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import get_args
 
-from .. import quantities
-from ..errors import Fault
+from ..base import quantities
+from ..base.errors import Fault
 from . import choices
 from .view import View, length_text
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 from math import exp, log, log1p, sqrt
 from typing import Any
 
-from ..quantities import INPUTS, Quantity
+from ..base.quantities import INPUTS, Quantity
 from .kinds import ValueFault
 from .tolerances import class_limits
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from .. import quantities, suggest
-from ..errors import Fault
+from ..base import quantities, suggest
+from ..base.errors import Fault
 from . import (
     circuit_faults,
     linkage_faults,

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-from ..errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError
 from .standards import Gland, citation, metres, section_tolerance, tables
 
 Place: TypeAlias = Literal["rod", "piston"]

@@ -15,10 +15,10 @@ from typing import Any, Final, Literal, TypeAlias, get_args
 from pydantic import GetCoreSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from .. import kinds, quantities, units
-from ..numeric import Array
-from ..quantities import Quantity
-from ..suggest import article, shown
+from ..base import kinds, quantities, units
+from ..base.numeric import Array
+from ..base.quantities import Quantity
+from ..base.suggest import article, shown
 
 _LONGEST_NUMBER = 100
 _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d")

@@ -17,9 +17,9 @@ from dataclasses import replace
 from decimal import Decimal
 from typing import Any, NamedTuple
 
-from .. import quantities, units
-from ..errors import Diagnostic
-from ..suggest import shown
+from ..base import quantities, units
+from ..base.errors import Diagnostic
+from ..base.suggest import shown
 from .kinds import ValueFault, example, read_quantity, what
 from .model import MOST_LAYERS, Ply
 from .paths import spell

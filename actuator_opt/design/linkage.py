@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
+from ..base.numeric import Array
 from ..models import mass
-from ..numeric import Array
 from .kinds import Of
 from .section import Section
 

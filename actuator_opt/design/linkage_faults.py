@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from .. import quantities
-from ..errors import Fault
+from ..base import quantities
+from ..base.errors import Fault
 from ..models import linkage as crank
 from .linkage import closed_length
 from .model import PLAIN_CAP

@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from ..numeric import Array, maximum, real, where
-from ..quantities import MATERIAL_PROPERTIES, Quantity
+from ..base.numeric import Array, maximum, real, where
+from ..base.quantities import MATERIAL_PROPERTIES, Quantity
 
 KINDS: Final = ("metal", "ply", "polymer", "fluid", "seal", "adhesive")
 CONFIDENCES: Final = ("verified", "secondary", "unverified", "derived")

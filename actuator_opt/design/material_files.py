@@ -13,10 +13,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from .. import units
-from ..errors import Diagnostic, InputError
-from ..quantities import INPUTS, MATERIAL_PROPERTIES, Quantity
-from ..suggest import remedy, shown
+from ..base import units
+from ..base.errors import Diagnostic, InputError
+from ..base.quantities import INPUTS, MATERIAL_PROPERTIES, Quantity
+from ..base.suggest import remedy, shown
 from . import material, yaml_source
 from .kinds import ValueFault, read_quantity, what
 from .material import Material, Property, Spread

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Container, Iterator, Mapping
 from typing import Any
 
-from ..errors import Fault, InputError
-from ..kinds import Kinds
+from ..base.errors import Fault, InputError
+from ..base.kinds import Kinds
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
 from .structure import child_at
 from .view import Materials, Properties, View

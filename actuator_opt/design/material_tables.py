@@ -5,8 +5,8 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 
-from ..quantities import MATERIAL_PROPERTIES
-from ..tables import aligned
+from ..base.quantities import MATERIAL_PROPERTIES
+from ..base.tables import aligned
 from .material import Material, Property
 from .materials import Library
 

@@ -6,17 +6,9 @@ import functools
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from .. import store
-from ..errors import Diagnostic, InputError
-from .material import (
-    ROLES,
-    Material,
-    Property,
-    Spread,
-    allowable_factor,
-    compatible,
-    ply_constants,
-)
+from ..base import files as store
+from ..base.errors import Diagnostic, InputError
+from .material import ROLES, Material, Property, Spread, allowable_factor, compatible, ply_constants
 from .material_files import MaterialFile, read_entry, read_file
 
 __all__ = [

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 from pydantic import Field, create_model
 
+from ..base.quantities import Sense
 from ..joints.kinds import JOINTS
-from ..quantities import Sense
 from . import choices
 from .choices import Paper
 from .circuit import Control, Line, Ports, Valve

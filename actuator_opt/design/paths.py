@@ -14,10 +14,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from .. import quantities, suggest, units
-from ..errors import Diagnostic, InputError, UsageError
+from ..base import quantities, suggest, units
+from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.quantities import Quantity
 from ..metrics import METRICS
-from ..quantities import Quantity
 from .distributions import NUMBERS, quantity_of_entry
 from .kinds import Fraction, ValueFault
 from .model import Design

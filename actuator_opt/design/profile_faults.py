@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
-from ..errors import Fault
-from ..quantities import INPUTS
+from ..base.errors import Fault
+from ..base.quantities import INPUTS
 from .structure import Loc
 from .view import View
 

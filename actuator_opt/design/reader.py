@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from .. import suggest, units
-from ..errors import Diagnostic, Fault, InputError
-from ..quantities import Quantity
-from ..store import read_bytes
+from ..base import suggest, units
+from ..base.errors import Diagnostic, Fault, InputError
+from ..base.files import read_bytes
+from ..base.quantities import Quantity
 from . import layup
 from .build import MOST_FAULTS, Root, build, copy_tree
 from .kinds import ValueFault

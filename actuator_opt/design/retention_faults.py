@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from ..errors import Fault
+from ..base.errors import Fault
 from ..joints.joint import Joint
 from ..joints.kinds import JOINTS
 from .model import Retention

@@ -11,9 +11,9 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from .. import quantities
+from ..base import quantities
+from ..base.quantities import Quantity
 from ..metrics import METRICS
-from ..quantities import Quantity
 from . import choice_list, wishes
 from .distributions import NUMBERS, quantity_of_entry
 from .kinds import MaterialName, Of, Sizes, Text

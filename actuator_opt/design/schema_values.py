@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from .. import units
-from ..quantities import Quantity
+from ..base import units
+from ..base.quantities import Quantity
 from . import layup
 from .kinds import CaseName, Flag, Kind, MaterialName, Of, PositionKind, Text, ValueFault, example
 from .material import ROLES

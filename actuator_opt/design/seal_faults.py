@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from ..errors import Fault, InputError
+from ..base.errors import Fault, InputError
+from ..base.suggest import article
 from ..friction.kinds import LAWS as FRICTION_LAWS
 from ..models.elastomer import modulus_gent
 from ..models.seals import LAWS
@@ -16,7 +17,6 @@ from ..seals.kinds import SIZES, TYPES
 from ..seals.seal_type import SealType, SizeFault
 from ..seals.sizes import GROOVE_WIDTH
 from ..seals.u_cup import lip_faults
-from ..suggest import article
 from . import profile_faults
 from .profile_faults import elements
 from .seals import BACK_UPS

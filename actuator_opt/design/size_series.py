@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from decimal import Decimal
 from typing import Literal
 
-from ..errors import InputError
-from ..quantities import INPUTS
+from ..base.errors import InputError
+from ..base.quantities import INPUTS
 from ..seals.kinds import TYPES
 from . import standards
 from .seals import BACK_UPS

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from typing import Any
 
-from .. import suggest
-from ..errors import Fault
-from ..quantities import Quantity
+from ..base import suggest
+from ..base.errors import Fault
+from ..base.quantities import Quantity
 from .kinds import ValueFault, example, read_quantity, what
 from .paths import resolve
 from .size_series import SERIES, Series

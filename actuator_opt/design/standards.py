@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-from .. import store
-from ..errors import Diagnostic, InputError
+from ..base import files as store
+from ..base.errors import Diagnostic, InputError
 from . import yaml_source
 
 Use: TypeAlias = Literal["reciprocating", "static"]

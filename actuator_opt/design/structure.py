@@ -11,7 +11,7 @@ from functools import cache
 from types import UnionType
 from typing import Any, Literal, TypeAlias, Union, get_args, get_origin
 
-from ..quantities import Quantity
+from ..base.quantities import Quantity
 from .kinds import Choice, Fraction, Kind, Of, PositionKind
 from .model import Design
 from .section import Section

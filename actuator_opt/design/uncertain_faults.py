@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, get_args
 
-from .. import suggest
-from ..errors import Fault
+from ..base import suggest
+from ..base.errors import Fault
 from .distributions import KEYS, NUMBERS, misfit, quantity_of_entry
 from .kinds import ValueFault, example, read_quantity, what
 from .paths import Target, resolve

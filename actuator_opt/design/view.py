@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Protocol, runtime_checkable
 
-from .. import quantities
-from ..errors import Fault
+from ..base import quantities
+from ..base.errors import Fault
 from .model import Design
 from .section import Section
 from .structure import Loc, child_at, number_of, value_at

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from .. import quantities
-from ..errors import Fault, InputError
+from ..base import quantities
+from ..base.errors import Fault, InputError
 from .material import PLY_CONSTANTS, PLY_REQUIRED, compliance_determinant, ply_constants
 from .model import Ply
 from .paths import spell

@@ -10,9 +10,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from .. import quantities, suggest
-from ..errors import Fault
-from ..quantities import Quantity
+from ..base import quantities, suggest
+from ..base.errors import Fault
+from ..base.quantities import Quantity
 from . import sizes, uncertain_faults
 from .kinds import ValueFault, example, read_quantity, what
 from .model import Design

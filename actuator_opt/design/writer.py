@@ -13,10 +13,10 @@ from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from typing import Any, NamedTuple
 
-from .. import quantities, units
-from ..errors import InputError
+from ..base import quantities, units
+from ..base.errors import InputError
+from ..base.quantities import Quantity
 from ..metrics import METRICS
-from ..quantities import Quantity
 from . import layup
 from .build import build, to_tree
 from .choice_list import quantity_of_choice

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from ..errors import Diagnostic, InputError
-from ..suggest import shown
+from ..base.errors import Diagnostic, InputError
+from ..base.suggest import shown
 from .structure import Loc
 
 try:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ..base.numeric import Array
 from ..design.material import Material, allowable_factor, ply_constants
 from ..design.model import Design
-from ..numeric import Array
 from .values import Values
 
 

@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from ..base.numeric import Array, maximum, minimum
 from ..design.model import Design
 from ..models import beam_column, column, stepped
-from ..numeric import Array, maximum, minimum
 from . import weight
 from .barrel import Wall
 from .geometry import Geometry

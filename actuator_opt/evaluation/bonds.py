@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import pi
 
+from ..base.numeric import Array, maximum
 from ..design.model import Design
 from ..joints.joint import Thermal
 from ..joints.overlap import Overlap, mismatch
 from ..models.rod import section_area
-from ..numeric import Array, maximum
 from .allow import MaterialValues
 from .rods import Rod
 from .rows import MetricArrays

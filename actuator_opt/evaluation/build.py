@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from .. import quantities
+from ..base import quantities
 from ..design import paths
 from ..design.material import Material
 from ..design.materials import Library, load_library
@@ -18,24 +18,18 @@ from ..design.model import Design
 from ..metrics import METRICS, MetricRow
 from ..metrics.table import CHECKS
 from ..version import VERSION
-from . import doubts, outline, standard_parts, study
+from . import doubts, dynamics_study as dynamics, outline, standard_parts
 from .allow import allowances, extremes
 from .governing import governing
 from .kernel import ModelRun, PreparedDesign, compute
 from .limits import Limit, all_limits, check_limits, default_limits
 from .plugin import Plugin
 from .provenance import model_of
-from .result import (
-    Check,
-    Evaluation,
-    Metric,
-    Requirement,
-    StrokeCurve,
-)
+from .result import Check, Evaluation, Metric, Requirement, StrokeCurve
 from .rings import Ring
 from .rows import ALL_CASES, LimitRow, MetricArrays, by_case, rows_of
-from .study import dynamics
 from .values import Values, of_case
+from .wall_study import study as wall_study
 
 NO_ANSWER = "the models have no finite answer for these dimensions"
 NOT_COMPUTED = "nothing computes it for this design"
@@ -144,7 +138,7 @@ def evaluate(subject: PreparedDesign) -> Evaluation:
         curve=_curve(done, v, metrics["stiffness_min"].case),
         outlines=outline.outlines(design, subject.materials, done.geometry),
         lengths=outline.lengths(design, done.geometry),
-        wall=study.study(subject, v, done),
+        wall=wall_study(subject, v, done),
         dynamics=dynamics.study(subject, v, done, metrics["stiffness_min"].case),
         friction_parts=_friction_parts(computed, v, metrics["friction_running"].case),
     )

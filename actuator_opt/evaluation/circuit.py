@@ -7,11 +7,11 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from ..base.numeric import Array, maximum, where
 from ..design.circuit import Line
 from ..design.model import Design
 from ..models import accumulator, elements, holding_valve, line_ends, lines, one_way_valve, valve
 from ..models.line_ends import LineEnd
-from ..numeric import Array, maximum, where
 from .geometry import Geometry
 from .state import LoadState
 from .values import Values

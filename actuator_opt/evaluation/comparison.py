@@ -13,13 +13,13 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
+from ..base.errors import InputError
+from ..base.quantities import Quantity, Sense
 from ..design import Design
 from ..design.build import to_tree
 from ..design.kinds import Fraction
 from ..design.paths import quantity_of
-from ..errors import InputError
 from ..metrics import METRICS
-from ..quantities import Quantity, Sense
 from .result import Evaluation
 
 Value: TypeAlias = float | bool | str | Fraction | None

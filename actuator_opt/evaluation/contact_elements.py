@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.errors import ActuatorError, Diagnostic, Unsolvable
+from ..base.suggest import article
 from ..design.seals import ContactProfile
-from ..errors import ActuatorError, Diagnostic, Unsolvable
 from ..seals.contact import SealContact
 from ..seals.kinds import TYPES
-from ..suggest import article
 from .rings import Ring
 from .seal_contact import seal_contact
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..numeric import Array
+from ..base.numeric import Array
 
 FEW = 32
 """Designs up to which a model costs about the same for all as for some."""

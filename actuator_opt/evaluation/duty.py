@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from ..base.numeric import Array, maximum, where
 from ..design.model import Design
 from ..joints.joint import Fatigue
 from ..models import density, end_stop, endurance, rod
-from ..numeric import Array, maximum, where
 from . import rod_strength
 from .allow import MaterialValues
 from .barrel import Wall

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..base.numeric import STEP, Array, maximum
 from ..lubrication import (
     Contact,
     Elastic,
@@ -27,7 +28,6 @@ from ..lubrication import (
 )
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..models.rough_surface import composite_roughness
-from ..numeric import STEP, Array, maximum
 from .rings import Ring
 from .seal_contact import seal_contact, static_profile
 

@@ -17,10 +17,10 @@ from typing import Literal
 
 import numpy as np
 
+from ..base.errors import Diagnostic, Unsolvable
+from ..base.numeric import Array
+from ..base.surrogate import Axis, Interpolation, Surrogate, surrogate
 from ..design.model import Design
-from ..errors import Diagnostic, Unsolvable
-from ..numeric import Array
-from ..surrogate import Axis, Interpolation, Surrogate, surrogate
 from .film import FilmRow, Solved, ring_films, slopes as film_slopes, solve
 from .rings import Place, Ring
 from .values import Values, of_case

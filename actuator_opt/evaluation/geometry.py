@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from ..base.numeric import Array, absolute
 from ..design.linkage import closed_length
 from ..design.material import Material
 from ..design.model import Design, Ply
 from ..joints.joint import End, Fit, JointSizes
 from ..models import forces, mass
-from ..numeric import Array, absolute
 from .grooves import Groove, grooves, taken
 from .retention import Numbers, end_of, joint_of
 from .values import Values

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from ..base.numeric import Array, maximum, minimum, real, where
 from ..design.housings import extrusion_tables
 from ..design.material import Material
 from ..design.model import Design
 from ..models import extrusion, gland, gland_range
-from ..numeric import Array, maximum, minimum, real, where
 from .allow import MaterialValues
 from .geometry import Geometry
 from .rings import Ring

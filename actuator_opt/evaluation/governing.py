@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..numeric import Array, maximum, minimum, where
-from ..quantities import Sense
+from ..base.numeric import Array, maximum, minimum, where
+from ..base.quantities import Sense
 from .kernel import PreparedDesign
 from .limits import margin
 from .rows import MetricArrays, by_case

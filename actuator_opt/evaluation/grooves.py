@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+from ..base.numeric import Array, maximum
 from ..design.model import Design
 from ..design.seals import Seal, SealElement
 from ..models import gland
-from ..numeric import Array, maximum
 from .values import Values
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from ..base.numeric import Array, absolute, maximum, real, where
 from ..design.model import Design
 from ..friction.law import Friction
 from ..models import damping, elements, forces, lines, water_hammer
-from ..numeric import Array, absolute, maximum, real, where
 from .circuit import wall_compliance
 from .film_tables import Running
 from .geometry import Geometry

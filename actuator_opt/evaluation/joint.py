@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.numeric import Array, absolute, clip, minimum, real, sqrt, where
 from ..design.model import Design
 from ..models import linkage
-from ..numeric import Array, absolute, clip, minimum, real, sqrt, where
 from .geometry import Geometry
 from .limits import ENDS, OWN_PLACE
 from .rows import MetricArrays

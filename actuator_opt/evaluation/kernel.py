@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..base.numeric import Array, minimum, where
+from ..base.quantities import Quantity, Sense
 from ..design.material import Material
 from ..design.model import Design
 from ..friction.law import Friction
 from ..metrics.table import AT_STOPS
 from ..models import forces
-from ..numeric import Array, minimum, where
-from ..quantities import Quantity, Sense
 from . import (
     barrel as barrel_module,
     beam as beam_module,

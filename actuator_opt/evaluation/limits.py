@@ -11,10 +11,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
+from ..base.numeric import Array, absolute, real, where
+from ..base.quantities import Sense
 from ..design.model import Design, LoadCase
 from ..metrics.table import CHECKS, ROWS
-from ..numeric import Array, absolute, real, where
-from ..quantities import Sense
 from .plugin import Plugin
 from .values import Values
 

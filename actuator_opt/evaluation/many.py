@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..numeric import Array
+from ..base.numeric import Array
 from .build import TOLERANCE
 from .governing import governing
 from .kernel import PreparedDesign, compute

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.numeric import Array, angle, magnitude, maximum, real, where
 from ..design.model import Design
 from ..models import dynamics, line_ends, linear, loop
 from ..models.line_ends import LineEnd
 from ..models.linear import LinearActuator, Side
-from ..numeric import Array, angle, magnitude, maximum, real, where
 from . import circuit
 from .circuit import CHAMBERS, Branch, Chamber, LinearValve, Ways
 from .rows import MetricArrays

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ..base.numeric import Array
 from ..design.model import Design
-from ..numeric import Array
 from .motion import Motion
 from .rows import MetricArrays
 from .springs import weakest_per_chamber

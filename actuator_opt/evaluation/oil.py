@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TypeAlias
 
+from ..base.numeric import Array
 from ..design.material import Material
 from ..design.material_laws import bulk_modulus_law, viscosity_law
 from ..design.model import FluidSection
 from ..models import density as density_models, fluid
 from ..models.oil_laws import BULK_MODULUS_LAWS, VISCOSITY_LAWS
-from ..numeric import Array
 from .allow import MaterialValues
 from .values import Values
 

@@ -19,12 +19,12 @@ from typing import Literal
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array, maximum, minimum
+from ..base.quantities import Quantity
+from ..base.suggest import shown
+from ..base.units import BASE, UnitError, unit
 from ..metrics import METRICS
-from ..numeric import Array, maximum, minimum
-from ..quantities import Quantity
-from ..suggest import shown
-from ..units import BASE, UnitError, unit
 from .values import Values
 
 _MARK = "_actuator_opt_plugin"

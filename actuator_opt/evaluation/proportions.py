@@ -13,10 +13,10 @@ from math import inf, pi
 
 import numpy as np
 
+from ..base.numeric import Array
 from ..design.model import Design
 from ..joints.joint import End, Joint
 from ..joints.kinds import JOINTS
-from ..numeric import Array
 from . import geometry
 from .geometry import Geometry, end_at
 from .kernel import PreparedDesign

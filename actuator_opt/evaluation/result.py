@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal, TypeAlias
 
-from .. import quantities
+from ..base import quantities
+from ..base.numeric import Array
+from ..base.tables import aligned
 from ..design.model import Design
 from ..metrics import METRICS
-from ..numeric import Array
-from ..tables import aligned
 from . import reserve
-from .study.dynamics import DynamicsStudy
-from .study.record import WallStudy
+from .dynamics_study import DynamicsStudy
+from .wall_result import WallStudy
 
 State: TypeAlias = Literal["met", "no_reserve", "missed", "not_checked"]
 """Of a limit: `no_reserve` is met, with nothing to spare."""

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..base.numeric import Array
 from ..design.model import Design, Retention
 from ..joints.joint import BarrelLayer, End, Joint, JointSizes
 from ..joints.kinds import JOINTS
-from ..numeric import Array
 from .values import Values
 
 

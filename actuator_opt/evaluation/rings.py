@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from ..base.numeric import Array, absolute, maximum, where
 from ..design.model import Design
 from ..design.seals import SealElement
 from ..models import elastomer, gland
-from ..numeric import Array, absolute, maximum, where
 from ..seals.seal_type import SealSizes
 from . import oil
 from .allow import MaterialValues

@@ -11,10 +11,10 @@ from functools import partial
 
 import numpy as np
 
+from ..base.numeric import Array, maximum, where
 from ..design.model import Design
 from ..models import beam_column, rod, shell_buckling, yielding
 from ..models.strength_modes import Stress, load_multiplier
-from ..numeric import Array, maximum, where
 from . import plies
 from .allow import MaterialValues
 from .barrel import Cycle

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..base.numeric import Array, real, sqrt as root
 from ..design.model import Design
 from ..models import column, laminate, mass, rod
 from ..models.layered_tube import (
@@ -21,7 +22,6 @@ from ..models.layered_tube import (
 )
 from ..models.shell_buckling import shell_modulus
 from ..models.strength_modes import Stress
-from ..numeric import Array, real, sqrt as root
 from . import plies
 from .allow import MaterialValues
 from .geometry import Geometry

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..base.numeric import Array, real, where
 from ..metrics import METRICS
-from ..numeric import Array, real, where
 from .limits import Limit, margin
 from .values import Values
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..numeric import Array, real
+from ..base.numeric import Array, real
 from ..seals import stated_profile
 from ..seals.contact import SealContact
 from .rings import Ring

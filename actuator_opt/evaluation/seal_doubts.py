@@ -7,12 +7,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from ..design.material import compatible
-from ..models import (
-    contact_profile,
-    extrusion,
-    rough_surface,
-    seals,
-)
+from ..models import contact_profile, extrusion, rough_surface, seals
 from .film_tables import Table
 from .gland_check import extrusion_end
 from .kernel import ModelRun, PreparedDesign

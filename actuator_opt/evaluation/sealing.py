@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..base.numeric import Array, absolute, maximum, real, where
 from ..design.model import Design
 from ..design.seals import Wiper
 from ..friction.law import Friction
 from ..models import damping, friction, gland, lip_seal, retention, wear
 from ..models.fluid import ATMOSPHERIC_PRESSURE
-from ..numeric import Array, absolute, maximum, real, where
 from ..seals.contact import SealContact
 from . import gland_check
 from .allow import MaterialValues

@@ -13,8 +13,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from ..base.numeric import Array
 from ..joints.joint import Fit
-from ..numeric import Array
 from . import geometry as geometry_module, outline
 from .geometry import Geometry
 from .grooves import Groove

@@ -7,10 +7,10 @@ from typing import Literal
 
 import numpy as np
 
+from ..base.errors import InputError
 from ..design import standards
 from ..design.housings import gland_deviations, housings, housings_for
 from ..design.model import Design
-from ..errors import InputError
 from .film_tables import floats
 from .gland_check import squeezes
 from .result import Check

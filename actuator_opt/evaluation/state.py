@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.numeric import Array, where
 from ..design.kinds import Fraction
 from ..design.model import Design
 from ..models import retention, stiffness
-from ..numeric import Array, where
 from . import joint as joint_module, oil
 from .allow import MaterialValues
 from .geometry import Geometry

@@ -10,12 +10,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import sqrt
 
+from ..base.numeric import Array, real, where
 from ..design.model import Design
 from ..joints.joint import Joint, Loaded, Strength
 from ..joints.kinds import JOINTS
 from ..joints.overlap import Overlap
 from ..models import end_plate, retention, rod
-from ..numeric import Array, real, where
 from . import bonds, rod_strength
 from .allow import MaterialValues
 from .barrel import Wall, load_path

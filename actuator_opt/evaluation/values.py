@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..numeric import Array, namespace
+from ..base.numeric import Array, namespace
 
 
 class Values:

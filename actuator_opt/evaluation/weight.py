@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from ..base.numeric import Array
 from ..design.model import Design
 from ..models import mass
-from ..numeric import Array
 from .allow import MaterialValues
 from .bonds import fitting_hole
 from .geometry import Geometry, end_at

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..errors import ActuatorError, Diagnostic
+from ..base.errors import ActuatorError, Diagnostic
 
 
 def finite_element_library() -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from ..errors import ActuatorError, Diagnostic
+from ..base.errors import ActuatorError, Diagnostic
 from .equilibrium import ElementProblem, ElementState, NotConverged, raise_pressure
 from .material import MooneyRivlin
 from .result import Contact, SealSolution

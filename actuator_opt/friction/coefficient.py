@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ..base.numeric import Array
 from ..models import friction
-from ..numeric import Array
 from ..seals.contact import SealContact
 from ..seals.seal_type import SealSizes
 from .law import FrictionLaw

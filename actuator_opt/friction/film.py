@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ..base.numeric import real, where
 from ..models import friction
-from ..numeric import real, where
 from ..seals.contact import SealContact
 from ..seals.seal_type import SealSizes
 from . import coefficient

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+from ..base.numeric import Array, real, where
 from ..models import friction
-from ..numeric import Array, real, where
 from ..seals.contact import SealContact
 from ..seals.seal_type import SealSizes
 

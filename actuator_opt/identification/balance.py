@@ -8,9 +8,9 @@ from itertools import product
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
-from ..evaluation.study.bench import Bench
-from ..numeric import Array
+from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array
+from ..studies.bench import Bench
 from .conditioning import Motion, Piece
 
 RESTING, CREEP = 3.0, 2e-5

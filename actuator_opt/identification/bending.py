@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..least_squares import WEAK, Parameter, quantile
+from ..base.fitting import WEAK, Parameter, quantile
 from ..models import bending_test
 from .record import Record
 from .specimen import Specimen

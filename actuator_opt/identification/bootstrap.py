@@ -26,9 +26,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
-from ..least_squares import CONFIDENCE, WEAK, Parameter, quantile
-from ..numeric import STEP as COMPLEX_STEP, Array
+from ..base.errors import Diagnostic, InputError
+from ..base.fitting import CONFIDENCE, WEAK, Parameter, quantile
+from ..base.numeric import STEP as COMPLEX_STEP, Array
 from .balance import Sliding
 from .conditioning import Motion
 from .lugre_problem import BENDS, LOGARITHMIC, STEP, SYMBOLS, TRAVELS, LuGreFit, sizes

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from ..base.errors import Diagnostic, InputError
+from ..base.fitting import Parameter, quantile, rated
+from ..base.numeric import Array
+from ..base.quantities import INPUTS
 from ..design.model import Design
 from ..design.variable import Measured
-from ..errors import Diagnostic, InputError
-from ..evaluation.study.bench import Bench
-from ..least_squares import Parameter, quantile, rated
-from ..numeric import Array
-from ..quantities import INPUTS
+from ..studies.bench import Bench
 from .calibration_doubts import extrapolated, of_curve, weak
 from .lugre_fit import LuGreFit
 from .points import Point

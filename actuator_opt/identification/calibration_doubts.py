@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from ..evaluation.study.bench import Bench
+from ..base.fitting import Parameter
+from ..base.numeric import Array
 from ..friction.coefficient import STRIBECK_EXPONENT
-from ..least_squares import Parameter
 from ..models import friction
-from ..numeric import Array
+from ..studies.bench import Bench
 from .points import Point
 from .stribeck_fit import StribeckFit
 

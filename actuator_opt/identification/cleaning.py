@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..numeric import Array
+from ..base.numeric import Array
 
 SPIKE, QUANTA, RANGE = 6.0, 3.0, 1e-3
 """A spike stands out of its neighbours' median by so many robust standard deviations, by so many

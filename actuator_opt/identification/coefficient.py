@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..evaluation.study.bench import Bench
-from ..least_squares import quantile
-from ..numeric import Array
+from ..base.fitting import quantile
+from ..base.numeric import Array
+from ..studies.bench import Bench
 from .balance import Sliding
 from .conditioning import Motion
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
-from ..numeric import Array
-from ..suggest import remedy as remedy_for, shown
-from ..units import UnitError
+from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array
+from ..base.suggest import remedy as remedy_for, shown
+from ..base.units import UnitError
 from .column_units import NONE, ColumnUnits
 from .csv_table import numbers, read_sheet
 from .record import CHANNELS, column_of, contradicted, converted, header_cells

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .. import units
+from ..base import units
+from ..base.errors import Diagnostic, InputError
+from ..base.files import read_bytes
+from ..base.suggest import shown
 from ..design.yaml_source import MAX_BYTES, decode, parse
-from ..errors import Diagnostic, InputError
-from ..store import read_bytes
-from ..suggest import shown
 
 SI = "SI"
 """Word that stands for the SI unit of every column: m, s, Pa, N, m/s, K."""

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import InputError
-from ..numeric import Array
+from ..base.errors import InputError
+from ..base.numeric import Array
 from .cleaning import ROBUST, Quality, clean, runs
 from .record import CHANNELS, Record
 

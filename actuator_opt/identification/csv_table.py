@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
-from ..numeric import Array
-from ..suggest import shown
+from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array
+from ..base.suggest import shown
 
 ABSENT = {"", "-", "--", "na", "n/a", "nan", "-nan", "null", "none", "#n/a", "inf", "-inf", "+inf"}
 """Cells that say that a sample is missing, in small letters."""

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..least_squares import WEAK, Parameter, quantile
-from ..numeric import Array
+from ..base.fitting import WEAK, Parameter, quantile
+from ..base.numeric import Array
 from .points import ALIKE, Point
 
 REACH = 1.5

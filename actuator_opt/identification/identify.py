@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..errors import InputError
-from ..evaluation.study.bench import Bench
-from ..fits import Fit, fit_double_exponential, fit_power_law
-from ..least_squares import quantile
+from ..base.errors import InputError
+from ..base.fitting import quantile
+from ..design.material_fits import Fit, fit_double_exponential, fit_power_law
+from ..studies.bench import Bench
 from .balance import Sliding, check_signs, slide, velocity_noise
 from .bootstrap import resampled
 from .coefficient import coefficient
@@ -17,16 +17,7 @@ from .conditioning import Motion, condition
 from .lag import CANNOT, lag_of, taken_off, undone, unparted
 from .lugre_fit import LuGreFit, fit_lugre, settling_distance
 from .lugre_problem import BENDS
-from .points import (
-    BLURRED,
-    LASTING,
-    SETTLED,
-    SETTLING,
-    Point,
-    independent,
-    settled,
-    steady_points,
-)
+from .points import BLURRED, LASTING, SETTLED, SETTLING, Point, independent, settled, steady_points
 from .record import Record
 from .result import Identification, Mean, Settings
 from .spectrum import spectrum

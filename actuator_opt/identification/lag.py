@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import isfinite
 
-from ..least_squares import Parameter
+from ..base.fitting import Parameter
 from .doubtful import opened
 from .lugre_problem import LuGreFit
 from .lugre_windows import LAG

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..least_squares import NORMAL
+from ..base.fitting import NORMAL
 from .balance import Sliding
 from .conditioning import Motion
 from .doubtful import PARTED, agreed, opened, widened

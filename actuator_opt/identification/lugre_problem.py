@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .. import least_squares
-from ..least_squares import Parameter, known, quantile
-from ..numeric import Array
+from ..base import fitting as least_squares
+from ..base.fitting import Parameter, known, quantile
+from ..base.numeric import Array
 from .doubtful import PARTED, agreed, hidden, opened, widened
 from .lugre_windows import LAG, Windows
 from .points import Point

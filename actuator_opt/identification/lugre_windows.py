@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.numeric import Array
 from ..models import friction
-from ..numeric import Array
 from .balance import Sliding
 from .conditioning import SLOWEST, Motion, low_pass, zero_phase
 from .pace import velocities

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..numeric import Array
+from ..base.numeric import Array
 
 SETTLED = 1e-6
 """Share of its cost that a step must win to go on (a choice: with 100 residuals what is left is a

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..numeric import Array
+from ..base.numeric import Array
 from .conditioning import Motion, Piece, low_pass, zero_phase
 
 CUTOFFS = (1 / 3, 1 / 8, 1 / 20)

@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from ..numeric import Array
+from ..base.numeric import Array
 from .balance import Sliding
 from .conditioning import Motion
 from .pace import velocities

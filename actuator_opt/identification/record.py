@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import units
-from ..errors import Diagnostic, InputError
+from ..base import units
+from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array
+from ..base.suggest import remedy as remedy_for, shown
 from ..models.fluid import ATMOSPHERIC_PRESSURE
-from ..numeric import Array
-from ..suggest import remedy as remedy_for, shown
 from .column_units import NONE, ColumnUnits
 from .csv_table import Sheet, numbers, read_sheet
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ..evaluation.study.bench import Bench
-from ..fits import Fit
-from ..least_squares import Parameter
-from ..numeric import Array
+from ..base.fitting import Parameter
+from ..base.numeric import Array
+from ..design.material_fits import Fit
+from ..studies.bench import Bench
 from ..version import VERSION
 from .balance import Sliding
 from .coefficient import Coefficient

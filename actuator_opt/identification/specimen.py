@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError
 from ..evaluation import PreparedDesign, compute
 from ..models import column, rod
 

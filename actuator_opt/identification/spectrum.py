@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..numeric import Array
+from ..base.numeric import Array
 from .conditioning import Motion
 from .record import Record
 

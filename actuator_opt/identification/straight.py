@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..least_squares import quantile
-from ..numeric import Array
+from ..base.fitting import quantile
+from ..base.numeric import Array
 from .cleaning import ROBUST
 from .record import Record
 

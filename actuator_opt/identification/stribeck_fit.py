@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .. import least_squares
-from ..least_squares import Parameter, known
+from ..base import fitting as least_squares
+from ..base.fitting import Parameter, known
+from ..base.numeric import STEP, Array
 from ..models import friction
-from ..numeric import STEP, Array
 from .doubtful import PARTED, hidden, misled, opened, spread, unequal, ways, widened
 from .points import Point
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..evaluation.study.bench import Bench
+from ..base.numeric import Array
 from ..models import friction, lugre
-from ..numeric import Array
+from ..studies.bench import Bench
 from .record import Record
 
 

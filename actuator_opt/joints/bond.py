@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..numeric import Array
+from ..base.numeric import Array
 from . import skirt
 from .joint import (
     End,

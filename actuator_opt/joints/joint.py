@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
-from ..errors import Fault
-from ..numeric import Array
-from ..quantities import Quantity
+from ..base.errors import Fault
+from ..base.numeric import Array
+from ..base.quantities import Quantity
 
 LEAST_METAL = 1e-3
 """Least wall beside or under a groove or thread, least rod wall, bore of a laminated rod and room

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..kinds import Kinds, kinds_in
+from ..base.kinds import Kinds, kinds_in
 from .joint import Joint, check
 
 JOINTS: Kinds[Joint] = kinds_in(

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from functools import partial
 from math import pi
 
+from ..base.numeric import Array, absolute
 from ..models import lap_joint
 from ..models.strength_modes import load_multiplier
-from ..numeric import Array, absolute
 from .joint import Materials, Thermal
 
 

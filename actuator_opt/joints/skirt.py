@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import pi
 
+from ..base.numeric import Array
 from ..models import mass
-from ..numeric import Array
 from .joint import Drawn, End, Fit, Loaded, Materials, Span
 
 

@@ -14,11 +14,11 @@ from math import pi, sqrt
 
 import numpy as np
 
-from ..errors import Fault
+from ..base.errors import Fault
+from ..base.numeric import Array, minimum, real, where
+from ..base.quantities import INPUTS, Quantity
 from ..models import barrel, mass, thread, yielding
 from ..models.rod import section_area
-from ..numeric import Array, minimum, real, where
-from ..quantities import INPUTS, Quantity
 from . import skirt
 from .joint import (
     LEAST_METAL,

@@ -7,9 +7,9 @@ from math import pi
 
 import numpy as np
 
+from ..base.numeric import Array
+from ..base.quantities import Quantity
 from ..models import endurance, mass, retention
-from ..numeric import Array
-from ..quantities import Quantity
 from .joint import (
     NOT_BONDED,
     Clamp,

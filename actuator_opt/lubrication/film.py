@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.numeric import Array, real
 from ..models.flow_factors import (
     pressure_stress_factor,
     shear_stress_correction,
     shear_stress_factor,
 )
 from ..models.rough_surface import film_ratio_under_contact
-from ..numeric import Array, real
 from .inputs import Contact, fault
 from .newton import Bed, FilmState, Outcome, contact_pressure, follow, newton, weights
 from .reynolds import Flow, Vector, flux

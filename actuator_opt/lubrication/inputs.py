@@ -10,9 +10,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from ..base.numeric import Array
 from ..models.oil_laws import VISCOSITY_LAWS
 from ..models.rough_surface import asperity_stiffness
-from ..numeric import Array
 
 FLAT = 0.43
 """F_3/2 at film ratio 0, where the mean planes of both surfaces meet."""

@@ -22,8 +22,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..base.numeric import Array
 from ..models.rough_surface import asperity_integral
-from ..numeric import Array
 from .reynolds import Flow, Vector, banded, faces, flux
 
 TOLERANCE = 1e-9

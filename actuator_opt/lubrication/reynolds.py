@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
+from ..base.numeric import STEP, Array, real
 from ..models.flow_factors import pressure_flow_factor, shear_flow_factor
 from ..models.rough_surface import mean_gap_ratio
-from ..numeric import STEP, Array, real
 from .inputs import Lubricant
 
 Vector = Any

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..numeric import STEP
+from ..base.numeric import STEP
 from .film import Film, outputs, scaled
 from .inputs import Contact
 from .newton import FilmState, Linear, Residual, residual

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal, get_args
 
-from ..quantities import INFINITY, Quantity, Sense
-from ..units import BASE, unit
+from ..base.quantities import INFINITY, Quantity, Sense
+from ..base.units import BASE, unit
 
 Feed = Literal["wall", "oil", "own"]
 """Whose validity warnings a metric inherits: those of the barrel's wall model (bore growth), those

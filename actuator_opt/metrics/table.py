@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from math import pi
 from types import MappingProxyType
 
+from ..base.quantities import Quantity
 from ..joints.joint import LEAST_METAL, judged_on, models_at
 from ..joints.kinds import JOINTS
 from ..models.thread import LEAST_OVERLAP
-from ..quantities import Quantity
 from .metric import CRITERION, CheckLine, Least, MetricRow, fed_by, table
 
 _LEAST_WALL = Least(LEAST_METAL, "choice: 1 mm least wall")

@@ -7,8 +7,8 @@ its neck before this capacitance.
 
 from __future__ import annotations
 
-from ..geometry import geometry
-from ..numeric import Array, maximum, minimum, real, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, maximum, minimum, real, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 

@@ -10,8 +10,8 @@ from math import pi
 
 import numpy as np
 
-from ..geometry import geometry
-from ..numeric import Array, namespace, positive, real, sqrt
+from ..base.geometry import geometry
+from ..base.numeric import Array, namespace, positive, real, sqrt
 
 
 @geometry

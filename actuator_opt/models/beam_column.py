@@ -7,8 +7,8 @@ overhang at the head. Critical loads come from `stepped`.
 
 from __future__ import annotations
 
-from ..geometry import geometry
-from ..numeric import Array, positive, real, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, positive, real, where
 
 
 @geometry

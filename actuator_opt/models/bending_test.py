@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..geometry import geometry
-from ..numeric import Array, positive, sqrt
+from ..base.geometry import geometry
+from ..base.numeric import Array, positive, sqrt
 
 
 @geometry

@@ -17,8 +17,8 @@ from functools import reduce
 from math import inf
 from typing import Any, Protocol
 
-from ..geometry import geometry
-from ..numeric import Array, absolute, maximum, real, together, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, absolute, maximum, real, together, where
 from .strength_modes import PlyStrength, Stress, load_multiplier
 from .yielding import yield_utilisation
 

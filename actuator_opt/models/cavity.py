@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..numeric import Array, expm1_quotient, namespace, real, where
+from ..base.numeric import Array, expm1_quotient, namespace, real, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 

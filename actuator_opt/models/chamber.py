@@ -9,14 +9,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import (
-    Array,
-    log1p_quotient,
-    namespace,
-    real,
-    where,
-)
+from ..base.geometry import geometry
+from ..base.numeric import Array, log1p_quotient, namespace, real, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from math import pi
 
-from ..geometry import geometry
-from ..numeric import Array, namespace, sqrt
+from ..base.geometry import geometry
+from ..base.numeric import Array, namespace, sqrt
 
 
 @geometry

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import Array, minimum, real, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, minimum, real, where
 
 
 def energised_share(*, poissons_ratio: Array) -> Array:

@@ -9,8 +9,8 @@ contact, and the profile must not be used.
 
 from __future__ import annotations
 
-from ..geometry import geometry
-from ..numeric import Array, positive, real, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, positive, real, where
 
 LAND_POWER = 8
 """Even power of the excess, 1 - u^8 (*choice*: flat within 5 % over the middle 69 %)."""

@@ -25,17 +25,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..kinds import kinds
-from ..numeric import Array
+from ..base.kinds import kinds
+from ..base.numeric import Array
 from .strength import tsai_wu_modes
 from .strength_interfibre import hashin_modes, puck_modes
-from .strength_modes import (
-    PlyRatios,
-    PlyStrength,
-    Stress,
-    max_strain_modes,
-    max_stress_modes,
-)
+from .strength_modes import PlyRatios, PlyStrength, Stress, max_strain_modes, max_stress_modes
 
 
 class Modes(Protocol):

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import Array, namespace, real, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, namespace, real, where
 
 
 @geometry

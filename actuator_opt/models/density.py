@@ -5,7 +5,7 @@ Pressures are gauge, temperatures in kelvin. The Tait equation lives in `tait`.
 
 from __future__ import annotations
 
-from ..numeric import Array, namespace, real, where
+from ..base.numeric import Array, namespace, real, where
 
 
 def density_compressed(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..numeric import Array, namespace, real, where
+from ..base.numeric import Array, namespace, real, where
 
 
 def natural_frequency(*, stiffness: Array, mass: Array) -> Array:

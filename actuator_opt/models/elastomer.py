@@ -10,8 +10,8 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..kinds import kinds
-from ..numeric import Array, maximum, minimum, namespace, real, where
+from ..base.kinds import kinds
+from ..base.numeric import Array, maximum, minimum, namespace, real, where
 
 WLF_SLOPE, WLF_SPAN = 17.44, 51.6
 """Universal constants of the time-temperature shift above the glass transition [Ferry1980]: decades

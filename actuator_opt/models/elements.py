@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import Array, sqrt
+from ..base.geometry import geometry
+from ..base.numeric import Array, sqrt
 
 
 @geometry

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import Array, clip, maximum, real, sqrt, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, clip, maximum, real, sqrt, where
 from .endurance import end_stop_energy
 from .orifice import TURBULENT_COEFFICIENT, orifice_pressure_drop
 

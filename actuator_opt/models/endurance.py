@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..geometry import geometry
-from ..numeric import Array, namespace, real, sqrt, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, namespace, real, sqrt, where
 
 _LOW_CYCLES = 1e3
 _LOW_SHARE = 0.9

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TypeAlias
 
-from ..numeric import Array, maximum, minimum, namespace, real, where
+from ..base.numeric import Array, maximum, minimum, namespace, real, where
 
 Points: TypeAlias = Sequence[tuple[Array, Array]]
 """Points of pressure [Pa] and gap [m], pressure rising."""

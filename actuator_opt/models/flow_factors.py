@@ -8,7 +8,7 @@ gap and the shear of the rod more.
 
 from __future__ import annotations
 
-from ..numeric import Array, maximum, namespace, real, where
+from ..base.numeric import Array, maximum, namespace, real, where
 
 
 def pressure_flow_factor(*, film_ratio: Array) -> Array:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..numeric import Array, maximum, namespace, real, where
+from ..base.numeric import Array, maximum, namespace, real, where
 
 ATMOSPHERIC_PRESSURE = 101325.0
 """Standard atmosphere, Pa absolute."""

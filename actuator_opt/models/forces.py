@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..geometry import geometry
-from ..numeric import Array, namespace, real, sqrt, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, namespace, real, sqrt, where
 
 
 @geometry

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..geometry import geometry
-from ..numeric import Array, absolute, maximum, namespace, real, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, absolute, maximum, namespace, real, where
 
 
 @geometry

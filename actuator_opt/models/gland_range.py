@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import Array, real, sqrt, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, real, sqrt, where
 
 
 def volume_ratio(

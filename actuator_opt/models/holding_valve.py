@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..numeric import Array, maximum, minimum, real, where
+from ..base.numeric import Array, maximum, minimum, real, where
 from .valve import edge_conductance, edge_flow
 
 LEAST = 1e-12

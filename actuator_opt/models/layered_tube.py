@@ -12,13 +12,9 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
 
-from ..numeric import Array, lifted, namespace, together
+from ..base.numeric import Array, lifted, namespace, together
 from .solid_ply import solid_ply_stresses
-from .tube_elements import (
-    LayeredTube,
-    TubeLayer,
-    layered_tube,
-)
+from .tube_elements import LayeredTube, TubeLayer, layered_tube
 
 __all__ = [
     "LayeredTube",

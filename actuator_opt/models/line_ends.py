@@ -9,8 +9,8 @@ import math
 from dataclasses import dataclass
 from math import pi
 
-from ..numeric import Array, namespace, real, sqrt, where
-from ..polynomial import Polynomial, add, at_frequency, multiply, scale
+from ..base.numeric import Array, namespace, real, sqrt, where
+from ..base.polynomial import Polynomial, add, at_frequency, multiply, scale
 
 
 @dataclass(frozen=True, slots=True)

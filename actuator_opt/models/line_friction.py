@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..geometry import geometry
-from ..numeric import Array, namespace, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, namespace, where
 
 FRICTION = ("lossless", "steady", "distributed")
 _LEVELS = 28

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from math import pi
 from typing import NamedTuple
 
-from ..numeric import Array
-from ..polynomial import Parts, Polynomial, add, at_frequency, multiply, scale
+from ..base.numeric import Array
+from ..base.polynomial import Parts, Polynomial, add, at_frequency, multiply, scale
 from .line_ends import CLOSED, LineEnd
 
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..geometry import geometry
-from ..numeric import STEP, Array, absolute, namespace, real, where
+from ..base.geometry import geometry
+from ..base.numeric import STEP, Array, absolute, namespace, real, where
 from .layered_tube import TubeLayer, layered_tube, tube_state
 from .strength_modes import Stress
 from .yielding import mises_product

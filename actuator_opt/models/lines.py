@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import Array, absolute, clip, maximum, real, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, absolute, clip, maximum, real, where
 
 LAMINAR_REYNOLDS = 2300.0
 """Below: pure Hagen-Poiseuille."""

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import Array, maximum, minimum, namespace, real, sqrt, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, maximum, minimum, namespace, real, sqrt, where
 from .contact_profile import lip_mean
 
 LYING_STEPS = 7

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..numeric import Array, absolute, angle, real, sqrt, where
-from ..polynomial import (
+from ..base.numeric import Array, absolute, angle, real, sqrt, where
+from ..base.polynomial import (
     Polynomial,
     add,
     at_frequency,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..numeric import Array, absolute, namespace, real, where
+from ..base.numeric import Array, absolute, namespace, real, where
 
 
 class LuGreStep(NamedTuple):

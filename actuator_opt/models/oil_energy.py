@@ -5,7 +5,7 @@ Pressures are gauge: the work against the atmosphere is not counted.
 
 from __future__ import annotations
 
-from ..numeric import Array, expm1_quotient, log1p_quotient, namespace, real, where
+from ..base.numeric import Array, expm1_quotient, log1p_quotient, namespace, real, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any
 
-from ..kinds import kinds
-from ..numeric import Array
+from ..base.kinds import kinds
+from ..base.numeric import Array
 from . import density, fluid, tait
 
 Properties = Callable[[str], Any]

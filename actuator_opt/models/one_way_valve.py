@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import Array, absolute, clip, maximum, minimum, namespace, real, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, absolute, clip, maximum, minimum, namespace, real, where
 from .orifice import orifice_conductance, orifice_flow, orifice_pressure_drop
 
 NEEDLE_AREA = 0.22e-4

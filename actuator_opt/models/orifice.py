@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import Array, absolute, namespace, real, sqrt, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, absolute, namespace, real, sqrt, where
 
 TURBULENT_COEFFICIENT = 0.611
 """C of a sharp edge, pi/(pi + 2) [AaltoThesis]."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-from ..numeric import Array, namespace
+from ..base.numeric import Array, namespace
 
 Stiffness: TypeAlias = tuple[Array, Array, Array, Array]
 """Reduced stiffnesses Q11, Q12, Q22, Q66 of a ply [Pa]."""

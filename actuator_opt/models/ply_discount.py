@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from math import pi
 from typing import Any
 
-from ..geometry import geometry
-from ..numeric import Array, namespace, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, namespace, where
 from .burst_ladder import (
     BurstLadder,
     WallLayer,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from math import pi
 
-from ..numeric import Array, maximum, minimum
+from ..base.numeric import Array, maximum, minimum
 
 
 def reducing_valve_acceleration(

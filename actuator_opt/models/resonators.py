@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import Array
+from ..base.geometry import geometry
+from ..base.numeric import Array
 from .transmission_line import input_impedance, line_matrix
 
 

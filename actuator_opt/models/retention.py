@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from math import pi
 
-from ..geometry import geometry
-from ..numeric import Array, absolute
+from ..base.geometry import geometry
+from ..base.numeric import Array, absolute
 from .rod import thread_stress
 
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from math import pi
 from typing import Any
 
-from ..geometry import geometry
-from ..numeric import Array
+from ..base.geometry import geometry
+from ..base.numeric import Array
 
 
 @geometry

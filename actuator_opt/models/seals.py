@@ -23,9 +23,9 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..geometry import geometry
-from ..kinds import kinds
-from ..numeric import Array, clip, namespace, real, sqrt, where
+from ..base.geometry import geometry
+from ..base.kinds import kinds
+from ..base.numeric import Array, clip, namespace, real, sqrt, where
 from .contact_profile import o_ring_mean
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from math import pi
 
-from ..geometry import geometry
-from ..numeric import Array, minimum, namespace, sqrt
+from ..base.geometry import geometry
+from ..base.numeric import Array, minimum, namespace, sqrt
 from .column import local_shell_stress
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-from ..numeric import Array, namespace
+from ..base.numeric import Array, namespace
 from .ply import rotated
 
 Solid: TypeAlias = tuple[Array, Array, Array, Array, Array, Array, Array]

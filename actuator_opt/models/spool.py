@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import pi
 
-from ..geometry import geometry
-from ..numeric import Array, maximum, positive, sqrt
+from ..base.geometry import geometry
+from ..base.numeric import Array, maximum, positive, sqrt
 from .orifice import TURBULENT_COEFFICIENT
 
 

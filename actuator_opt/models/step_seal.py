@@ -10,8 +10,8 @@ land, `contact_land.land_peak`.
 
 from __future__ import annotations
 
-from ..geometry import geometry
-from ..numeric import Array, maximum, real, sqrt, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, maximum, real, sqrt, where
 
 
 @geometry

@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..geometry import geometry
-from ..numeric import Array, clip, maximum, real, sqrt, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, clip, maximum, real, sqrt, where
 from .fluid import ATMOSPHERIC_PRESSURE
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
-from ..geometry import geometry
-from ..numeric import Array
+from ..base.geometry import geometry
+from ..base.numeric import Array
 from .barrel import bore_growth_as_published
 from .lines import line_compliance
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import inf
 
-from ..numeric import Array, namespace, real, where
+from ..base.numeric import Array, namespace, real, where
 from .strength_modes import PlyRatios, PlyStrength, Stress
 
 

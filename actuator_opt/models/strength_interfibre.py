@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from math import inf
 
-from ..numeric import Array, absolute, namespace, real, where
+from ..base.numeric import Array, absolute, namespace, real, where
 from .strength_modes import PlyRatios, PlyStrength, Stress, one_stress_modes
 
 

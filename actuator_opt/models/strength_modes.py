@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import TypeAlias
 
-from ..numeric import Array, real, where
+from ..base.numeric import Array, real, where
 
 Stress: TypeAlias = tuple[Array, Array, Array, Array]
 """Ply stress sigma_1, sigma_2, sigma_3, tau_12 [Pa]."""

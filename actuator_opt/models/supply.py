@@ -6,7 +6,7 @@ the loop: (V_S/K) dp_S/dt = delivery - relief flow - demand. Accumulators are in
 
 from __future__ import annotations
 
-from ..numeric import Array, clip, maximum, positive, sqrt
+from ..base.numeric import Array, clip, maximum, positive, sqrt
 
 
 def relief_flow(

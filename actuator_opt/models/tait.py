@@ -6,7 +6,7 @@ at zero pressure, B = 1 + K0'.
 
 from __future__ import annotations
 
-from ..numeric import Array, namespace
+from ..base.numeric import Array, namespace
 
 TAIT_PRESSURE, TAIT_TEMPERATURES = 350e5, (273.15, 423.15)
 """Gauge pressure (Pa) and temperatures (K) for which the constants of the generic oil stand."""

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from math import pi, sqrt, tan
 
-from ..geometry import geometry
-from ..numeric import Array, real, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, real, where
 from .mass import pitch_diameter
 
 HEIGHT = sqrt(3) / 2

@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from ..geometry import geometry
-from ..numeric import Array, namespace, where
+from ..base.geometry import geometry
+from ..base.numeric import Array, namespace, where
 from .line_friction import series_impedance
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..geometry import geometry
-from ..numeric import Array, namespace, sqrt
+from ..base.geometry import geometry
+from ..base.numeric import Array, namespace, sqrt
 
 
 @dataclass(frozen=True, slots=True)

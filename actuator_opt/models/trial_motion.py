@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from ..geometry import geometry
-from ..numeric import Array
+from ..base.geometry import geometry
+from ..base.numeric import Array
 
 Chamber: TypeAlias = Literal["a", "b"]
 

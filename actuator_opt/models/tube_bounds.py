@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import sqrt
 
-from ..geometry import geometry
-from ..numeric import Array, namespace
+from ..base.geometry import geometry
+from ..base.numeric import Array, namespace
 from .mass import layer_area
 
 

@@ -10,16 +10,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
-from ..geometry import geometry
-from ..numeric import Array, namespace, together, where
-from .burst_ladder import (
-    BurstLadder,
-    WallLayer,
-    batch_zero,
-    climb,
-    inverse_strengths,
-    metals_first,
-)
+from ..base.geometry import geometry
+from ..base.numeric import Array, namespace, together, where
+from .burst_ladder import BurstLadder, WallLayer, batch_zero, climb, inverse_strengths, metals_first
 from .layered_tube import closed, forcing
 from .solid_ply import Solid, solid_stiffness
 from .strength_modes import PlyStrength

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..numeric import Array, positive
+from ..base.numeric import Array, positive
 
 GAIN_MARGIN = 3.0
 """Ultimate gain over gain (a choice: room for the friction, oil and strokes that the linear loop

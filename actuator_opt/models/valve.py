@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..numeric import Array, maximum, minimum, positive, sqrt
+from ..base.numeric import Array, maximum, minimum, positive, sqrt
 
 SMOOTHING = 1e4
 """Pressure difference below which an edge is laminar (Pa): a choice, 0.1 bar."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..geometry import geometry
-from ..numeric import Array, sqrt
+from ..base.geometry import geometry
+from ..base.numeric import Array, sqrt
 
 
 @geometry

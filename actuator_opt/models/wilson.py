@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 
-from ..numeric import Array, absolute, namespace, positive
+from ..base.numeric import Array, absolute, namespace, positive
 
 SIGN_SPEED = 0.5
 """w_0 of tanh(w/w_0) for sgn w, rad/s (a choice: 5 rpm, where Coulomb friction is ill known)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..numeric import Array, namespace, real, where
+from ..base.numeric import Array, namespace, real, where
 from .strength_modes import Stress
 
 _LEAST = 1e-9

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array, real, where
+from ..base.quantities import Sense
 from ..evaluation import PreparedDesign, compute
 from ..evaluation.governing import extreme, worst_of
 from ..evaluation.limits import all_limits, margin
 from ..evaluation.rows import UNLIMITED, LimitRow, MetricArrays, rows_of
 from ..evaluation.values import Values as Numbers
-from ..numeric import Array, real, where
-from ..quantities import Sense
 from .problem import BoxProblem, ParametricProblem, Values
 
 Fault = Callable[[str, str, str], Diagnostic]

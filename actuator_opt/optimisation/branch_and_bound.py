@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..numeric import Array
+from ..base.numeric import Array
 from .descents import FEASIBLE
 from .evaluator import Evaluator, Point
 from .listed import ON, Assignment, Box, Listed, between, with_rows

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..progress import tell
+from ..base.progress import tell
 from .actuator import ActuatorProblem, Goal
 from .outcome import Solution
 from .result import Certificate, Optimisation

@@ -12,7 +12,7 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from ..errors import InputError
+from ..base.errors import InputError
 from .branch_and_bound import Found, Memory, at, search
 from .choices import ChoiceSearch, Settings, many_starts
 from .identical_problems import Evidence

@@ -14,11 +14,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..base.errors import Diagnostic, InputError
 from ..design import with_values
 from ..design.choice_list import combinations
 from ..design.material import Material
 from ..design.materials import load_library
-from ..errors import Diagnostic, InputError
 from ..evaluation import PreparedDesign, compute, prepare
 from ..evaluation.build import names_of_materials
 from ..evaluation.limits import all_limits

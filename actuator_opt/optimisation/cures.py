@@ -15,20 +15,20 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..base.errors import InputError
+from ..base.numeric import STEP, Array
+from ..base.progress import tell
+from ..base.quantities import INPUTS, Quantity
+from ..base.units import unit
 from ..design import quantity_of, standards, with_values
 from ..design.material import Material
 from ..design.materials import Library, load_library
 from ..design.model import Design
 from ..design.seals import BACK_UPS, Seal
 from ..design.variable import Variable
-from ..errors import InputError
 from ..evaluation import PreparedDesign, prepare
 from ..evaluation.build import names_of_materials
 from ..joints.kinds import JOINTS
-from ..numeric import STEP, Array
-from ..progress import tell
-from ..quantities import INPUTS, Quantity
-from ..units import unit
 from . import elastic, repairs
 from .actuator import ActuatorProblem, build
 from .evaluator import Evaluator

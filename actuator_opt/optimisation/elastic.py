@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..numeric import Array
+from ..base.numeric import Array
 from .evaluator import Evaluator, Point
 from .newton import polish
 from .nlopt_wrapper import run

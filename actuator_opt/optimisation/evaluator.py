@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..numeric import STEP
+from ..base.numeric import STEP
 from .problem import BoxProblem, Space, Vector
 
 CHUNK = 4096

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..progress import tell
+from ..base.progress import tell
 from . import elastic, kkt, repairs
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, Vector

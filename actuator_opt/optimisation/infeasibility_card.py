@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from ..base.quantities import Quantity
 from ..design import quantity_of
 from ..evaluation.rows import LimitRow
 from ..metrics import METRICS
-from ..quantities import Quantity
 from .actuator import ActuatorProblem
 from .cures import DIGITS, Cure, Cures, cures, outward
 from .infeasibility import Infeasibility as Explanation, explain

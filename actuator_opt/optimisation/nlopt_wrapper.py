@@ -17,7 +17,7 @@ from typing import Any
 import nlopt
 import numpy as np
 
-from ..errors import Diagnostic, UsageError
+from ..base.errors import Diagnostic, UsageError
 from .evaluator import Evaluator, LimitReached, Point
 from .problem import BoxProblem, Vector
 

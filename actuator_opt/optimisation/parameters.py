@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..numeric import STEP
+from ..base.numeric import STEP
 from .evaluator import Evaluator, Point
 from .problem import BoxProblem, ParametricProblem, Vector
 

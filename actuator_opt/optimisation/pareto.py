@@ -8,16 +8,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..bounds import FRONT
+from ..base.bounds import FRONT
+from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.numeric import Array
+from ..base.quantities import Quantity
+from ..base.suggest import remedy
 from ..design.model import Objective
-from ..errors import Diagnostic, InputError, UsageError
 from ..evaluation import PreparedDesign, compute, evaluate
 from ..evaluation.build import spec_hash
 from ..evaluation.governing import governing
 from ..evaluation.rows import MetricArrays
-from ..numeric import Array
-from ..quantities import Quantity
-from ..suggest import remedy
 from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
 from .descents import FEASIBLE
 from .front.ends import NoEnd

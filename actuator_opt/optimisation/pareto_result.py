@@ -7,9 +7,9 @@ from dataclasses import asdict, dataclass
 from statistics import median
 from typing import Any, Literal
 
+from ..base.quantities import Quantity
 from ..design import Design
 from ..evaluation import Evaluation
-from ..quantities import Quantity
 from .front.even import Gap
 from .result import Infeasibility
 

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .. import quantities
+from ..base import quantities
+from ..base.numeric import STEP
+from ..base.quantities import Quantity
+from ..base.units import unit
 from ..design import quantity_of
-from ..numeric import STEP
-from ..quantities import Quantity
-from ..units import unit
 from .actuator import ActuatorProblem
 from .outcome import Solution
 from .prices import prices

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..quantities import Quantity, short
+from ..base.quantities import Quantity, short
 from .sensitivity import CHANGE, Offer, Offers, Sensitivity
 
 PER_CENT = round(100 * CHANGE)

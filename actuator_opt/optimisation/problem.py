@@ -14,8 +14,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import InputError
-from ..numeric import Array
+from ..base.errors import InputError
+from ..base.numeric import Array
 
 Vector: TypeAlias = npt.NDArray[np.float64]
 

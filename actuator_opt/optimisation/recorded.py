@@ -16,14 +16,14 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 
 import numpy as np
 
+from ..base.errors import InputError
+from ..base.quantities import Sense
 from ..design import Design
 from ..design.build import build, to_tree
 from ..design.kinds import Fraction
-from ..errors import InputError
 from ..evaluation import Evaluation, evaluate, prepare
 from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.reserve import YieldEstimate
-from ..quantities import Sense
 from .pareto_result import ParetoFront
 from .result import Optimisation
 

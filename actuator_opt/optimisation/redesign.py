@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any, NamedTuple
 
+from ..base.errors import InputError
+from ..base.quantities import Quantity
 from ..design.build import with_values
-from ..errors import InputError
 from ..evaluation import Evaluation, PreparedDesign, evaluate, prepare
 from ..evaluation.result import Requirement
-from ..quantities import Quantity
 from .infeasibility_card import change_text
 from .result import Optimisation
 from .run import optimise

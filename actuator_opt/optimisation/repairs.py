@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..numeric import Array
-from ..progress import tell
+from ..base.numeric import Array
+from ..base.progress import tell
 from . import elastic, kkt
 from .evaluator import Evaluator
 from .problem import BoxProblem, ParametricProblem, Values, Vector

@@ -7,12 +7,12 @@ from dataclasses import asdict, dataclass, field, replace
 from math import isfinite
 from typing import Any, Literal, TypeAlias
 
+from ..base.quantities import INPUTS
+from ..base.tables import aligned
 from ..design import choice_list
 from ..design.model import Design
 from ..evaluation.result import Evaluation
 from ..metrics import of_metric
-from ..quantities import INPUTS
-from ..tables import aligned
 from . import price_words
 from .robustness import Robust
 from .sensitivity import Offers, Sensitivity, offers

@@ -14,14 +14,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..base.errors import Diagnostic, InputError
+from ..base.quantities import INPUTS
 from ..design import Design, quantity_of, with_values
 from ..design.material import Material
 from ..design.model import Ply
 from ..design.size_series import WHOLE, along
 from ..design.sizes import groups
-from ..errors import Diagnostic, InputError
 from ..evaluation import Evaluation, evaluate, prepare
-from ..quantities import INPUTS
 from .actuator import ActuatorProblem, Fault
 from .branch_and_bound import Found, search
 from .listed import SAME, Assignment, Listed

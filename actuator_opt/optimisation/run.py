@@ -15,15 +15,7 @@ from .choices import MOST_SOLVED, ChoiceSearch, Settings, search
 from .infeasibility_card import explained
 from .outcome import Outcome, Solution
 from .price_table import sensitivities
-from .result import (
-    Certificate,
-    Choices,
-    Infeasibility,
-    Kkt,
-    Optimisation,
-    Rounding,
-    VariableResult,
-)
+from .result import Certificate, Choices, Infeasibility, Kkt, Optimisation, Rounding, VariableResult
 from .rounding import Wanted, design_at, rounded, sizes_of
 from .sensitivity import Sensitivity
 from .solver import solve

@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
+from ..base.numeric import Array
+from ..base.progress import tell
 from ..design import quantity_of
-from ..numeric import Array
-from ..progress import tell
 from . import elastic, repairs
 from .actuator import ActuatorProblem
 from .branch_and_bound import Found

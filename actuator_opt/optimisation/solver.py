@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..progress import tell
+from ..base.progress import tell
 from . import kkt, nlopt_wrapper
 from .descents import FEASIBLE, LOCAL_EVALUATIONS, RESIDUAL, Descents, SearchResult
 from .evaluator import Evaluator, LimitReached, Point

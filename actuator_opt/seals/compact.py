@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ..base.numeric import Array
 from ..models import compact_seal, gland
-from ..numeric import Array
 from .contact import SealContact, landed
 from .outline import Shape, box
 from .seal_type import (

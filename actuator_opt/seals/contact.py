@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ..base.numeric import Array, maximum
 from ..models import contact_land
-from ..numeric import Array, maximum
 
 WITHIN, TOUCHING = 1e-6, 1.0
 """Least excess of a static profile, as a part of the sealed pressure and in Pa: with less the

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..kinds import Kinds, kinds_in
+from ..base.kinds import Kinds, kinds_in
 from .seal_type import SealType
 from .sizes import SHARED
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.numeric import Array, minimum, real, where
 from ..models import contact_profile, elastomer, gland, seals
-from ..numeric import Array, minimum, real, where
 from .contact import SealContact, shaped
 from .outline import Shape, round_ring
 from .seal_type import Elements, Piece, Room, SealGroove, SealSizes, SealType, no_faults

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from ..numeric import Array
+from ..base.numeric import Array
 from .contact import SealContact
 from .outline import Shape
 from .sizes import SizeField

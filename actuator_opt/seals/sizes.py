@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from ..numeric import Array
+from ..base.numeric import Array
 
 
 class Size(NamedTuple):

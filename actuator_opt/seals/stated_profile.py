@@ -7,8 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
+from ..base.numeric import Array, maximum, minimum, real, where
 from ..models import contact_profile
-from ..numeric import Array, maximum, minimum, real, where
 from .contact import SealContact
 
 

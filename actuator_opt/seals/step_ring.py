@@ -6,22 +6,13 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from ..base.numeric import Array
+from ..base.quantities import INPUTS
 from ..models import gland, seals, step_seal
-from ..numeric import Array
-from ..quantities import INPUTS
 from .contact import SealContact, landed
 from .o_ring import law_inputs, law_warnings, round_piece
 from .outline import Shape, round_ring
-from .seal_type import (
-    AXIAL_PLAY,
-    Elements,
-    Piece,
-    Room,
-    SealGroove,
-    SealSizes,
-    SealType,
-    SizeFault,
-)
+from .seal_type import AXIAL_PLAY, Elements, Piece, Room, SealGroove, SealSizes, SealType, SizeFault
 from .sizes import LAND, RELIEF, TAPER, THICKNESS, WIDTH, SizeField
 
 if TYPE_CHECKING:

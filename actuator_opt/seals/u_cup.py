@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from ..base.numeric import Array
+from ..base.quantities import INPUTS
 from ..models import contact_profile, gland, lip_seal
-from ..numeric import Array
-from ..quantities import INPUTS
 from .contact import SealContact, shaped
 from .outline import Shape
 from .seal_type import (

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from math import pi
 
+from ..base.errors import Diagnostic, InputError
+from ..base.quantities import INPUTS, SCENARIOS
+from ..base.symbolic import Expression, Symbol
 from ..design.kinds import position_at
 from ..design.scenario.model import HeldPorts, Scenario
-from ..errors import Diagnostic, InputError
-from ..evaluation.study.plant import Plant
 from ..models import linkage
 from ..models.stiffness import holding_pressures
 from ..models.tuning import ControllerGains
-from ..quantities import INPUTS, SCENARIOS
-from ..symbolic import Expression, Symbol
+from ..studies.plant import Plant
 from .loops import LOOPS, loop_of
 from .parts import chambers, friction, load_cylinder, motion, motor, ports, signals, valve
 from .parts.circuit import Circuit, Start

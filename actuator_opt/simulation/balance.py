@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..numeric import Array
-from ..symbolic import vectorised
+from ..base.numeric import Array
+from ..base.symbolic import vectorised
 from .integrate import Trajectory
 from .parts.circuit import Circuit
 from .result import Balance, Flow

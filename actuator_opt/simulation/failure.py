@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..errors import Diagnostic, Unsolvable
-from ..evaluation.study.plant import Plant
-from ..numeric import Array
+from ..base.errors import Diagnostic, Unsolvable
+from ..base.numeric import Array
+from ..studies.plant import Plant
 from .methods import Stuck
 from .system import Compiled
 

@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
-from ..numeric import Array
-from ..symbolic import Symbol
-from ..symbolic.order import needed
+from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array
+from ..base.symbolic import Symbol
+from ..base.symbolic.order import needed
 from .methods import CHUNK, Advance
 from .system import Compiled
 

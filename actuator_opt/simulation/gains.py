@@ -8,12 +8,12 @@ from math import copysign, inf, isfinite, radians
 
 import numpy as np
 
+from ..base.errors import Diagnostic, InputError
+from ..base.quantities import INPUTS
 from ..design.scenario.model import Control, Scenario
 from ..design.scenario.signals import SignalSegment
-from ..errors import Diagnostic, InputError
-from ..evaluation.study.plant import Plant
 from ..models.tuning import ControllerGains, margin_rules, ziegler_nichols
-from ..quantities import INPUTS
+from ..studies.plant import Plant
 from .assemble import assemble
 from .linearise import Law, Linear, Margins, OpenLoop, Ultimate, least, margins
 from .loops import LOOPS, Loop, loop_of

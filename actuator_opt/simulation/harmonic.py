@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
-from ..numeric import Array
+from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array
 from .sampled import sampled
 
 FEWEST_SAMPLES = 5

@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 
-from ..numeric import Array
-from ..progress import tell
+from ..base.numeric import Array
+from ..base.progress import tell
 from .methods import CHUNK, MOST, RELATIVE, Advance, Method, Stuck, lsoda, radau
 from .system import Compiled
 

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..numeric import Array
-from ..symbolic import function, jacobian
+from ..base.numeric import Array
+from ..base.symbolic import function, jacobian
 from .parts.circuit import Circuit
 
 TOUCH = 1e-9

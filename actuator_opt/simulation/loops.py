@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
+from ..base.quantities import INPUTS, SCENARIOS, Quantity
 from ..design.scenario.model import Control
-from ..quantities import INPUTS, SCENARIOS, Quantity
 
 Loop = Literal["position", "speed", "shaft_speed", "shaft_angle"]
 

@@ -12,8 +12,8 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
-from ..errors import Diagnostic, Unsolvable
-from ..numeric import Array
+from ..base.errors import Diagnostic, Unsolvable
+from ..base.numeric import Array
 from .system import Compiled
 
 Method = Literal["lsoda", "radau", "cvodes"]

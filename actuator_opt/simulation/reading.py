@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ..base.errors import InputError
+from ..base.numeric import Array
+from ..base.quantities import RESULTS
 from ..design.scenario.model import Scenario
 from ..design.scenario.shapes import SHAPES
 from ..design.scenario.signals import SignalSegment
-from ..errors import InputError
-from ..evaluation.study.plant import Plant
 from ..models.fluid import ATMOSPHERIC_PRESSURE
-from ..numeric import Array
-from ..quantities import RESULTS
+from ..studies.plant import Plant
 from .harmonic import dynamic_stiffness_of_record, windows
 from .integrate import Event
 from .loops import Loop, loop_of

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from ..base.numeric import Array
+from ..base.quantities import RESULTS, Quantity
 from ..design.scenario.model import Scenario
 from ..evaluation.reserve import without_reserve
 from ..evaluation.result import State
-from ..evaluation.study.plant import Plant
-from ..numeric import Array
-from ..quantities import RESULTS, Quantity
+from ..studies.plant import Plant
 from .gains import Tuned
 from .integrate import Event
 from .loops import Loop

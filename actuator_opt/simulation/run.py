@@ -11,14 +11,14 @@ from typing import Final
 
 import numpy as np
 
+from ..base.numeric import Array
+from ..base.quantities import INPUTS
 from ..design.scenario.model import SAMPLES, Scenario
 from ..design.scenario.recorded import recorded_notes
 from ..evaluation.build import spec_hash
 from ..evaluation.kernel import PreparedDesign
-from ..evaluation.study.plant import Plant, plant
 from ..models.supply import relief_flow
-from ..numeric import Array
-from ..quantities import INPUTS
+from ..studies.plant import Plant, plant
 from . import reading
 from .assemble import assemble
 from .balance import balance

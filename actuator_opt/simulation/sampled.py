@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
-from ..numeric import Array
+from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array
 
 LAST = 0.1
 """Share of a record, at its end, that counts as steady (a choice)."""

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import Diagnostic, InputError
-from ..numeric import Array
+from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array
 from .sampled import LAST, last_mean, sampled
 
 BAND = 0.02

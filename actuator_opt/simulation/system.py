@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from ..base.numeric import Array, clip, where
+from ..base.quantities import Quantity
+from ..base.symbolic import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised
 from ..models.fluid import ATMOSPHERIC_PRESSURE
-from ..numeric import Array, clip, where
-from ..quantities import Quantity
-from ..symbolic import Expression, Graph, Namespace, Symbol, function, jacobian, vectorised
 
 LOOSE = 1e-4
 """Tolerance of an integral over its scale (a choice): it follows, the states lead."""

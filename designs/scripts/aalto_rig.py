@@ -24,23 +24,23 @@ import numpy as np
 import yaml
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.aalto_dynamic import Bench, End
-from actuator_opt.evaluation.study.plant import Plant
+from actuator_opt.api import simulate
+from actuator_opt.base.tables import aligned
 from actuator_opt.models.fluid import ATMOSPHERIC_PRESSURE
 from actuator_opt.models.one_way_valve import one_way_flow
-from actuator_opt.reporting.blocks import column, figure, notes, table
-from actuator_opt.reporting.figures import Axes
-from actuator_opt.reporting.ink import BLUE, GREY, RED, WHITE, Ink, text_width
-from actuator_opt.reporting.simulation_axes import names as named_above
-from actuator_opt.reporting.simulation_comparison import comparison
-from actuator_opt.reporting.simulation_comparison_figures import comparison_figure
-from actuator_opt.reporting.study import rounded, study_sheets, write_study
-from actuator_opt.reporting.text import NARROW, fixed, number
+from actuator_opt.pages.simulation_axes import names as named_above
+from actuator_opt.pages.simulation_comparison import comparison
+from actuator_opt.pages.simulation_comparison_figures import comparison_figure
+from actuator_opt.rendering.axes import Axes
+from actuator_opt.rendering.blocks import column, figure, notes, table
+from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink, text_width
+from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.text import NARROW, fixed, number
+from actuator_opt.replicas.aalto_dynamic import Bench, End
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.harmonic import harmonic_fit
 from actuator_opt.simulation.result import HarmonicLoad
-from actuator_opt.tables import aligned
-from actuator_opt.verbs import simulate
+from actuator_opt.studies.plant import Plant
 
 Data = dict[str, Any]
 Sets = dict[str, str | float]

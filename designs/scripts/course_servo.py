@@ -21,16 +21,16 @@ from typing import Any
 import numpy as np
 
 import actuator_opt as ao
+from actuator_opt.api import read_scenario, simulate
+from actuator_opt.base.tables import aligned
 from actuator_opt.models.tuning import ziegler_nichols
-from actuator_opt.reporting.blocks import Block, column, figure, notes, table
-from actuator_opt.reporting.simulation_comparison import comparison
-from actuator_opt.reporting.simulation_comparison_figures import LEAST, comparison_figure
-from actuator_opt.reporting.study import rounded, study_sheets, write_study
-from actuator_opt.reporting.text import fixed, number
+from actuator_opt.pages.simulation_comparison import comparison
+from actuator_opt.pages.simulation_comparison_figures import LEAST, comparison_figure
+from actuator_opt.rendering.blocks import Block, column, figure, notes, table
+from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.text import fixed, number
 from actuator_opt.simulation import Simulation
 from actuator_opt.simulation.sensitivity import sensitivities
-from actuator_opt.tables import aligned
-from actuator_opt.verbs import read_scenario, simulate
 
 SCENARIOS = Path(__file__).resolve().parents[1] / "scenarios"
 LAWS = ("p", "pi", "pid")

@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 
 import actuator_opt as ao
-from actuator_opt.evaluation.study.bench import Bench, bench
+from actuator_opt.base.tables import aligned
 from actuator_opt.identification import Record, synthetic
-from actuator_opt.tables import aligned
+from actuator_opt.studies.bench import Bench, bench
 
 DESIGN = Path(__file__).resolve().parents[1] / "knee.yaml"
 RECORD = DESIGN.parent / "records" / "knee_bench.csv"
@@ -139,7 +139,7 @@ def _pages(
 
 def main() -> None:
     """Print what the record changes; write the pages where a folder is given."""
-    from actuator_opt.reporting.calibration_text import calibration_text
+    from actuator_opt.pages.calibration_text import calibration_text
 
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--out", type=Path, help="folder for the pages")

@@ -21,11 +21,11 @@ import numpy as np
 import yaml
 
 import actuator_opt as ao
-from actuator_opt.reporting.figures import Axes
-from actuator_opt.reporting.ink import GREY, RED, Ink, spread_within
-from actuator_opt.reporting.study import rounded, study_sheets, write_study
-from actuator_opt.reporting.text import fixed, trimmed
-from actuator_opt.tables import aligned
+from actuator_opt.base.tables import aligned
+from actuator_opt.rendering.axes import Axes
+from actuator_opt.rendering.ink import GREY, RED, Ink, spread_within
+from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.text import fixed, trimmed
 
 DESIGNS = Path(__file__).resolve().parents[1]
 LINER, FIBRE, CLOTH = "al_7075_t6", "t700_epoxy", "woven_cfrp_t700_2510"

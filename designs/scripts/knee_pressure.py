@@ -24,17 +24,17 @@ from typing import Any
 import yaml
 
 import actuator_opt as ao
+from actuator_opt.base.numeric import maximum, sqrt
+from actuator_opt.base.tables import aligned
 from actuator_opt.models.accumulator import usable_volume
 from actuator_opt.models.extrusion import gap_limit
 from actuator_opt.models.lines import line_pressure_drop, line_volume
 from actuator_opt.models.mass import oil_mass, tube_mass
-from actuator_opt.numeric import maximum, sqrt
-from actuator_opt.reporting.blocks import column, figure, table
-from actuator_opt.reporting.figures import AREAS, Axes
-from actuator_opt.reporting.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, spread_within
-from actuator_opt.reporting.study import rounded, study_sheets, write_study
-from actuator_opt.reporting.text import fixed, number
-from actuator_opt.tables import aligned
+from actuator_opt.rendering.axes import AREAS, Axes
+from actuator_opt.rendering.blocks import column, figure, table
+from actuator_opt.rendering.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, spread_within
+from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.text import fixed, number
 
 Data = dict[str, Any]
 

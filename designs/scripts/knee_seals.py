@@ -21,15 +21,15 @@ from typing import Any
 import yaml
 
 import actuator_opt as ao
+from actuator_opt.base.tables import aligned
 from actuator_opt.models.contact_profile import o_ring_mean
 from actuator_opt.models.elastomer import modulus_gent
 from actuator_opt.models.seals import LAWS
-from actuator_opt.reporting.blocks import column, figure, table
-from actuator_opt.reporting.figures import Axes
-from actuator_opt.reporting.ink import BLUE, GREY, RED, WHITE, Ink
-from actuator_opt.reporting.study import rounded, study_sheets, write_study
-from actuator_opt.reporting.text import fixed, number
-from actuator_opt.tables import aligned
+from actuator_opt.rendering.axes import Axes
+from actuator_opt.rendering.blocks import column, figure, table
+from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink
+from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
+from actuator_opt.rendering.text import fixed, number
 
 DESIGN = Path(__file__).resolve().parents[1] / "knee.yaml"
 PLACES = ("piston", "rod")

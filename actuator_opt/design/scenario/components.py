@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ...kinds import kinds
+from ...base.kinds import kinds
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
-from ...errors import Fault
+from ...base.errors import Fault
 from ..build import how_to_add
 from ..structure import child_at, entries
 from ..view import View, without_effect

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from ... import quantities
-from ...errors import Fault
+from ...base import quantities
+from ...base.errors import Fault
 from ..build import how_to_add
 from ..kinds import position_at
 from ..model import Design

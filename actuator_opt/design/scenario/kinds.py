@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...suggest import shown
+from ...base.suggest import shown
 from ..kinds import Position, PositionKind, Text, ValueFault
 
 

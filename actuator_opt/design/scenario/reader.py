@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...errors import Diagnostic, Fault, InputError
+from ...base.errors import Diagnostic, Fault, InputError
+from ...base.quantities import RESULTS, Quantity
 from ...metrics import METRICS
-from ...quantities import RESULTS, Quantity
 from ..build import check
 from ..kinds import ValueFault
 from ..model import Design

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from ...numeric import Array
+from ...base.numeric import Array
 from ..kinds import Of
 from ..structure import child_at, entries
 from .model import Scenario

@@ -13,8 +13,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...kinds import kinds
-from ...numeric import Array, where
+from ...base.kinds import kinds
+from ...base.numeric import Array, where
 
 Records = Mapping[tuple[str, str], tuple[Array, Array]]
 """Time [s] and values [SI] of every column of a file that a part names; NaN where missing."""

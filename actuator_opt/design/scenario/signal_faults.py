@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 
-from ... import quantities
-from ...errors import Fault
+from ...base import quantities
+from ...base.errors import Fault
 from ..build import how_to_add
 from ..section import Section
 from ..structure import Loc, entries

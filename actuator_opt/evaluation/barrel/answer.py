@@ -11,10 +11,10 @@ from math import pi
 
 import numpy as np
 
+from ...base.numeric import Array
 from ...models import laminate, ply
 from ...models.layered_tube import layered_tube, ply_stresses_at_faces, tube_state
 from ...models.strength_modes import Stress
-from ...numeric import Array
 from ..geometry import Geometry
 from ..plies import Layer
 

@@ -12,11 +12,11 @@ from math import pi
 
 import numpy as np
 
+from ...base.numeric import Array, maximum, real, where
 from ...design.model import Design
 from ...models import column, liner, ply_discount, rod, tube_burst, yielding
 from ...models.autofrettage import Autofrettage, autofrettage
 from ...models.strength_modes import Stress, load_multiplier
-from ...numeric import Array, maximum, real, where
 from .. import plies
 from ..allow import MaterialValues
 from ..distinct import distinct

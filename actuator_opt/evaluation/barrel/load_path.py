@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...base.numeric import Array, maximum
 from ...design.model import Design
 from ...joints.joint import Clamp
 from ...models import barrel_ends
-from ...numeric import Array, maximum
 from ..allow import MaterialValues
 from ..geometry import Geometry, end_at
 from ..retention import Numbers, clamped, joint_of

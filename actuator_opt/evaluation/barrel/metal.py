@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import pi
 
+from ...base.numeric import Array, maximum
 from ...design.model import Design
 from ...models import barrel, barrel_ends, column, rod, yielding
-from ...numeric import Array, maximum
 from ..allow import MaterialValues
 from ..geometry import Geometry
 from ..state import LoadState

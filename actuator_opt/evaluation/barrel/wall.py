@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from ...base.numeric import Array
 from ...models.autofrettage import Autofrettage
-from ...numeric import Array
 from .load_path import LoadPath, Swelling
 
 SEAL_STEP = 0.5

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...symbolic import Symbol
+from ...base.symbolic import Symbol
 from .intervals import branch, extreme
 from .lone import CAUTION, SAMPLES, Leads, function
 from .relaxation import ConstraintRow, Curve, Relaxation, Unknown

@@ -11,9 +11,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from ...base.symbolic.bounds import bounds_of
+from ...base.symbolic.order import needed
 from ...evaluation.kernel import ModelRun, compute
-from ...symbolic.bounds import bounds_of
-from ...symbolic.order import needed
 from ..actuator import ActuatorProblem
 from ..outcome import MET
 from ..problem import Vector

@@ -9,6 +9,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ...base.numeric import Array, maximum
+from ...base.symbolic import Symbol
+from ...base.symbolic.bounds import bounds_of
 from ...design.model import Design
 from ...evaluation import PreparedDesign, beam, plies
 from ...evaluation.allow import MaterialValues
@@ -28,9 +31,6 @@ from ...models.layered_tube import layered_tube, tube_state
 from ...models.solid_ply import solid_rotated
 from ...models.trial_mode import TrialMode, buckled_mode, trial_mode_load
 from ...models.trial_motion import Chamber, least_energy_motion, trial_motion_stiffness
-from ...numeric import Array, maximum
-from ...symbolic import Symbol
-from ...symbolic.bounds import bounds_of
 from .relaxation import Unknown
 
 LEAST_DECAY = 1e-3

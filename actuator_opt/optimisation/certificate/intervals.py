@@ -11,8 +11,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ...symbolic import Symbol
-from ...symbolic.bounds import Bounds, at_end, bounds, bounds_of
+from ...base.symbolic import Symbol
+from ...base.symbolic.bounds import Bounds, at_end, bounds, bounds_of
 from .signomial import ROUNDING, Form, Signomial
 
 ROUNDS = 30

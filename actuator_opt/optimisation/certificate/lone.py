@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ...symbolic import Symbol, vectorised
+from ...base.symbolic import Symbol, vectorised
 from ..problem import Vector
 
 SAMPLES = 1001

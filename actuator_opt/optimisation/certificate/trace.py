@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
+from ...base.symbolic import Graph, Symbol
 from ...evaluation.kernel import ModelRun, Statics, compute, statics
 from ...evaluation.limits import Limit
 from ...evaluation.rows import MetricArrays
 from ...evaluation.values import Values
-from ...symbolic import Graph, Symbol
 from ..actuator import ActuatorProblem
 from ..problem import Vector
 from .envelopes import Envelopes, decays, layered, refuse

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...numeric import Array
+from ...base.numeric import Array
 from ..descents import FEASIBLE, RESIDUAL
 from ..evaluator import Evaluator, Point
 from ..outcome import Solution

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...progress import tell
+from ...base.progress import tell
 from ..descents import RESIDUAL
 from ..problem import Vector
 from . import dominance, references

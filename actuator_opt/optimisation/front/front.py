@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...progress import tell
+from ...base.progress import tell
 from ..problem import Vector
 from . import dominance, even
 from .ends import Effort, NoEnd, ends, normalised

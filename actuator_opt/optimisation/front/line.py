@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...progress import tell
+from ...base.progress import tell
 from ..problem import Vector
 from . import references
 from .search import FrontSearch

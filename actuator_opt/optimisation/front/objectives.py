@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...numeric import Array
+from ...base.numeric import Array
 from ..descents import RESIDUAL
 from ..evaluator import Evaluator, Point
 from ..kkt import residual

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ...progress import tell
+from ...base.progress import tell
 from ..problem import Vector
 from . import dominance, references
 from .dominance import Indices, distances

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...numeric import STEP
+from ...base.numeric import STEP
 from ..evaluator import Evaluator, Point
 from ..problem import ParametricProblem, Vector
 from .batch import Result, Steps, run_batch

@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from ...least_squares import Known, known
-from ...numeric import Array
+from ...base.fitting import Known, known
+from ...base.numeric import Array
 from .problem import STEPS, RecordFitProblem
 
 STEADIEST: Final = 0.97

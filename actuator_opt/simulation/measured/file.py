@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...base.errors import Diagnostic, InputError
+from ...base.numeric import Array
 from ...design.scenario.recorded import gap_words, gaps
-from ...errors import Diagnostic, InputError
 from ...identification.column_units import NONE, ColumnUnits
 from ...identification.record import CHANNELS, Channel, Record, parse_record
-from ...numeric import Array
 
 COLUMNS = {name: CHANNELS[name] for name in ("t", "p1", "p2", "x", "v", "F_L", "T")} | {
     "U": Channel("voltage", "V", "signal of the valve", ("signal", "command")),

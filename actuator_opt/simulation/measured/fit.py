@@ -10,12 +10,12 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
+from ...base.fitting import WEAK, Known, Parameter, rated
+from ...base.numeric import Array
+from ...base.progress import whole
+from ...base.suggest import shown
 from ...design.scenario.model import Scenario
-from ...evaluation.study.plant import Plant
-from ...least_squares import WEAK, Known, Parameter, rated
-from ...numeric import Array
-from ...progress import whole
-from ...suggest import shown
+from ...studies.plant import Plant
 from ..gains import Tuned, tune
 from ..methods import Method
 from ..parts.signals import Records

@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
+from ...base.errors import Diagnostic, InputError
+from ...base.quantities import INPUTS, MATERIAL_PROPERTIES, RECORDS, SCENARIOS, Quantity
+from ...base.suggest import remedy, shown
 from ...design.scenario.model import Scenario
 from ...design.scenario.signals import Force
-from ...errors import Diagnostic, InputError
-from ...evaluation.study.plant import LEAST_AIR, Plane, Plant
-from ...quantities import INPUTS, MATERIAL_PROPERTIES, RECORDS, SCENARIOS, Quantity
-from ...suggest import remedy, shown
+from ...studies.plant import LEAST_AIR, Plane, Plant
 from ..assemble import ends_of, start_of
 from ..parts.chambers import LEAST_DEAD
 

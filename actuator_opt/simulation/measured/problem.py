@@ -9,11 +9,11 @@ from typing import Final
 
 import numpy as np
 
-from ... import least_squares
+from ...base import fitting as least_squares
+from ...base.errors import Unsolvable
+from ...base.numeric import Array
 from ...design.scenario.model import Scenario
-from ...errors import Unsolvable
-from ...evaluation.study.plant import Plant
-from ...numeric import Array
+from ...studies.plant import Plant
 from ..assemble import assemble
 from ..gains import Tuned
 from ..integrate import integrate

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from ...base.numeric import Array
+from ...base.suggest import shown
 from ...design.scenario.recorded import WIDE
 from ...models.fluid import ATMOSPHERIC_PRESSURE
-from ...numeric import Array
-from ...suggest import shown
 from ..result import Simulation, Told
 from .file import FEWEST, SIGNALS, Measured, named
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ...base.numeric import clip, maximum, where
+from ...base.symbolic import Expression, Namespace, Symbol
 from ...evaluation.springs import Give
-from ...evaluation.study.plant import Oil
 from ...models import chamber, oil_energy
 from ...models.cavity import cavity
 from ...models.fluid import ATMOSPHERIC_PRESSURE
-from ...numeric import clip, maximum, where
-from ...symbolic import Expression, Namespace, Symbol
+from ...studies.plant import Oil
 from .circuit import Circuit
 
 DEEPEST = -12.0

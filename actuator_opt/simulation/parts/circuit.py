@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from ...base.symbolic import Expression, Symbol
 from ...design.scenario.model import Scenario
 from ...design.scenario.signals import SignalSegment
-from ...evaluation.study.plant import Plant
 from ...models.tuning import ControllerGains
-from ...symbolic import Expression, Symbol
+from ...studies.plant import Plant
 from ..loops import Loop
 from ..system import System
 from . import signals

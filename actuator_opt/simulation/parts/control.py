@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
-from ...numeric import clip, where
-from ...symbolic import Expression
+from ...base.numeric import clip, where
+from ...base.symbolic import Expression
 from .circuit import Circuit
 
 HOLD_BAND = 1e-3

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...base.kinds import per_kind
+from ...base.numeric import maximum
+from ...base.quantities import SCENARIOS
+from ...base.symbolic import Expression
 from ...design.scenario.components import FRICTIONS
 from ...design.scenario.model import Friction as Stated
-from ...evaluation.study.plant import Plane, Plant
-from ...kinds import per_kind
 from ...models import friction, lugre
-from ...numeric import maximum
-from ...quantities import SCENARIOS
-from ...symbolic import Expression
+from ...studies.plant import Plane, Plant
 from .circuit import Circuit, Start
 
 LEAST = 1e-3

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from ...base.quantities import INPUTS, SCENARIOS
+from ...base.symbolic import Expression, Symbol
 from ...design.scenario.model import LoadCylinder
 from ...evaluation.springs import Give
-from ...evaluation.study.plant import ValveData
 from ...models import forces
 from ...models.valve import edge_coefficient, viscosity_corrected
-from ...quantities import INPUTS, SCENARIOS
-from ...symbolic import Expression, Symbol
+from ...studies.plant import ValveData
 from . import chambers, valve
 from .circuit import Circuit
 

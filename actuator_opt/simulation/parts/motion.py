@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from ...base.numeric import where
+from ...base.quantities import INPUTS, SCENARIOS
+from ...base.symbolic import Expression, Symbol
 from ...models import end_stop, linkage
-from ...numeric import where
-from ...quantities import INPUTS, SCENARIOS
-from ...symbolic import Expression, Symbol
 from .circuit import Circuit
 from .signals import rate
 

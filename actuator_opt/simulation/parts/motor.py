@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ...base.quantities import SCENARIOS
+from ...base.symbolic import Expression, Symbol
 from ...models import wilson
-from ...quantities import SCENARIOS
-from ...symbolic import Expression, Symbol
 from ..system import System
 from .chambers import node
 from .circuit import Circuit

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ...base.kinds import per_kind
+from ...base.quantities import SCENARIOS
+from ...base.symbolic import Expression, Symbol
 from ...design.scenario.components import ENDS
 from ...evaluation.circuit import Chamber
-from ...kinds import per_kind
 from ...models import one_way_valve, reducing_valve
-from ...quantities import SCENARIOS
-from ...symbolic import Expression, Symbol
 from .chambers import node
 from .circuit import Circuit
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from ...base.numeric import Array
+from ...base.symbolic import Expression, Namespace, jacobian
 from ...design.scenario.shapes import SHAPES, Records as Records, height
 from ...design.scenario.signals import SignalSegment
-from ...numeric import Array
-from ...symbolic import Expression, Namespace, jacobian
 from ..system import System
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...base.kinds import per_kind
+from ...base.numeric import clip, where
+from ...base.quantities import INPUTS, SCENARIOS
+from ...base.symbolic import Expression, Symbol
 from ...design.scenario.components import SUPPLIES
-from ...kinds import per_kind
 from ...models import accumulator, elements, lines, supply, wilson
-from ...numeric import clip, where
-from ...quantities import INPUTS, SCENARIOS
-from ...symbolic import Expression, Symbol
 from .chambers import node
 from .circuit import Circuit
 

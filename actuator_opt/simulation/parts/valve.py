@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ...evaluation.study.plant import ValveData
+from ...base.numeric import clip
+from ...base.quantities import SCENARIOS
+from ...base.symbolic import Expression
 from ...models import valve
 from ...models.spool import spool_acceleration
-from ...numeric import clip
-from ...quantities import SCENARIOS
-from ...symbolic import Expression
+from ...studies.plant import ValveData
 from .circuit import Circuit
 
 SPOOL = 1e-7

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...base.numeric import Array
 from ...design.scenario.signals import Force, Position
-from ...numeric import Array
 from ..harmonic import dynamic_stiffness_of_record, harmonic_fit
 from .stand import Measured, Record, Stand
 

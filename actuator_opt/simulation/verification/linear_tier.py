@@ -9,14 +9,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...base.numeric import Array
+from ...base.polynomial import at_frequency
 from ...design.scenario.model import Scenario
 from ...evaluation.kernel import ModelRun, PreparedDesign, compute
 from ...evaluation.result import Requirement
-from ...evaluation.study.plant import Plant, plant
 from ...evaluation.values import of_case
 from ...models import linear, loop
-from ...numeric import Array
-from ...polynomial import at_frequency
+from ...studies.plant import Plant, plant
 from .stand import Stand, Tally
 
 WEAKEST = "weakest position"

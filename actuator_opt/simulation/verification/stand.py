@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from ...base.numeric import Array
 from ...design.scenario.model import Control, Initial, Load, Scenario
 from ...design.scenario.signals import Force, Position, Signal
-from ...evaluation.study.plant import Plant
 from ...models.tuning import ControllerGains
-from ...numeric import Array
+from ...studies.plant import Plant
 from ..assemble import assemble
 from ..integrate import integrate
 

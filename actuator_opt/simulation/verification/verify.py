@@ -14,13 +14,13 @@ from math import inf, isfinite, isnan
 from time import perf_counter
 from typing import Any, Final, Literal
 
+from ...base.errors import InputError, Unsolvable
+from ...base.progress import steps
 from ...design.scenario.model import Load, Scenario
-from ...errors import InputError, Unsolvable
 from ...evaluation.build import evaluate
 from ...evaluation.kernel import PreparedDesign
 from ...evaluation.result import Requirement
 from ...metrics import METRICS
-from ...progress import steps
 from ..loops import loop_of
 from ..parts.signals import Records
 from ..result import Simulation

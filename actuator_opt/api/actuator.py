@@ -1,0 +1,163 @@
+"""A design as read, and its faults."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..base.errors import Diagnostic, InputError
+from ..design import Design, LoadedDesign, Source, read_design, with_values
+from ..design.reader import TEXT
+from ..evaluation import PreparedDesign, compute, prepare
+from ..evaluation.plugin import Plugin, View, collect, load, with_own
+
+Plugins = Iterable["Plugin | Callable[[View], object] | str | Path"]
+
+
+@dataclass(frozen=True, slots=True)
+class Actuator:
+    """A design as read: the design, where its values stand, and the user's own metrics."""
+
+    design: Design
+    source: Source | None = None
+    plugins: tuple[Plugin, ...] = ()
+
+    def subject(self) -> PreparedDesign:
+        """The design with its materials and numbers, ready for the models."""
+        return prepare(self.design, plugins=self.plugins)
+
+    def changed(self, values: Mapping[str, float | str]) -> Actuator:
+        """The same actuator with other numbers by PATH (SI, or text with a unit)."""
+        known = with_own(self.plugins)
+        design = with_values(self.design, dict(values), metrics=known)
+        return Actuator(design, self.source, self.plugins)
+
+
+def plugins_of(given: Plugins) -> tuple[Plugin, ...]:
+    """The plugins of functions and Python files."""
+    found: list[Plugin] = []
+    for item in given:
+        if isinstance(item, Plugin):
+            found.append(item)
+        elif isinstance(item, (str, Path)):
+            found += load(item)
+        else:
+            found += collect(item)
+    names = [plugin.name for plugin in found]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(Diagnostic(f"the metric {twice} is declared twice", "rename one of them"))
+    return tuple(found)
+
+
+def read(
+    source: str | Path,
+    *,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    plugins: Plugins = (),
+) -> Actuator:
+    """Read a design file (a path, ``"-"`` for standard input, or the text itself).
+
+    Parameters
+    ----------
+    source : path or text
+    set : values to replace, by PATH; a bare number is SI
+    plugins : the user's metrics and constraints: decorated functions or Python files
+
+    Raises
+    ------
+    InputError
+        with every fault of the file, each with its place and remedy
+    """
+    own = plugins_of(plugins)
+    pairs = set.items() if isinstance(set, Mapping) else set
+    loaded: LoadedDesign = read_design(
+        source,
+        overrides=[(path, str(value)) for path, value in pairs],
+        metrics=with_own(own),
+    )
+    return Actuator(loaded.design, loaded.source, own)
+
+
+def read_as(
+    text: str,
+    name: str,
+    *,
+    set: Sequence[tuple[str, str]] = (),
+    plugins: Plugins = (),
+) -> Actuator:
+    """The design of a file's text, as if read from a file of that name; parameters as `read`."""
+    try:
+        actuator = read(f"{text}\n", set=set, plugins=plugins)
+    except InputError as error:
+        raise InputError(
+            [replace(x, file=name if x.file == TEXT else x.file) for x in error.diagnostics]
+        ) from None
+    source = actuator.source
+    assert source is not None
+    document = replace(source.document, file=name, text=text)
+    return replace(actuator, source=replace(source, document=document))
+
+
+def as_actuator(design: Actuator | Design | str | Path, plugins: Plugins = ()) -> Actuator:
+    """Any form of a design as an actuator."""
+    if isinstance(design, Actuator):
+        return design
+    if isinstance(design, Design):
+        return Actuator(design, None, plugins_of(plugins))
+    return read(design, plugins=plugins)
+
+
+def place(actuator: Actuator) -> Callable[[str, str, str], Diagnostic] | None:
+    """What makes a fault of a variable's PATH, with its place in the file."""
+    return None if actuator.source is None else actuator.source.of_variable
+
+
+@contextmanager
+def located(actuator: Actuator) -> Iterator[None]:
+    """Give faults that know only their PATH the place in the file too."""
+    try:
+        yield
+    except InputError as error:
+        source = actuator.source
+        if source is None or any(fault.file or not fault.path for fault in error.diagnostics):
+            raise
+        raise InputError(
+            [
+                source.diagnostic(fault.path, fault.message, fault.remedy)
+                for fault in error.diagnostics
+                if fault.path
+            ]
+        ) from None
+
+
+def answered(
+    design: Actuator | Design | str | Path, plugins: Plugins
+) -> tuple[Actuator, PreparedDesign]:
+    """Any form of a design, ready for the models; raises `InputError` as `unanswered`."""
+    actuator = as_actuator(design, plugins)
+    subject = actuator.subject()
+    faults = unanswered(actuator, subject)
+    if faults:
+        raise InputError(faults)
+    return actuator, subject
+
+
+def unanswered(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
+    """Requirements on metrics that this design does not have."""
+    if not actuator.design.requirements:
+        return []
+    computed = compute(subject, subject.values()).computed
+    faults = []
+    for metric, limit in actuator.design.requirements.items():
+        if computed.metrics.get(metric):
+            continue
+        path = f"requirements.{metric}.{'max' if limit.min is None else 'min'}"
+        message = f"cannot be met: {computed.why.get(metric, 'it does not apply to this design')}"
+        remedy = "remove the requirement, or add what it needs"
+        source = actuator.source
+        found = source.diagnostic(path, message, remedy) if source is not None else None
+        faults.append(found or Diagnostic(message, remedy, path=path))
+    return faults

@@ -1,0 +1,90 @@
+"""Faults of a file, whatever kind of file it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from ..base.errors import ActuatorError, Diagnostic, InputError
+from ..design import Design, is_scenario
+from ..design.reader import TEXT, opened
+from ..evaluation import PreparedDesign, without_films
+from .actuator import Actuator, Plugins, as_actuator, place, read, unanswered
+from .simulations import read_scenario
+
+
+class Examined(NamedTuple):
+    """What a file has: faults, and where it has none, values out of all proportion."""
+
+    faults: list[Diagnostic]
+    warnings: list[str]
+
+
+def check(
+    source: Actuator | Design | str | Path,
+    *,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    plugins: Plugins = (),
+) -> list[Diagnostic]:
+    """All faults of a design or scenario; an empty list for a good one. Parameters as `read`.
+
+    Found too: variables that no model reads, requirements that no model answers. The models are
+    run for that, but no oil film is solved.
+    """
+    return examine(source, set=set, plugins=plugins).faults
+
+
+def examine(
+    source: Actuator | Design | str | Path,
+    *,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    plugins: Plugins = (),
+) -> Examined:
+    """All faults as `check`, and a warning for every value out of all proportion."""
+    if source == "-":  # read once, whatever it turns out to be
+        text, name = opened(source)
+        found = examine(f"{text}\n", set=set, plugins=plugins)
+        faults = [replace(one, file=name) if one.file == TEXT else one for one in found.faults]
+        return Examined(faults, found.warnings)
+    try:
+        if isinstance(source, Actuator | Design):
+            actuator = as_actuator(source, plugins).changed(dict(set))
+        elif is_scenario(source):
+            scenario = read_scenario(source, set=set)
+            return Examined([], _out_of_proportion(scenario.actuator.subject()))
+        else:
+            actuator = read(source, set=set, plugins=plugins)
+        subject = actuator.subject()
+    except InputError as error:
+        return Examined(error.diagnostics, [])
+    faults = _of_models(actuator, without_films(subject))
+    if faults and actuator.plugins:  # they may mind the NaN of a film that is not solved
+        faults = _of_models(actuator, subject)
+    return Examined(faults, [] if faults else _out_of_proportion(subject))
+
+
+def _of_models(actuator: Actuator, subject: PreparedDesign) -> list[Diagnostic]:
+    """Requirements that no model answers, variables that none reads, choices that exclude all."""
+    try:
+        faults = unanswered(actuator, subject)
+        if faults:
+            return faults
+        if actuator.design.choices:
+            from ..optimisation.choices import possible
+
+            possible(subject)
+        elif actuator.design.variables:
+            from ..optimisation.actuator import build
+
+            build(subject, place(actuator))
+    except ActuatorError as error:
+        return error.diagnostics
+    return []
+
+
+def _out_of_proportion(subject: PreparedDesign) -> list[str]:
+    from ..evaluation import proportions
+
+    return list(proportions.warnings(subject, subject.values()))

@@ -1,0 +1,161 @@
+"""`compare`: designs and recorded runs side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
+
+from ..base import runs as run_store
+from ..base.errors import Diagnostic, InputError, UsageError
+from ..design import Design
+from ..evaluation import Evaluation, comparison
+from ..evaluation.comparison import Comparison, DesignState
+from .actuator import Actuator, Plugins, read
+from .optimum import evaluate
+from .recorded_runs import Run
+from .reports import Paper, file_name, report_files
+from .restoring import Restored, restore
+from .stamp import is_optimum
+
+if TYPE_CHECKING:
+    from ..optimisation.result import Optimisation
+    from ..pages import ReportFile
+
+MOST = 12
+"""Designs beside each other, at most: a choice."""
+
+
+def compare(
+    *designs: Actuator | Design | Evaluation | Optimisation | Run | str | Path,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    plugins: Plugins = (),
+    optimise: bool = False,
+    seed: int = 0,
+) -> Comparison:
+    """Designs side by side: what differs in the inputs, and which parts make one better.
+
+    Parameters
+    ----------
+    designs : two or more: files, recorded runs (id, ``last``), or what other verbs give; the first
+        is what the others are held against
+    set : values to replace in every file
+    plugins : the user's own metrics
+    optimise : optimise every design first that is no optimum and has variables
+    seed : of these searches
+
+    Raises
+    ------
+    UsageError : fewer than two, or too many
+    InputError : one cannot be read, or two are the same; every fault of every file
+    """
+    if len(designs) < 2:
+        message = "one design cannot be compared" if designs else "no design is named"
+        raise UsageError(Diagnostic(message, "name two or more"))
+    if len(designs) > MOST:
+        raise UsageError(Diagnostic(f"{len(designs)} designs are too many", f"name up to {MOST}"))
+    if sum(one == "-" for one in designs if isinstance(one, str)) > 1:
+        raise UsageError(Diagnostic("standard input holds one design", "name - once"))
+    found: list[tuple[Evaluation, str, DesignState]] = []
+    faults: list[Diagnostic] = []
+    for one in designs:
+        try:
+            found.append(_found(one, set, plugins, optimise, seed))
+        except InputError as error:
+            faults += error.diagnostics
+    if faults:
+        raise InputError(faults)
+    try:
+        evaluations, origins, states = zip(*found, strict=True)
+        return comparison.compare(evaluations, _told(origins), states)
+    except InputError as error:
+        remedy = "name designs that differ"
+        raise InputError(Diagnostic(error.diagnostics[0].message, remedy)) from None
+
+
+def _told(origins: Sequence[str]) -> list[str]:
+    """Origins, numbered where one stands twice."""
+    return [
+        f"{one} ({origins[: k + 1].count(one)})" if origins.count(one) > 1 else one
+        for k, one in enumerate(origins)
+    ]
+
+
+def _found(
+    one: Any, set: Any, plugins: Plugins, optimise: bool, seed: int
+) -> tuple[Evaluation, str, DesignState]:
+    """The evaluation of whatever names a design, its origin, and whether it is an optimum."""
+    from ..optimisation.result import Optimisation
+    from . import optimum
+
+    if isinstance(one, (str, Path)) and not run_store.is_name(str(one)):
+        one, name = _file(one, set, plugins)
+    elif isinstance(one, (str, Path, Run)):
+        if set:
+            message = "--set: a run is compared as it was"
+            raise UsageError(Diagnostic(message, "name designs instead"))
+        back: Restored = restore(one, plugins=plugins)
+        one, name = back.optimisation, f"run {back.run.id}"
+    elif isinstance(one, Optimisation):
+        name = one.best_evaluation.name
+    elif isinstance(one, Actuator):
+        name = file_name(one.design, one.source)
+    else:
+        name = one.name
+    if not isinstance(one, Optimisation):
+        evaluation = one if isinstance(one, Evaluation) else evaluate(one, plugins=plugins)
+        known = isinstance(one, Actuator) and one.source is not None
+        if known and is_optimum(one.source.text, evaluation.spec_hash):
+            return evaluation, name, DesignState("optimal", optimum=True)
+        design = one if isinstance(one, Actuator) else evaluation.design
+        if not (optimise and evaluation.design.variables):
+            return evaluation, name, DesignState()
+        one = optimum.optimise(design, plugins=plugins, prices=False, seed=seed)
+    return one.best_evaluation, name, DesignState(one.status, optimum=one.optimum)
+
+
+def _file(one: str | Path, set: Any, plugins: Plugins) -> tuple[Actuator, str]:
+    """A design read from a file or a text, and where it comes from."""
+    actuator = read(one, set=set, plugins=plugins)
+    name = str(one) if "\n" not in str(one) else file_name(actuator.design, actuator.source)
+    return actuator, "<stdin>" if name == "-" else name
+
+
+def comparison_json(found: Comparison) -> dict[str, Any]:
+    """The `compare --json` object (SI)."""
+    from ..pages.compare_text import sentences
+
+    said = sentences(found)
+    answers = {
+        question.name: {
+            "metric": question.metric,
+            "best": None if question.best is None else found.labels[question.best],
+            "than": None if question.other is None else found.labels[question.other],
+            "values": list(question.values),
+            "parts": [{"part": part, "change": step} for part, step in question.steps],
+            "sentence": sentence,
+        }
+        for question, sentence in zip(found.questions, said, strict=False)
+    }
+    return found.to_dict() | {"answers": answers, "notes": said[len(answers) :]}
+
+
+def report_comparison(found: Comparison, **paper: Unpack[Paper]) -> list[ReportFile]:
+    """Draw a comparison as its report: PNG and SVG carry no title block."""
+    return report_files(draw_comparison(found, paper.get("folder", "reports")))
+
+
+def draw_comparison(found: Comparison, folder: str | Path = "reports") -> list[Path]:
+    """Write PNG and SVG of a comparison.
+
+    ``comparison``: mass, compliance and friction part by part; ``comparison-stiffness``: the
+    stiffness over the stroke of the first six designs, where any has it.
+    """
+    from ..pages.compare_figure import comparison_figure, comparison_ucurves
+    from ..rendering.image import write_ink
+
+    paths = write_ink(comparison_figure(found), Path(folder), "comparison")
+    curves = comparison_ucurves(found)
+    if curves is not None:
+        paths += write_ink(curves, Path(folder), "comparison-stiffness")
+    return paths

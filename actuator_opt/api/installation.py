@@ -1,0 +1,241 @@
+"""`doctor`: what this installation has, lacks and may write."""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+import sys
+import tomllib
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from importlib import import_module, metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Unpack
+
+from ..base import files as store
+from ..base.errors import InputError
+from ..version import VERSION
+
+if TYPE_CHECKING:
+    from ..rendering.console import Style
+
+Status: TypeAlias = Literal["ok", "missing", "fault"]
+"""As it must be; an extra that is not installed; something that a command will fail at."""
+
+_NAME = "actuator-opt"
+_OLDEST = (3, 11)
+_FONTS = ("DejaVuSans.ttf", "DejaVuSans-Bold.ttf", "DejaVuSansMono.ttf")
+"""What the pages and figures are set in; matplotlib brings them."""
+_REQUIREMENT = re.compile(r"([A-Za-z0-9][\w.-]*)\s*(\[[^\]]*\])?\s*([^;]*)")
+_EXTRA = re.compile(r"extra\s*==\s*['\"]([\w.-]+)['\"]")
+_BOUND = re.compile(r"(>=|<=|==|!=|~=|<|>)\s*([\d.]+)")
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing looked at: `remedy` says what to do where it is not as it must be."""
+
+    group: str
+    name: str
+    status: Status
+    value: str
+    remedy: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Installation:
+    """What was found; `ok` where no command will fail at it."""
+
+    findings: tuple[Finding, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Whether nothing that a command needs is missing."""
+        return all(finding.status != "fault" for finding in self.findings)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The `doctor --json` object."""
+        return {
+            "version": VERSION,
+            "python": platform.python_version(),
+            "ok": self.ok,
+            "findings": [asdict(finding) for finding in self.findings],
+        }
+
+    def text(self, **style: Unpack[Style]) -> str:
+        """What the terminal shows."""
+        from ..pages.installation_text import installation_text
+
+        rows = [(x.group, x.name, x.status, x.value, x.remedy) for x in self.findings]
+        return installation_text(rows, **style)
+
+
+def doctor(
+    *, out: str | Path = "reports", runs: str | Path | None = None, terminal: str = ""
+) -> Installation:
+    """Look at Python, dependencies, extras, fonts, data, folders and the machine.
+
+    Parameters
+    ----------
+    out : folder of reports to be written
+    runs : folder of run records; None where no runs are recorded
+    terminal : what the terminal can show, in words; "" leaves it out
+    """
+    found = [_python(), Finding("program", _NAME, "ok", f"{VERSION}, {Path(__file__).parents[1]}")]
+    found += [*_packages(), _fonts(), _materials()]
+    found.append(_folder("reports", Path(out), "name another folder with --out"))
+    if runs is None:
+        found.append(Finding("folder", "runs", "ok", "no runs are recorded"))
+    else:
+        found.append(_folder("runs", Path(runs), "set ACTUATOR_OPT_RUNS to another folder"))
+    if terminal:
+        found.append(Finding("terminal", "output", "ok", terminal))
+    return Installation((*found, _machine()))
+
+
+def _python() -> Finding:
+    good = sys.version_info >= _OLDEST
+    oldest = ".".join(map(str, _OLDEST))
+    value = f"{platform.python_version()}, {sys.executable}"
+    remedy = "" if good else f"install Python {oldest} or later"
+    return Finding("program", "Python", "ok" if good else "fault", value, remedy)
+
+
+def _requirements() -> tuple[list[str], dict[str, list[str]]]:
+    """What the project needs, and what each of its extras does."""
+    project = Path(__file__).parents[2] / "pyproject.toml"
+    if project.is_file():
+        stated = tomllib.loads(project.read_text("utf-8")).get("project", {})
+        if stated.get("name") == _NAME:
+            return stated["dependencies"], stated.get("optional-dependencies", {})
+    core: list[str] = []
+    extras: dict[str, list[str]] = {}
+    try:
+        for text in metadata.requires(_NAME) or []:
+            extra = _EXTRA.search(text)
+            (core if extra is None else extras.setdefault(extra[1], [])).append(text)
+    except metadata.PackageNotFoundError:
+        return [], {}
+    return core, extras
+
+
+def _packages() -> Iterator[Finding]:
+    """Every dependency, and every extra but those of developers."""
+    core, extras = _requirements()
+    modules: dict[str, list[str]] = {}
+    for module, names in metadata.packages_distributions().items():
+        for name in names:
+            modules.setdefault(_normal(name), []).append(module)
+    if not core:
+        remedy = "install it with pip"
+        yield Finding("dependency", _NAME, "fault", "its list of dependencies is missing", remedy)
+    for text in core:
+        name, value, fault = _package(text, modules)
+        remedy = f"pip install '{text.strip()}'" if fault else ""
+        yield Finding("dependency", name, "fault" if fault else "ok", fault or value, remedy)
+    for extra, texts in extras.items():
+        if extra in ("test", "dev"):
+            continue
+        found = [_package(text, modules) for text in texts]
+        faults = [f"{name} {fault}" for name, _, fault in found if fault]
+        values = [f"{name} {value}" for name, value, fault in found if not fault]
+        remedy = f"for it: pip install '{_NAME}[{extra}]'" if faults else ""
+        shown = ", ".join(faults or values)
+        yield Finding("extra", extra, "missing" if faults else "ok", shown, remedy)
+
+
+def _package(text: str, modules: dict[str, list[str]]) -> tuple[str, str, str]:
+    """Name, version and what is wrong of a required package; it is imported to see."""
+    match = _REQUIREMENT.match(text.strip())
+    assert match is not None, text
+    name = match[1]
+    try:
+        version = metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return name, "", "is not installed"
+    if not _fits(version, match[3]):
+        return name, version, f"{version} is installed, {match[3].strip()} is needed"
+    own = modules.get(_normal(name), [])
+    module = next((one for one in own if _normal(one) == _normal(name)), None)
+    module = module or next((one for one in sorted(own) if not one.startswith("_")), None)
+    try:
+        import_module(module or name)
+    except (ImportError, OSError, AttributeError, RuntimeError, TypeError, ValueError) as error:
+        reason = (str(error).strip() or type(error).__name__).splitlines()[0]
+        return name, version, f"{version} cannot be imported: {reason}"
+    return name, version, ""
+
+
+def _normal(name: str) -> str:
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    """The release numbers of a version, without what follows them (rc1, .dev0)."""
+    match = re.match(r"\d+(?:\.\d+)*", version)
+    return () if match is None else tuple(map(int, match[0].split(".")))
+
+
+def _fits(version: str, bounds: str) -> bool:
+    """Whether a version keeps to bounds such as ``>=12,<13``.
+
+    >>> _fits("12.0.2", ">=12,<13"), _fits("13.0", ">=12,<13"), _fits("2.10", ">=2.9")
+    (True, False, True)
+    """
+    have = _numbers(version)
+    for sign, text in _BOUND.findall(bounds):
+        limit = _numbers(text)
+        size = max(len(have), len(limit))
+        a, b = (x + (0,) * (size - len(x)) for x in (have, limit))
+        kept = {
+            ">=": a >= b, "<=": a <= b, "==": a == b, "!=": a != b, "<": a < b, ">": a > b,
+            "~=": a >= b and a[: len(limit) - 1] == b[: len(limit) - 1],
+        }[sign]  # fmt: skip
+        if not kept:
+            return False
+    return True
+
+
+def _fonts() -> Finding:
+    from ..rendering.paper import font_folders
+
+    folders = [Path(folder) for folder in font_folders()]
+    lost = [name for name in _FONTS if not any((folder / name).is_file() for folder in folders)]
+    if lost:
+        value = f"{', '.join(lost)} not found"
+        return Finding("data", "fonts", "fault", value, "pip install --force-reinstall matplotlib")
+    return Finding("data", "fonts", "ok", f"{len(_FONTS)} of {len(_FONTS)} in {folders[0]}")
+
+
+def _materials() -> Finding:
+    from ..design.materials import load_library
+
+    try:
+        folder = store.data_folder("materials")
+        count = sum(1 for _ in load_library())
+    except InputError as error:
+        return Finding("data", "materials", "fault", str(error), f"install {_NAME} again")
+    return Finding("data", "materials", "ok", f"{count} entries in {folder}")
+
+
+def _folder(name: str, folder: Path, remedy: str) -> Finding:
+    reason = store.unwritable(folder)
+    if reason:
+        return Finding("folder", name, "fault", f"cannot be written: {reason}", remedy)
+    new = "" if folder.is_dir() else " (made when needed)"
+    return Finding("folder", name, "ok", f"{folder.absolute()}{new}")
+
+
+def _machine() -> Finding:
+    try:
+        usable = len(os.sched_getaffinity(0))
+    except AttributeError:  # not on every system
+        usable = os.cpu_count() or 1
+    words = f"{usable} of {os.cpu_count() or usable} to be used; {_system()}"
+    return Finding("machine", "cores", "ok", words)
+
+
+def _system() -> str:
+    parts: Sequence[str] = (platform.system(), platform.release(), platform.machine())
+    return " ".join(part for part in parts if part)

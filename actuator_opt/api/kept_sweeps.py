@@ -1,0 +1,125 @@
+"""A recorded sweep: where its rows lie, and its figures and CSV out of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
+
+from ..base.errors import Diagnostic, InputError, UsageError
+from .actuator import Actuator
+from .recorded_runs import Run
+from .reports import Paper, file_name, report_files
+from .sweeping import LARGE, draw_sweep, study_of, writing
+
+if TYPE_CHECKING:
+    from ..pages import ReportFile
+    from ..sweeps.chunk import Study
+    from ..sweeps.plan import Plan
+
+
+@dataclass(frozen=True, slots=True)
+class KeptSweep:
+    """A sweep by its record: what was evaluated, and the run that tells where its rows lie."""
+
+    run: Run
+    study: Study
+
+
+def kept_sweep(run: Run, actuator: Actuator) -> KeptSweep:
+    """The sweep of a record, none of its rows read yet."""
+    asked = run.body["asked"]
+    study = study_of(actuator, _plan(run), full=not asked["reduce"], show=asked["show"])
+    return KeptSweep(run, study)
+
+
+def _plan(run: Run) -> Plan:
+    import numpy as np
+
+    from ..sweeps.axes import Axis
+    from ..sweeps.plan import plan
+
+    told: dict[str, Any] = run.body["plan"]
+    axes = [
+        Axis(
+            one["path"],
+            None if one["values"] is None else np.array(one["values"], dtype=float),
+            tuple(one["texts"]),
+            one["range"],
+            one["steps"],
+        )
+        for one in told["axes"]
+    ]
+    for axis in axes:
+        ends = axis.range and axis.values is not None and len(axis.values) == 2
+        steps = axis.count is None or axis.count >= 2
+        if not (ends and steps if axis.range else axis.size):
+            raise ValueError("an axis without values")
+    count = None if told["method"] == "grid" else told["count"]
+    try:
+        found = plan(axes, method=told["method"], count=count, seed=run.head["seed"])
+    except UsageError as error:
+        raise ValueError(str(error)) from None
+    if found.count != told["count"]:
+        raise ValueError("another number of points")
+    return found
+
+
+def store_of(run: Run) -> tuple[Path, str]:
+    """The database of a sweep's rows, and the hash of its study there.
+
+    Raises
+    ------
+    InputError : it kept none, or the file is no longer where it was
+    """
+    if run.head.get("kind") != "sweep":
+        message = f"is a run of {run.head.get('kind')}, which keeps no rows"
+        raise InputError(Diagnostic(message, "name a run of sweep or pareto", str(run.path)))
+    kept = run.body["asked"]["store"]
+    if kept is None:
+        message = f"run {run.id} is of a sweep without --store: its rows were not kept"
+        remedy = "see its best with runs show, or run it again with --store F.db"
+        raise InputError(Diagnostic(message, remedy, str(run.path)))
+    path = Path(kept["path"])
+    if not path.exists():
+        message = f"is no longer there; run {run.id} kept its rows in it"
+        remedy = "put it back, or name the file where it is now: actuator-opt explore F.db"
+        raise InputError(Diagnostic(message, remedy, str(path)))
+    return path, kept["study"]
+
+
+def report_sweep(kept: KeptSweep, **paper: Unpack[Paper]) -> list[ReportFile]:
+    """Write the figures and tables of a recorded sweep again, from the rows in its store.
+
+    The figures are those that the sweep drew, else parallel axes where a design is feasible; the
+    CSV (``NAME-sweep.csv``) is left out of a sweep of over a million points that wrote none; a
+    Parquet file comes where the sweep wrote one. Of `paper` (see `report`) folder and stem count.
+
+    Raises
+    ------
+    InputError : its store is gone, holds other rows or lacks some, or the folder cannot be written
+    """
+    from ..base.files import require_folder
+    from ..pages.sweep_figures import watched
+    from ..sweeps import swept_again
+
+    target = Path(paper.get("folder", "reports"))
+    asked, study = kept.run.body["asked"], kept.study
+    path, _ = store_of(kept.run)
+    require_folder(target)
+    figures, show = asked["figures"], asked["show"]
+    how: dict[str, Any] = {"keep": asked["keep"], "watch": watched(study, figures, show)}
+    stem = paper.get("stem") or Path(file_name(study.design, None)).stem
+    csv = parquet = None
+    if study.plan.count <= LARGE or asked["csv"] is not None:
+        csv = target / f"{stem}-sweep.csv"
+    if asked["parquet"] is not None:
+        parquet = target / f"{stem}-sweep.parquet"
+    target.mkdir(parents=True, exist_ok=True)
+    with writing(study, csv, parquet) as each:
+        found = swept_again(study, path, each=each, **how)
+    files = [file for file in (csv, parquet) if file is not None]
+    kinds = figures or (["parallel"] if found.feasible else [])
+    if kinds:
+        files += draw_sweep(found, kinds, show=show, out=target, stem=stem)
+    return report_files(files)

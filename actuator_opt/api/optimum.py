@@ -1,0 +1,159 @@
+"""Evaluate, optimise, price."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
+
+from ..design import Design
+from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
+from ..evaluation.plugin import Plugin
+from ..evaluation.reserve import YieldEstimate
+from .actuator import Actuator, Plugins, answered, as_actuator, located, place
+
+if TYPE_CHECKING:
+    from ..optimisation.result import Optimisation
+    from ..optimisation.sensitivity import Sensitivity
+    from ..pages import ReportFile
+    from ..rendering.console import Style
+
+
+def evaluate(
+    design: Actuator | Design | str | Path, *, plugins: Plugins = (), seed: int | None = None
+) -> Evaluation:
+    """Every metric, requirement and check of a design.
+
+    Parameters
+    ----------
+    design : the design
+    plugins : the user's own metrics and constraints
+    seed : of the draws of a quick estimate of the yield (`with_yield`); None: no estimate
+    """
+    actuator = as_actuator(design, plugins)
+    evaluation = evaluate_subject(actuator.subject())
+    if seed is None:
+        return evaluation
+    return with_yield(evaluation, plugins=actuator.plugins, seed=seed)
+
+
+def with_yield(
+    evaluation: Evaluation, *, plugins: tuple[Plugin, ...] = (), seed: int = 0
+) -> Evaluation:
+    """An evaluation with a quick estimate of its yield (`scatter.quick`).
+
+    Parameters
+    ----------
+    evaluation : of a design
+    plugins : the user's own metrics it was evaluated with
+    seed : of the draws
+    """
+    from ..uncertainties.quick import quick_yield
+
+    subject = replace(prepare(evaluation.design, plugins=plugins), lenient=True)
+    return replace(evaluation, yield_estimate=quick_yield(subject, evaluation, seed=seed))
+
+
+def optimise(
+    design: Actuator | Design | str | Path,
+    *,
+    algorithm: str = "auto",
+    starts: int = 6,
+    seed: int = 0,
+    plugins: Plugins = (),
+    prices: bool = True,
+    max_seconds: float | None = None,
+    whole_plies: bool = False,
+    keep_interrupted: bool = False,
+    standard_sizes: bool = False,
+    certify: bool = False,
+    yield_target: float | None = None,
+) -> Optimisation:
+    """The best design; parameters as `optimisation.run.optimise`.
+
+    With a `yield_target` all limits hold with that probability while the design's numbers scatter
+    (`scatter.robust`); `robust` of the result says how. Without one, `best_evaluation` carries a
+    quick estimate of its yield (`scatter.quick`).
+    """
+    from ..optimisation.run import optimise as run
+
+    actuator, subject = answered(design, plugins)
+
+    def search(subject: PreparedDesign, last: bool) -> Optimisation:
+        return run(
+            subject,
+            fault=place(actuator),
+            algorithm=algorithm,
+            starts=starts,
+            seed=seed,
+            prices=prices and last,
+            max_seconds=max_seconds,
+            whole_plies=whole_plies,
+            standard_sizes=standard_sizes,
+            certify=certify and last,
+            explain=last,
+            keep_interrupted=keep_interrupted,
+        )
+
+    with located(actuator):
+        if yield_target is None:
+            return estimated(search(subject, True), actuator.plugins)
+        from ..uncertainties.robust import robust
+
+        return estimated(robust(subject, yield_target, search, seed=seed), actuator.plugins)
+
+
+def estimated(found: Optimisation, plugins: tuple[Plugin, ...]) -> Optimisation:
+    """An optimum whose evaluation has its yield: of its own sample, else a quick estimate."""
+    best, sample = found.best_evaluation, found.robust
+    if sample is not None:
+        known = YieldEstimate(
+            value=sample.rate,
+            lower=sample.lower,
+            upper=sample.upper,
+            draws=sample.samples,
+            with_checks=None if sample.left_out else sample.rate,
+        )
+        best = replace(best, yield_estimate=known)
+    elif found.status.startswith("interrupted"):
+        best = replace(best, yield_estimate=YieldEstimate(why="the search was interrupted"))
+    else:
+        best = with_yield(best, plugins=plugins, seed=found.seed)
+    if found.made is None:
+        return replace(found, evaluation=best)
+    return replace(found, rounding=replace(found.made, evaluation=best))
+
+
+def sensitivity(
+    design: Actuator | Design | str | Path, *, seed: int = 0, plugins: Plugins = ()
+) -> tuple[Sensitivity, ...]:
+    """What each requirement and parameter costs at the design's optimum."""
+    return optimise(design, seed=seed, plugins=plugins).sensitivities
+
+
+@dataclass(frozen=True, slots=True)
+class Prices:
+    """The prices of an optimum alone: what `sensitivity` shows."""
+
+    optimisation: Optimisation
+
+    def to_dict(self) -> dict[str, Any]:
+        """The `sensitivity --json` object; prices are of the continuous optimum."""
+        data = replace(self.optimisation, rounding=None).to_dict()
+        keys = ["name", "version", "status", "outcome", "objective", "sensitivities"]
+        keys += ["what_buys_most", "kkt", "infeasibility"]
+        return {key: data[key] for key in keys if key in data}
+
+    def text(self, **style: Unpack[Style]) -> str:
+        """Prices in the terminal, or why there is no optimum."""
+        from ..pages import infeasibility_card, prices
+
+        best = self.optimisation
+        shown = prices.terminal(best, moving=True, **style)
+        return f"{shown or infeasibility_card.terminal(best, **style) or best.sentence}\n"
+
+    def report(self, **paper: Any) -> list[ReportFile]:
+        """Write the report of the optimum."""
+        from .reports import report_design
+
+        return report_design(self.optimisation, **paper)

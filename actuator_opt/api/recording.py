@@ -1,0 +1,194 @@
+"""What a run record keeps of an optimisation, of a front and of a sweep."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .actuator import Actuator
+from .recorded_runs import Run, record_run
+from .reports import verification_tables
+
+if TYPE_CHECKING:
+    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.result import Optimisation
+    from ..pages import ExtraTable
+    from ..simulation.verification import Verification
+    from ..sweeps import Swept
+
+BEST = 10
+"""Best designs of a sweep that its record keeps, at most: the store has them all."""
+
+REASONS = 20
+"""Reasons of failed designs that it keeps, the commonest."""
+
+
+def record(
+    result: Optimisation,
+    *,
+    actuator: Actuator,
+    command: str = "",
+    date: str | None = None,
+    extra_tables: Sequence[ExtraTable] = (),
+    dynamics_verified: Verification | None = None,
+    folder: str | Path | None = None,
+) -> Run | None:
+    """Record an optimisation with its input, so that it can be shown and reported later.
+
+    Parameters
+    ----------
+    result : of `optimise`
+    actuator : that was optimised
+    command, date, extra_tables, dynamics_verified : of its report
+    folder : where to; default: ACTUATOR_OPT_RUNS, else the person's data folder
+
+    Returns
+    -------
+    the record; None where recording is switched off (ACTUATOR_OPT_NO_RECORD)
+
+    Raises
+    ------
+    InputError : it cannot be written
+    """
+    from ..optimisation.recorded import to_plain
+
+    head = {
+        "status": result.status,
+        "outcome": result.sentence,
+        "met": result.best_evaluation.met and (result.rounding is None or result.rounding.met),
+        "without_reserve": len(result.tight),
+        "objective": result.to_dict()["objective"],
+        "seconds": result.seconds,
+    }
+    more = {
+        "variables": {v.path: v.value for v in result.best_variables},
+        "trace": [list(row) for row in result.trace],
+        "result": result.to_dict(),
+        "state": to_plain(result),
+        "tables": [
+            asdict(table) for table in (*extra_tables, *verification_tables(dynamics_verified))
+        ],
+    }
+    return record_run(
+        "optimise", head, more, actuator=actuator, command=command, date=date,
+        seed=result.seed, folder=folder,
+    )  # fmt: skip
+
+
+def record_front(
+    found: ParetoFront,
+    *,
+    actuator: Actuator,
+    command: str = "",
+    date: str | None = None,
+    folder: str | Path | None = None,
+) -> Run | None:
+    """Record a Pareto front, so that it can be shown and reported later; as `record`."""
+    from ..optimisation.recorded import to_plain
+
+    knee = None if found.knee is None else found.knee.index
+    head = {
+        "status": found.status,
+        "outcome": found.sentence,
+        "met": bool(found.points),
+        "objectives": [{"metric": one.metric, "sense": one.sense} for one in found.objectives],
+        "points": len(found.points),
+        "knee": None
+        if knee is None
+        else {one.metric: found.points[knee].metrics[one.metric] for one in found.objectives},
+        "seconds": found.seconds,
+    }
+    more = {"result": found.to_dict(), "state": to_plain(found)}
+    return record_run(
+        "pareto", head, more, actuator=actuator, command=command, date=date,
+        seed=found.seed, folder=folder,
+    )  # fmt: skip
+
+
+def record_sweep(
+    found: Swept,
+    *,
+    actuator: Actuator,
+    store: str | Path | None = None,
+    csv: str | Path | None = None,
+    parquet: str | Path | None = None,
+    keep: int = 10,
+    figures: Sequence[str] = (),
+    show: Sequence[str] = (),
+    command: str = "",
+    date: str | None = None,
+    folder: str | Path | None = None,
+) -> Run | None:
+    """Record a sweep: its plan, counts, the best designs and where its rows lie, but no rows.
+
+    Parameters
+    ----------
+    found : of `sweep`
+    actuator, command, date, folder : as `record`
+    store, csv, parquet, keep, figures, show : as given to `sweep`
+    """
+    from ..pages.sweep_text import counts
+
+    study = found.study
+    goal, met = study.goal, bool(found.best or found.feasible)
+    best = None
+    if found.best:
+        first = found.best[0].objective
+        best = found.metrics(found.best[0])[goal.single] if goal.single else goal.shown(first)
+    head = {
+        "status": "feasible" if met else "infeasible",
+        "outcome": f"{found.requested} variants: {counts(found)}",
+        "met": met,
+        "objective": {"metric": goal.single or "weighted", "value": best},
+        "requested": found.requested,
+        "feasible": found.feasible,
+        "failed": found.failed,
+        "seconds": found.seconds,
+    }
+    commonest = sorted(found.failures.items(), key=lambda one: (-one[1], one[0]))[:REASONS]
+    kept = replace(found, best=found.best[:BEST], failures=dict(commonest))
+    more: dict[str, Any] = {
+        "plan": _plan(found),
+        "asked": {
+            "store": None
+            if store is None
+            else {"path": os.path.abspath(store), "study": study.hash},
+            "csv": None if csv is None else os.path.abspath(csv),
+            "parquet": None if parquet is None else os.path.abspath(parquet),
+            "reduce": not study.full,
+            "engine": study.engine,
+            "keep": keep,
+            "figures": list(figures),
+            "show": list(show),
+        },
+        "result": kept.to_dict(),
+    }
+    return record_run(
+        "sweep", head, more, actuator=actuator, command=command, date=date,
+        seed=study.plan.seed, folder=folder,
+    )  # fmt: skip
+
+
+def _plan(found: Swept) -> dict[str, Any]:
+    """The points of a sweep as plain data, values in SI; `quantity` is null for texts."""
+    from ..design import quantity_of
+
+    plan, design = found.study.plan, found.study.design
+    return {
+        "method": plan.method,
+        "count": plan.count,
+        "axes": [
+            {
+                "path": axis.path,
+                "quantity": None if axis.values is None else quantity_of(axis.path, design).name,
+                "values": None if axis.values is None else axis.values.tolist(),
+                "texts": list(axis.texts),
+                "range": axis.range,
+                "steps": axis.count,
+            }
+            for axis in plan.axes
+        ],
+    }

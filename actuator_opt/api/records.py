@@ -1,0 +1,360 @@
+"""Records of a test bench: read, identified, and put into the design they were made with."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
+
+from ..base.errors import Diagnostic, InputError
+from ..design import Design
+from .actuator import Actuator, as_actuator
+from .reports import Paper, page_of
+
+if TYPE_CHECKING:
+    from ..identification import BendingResult, Calibration, Identification, Record, Specimen
+    from ..identification.specimen import Part
+    from ..optimisation.redesign import Redesign
+    from ..pages import ReportFile
+    from ..rendering.console import Style
+
+MOST_BYTES = 1_000_000_000
+"""Largest file of a record (a choice: what memory holds several times)."""
+_WISHES = (
+    "name",
+    "notes",
+    "variables",
+    "choices",
+    "requirements",
+    "waivers",
+    "objective",
+    "measured",
+)
+"""Keys of a design that say nothing of the actuator tested."""
+
+
+Units = str | Path | Mapping[str, str] | None
+"""Units of columns whose header states none: ``"SI"``, a file, or by column."""
+
+
+def read_record(
+    source: str | Path,
+    *,
+    columns: Mapping[str, str] | None = None,
+    units: Units = None,
+    needed: Collection[str] | None = None,
+) -> Record:
+    """Read the CSV file of a test record.
+
+    Parameters
+    ----------
+    source : path, ``"-"`` for standard input
+    columns : header by channel where it is none of the known names, with a unit where the file
+        states none: ``{"p1": "Channel 3 [bar]"}``
+    units : of columns whose header states none: ``"SI"`` (m, s, Pa, N, m/s, K), a file with lines
+        ``p1: bar`` (YAML) or ``p1,bar``, or a mapping; a unit in the header counts before ``"SI"``
+        and must agree with one stated for its column
+    needed : channels whose missing unit is a fault; others are left out and noted; default: all
+        but v and T
+
+    Returns
+    -------
+    the record, SI
+
+    Raises
+    ------
+    InputError
+        no such file, an unknown or doubled column, a missing unit, a cell that is no number
+    """
+    from ..base.files import read_bytes
+    from ..identification import column_units, decode_record, parse_record
+
+    known = column_units(units)
+    kinds = (".csv", ".txt", ".tsv")
+    name = "<stdin>" if str(source) == "-" else str(source)
+    data = read_bytes(source, most=MOST_BYTES + 1, kinds=kinds, what="CSV file")
+    text = decode_record(data, name, most=MOST_BYTES)
+    return parse_record(text, name=name, columns=columns, units=known, needed=needed)
+
+
+def identify(
+    record: Record | str | Path,
+    *,
+    design: Actuator | Design | str | Path,
+    columns: Mapping[str, str] | None = None,
+    units: Units = None,
+    cutoff: float = 30.0,
+    order: int = 4,
+    compensated: bool = True,
+    mass: float | None = None,
+    load_force: float | None = None,
+    pressure_lag: float | None = None,
+    bootstrap: int = 0,
+    seed: int = 0,
+) -> Identification:
+    """Friction and damping from a test record of the actuator.
+
+    F_r = p_1 A_1 - p_2 A_2 - F_L - m a, areas in the bore as grown.
+
+    Parameters
+    ----------
+    record : as read, or its path
+    design : the actuator as tested
+    columns, units : as `read_record`
+    cutoff, order, compensated : of the zero-phase Butterworth filter [Hz]; compensated: both
+        passes together are -3 dB at the cut-off
+    mass : moving inside the force sensor [kg]; default: rod, piston and fastening, without a
+        force channel also the design's load
+    load_force : against extension where no channel measures it [N]
+    pressure_lag : of the pressures [s]; None looks for it in the record
+    bootstrap : resampled records for the bounds; 0 takes those of the linearised model
+    seed : of the resampling
+
+    Returns
+    -------
+    the identification
+
+    Raises
+    ------
+    InputError
+        a channel missing, a record too short, channels turned round, no motion
+    """
+    from ..identification import Settings, identify as run
+    from ..studies.bench import bench
+
+    settings = Settings(
+        cutoff=cutoff,
+        order=order,
+        compensated=compensated,
+        mass=mass,
+        load_force=load_force,
+        pressure_lag=pressure_lag,
+        bootstrap=bootstrap,
+        seed=seed,
+    )
+    tested = bench(as_actuator(design).subject())
+    needed = ("p1", "x", "F_L") if tested.plunger else ("p1", "p2", "x", "F_L")
+    return run(_record(record, columns, units, needed), tested, settings)
+
+
+def _record(
+    record: Record | str | Path,
+    columns: Mapping[str, str] | None,
+    units: Units,
+    needed: Collection[str],
+) -> Record:
+    """A record as read."""
+    if isinstance(record, (str, Path)):
+        return read_record(record, columns=columns, units=units, needed=needed)
+    for given, what in ((columns, "columns are named"), (units, "units are stated")):
+        if given:
+            message = f"{what}, and the record is read already"
+            raise InputError(Diagnostic(message, "give them to read_record"))
+    return record
+
+
+def bending(
+    record: Record | str | Path,
+    *,
+    span: float | None = None,
+    design: Actuator | Design | str | Path | None = None,
+    part: Part = "rod",
+    specimen: Specimen | None = None,
+    columns: Mapping[str, str] | None = None,
+    units: Units = None,
+) -> BendingResult:
+    """Modulus of a part from a three-point bending test, channels F_L and w.
+
+    Parameters
+    ----------
+    record : as read, or its path
+    span : between the supports [m]
+    design, part : whose section was bent, "rod" or "barrel"; of a metal part its shear modulus
+        too is taken from there
+    specimen : in place of span, design and part
+    columns, units : as `read_record`
+
+    Raises
+    ------
+    InputError
+        a channel missing, no straight part, no section
+    """
+    from ..identification import bending as run
+    from ..identification.specimen import specimen_of
+
+    if specimen is None:
+        if span is None or design is None:
+            message = "the section of the bending test is not known"
+            raise InputError(Diagnostic(message, "give span and design, or a specimen"))
+        specimen = specimen_of(as_actuator(design).subject(), part, span)
+    return run(_record(record, columns, units, ("F_L", "w")), specimen)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Calibrated:
+    """A design with the friction that a record measured, and what that changes.
+
+    Parameters
+    ----------
+    actuator : with the new values and their bounds
+    calibration : what the record told
+    redesign : before and after, as tested and at the optimum
+    """
+
+    actuator: Actuator
+    calibration: Calibration
+    redesign: Redesign
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI."""
+        own = self.calibration
+        return {
+            "record": own.identification.record.name,
+            "name": self.actuator.design.name,
+            "learned": {one.name: one.to_dict() for one in own.learned},
+            "left": dict(own.left),
+            "coulomb": {"measured": own.coulomb, "stated": own.stated},
+            "doubts": list(own.doubts),
+            **self.redesign.to_dict(),
+        }
+
+    def text(self, **style: Unpack[Style]) -> str:
+        """What the terminal shows."""
+        from ..pages.calibration_text import calibration_text
+
+        return calibration_text(self.calibration, self.redesign, **style)
+
+
+def calibrate(
+    record: Identification | Record | str | Path,
+    *,
+    design: Actuator | Design | str | Path,
+    columns: Mapping[str, str] | None = None,
+    units: Units = None,
+    search: bool = True,
+    seed: int = 0,
+    **settings: Any,
+) -> Calibrated:
+    """The design with the seal friction that its record measured.
+
+    Coefficients of friction, breakaway ratio, Stribeck speed and viscous friction of the seals,
+    their bounds under ``measured``; requirements before and after; the optimum before and after.
+
+    Parameters
+    ----------
+    record : as read or identified, or its path
+    design : the actuator as tested
+    columns, units, settings : as `identify`, for a record that is not identified yet
+    search : whether to optimise before and after
+    seed : of the searches and the resampling
+
+    Raises
+    ------
+    InputError
+        as `identify`; no steady sliding; friction that the design takes from an oil film; a record
+        identified with another actuator
+    """
+    from ..identification import Identification, calibration as learn
+    from ..identification.calibration import refuse_films
+    from ..optimisation.redesign import redesign
+
+    before = as_actuator(design)
+    refuse_films(before.design)
+    if isinstance(record, Identification):
+        _require_use(record, before.design, {"columns": columns, "units": units}, settings)
+        identified = record
+    else:
+        identified = identify(
+            record, design=before, columns=columns, units=units, seed=seed, **settings
+        )
+    found = learn(identified)
+    after, doubts = _with_values(before, found)
+    found = replace(found, doubts=(*found.doubts, *doubts))
+    groups = [one.bounds() for one in found.learned]
+    changes = redesign(before.subject(), after.subject(), groups, seed=seed, search=search)
+    return Calibrated(after, found, changes)
+
+
+def _with_values(before: Actuator, found: Calibration) -> tuple[Actuator, list[str]]:
+    """The actuator with the values a record gave, held where they were free; what to doubt."""
+    design, new = before.design, found.values()
+    held = [path for path in new if path in design.variables or path in design.choices]
+    free = {path: one for path, one in design.variables.items() if path not in held}
+    choices = {path: one for path, one in design.choices.items() if path not in held}
+    update = {"variables": free, "choices": choices, "measured": {}}
+    base = Actuator(design.model_copy(update=update), before.source, before.plugins)
+    known = {**design.measured, **found.measured()}
+    after = base.changed(new).design.model_copy(update={"measured": known})
+    doubts = []
+    if held:
+        doubts.append(f"no longer free, held as measured: {', '.join(held)}")
+    other = [
+        path
+        for path in choices
+        if path.startswith("seals.") and path.endswith((".compound", ".type"))
+    ]
+    if other:
+        doubts.append(
+            f"the friction measured is that of the seals tested: choices of {', '.join(other)} "
+            "take it over"
+        )
+    return Actuator(after, before.source, before.plugins), doubts
+
+
+def _require_use(
+    identified: Identification,
+    design: Design,
+    reading: Mapping[str, object],
+    settings: Mapping[str, Any],
+) -> None:
+    """Refuse what an identified record has no use for, and another actuator's record."""
+    unused = [*(name for name, given in reading.items() if given), *settings]
+    if unused:
+        message = f"{', '.join(unused)}: of no use, the record is identified already"
+        raise InputError(Diagnostic(message, "give them to identify"))
+    own, other = (
+        one.model_copy(update=dict.fromkeys(_WISHES)) for one in (design, identified.bench.design)
+    )
+    if own != other:
+        message = "the record was identified with another design"
+        raise InputError(Diagnostic(message, "identify it with this one"))
+
+
+def write_identification(
+    identification: Identification, **paper: Unpack[Paper]
+) -> list[ReportFile]:
+    """Write the page of an identification (PDF and PNG); parameters as `report`."""
+    from ..pages.identification_document import write_identification_sheet
+
+    record = identification.record.file_name
+    origin, place = page_of(identification.bench.design, "_identification", beside=record, **paper)
+    return write_identification_sheet(identification, origin, **place)
+
+
+def write_series(identification: Identification, path: str | Path) -> ReportFile:
+    """Write friction, stiffness and bore growth over time as CSV."""
+    from ..pages.identification_csv import write_series as write
+
+    return write(identification, Path(path))
+
+
+def write_calibration(calibrated: Calibrated, **paper: Unpack[Paper]) -> list[ReportFile]:
+    """Write the page of a calibration (PDF and PNG), the new design attached.
+
+    Parameters as `report`; the design is the calibrated one.
+    """
+    from ..design.writer import to_yaml
+    from ..pages.calibration_document import write_calibration_sheet
+    from ..studies.bench import bench
+
+    actuator = paper["actuator"] = calibrated.actuator
+    record = calibrated.calibration.identification.record.file_name
+    origin, place = page_of(actuator.design, "_calibration", beside=record, **paper)
+    return write_calibration_sheet(
+        calibrated.calibration,
+        calibrated.redesign,
+        bench(actuator.subject()),
+        replace(origin, source_text=to_yaml(actuator.design, actuator.source)),
+        **place,
+    )

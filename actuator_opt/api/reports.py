@@ -1,0 +1,227 @@
+"""Reports of designs, and designs written down; what every report takes."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, TypedDict, Unpack
+
+from ..base.errors import Diagnostic, UsageError
+from ..design import Design, Source
+from ..evaluation import Evaluation, PreparedDesign, prepare
+from ..evaluation.plugin import with_own
+from ..metrics import METRICS
+from .actuator import Actuator, as_actuator
+from .stamp import stamped
+
+if TYPE_CHECKING:
+    from ..evaluation.rings import Place
+    from ..optimisation.result import Optimisation
+    from ..pages import ExtraTable, ReportFile
+    from ..rendering.origin import Origin
+    from ..simulation.verification import Verification
+    from ..studies.seal import SealStudy
+
+_LAST_SECOND = 253_402_300_799
+"""End of the year 9999, the last a date can hold."""
+
+
+def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
+    """The seal sheets of a report: every place of the design that asks for an oil film."""
+    from ..studies.seal import study
+
+    places: tuple[Place, ...] = ("piston", "rod")
+    asked = [x for x in places if getattr(subject.design.seals, x).friction_law.film]
+    moving = any(case.moves for case in subject.design.load_cases)
+    return [study(subject, x, curves=True, mapped=True) for x in asked if moving]
+
+
+class Paper(TypedDict, total=False):
+    """What every report takes; see `report`."""
+
+    folder: str | Path
+    stem: str | None
+    actuator: Actuator | None
+    command: str
+    date: str | None
+
+
+class Target(TypedDict):
+    """Folder and name of the files of a page, without suffix."""
+
+    folder: Path
+    stem: str
+
+
+def page_of(
+    design: Design,
+    tail: str = "",
+    *,
+    beside: str | None = None,
+    folder: str | Path = "reports",
+    stem: str | None = None,
+    actuator: Actuator | None = None,
+    command: str = "",
+    date: str | None = None,
+) -> tuple[Origin, Target]:
+    """What the title block of a page says, and where the page is written.
+
+    Parameters
+    ----------
+    design : the page is about
+    tail : of the file names, behind the name of the design's file
+    beside : another file that gives the name
+    folder, stem, actuator, command, date : as `report`
+
+    Raises
+    ------
+    UsageError : no ISO date
+    """
+    if date is not None:
+        require_date(date)
+    source = None if actuator is None else actuator.source
+    named = f"{Path(beside or file_name(design, source)).stem}{tail}"
+    page = origin(design, source, command=command, date=date)
+    return page, {"folder": Path(folder), "stem": stem or named}
+
+
+def report_design(
+    subject: Evaluation | Optimisation,
+    *,
+    extra_tables: Sequence[ExtraTable] = (),
+    dynamics_verified: Verification | None = None,
+    **paper: Unpack[Paper],
+) -> list[ReportFile]:
+    """Write the report of an evaluation or an optimisation; parameters as `report`."""
+    from ..pages import write_report
+    from ..pages.robust_rows import robust_tables
+    from ..replicas import published_tables
+
+    design = subject.design if isinstance(subject, Evaluation) else subject.best
+    origin, place = page_of(design, **paper)
+    tables = [*published_tables(subject), *robust_tables(subject), *extra_tables]
+    return write_report(
+        subject,
+        source_text=origin.source_text,
+        source_name=origin.source_name,
+        command=origin.command,
+        date=origin.date,
+        extra_tables=[*tables, *verification_tables(dynamics_verified)],
+        seals=_seal_studies(prepare(design)),
+        **place,
+    )
+
+
+def verification_tables(verification: Verification | None) -> list[ExtraTable]:
+    """Requirements checked in time, as tables of a report."""
+    if verification is None:
+        return []
+    from ..pages.verification_rows import verification_rows
+
+    return [*verification_rows(verification)]
+
+
+def report_files(paths: Iterable[Path]) -> list[ReportFile]:
+    """Files written by others, each with its hash."""
+    from ..pages import ReportFile
+
+    return [ReportFile(path, hashlib.sha256(path.read_bytes()).hexdigest(), 1) for path in paths]
+
+
+def file_name(design: Design, source: Source | None) -> str:
+    """Name of the design's file; of a design that came without one, its own name made fit."""
+    if source is not None and not source.file.startswith("<"):
+        return Path(source.file).name
+    name = re.sub(r"[^\w-]+", "_", design.name).strip("_")
+    return f"{name or 'design'}.yaml"
+
+
+def origin(
+    design: Design, source: Source | None, *, command: str = "", date: str | None = None
+) -> Origin:
+    """Where a page about a design comes from: the file as read, else its text as written."""
+    from ..design.writer import to_yaml
+    from ..evaluation.build import spec_hash
+    from ..rendering.origin import Origin
+
+    return Origin(
+        source_text=source.text if source is not None else to_yaml(design),
+        source_name=file_name(design, source),
+        command=command,
+        spec_hash=spec_hash(prepare(design)),
+        date=date or date_from_environment(),
+    )
+
+
+def is_date(text: str) -> bool:
+    """Whether a text is an ISO date.
+
+    >>> is_date("2026-02-28"), is_date("2026-02-30"), is_date("20260228")
+    (True, False, False)
+    """
+    from datetime import date
+
+    try:
+        return date.fromisoformat(text).isoformat() == text
+    except ValueError:
+        return False
+
+
+def require_date(text: str, option: str = "date") -> None:
+    """Refuse what is no ISO date; raises `UsageError`."""
+    if not is_date(text):
+        raise UsageError(Diagnostic(f'{option} "{text}" is no date', "write YYYY-MM-DD"))
+
+
+def date_from_environment() -> str | None:
+    """The date of SOURCE_DATE_EPOCH (UTC), or None.
+
+    Raises
+    ------
+    UsageError : it is no count of seconds
+    """
+    stamp = os.environ.get("SOURCE_DATE_EPOCH", "").strip()
+    if not stamp:
+        return None
+    digits = stamp.isdecimal() and stamp.isascii() and len(stamp) <= 12
+    if not digits or int(stamp) > _LAST_SECOND:
+        message = f'SOURCE_DATE_EPOCH "{stamp[:40]}" is no count of seconds since 1970'
+        raise UsageError(Diagnostic(message, "write e.g. 1700000000, or unset it"))
+    from datetime import UTC, datetime
+
+    return datetime.fromtimestamp(int(stamp), UTC).date().isoformat()
+
+
+def save(
+    design: Actuator | Design | Evaluation | Optimisation | str | Path,
+    path: str | Path,
+    *,
+    source: Source | None = None,
+) -> Path:
+    """Write a design file that keeps full precision, comments and order where it can.
+
+    Of an optimisation it is the design to build. Its first line says so where it is an optimum,
+    unless it has metrics of the user's own, which may change without the file.
+    """
+    from ..base.files import write_text
+    from ..design.writer import to_yaml
+    from ..optimisation.result import Optimisation
+
+    metrics = None if source is None else source.metrics
+    if isinstance(design, Optimisation):
+        text = to_yaml(design.best, source, metrics=metrics)
+        if design.optimum and design.best_evaluation.metrics.keys() <= METRICS.keys():
+            text = stamped(text, design.best_evaluation.spec_hash)
+        return write_text(Path(path), text)
+    if isinstance(design, str | Path):
+        design = as_actuator(design)
+    elif isinstance(design, Evaluation):
+        design = design.design
+    if isinstance(design, Actuator):
+        source = source or design.source
+        metrics = with_own(design.plugins)
+        design = design.design
+    return write_text(Path(path), to_yaml(design, source, metrics=metrics))

@@ -1,0 +1,192 @@
+"""A recorded run as the result it was, and its report, nothing solved again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
+
+from ..base.errors import Diagnostic, InputError
+from ..version import VERSION
+from .actuator import Actuator, Plugins, plugins_of, read_as
+from .fronts import write_front, write_front_csv
+from .kept_sweeps import KeptSweep, kept_sweep, report_sweep
+from .recorded_runs import Run, differing, read_run, sha256, sound
+from .reports import Paper, report_design
+
+if TYPE_CHECKING:
+    from ..evaluation import Evaluation
+    from ..evaluation.plugin import Plugin
+    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.result import Optimisation
+    from ..pages import ReportFile
+
+
+@dataclass(frozen=True, slots=True)
+class Restored:
+    """A result out of its record, and where today's models say otherwise than then."""
+
+    run: Run
+    result: Optimisation | ParetoFront | KeptSweep
+    actuator: Actuator
+    doubts: tuple[str, ...] = ()
+
+    @property
+    def optimisation(self) -> Optimisation:
+        """The result of `optimise`; raises `InputError` where it is another command's."""
+        from ..optimisation.result import Optimisation
+
+        if not isinstance(self.result, Optimisation):
+            message = f"is a run of {self.run.head['kind']}, which has no best design of its own"
+            raise InputError(Diagnostic(message, "name a run of optimise", str(self.run.path)))
+        return self.result
+
+
+def restore(of: Run | str | Path, *, plugins: Plugins = ()) -> Restored:
+    """The result of a recorded run, nothing solved again.
+
+    Designs are those of the record to the last digit; their evaluations come from the models as
+    they are now. `doubts` says where these differ from what was recorded. Of a sweep it is where
+    the rows lie.
+
+    Parameters
+    ----------
+    of : the run, or what `read_run` takes
+    plugins : the Python files of its own metrics; they are programs, so never taken by themselves
+
+    Raises
+    ------
+    InputError : a run of another command, a damaged record, plugins that are not named
+    """
+    found = of if isinstance(of, Run) else read_run(of)
+    kind = found.head.get("kind")
+    if kind not in ("optimise", "pareto", "sweep"):
+        message = f"is a run of {kind}, which has no such report"
+        raise InputError(Diagnostic(message, "name a run that runs list shows", str(found.path)))
+    try:
+        with sound(found):
+            given = found.body["input"]
+            own = named_plugins(found, plugins)
+            sets = [(path, value) for path, value in given["set"]]
+            actuator = read_as(given["text"], given["name"], set=sets, plugins=own)
+            if kind == "sweep":
+                doubts = tuple(changed_plugins(found, own))
+                return Restored(found, kept_sweep(found, actuator), actuator, doubts)
+            result, shown = _solved(found, own)
+            doubts = (*changed_plugins(found, own), *_doubts(found, shown))
+            return Restored(found, result, actuator, doubts)
+    except InputError as error:
+        faults = [replace(x, file=x.file or str(found.path)) for x in error.diagnostics]
+        raise InputError(faults) from None
+
+
+def _solved(found: Run, own: tuple[Plugin, ...]) -> tuple[Optimisation | ParetoFront, Evaluation]:
+    """An optimisation or a front, and the evaluation that its record tells."""
+    from ..optimisation.pareto_result import ParetoFront
+    from ..optimisation.recorded import from_plain
+    from ..optimisation.result import Optimisation
+
+    if found.head["kind"] == "pareto":
+        front = from_plain(ParetoFront, found.body["state"], own)
+        return front, front.evaluation
+    best = from_plain(Optimisation, found.body["state"], own)
+    return best, best.best_evaluation
+
+
+def named_plugins(found: Run, plugins: Plugins) -> tuple[Plugin, ...]:
+    """The plugins that this call names for a run; a record by itself never runs a program.
+
+    Raises
+    ------
+    InputError : the run had own metrics, and none is named
+    """
+    own = plugins_of(plugins)
+    files = [one["file"] or "a function of a script" for one in found.body["input"]["plugins"]]
+    if files and not own:
+        message = f"its own metrics came from {', '.join(files)}, which is a program"
+        raise InputError(Diagnostic(message, "name it with --plugin to run it", str(found.path)))
+    return own
+
+
+def changed_plugins(found: Run, own: Sequence[Plugin]) -> list[str]:
+    """Say which files of own metrics are not those that were recorded."""
+    now = {sha256(file) for file in {plugin.file for plugin in own} if file}
+    return [
+        f"run {found.id} was made with another {one['file']} (its SHA-256 differs)"
+        for one in found.body["input"]["plugins"]
+        if one["file"] and one["sha256"] not in now
+    ]
+
+
+def _doubts(found: Run, now: Evaluation) -> list[str]:
+    """What to know where today's models do not repeat what was recorded."""
+    then = found.body["result"]["metrics"]
+    before = {name: row["value"] for name, row in then.items()}
+    changed = differing(before, {name: row.value for name, row in now.metrics.items()})
+    version = str(found.head.get("version", ""))
+    if not changed:
+        return []
+    names = ", ".join(changed[:3]) + (f" and {len(changed) - 3} more" if len(changed) > 3 else "")
+    made = f"actuator-opt {version}" if version != VERSION else "other material data or plugins"
+    return [
+        f"run {found.id} was made by {made}; today's models (actuator-opt {VERSION}) give other "
+        f"values of {names}, which the report shows"
+    ]
+
+
+def report_run(
+    of: Restored | Run | str | Path, *, plugins: Plugins = (), **paper: Unpack[Paper]
+) -> list[ReportFile]:
+    """Write the report of a recorded run: the bytes that its command wrote.
+
+    Of a front that is its page, its figure and its CSV (``NAME_pareto.csv``); there are none where
+    no front was found. Of a sweep it is what `report_sweep` writes.
+
+    Parameters
+    ----------
+    of : what `restore` takes, or gives
+    plugins : as `restore`
+    paper : as `report`; design and command are those of the run, and its date unless one is given
+    """
+    found = of if isinstance(of, Restored) else restore(of, plugins=plugins)
+    with sound(found.run):
+        paper["actuator"], paper["command"] = found.actuator, found.run.head["command"]
+        paper["date"] = paper.get("date") or found.run.body["date"]
+        return _reported(found, paper)
+
+
+def _reported(found: Restored, paper: Paper) -> list[ReportFile]:
+    from ..optimisation.result import Optimisation
+    from ..pages import ExtraTable
+
+    result = found.result
+    if isinstance(result, KeptSweep):
+        return report_sweep(result, **paper)
+    if isinstance(result, Optimisation):
+        tables = [ExtraTable(**table) for table in found.run.body["tables"]]
+        return report_design(result, extra_tables=tables, **paper)
+    files = write_front(result, **paper)
+    return [*files, *(write_front_csv(result, x.path.with_suffix(".csv")) for x in files[:1])]
+
+
+def draw_run(of: Run, folder: str | Path) -> list[Path]:
+    """Write how the search of a run went: ID-convergence.png and .svg.
+
+    Raises
+    ------
+    InputError : a run of another command than optimise
+    """
+    from ..pages.convergence_figure import convergence_figure
+    from ..rendering.image import write_ink
+
+    if of.head.get("kind") != "optimise":
+        message = f"is a run of {of.head.get('kind')}, whose search has no convergence to draw"
+        remedy = f"draw it with: actuator-opt report {of.id}"
+        raise InputError(Diagnostic(message, remedy, str(of.path)))
+    with sound(of):
+        result = of.body["result"]
+        title = f"{of.head['name']}: search, {result['algorithm']}, seed {of.head['seed']}"
+        metric = str(of.head["objective"].get("metric", ""))
+        ink = convergence_figure(of.body["trace"], metric, result["evaluations"], title)
+        return write_ink(ink, Path(folder), f"{of.id}-convergence")

@@ -1,0 +1,328 @@
+"""What can be done with a result, declared once for every type of result.
+
+The terminal and the library look a result up by its type: its text and JSON, its report, its CSV,
+its record and the exit code. A piece is named "module:function" below `actuator_opt`, or as a
+method of the result, and is imported when it is used. A piece that a type does not have is None;
+leaving one out fails at import.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
+
+from ..base import runs as run_store
+from ..base.errors import Diagnostic, ExitCode, UsageError
+from ..design import Design
+from ..evaluation import Evaluation
+from ..evaluation.reserve import UNKNOWN
+from .actuator import Actuator, Plugins, as_actuator
+from .optimum import evaluate, with_yield
+from .recorded_runs import Run
+
+if TYPE_CHECKING:
+    from ..pages import ReportFile
+    from ..rendering.console import Style
+
+_PACKAGE = f"{__package__.rpartition('.')[0]}."
+
+
+@dataclass(frozen=True)
+class ResultKind:
+    """The pieces of one type of result.
+
+    Parameters
+    ----------
+    type : of the result, "module:class"
+    exit_code : of a command that gives this result
+    text : lines for the terminal of (result, colour=, unicode=, width=)
+    report : writes the report of (result, **`Paper`); more keywords where a kind needs them
+    csv : writes the result to a path
+    record : records the run of (result, actuator=, command=, date=)
+    data : plain data for JSON, SI
+    remarks : lines for standard error below the text
+    writes : whether there is something to write, as report or CSV; None: always
+    """
+
+    type: str
+    exit_code: Callable[[Any], ExitCode]
+    text: str | None
+    report: str | None
+    csv: str | None
+    record: str | None
+    data: str | None = "to_dict"
+    remarks: Callable[[Any], list[str]] | None = None
+    writes: Callable[[Any], bool] | None = None
+
+
+def _always(result: object) -> ExitCode:
+    """Of what has no requirements."""
+    return ExitCode.MET
+
+
+def _missed(missed: bool) -> ExitCode:
+    return ExitCode.MISSED if missed else ExitCode.MET
+
+
+def _met(result: Any) -> ExitCode:
+    return _missed(not result.met)
+
+
+def _converged(study: Any) -> ExitCode:
+    return ExitCode.MET if study.converged else ExitCode.SOLVER_FAILED
+
+
+def _optimised(result: Any) -> ExitCode:
+    if result.status == "undefined":
+        return ExitCode.SOLVER_FAILED
+    if result.status.startswith("interrupted"):
+        return ExitCode.INTERRUPTED
+    infeasible = result.status == "infeasible" or result.status.startswith("limit_inf")
+    missed = not result.evaluation.met or (result.rounding is not None and not result.rounding.met)
+    unlikely = result.robust is not None and not result.robust.reached
+    return ExitCode.MISSED if infeasible or missed or unlikely else ExitCode.MET
+
+
+def _solved(result: Any) -> ExitCode:
+    if result.status == "unsolved":
+        return ExitCode.SOLVER_FAILED
+    return ExitCode.MET if result.points else ExitCode.MISSED
+
+
+def _repeats(result: Any) -> ExitCode:
+    code = exit_code(result.subject)
+    return ExitCode.MISSED if result.repeats is False and code == ExitCode.MET else code
+
+
+def _unrounded(result: Any) -> list[str]:
+    from ..optimisation.rounding import unrounded
+
+    return [*filter(None, [unrounded(result)])]
+
+
+def kinds(*declared: ResultKind) -> dict[str, ResultKind]:
+    """Kinds by their type; refuses one type twice."""
+    found = {kind.type: kind for kind in declared}
+    if len(found) != len(declared):
+        raise TypeError("a type of result is declared twice")
+    return found
+
+
+# fmt: off
+KINDS = kinds(
+    ResultKind(
+        "evaluation.result:Evaluation", _met, text="pages.terminal:evaluation_text",
+        report="api.reports:report_design", csv=None, record=None,
+    ),
+    ResultKind(
+        "optimisation.result:Optimisation", _optimised, text="pages.terminal:optimisation_text",
+        report="api.reports:report_design", csv=None, record="api:record",
+        remarks=_unrounded, writes=lambda result: not result.status.startswith("interrupted"),
+    ),
+    ResultKind(
+        "api.optimum:Prices", lambda prices: _optimised(prices.optimisation), text="text",
+        report="report", csv=None, record=None,
+    ),
+    ResultKind(
+        "optimisation.pareto_result:ParetoFront", _solved, text="pages.pareto_rows:front_text",
+        report="api:write_front", csv="api:write_front_csv",
+        record="api:record_front", writes=lambda front: bool(front.points),
+    ),
+    ResultKind(
+        "uncertainties.result:Uncertainty", _met, text="pages.uncertainty_text:uncertainty_text",
+        report="api:write_uncertainty", csv="api:write_draws", record=None,
+    ),
+    ResultKind(
+        "evaluation.comparison:Comparison", _always, text="pages.compare_text:comparison_text",
+        report="api.comparing:report_comparison", csv=None, record=None,
+        data="api:comparison_json",
+    ),
+    ResultKind(
+        "sweeps.swept:Swept", lambda swept: _missed(not swept.best),
+        text="pages.sweep_text:sweep_text",
+        report=None, csv=None, record="api:record_sweep",
+        writes=lambda swept: False,  # rows are written as they come, figures by draw_sweep
+    ),
+    ResultKind(
+        "studies.seal_result:SealStudy", _converged, text="pages.seal_text:seal_text",
+        report="api:write_seal", csv=None, record=None,
+    ),
+    ResultKind(
+        "simulation.result:Simulation", _met, text="pages.simulation_text:simulation_text",
+        report="api:write_simulation", csv="api:write_signals",
+        record=None,
+    ),
+    ResultKind(
+        "api.simulations:Compared", lambda compared: _met(compared.simulation), text="text",
+        report="report", csv=None, record=None,
+    ),
+    ResultKind(
+        "simulation.sensitivity:Sensitivities", _always,
+        text="pages.verification_text:sensitivity_text", report=None, csv=None, record=None,
+    ),
+    ResultKind(
+        "simulation.verification.verify:Verification", _met,
+        text="pages.verification_text:verification_text", report=None, csv=None, record=None,
+    ),
+    ResultKind(
+        "identification.result:Identification", _always,
+        text="pages.identification_text:identification_text",
+        report="api:write_identification", csv="api:write_series", record=None,
+    ),
+    ResultKind(
+        "identification.bending:BendingResult", _always, text="pages.bending_text:bending_text",
+        report=None, csv=None, record=None,
+    ),
+    ResultKind(
+        "api.records:Calibrated", lambda new: _met(new.redesign.evaluation), text="text",
+        report="api:write_calibration", csv=None, record=None,
+    ),
+    ResultKind(
+        "api.installation:Installation", lambda found: _missed(not found.ok), text="text",
+        report=None, csv=None, record=None,
+    ),
+    ResultKind(
+        "api.recorded_runs:Run", _always, text="text",
+        report="api:report_run", csv=None, record=None,
+    ),
+    ResultKind(
+        "api.kept_sweeps:KeptSweep", lambda kept: _missed(not kept.run.head["met"]), text=None,
+        report="api.kept_sweeps:report_sweep", csv=None, record=None, data=None,
+    ),
+    ResultKind(
+        "api.restoring:Restored", lambda restored: exit_code(restored.result), text=None,
+        report="api:report_run", csv=None, record=None, data=None,
+    ),
+    ResultKind(
+        "api.repeating:Rerun", _repeats, text="text", report="report", csv=None, record="record",
+        remarks=lambda rerun: [rerun.command, rerun.sentence],
+    ),
+)
+# fmt: on
+
+
+def kind_of(result: object) -> ResultKind:
+    """The kind of a result, by its type; raises `TypeError` for what is no result."""
+    for cls in type(result).__mro__:
+        kind = KINDS.get(f"{cls.__module__.removeprefix(_PACKAGE)}:{cls.__qualname__}")
+        if kind is not None:
+            return kind
+    raise TypeError(f"{type(result).__name__} is no result of a verb")
+
+
+def piece(name: str, result: object) -> Callable[..., Any]:
+    """A piece of a kind, to be called without the result."""
+    module, _, function = name.rpartition(":")
+    if not module:
+        return getattr(result, name)  # type: ignore[no-any-return]
+    return partial(getattr(import_module(_PACKAGE + module), function), result)
+
+
+def exit_code(result: object) -> ExitCode:
+    """The exit code of a command that gives this result."""
+    return kind_of(result).exit_code(result)
+
+
+def text(result: object, **style: Unpack[Style]) -> str:
+    """What the terminal shows of a result; "" for what has no text."""
+    name = kind_of(result).text
+    return "" if name is None else str(piece(name, result)(**style))
+
+
+def data(result: object) -> dict[str, Any]:
+    """A result as plain data for JSON, SI."""
+    name = kind_of(result).data
+    return {} if name is None else dict(piece(name, result)())
+
+
+def remarks(result: object) -> list[str]:
+    """Lines for standard error below the text of a result."""
+    found = kind_of(result).remarks
+    return [] if found is None else found(result)
+
+
+def writes(result: object) -> bool:
+    """Whether there is something to write."""
+    found = kind_of(result).writes
+    return found is None or found(result)
+
+
+def write_csv(result: object, path: str | Path) -> ReportFile:
+    """Write a result as CSV; raises `UsageError` for a kind without."""
+    name = kind_of(result).csv
+    if name is None:
+        raise UsageError(Diagnostic(f"{type(result).__name__} has no CSV", "leave out --csv"))
+    file: ReportFile = piece(name, result)(path)
+    return file
+
+
+def keep(result: object, **how: Any) -> Run | None:
+    """Record the run of a result; None for a kind without records. Parameters as `record`."""
+    name = kind_of(result).record
+    return None if name is None else piece(name, result)(**how)
+
+
+def report(
+    subject: object,
+    *,
+    folder: str | Path = "reports",
+    stem: str | None = None,
+    actuator: Actuator | None = None,
+    command: str = "",
+    date: str | None = None,
+    seed: int = 0,
+    plugins: Plugins = (),
+    **more: Any,
+) -> list[ReportFile]:
+    """Write the report of a design or of any result: the bytes that the terminal writes.
+
+    A design is evaluated, as by ``actuator-opt report``; an evaluation without an estimate of its
+    yield gets one (`with_yield`).
+
+    Parameters
+    ----------
+    subject : a design in any form, a run (id, ``last``, `Run`, `Restored`), or a result: of
+        `evaluate`, `optimise`, `pareto`, `uncertainty`, `seal`, `simulate`, `compare_measured`,
+        `identify`, `calibrate`, `compare`, `rerun`
+    folder, stem : where to; default: the design's name in ``reports/``
+    actuator : the design as read, for its listing and attachment
+    command : what made the report, printed on it
+    date : ISO date; default: SOURCE_DATE_EPOCH, else none
+    seed : of the draws of the estimate
+    plugins : the user's metrics and constraints, of a design that is no `Actuator` yet, or a run
+    more : `dynamics_verified` (of `verify_dynamics`) and `extra_tables` of an evaluation or an
+        optimisation; `scenario` as read, `measured` and `sensitivities` of a simulation; `sheet`
+        (False: the map alone) of a seal
+
+    Returns
+    -------
+    the files, each with its path and SHA-256; none of a front without designs
+
+    Raises
+    ------
+    UsageError : no ISO date, a result without report, one that needs `actuator` or `scenario`
+    InputError : the folder cannot be written; no partial file is left
+    """
+    paper: dict[str, Any] = {"folder": folder, "stem": stem, "command": command, "date": date}
+    if isinstance(subject, Run) or (
+        isinstance(subject, str | Path) and run_store.is_name(str(subject))
+    ):
+        from .restoring import restore
+
+        subject = restore(subject, plugins=plugins)
+    elif isinstance(subject, Actuator | Design | str | Path):
+        actuator = as_actuator(subject, plugins)
+        subject = evaluate(actuator, seed=seed)
+    elif isinstance(subject, Evaluation) and subject.yield_estimate == UNKNOWN:
+        own = () if actuator is None else actuator.plugins
+        subject = with_yield(subject, plugins=own, seed=seed)
+    name = kind_of(subject).report
+    if name is None:
+        message = f"{type(subject).__name__} has no report"
+        raise UsageError(Diagnostic(message, "print it, or report the design"))
+    files: list[ReportFile] = piece(name, subject)(actuator=actuator, **paper, **more)
+    return files

@@ -1,0 +1,543 @@
+"""A warm session: solve once, then re-solve, predict, price and trace changes of numbers."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.quantities import Quantity
+from ..base.suggest import remedy
+from ..base.tables import aligned
+from ..design import Design, canonical, get, quantity_of
+from ..evaluation import PreparedDesign
+from .actuator import Actuator, Plugins, as_actuator, located, place, unanswered
+
+if TYPE_CHECKING:
+    from ..optimisation.actuator import ActuatorProblem
+    from ..optimisation.result import Optimisation
+
+Changes = Mapping[str, float | str]
+"""New numbers by PATH: SI, or text with a unit."""
+
+STARTS, SAMPLES = 6, 2048
+"""Effort of the one cold solve: that of `optimise`."""
+
+NUDGE = 1e-4
+"""Relative change of a number by which its effect on others is looked for."""
+
+ROUNDING = 1e-9
+"""Share of a change, or of a number, that counts as none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """An optimum by straight lines from the session's, in SI.
+
+    f(p + d) = f(p) + s(d), x(p + d) = x(p) + J d, with the one-sided slope s and the derivative J
+    of the optimum, solution of its linearised optimality conditions [Fiacco1983].
+
+    Parameters
+    ----------
+    objective : predicted objective; infinite (the worst) where the first step leaves no design
+    variables : predicted free dimensions by PATH
+    valid : whether the same limits hold the optimum all the way, to first order
+    why : what changes on the way where not, and after which share of it
+    """
+
+    objective: float
+    variables: Mapping[str, float]
+    valid: bool
+    why: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, SI."""
+        return asdict(self)
+
+
+@dataclass(frozen=True, slots=True)
+class Price:
+    """What one number costs at the session's optimum: objective per unit of it, both SI.
+
+    Parameters
+    ----------
+    path, value : the number and its value
+    slope_down, slope_up : change of the objective per unit, with the sign of a derivative, when the
+        number falls and when it grows. They differ only at a degenerate vertex. None where the
+        next step that way leaves no design
+    holds : lowest and highest value up to which the same limits hold the optimum, to first order;
+        None on a side without a change within ±100 %
+    changes : what changes there
+    movement : change of each free dimension per unit, by PATH
+    """
+
+    path: str
+    value: float
+    slope_down: float | None
+    slope_up: float | None
+    holds: tuple[float | None, float | None]
+    changes: tuple[str | None, str | None]
+    movement: Mapping[str, float] = field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, SI."""
+        return asdict(self)
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """Optima along values of one number, in SI.
+
+    Parameters
+    ----------
+    path, quantity : the number
+    values : its values, in the order asked for
+    objectives : at the optima; None where no design was found
+    variables : the free dimensions of each optimum by PATH; empty where no design was found
+    objective : quantity of the objective; None where it has none (weighted terms)
+    """
+
+    path: str
+    quantity: Quantity
+    values: tuple[float, ...]
+    objectives: tuple[float | None, ...]
+    variables: tuple[Mapping[str, float], ...]
+    objective: Quantity | None = None
+
+    def __len__(self) -> int:
+        """Number of values."""
+        return len(self.values)
+
+    @property
+    def found(self) -> tuple[bool, ...]:
+        """Whether a design was found at each value."""
+        return tuple(one is not None for one in self.objectives)
+
+    def columns(self) -> dict[str, list[float]]:
+        """Value, objective and free dimensions as columns of SI; NaN where no design was found."""
+        names = dict.fromkeys(name for row in self.variables for name in row)
+        result = {
+            self.path: list(self.values),
+            "objective": [math.nan if one is None else one for one in self.objectives],
+        }
+        return result | {
+            name: [row.get(name, math.nan) for row in self.variables] for name in names
+        }
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, SI."""
+        return {
+            "path": self.path,
+            "values": list(self.values),
+            "objectives": list(self.objectives),
+            "variables": [dict(row) for row in self.variables],
+        }
+
+    def __str__(self) -> str:
+        """The values and their objectives as a table with units."""
+        shown = self.objective
+        rows = [[self.path, "objective"]]
+        for value, objective in zip(self.values, self.objectives, strict=True):
+            text = "none found" if objective is None else f"{objective:.6g}"
+            if objective is not None and shown is not None:
+                text = shown.text(objective, 6)
+            rows.append([self.quantity.text(value, 6), text])
+        return aligned(rows, right=(0, 1))
+
+
+class Session:
+    """A design's optimum, kept warm for what comes.
+
+    Every call takes its changes as the whole difference from the design as read: nothing a call
+    does changes what a later one returns. An objective of weighted terms divides each by its value
+    in the design as read; `solve` by that with the changes, as `optimise` would.
+
+    Attributes
+    ----------
+    optimum : the optimum of the design as read, without prices, as `optimise(prices=False)`
+    """
+
+    def __init__(self, actuator: Actuator, *, seed: int = 0) -> None:
+        from ..optimisation.actuator import build, require_movable_objective
+        from ..optimisation.outcome import Outcome
+        from ..optimisation.rounding import Wanted, sizes_of
+        from ..optimisation.run import result_of
+        from ..optimisation.solver import solve
+        from ..optimisation.warm_start import Effort, WarmStart
+        from .optimum import estimated
+
+        began = time.perf_counter()
+        subject = actuator.subject()
+        faults = unanswered(actuator, subject)
+        if faults:
+            raise InputError(faults)
+        with located(actuator):
+            _require_continuous(actuator, sizes_of(actuator.design, Wanted(), subject.materials))
+            problem = build(subject, place(actuator))
+            require_movable_objective(problem)
+        solution = solve(problem.problem, starts=STARTS, samples=SAMPLES, seed=seed)
+        if solution.outcome is Outcome.NOTHING_FREE:
+            message = "every variable is fixed by equal bounds: nothing to re-solve"
+            raise InputError(Diagnostic(message, solution.outcome.remedy, path="variables"))
+        if not solution.feasible:
+            raise InputError(
+                Diagnostic(
+                    "no design meets every requirement: a session has nothing to start from",
+                    "call optimise, which says what to relax",
+                    path="requirements",
+                )
+            )
+        self._actuator, self._seed = actuator, seed
+        found = result_of(subject, problem, solution, prices=False, seed=seed, began=began)
+        self.optimum: Optimisation = estimated(found, actuator.plugins)
+        self._differentiable: dict[str, bool] = {}
+        self._warm = WarmStart(problem, solution, Effort(STARTS, SAMPLES, seed))
+
+    def __repr__(self) -> str:
+        """Name and objective of the design."""
+        found = self.optimum
+        return f"<Session {found.design.name!r}: {found.objective_metric} {self._objective_text()}>"
+
+    def solve(
+        self, changes: Changes, *, prices: bool = False, stop: Callable[[], bool] | None = None
+    ) -> Optimisation:
+        """The optimum with some numbers changed, warm.
+
+        Full steps from the session's optimum; where they do not converge, restoration and descent;
+        then a search, which alone may find no design. The optimality conditions are checked to
+        1e-6. `start` of the result is the session's optimum, `samples` is 0 unless a search was
+        made; why nothing fits is for `optimise` to say.
+
+        Parameters
+        ----------
+        changes : new numbers by PATH, SI or text with a unit; the whole difference from the design
+            as read
+        prices : whether to price requirements and parameters, as `optimise`
+        stop : asked between steps; once it returns True, the result has the status "interrupted",
+            or "interrupted_infeasible", and the best design known
+
+        Raises
+        ------
+        InputError
+            an unknown PATH, a word, a value that is not finite or does not fit the design
+        UsageError
+            a PATH whose value the session finds itself
+        """
+        from ..optimisation.run import result_of
+
+        began = time.perf_counter()
+        actuator, _ = self._changed(changes)
+        subject, problem = self._built(actuator)
+        solution = self._warm.solve(problem.problem, stop)
+        found = result_of(
+            subject,
+            problem,
+            solution,
+            prices=prices,
+            seed=self._seed,
+            began=began,
+            start=self.optimum.evaluation,
+        )
+        starts = self._warm.point.x.tolist()
+        return replace(
+            found,
+            variables=tuple(
+                replace(one, start=x) for one, x in zip(found.variables, starts, strict=True)
+            ),
+        )
+
+    def predict(self, changes: Changes) -> Prediction:
+        """The optimum with some numbers changed, by straight lines: no model is evaluated.
+
+        The first prediction with a number calculates its derivatives. Parameters and errors as of
+        `solve`; a number whose derivative is not known raises `UsageError`.
+        """
+        _, numbers = self._changed(changes)
+        present = {path: self._priced(path) for path in numbers}
+        steps = {
+            path: value - present[path]
+            for path, value in numbers.items()
+            if abs(value - present[path]) > ROUNDING * abs(present[path])
+        }
+        objective, x = self.optimum.objective_value, self._warm.point.x
+        if not steps:
+            return Prediction(objective, self._named(x), valid=True)
+        line = self._warm.line(steps)
+        shown = self._shown(line.above)
+        why = ""
+        if line.high is not None and line.high[0] < 1 - ROUNDING:
+            why = f"after {100 * abs(line.high[0]):.3g} % of the change {line.high[1]}"
+        if not math.isfinite(line.above):
+            why = "no design is left in this direction"
+        return Prediction(objective + shown, self._named(x + line.moves), not why, why)
+
+    def price(self, path: str) -> Price:
+        """What a number costs at the session's optimum.
+
+        The slope is the derivative of the Lagrangian by the number [Fiacco1983], one-sided at a
+        degenerate vertex [Gauvin1982].
+
+        Parameters
+        ----------
+        path : of a number that is not free
+
+        Raises
+        ------
+        InputError
+            an unknown PATH, or a word
+        UsageError
+            a free dimension, or a number without derivative (bounds of variables, say)
+        """
+        return self.prices([path])[0]
+
+    def prices(self, paths: Sequence[str]) -> tuple[Price, ...]:
+        """The prices of several numbers, whose derivatives are calculated together; as `price`."""
+        names = [self._path(path) for path in paths]
+        values = {path: self._priced(path) for path in names}
+        self._warm.differentiate(names)
+        return tuple(self._price(path, values[path]) for path in names)
+
+    def _price(self, path: str, value: float) -> Price:
+        line = self._warm.line({path: 1.0}, value)
+        low, high = self._end(line.low, value), self._end(line.high, value)
+        return Price(
+            path=path,
+            value=value,
+            slope_down=self._slope(line.below),
+            slope_up=self._slope(line.above),
+            holds=(low[0], high[0]),
+            changes=(low[1], high[1]),
+            movement=self._named(line.moves),
+        )
+
+    def curve(
+        self,
+        path: str,
+        values: Sequence[float | str],
+        *,
+        stop: Callable[[], bool] | None = None,
+    ) -> Curve:
+        """The optima along values of one number, solved together, outwards from the optimum.
+
+        Beyond a value where a search found no design nothing is searched for any more.
+
+        Parameters
+        ----------
+        path : the number
+        values : SI, or text with a unit
+        stop : asked between steps; what is not solved by then counts as not found
+
+        Raises
+        ------
+        InputError, UsageError
+            as of `solve`; no values
+        """
+        if isinstance(values, str) or not len(values):
+            raise UsageError(Diagnostic("a curve needs a list of values", 'e.g. [0.1, "112 mm"]'))
+        numbers = [self._changed({path: value})[1] for value in values]
+        path = next(iter(numbers[0]))
+        wanted = [one[path] for one in numbers]
+        optima = self._warm.solve_together(
+            path, wanted, lambda value: self._built(self._changed({path: value})[0])[1], stop
+        )
+        goal = self._warm.actuator.goal
+        metrics = self.optimum.evaluation.metrics
+        single = goal.single
+        return Curve(
+            path=path,
+            quantity=quantity_of(path, self._actuator.design),
+            values=tuple(wanted),
+            objectives=tuple(None if one is None else goal.shown(one.objective) for one in optima),
+            variables=tuple({} if one is None else self._named(one.x) for one in optima),
+            objective=None if single is None else metrics[single].quantity,
+        )
+
+    def _changed(self, changes: Changes) -> tuple[Actuator, dict[str, float]]:
+        """The design with the changes, and their numbers in SI by canonical PATH."""
+        if not isinstance(changes, Mapping):
+            message = f"changes: need numbers by PATH, not {type(changes).__name__}"
+            raise UsageError(Diagnostic(message, 'write e.g. {"cylinder.stroke": "112 mm"}'))
+        actuator, numbers = self._actuator, {}
+        for path, value in changes.items():
+            name = self._path(path)
+            if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+                raise InputError(
+                    Diagnostic(
+                        f"need a number, not {type(value).__name__}",
+                        'write SI, or a text with a unit such as "112 mm"',
+                        path=path,
+                    )
+                )
+            if name in self._actuator.design.variables:
+                raise UsageError(
+                    Diagnostic(
+                        "a free dimension: the session finds its value",
+                        f"to hold it, change lower, upper and start of variables.{name}",
+                        path=path,
+                    )
+                )
+        with located(actuator):
+            changed = actuator.changed(dict(changes))
+        for path in changes:
+            number = get(changed.design, path)
+            assert isinstance(number, float | int)
+            numbers[self._path(path)] = float(number)
+        return changed, numbers
+
+    def _path(self, path: str) -> str:
+        """The canonical PATH of a number."""
+        if not isinstance(path, str):
+            raise InputError(Diagnostic(f"need a PATH, not {type(path).__name__}", "write a text"))
+        design = self._actuator.design
+        with located(self._actuator):
+            name = canonical(path, design)
+            try:
+                quantity_of(name, design)
+            except InputError:
+                raise InputError(
+                    Diagnostic(
+                        "is a word, not a number",
+                        "open a new session with the other word",
+                        path=path,
+                    )
+                ) from None
+        return name
+
+    def _built(self, actuator: Actuator) -> tuple[PreparedDesign, ActuatorProblem]:
+        from ..optimisation.actuator import build
+
+        subject = actuator.subject()
+        with located(actuator):
+            problem = build(subject, place(actuator))
+        answered = {row.limit_of.metric for row in (*problem.rows, *problem.fixed)}
+        if not answered.issuperset(actuator.design.requirements):
+            faults = unanswered(actuator, subject)
+            if faults:
+                raise InputError(faults)
+        return subject, problem
+
+    def _priced(self, path: str) -> float:
+        """The present value of a number that has a price."""
+        numbers = self._warm.actuator.subject.numbers
+        if path in self._actuator.design.variables:
+            raise UsageError(
+                Diagnostic("a free dimension has no price", "name a fixed number", path=path)
+            )
+        if path not in numbers:
+            raise UsageError(
+                Diagnostic(
+                    "has no derivative at the optimum: it is no number that the design states",
+                    remedy(path, numbers) if get(self._actuator.design, path) is None
+                    else "re-solve with it instead (session.solve)",
+                    path=path,
+                )
+            )  # fmt: skip
+        if path not in self._differentiable:
+            self._differentiable[path] = self._only_read(path, float(numbers[path]))
+        if not self._differentiable[path]:
+            raise UsageError(
+                Diagnostic(
+                    "has no derivative here: it is a whole number, or decides more than what the "
+                    "models read of it",
+                    "re-solve with it instead (session.solve, session.curve)",
+                    path=path,
+                )
+            )
+        return float(numbers[path])
+
+    def _only_read(self, path: str, value: float) -> bool:
+        """Whether a small change of a number changes nothing else: no other number, no factor.
+
+        Temperatures decide the factors on strengths, say.
+        """
+        own = self._warm.actuator.subject
+        for share in (NUDGE, -NUDGE):
+            try:
+                changed = self._actuator.changed({path: value + share * (abs(value) or 1.0)})
+            except InputError:
+                continue
+            subject = changed.subject()
+            others = {**subject.numbers, path: value} == dict(own.numbers)
+            return others and subject.factors == own.factors
+        return False
+
+    def _shown(self, slope: float) -> float:
+        """A change of the objective as the user states it."""
+        return self._warm.actuator.goal.shown(slope)
+
+    def _slope(self, slope: float) -> float | None:
+        return self._shown(slope) if math.isfinite(slope) else None
+
+    def _end(self, end: tuple[float, str] | None, value: float) -> tuple[float | None, str | None]:
+        """The value at a change of the active set, within ±100 %."""
+        if end is None or abs(end[0]) > (abs(value) or 1.0):
+            return None, None
+        return value + end[0], end[1]
+
+    def _named(self, x: Iterable[float]) -> dict[str, float]:
+        """Numbers of the free dimensions by PATH."""
+        return dict(zip(self._warm.actuator.paths, map(float, x), strict=True))
+
+    def _objective_text(self) -> str:
+        metric = self.optimum.evaluation.metrics.get(self.optimum.objective_metric)
+        value = self.optimum.objective_value
+        return f"{value:.6g}" if metric is None else metric.quantity.text(value)
+
+
+def _require_continuous(actuator: Actuator, sizes: object) -> None:
+    """A session re-solves continuous dimensions only."""
+    design = actuator.design
+    if design.choices:
+        raise UsageError(
+            Diagnostic(
+                "a session holds words, but the design has choices",
+                "optimise it, and open a session on the best design",
+                path="choices",
+            )
+        )
+    if sizes is not None:
+        raise UsageError(
+            Diagnostic(
+                "a session re-solves continuous dimensions, but variables keep to sizes",
+                "remove `sizes` and `step` of the variables",
+                path="variables",
+            )
+        )
+
+
+def session(
+    design: Actuator | Design | str | Path,
+    *,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    plugins: Plugins = (),
+    seed: int = 0,
+) -> Session:
+    """Solve a design once, cold, for warm re-solves of changes.
+
+    Parameters
+    ----------
+    design : as of `optimise`
+    set : values to replace first, by PATH; a bare number is SI
+    plugins : the user's metrics and constraints
+    seed : of the search
+
+    Raises
+    ------
+    InputError
+        a fault of the design, no variables, no design that meets every requirement
+    UsageError
+        a design with choices, or with variables that keep to sizes
+    """
+    from .actuator import read
+
+    pairs = set.items() if isinstance(set, Mapping) else set
+    if isinstance(design, (str, Path)):
+        return Session(read(design, set=[(path, str(value)) for path, value in pairs],
+                            plugins=plugins), seed=seed)  # fmt: skip
+    actuator = as_actuator(design, plugins)
+    changes = dict(pairs)
+    return Session(actuator.changed(changes) if changes else actuator, seed=seed)

@@ -1,0 +1,410 @@
+"""Scenarios: read with their design and records, simulated, written down."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
+
+from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.numeric import Array
+from ..design import Design
+from ..studies.plant import plant
+from .actuator import Actuator, as_actuator
+from .records import Units
+from .reports import Paper, Target, page_of
+
+if TYPE_CHECKING:
+    from ..design.scenario import LoadedScenario, Scenario
+    from ..pages import ReportFile
+    from ..rendering.console import Style
+    from ..rendering.origin import Origin
+    from ..simulation import Simulation
+    from ..simulation.measured import Overlay
+    from ..simulation.measured.fit import Fit
+    from ..simulation.methods import Method
+    from ..simulation.sensitivity import Sensitivities
+    from ..simulation.verification import Verification
+
+MOST_BYTES = 200_000_000
+"""Largest file of a recorded input (a choice)."""
+_TABLES = (".csv", ".txt", ".tsv")
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A scenario as read, with its design as it is there and the records it names."""
+
+    scenario: Scenario
+    actuator: Actuator
+    records: Mapping[tuple[str, str], tuple[Array, Array]]
+    loaded: LoadedScenario
+
+    @property
+    def files(self) -> list[Path]:
+        """The design and the records it reads."""
+        records = [self.loaded.folder / file for file, _ in self.records]
+        return [self.loaded.design_file, *records]
+
+
+def read_scenario(
+    source: str | Path,
+    *,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    units: Units = None,
+) -> Trial:
+    """Read a scenario file (a path, ``"-"`` for standard input, or the text itself).
+
+    Parameters
+    ----------
+    source : path or text
+    set : values to replace, by PATH of the scenario, else of its design; a bare number is SI
+    units : of columns of recorded inputs whose header states none, as `read_record`
+
+    Raises
+    ------
+    InputError
+        with every fault of scenario, design and records, each with its place and remedy
+    """
+    from ..design.scenario import read_design_of, read_scenario as read
+
+    pairs = set.items() if isinstance(set, Mapping) else set
+    loaded = read(source, overrides=[(path, str(value)) for path, value in pairs])
+    design = read_design_of(loaded)
+    actuator = Actuator(design.design, design.source)
+    return Trial(loaded.scenario, actuator, _records(loaded, units), loaded)
+
+
+def _records(loaded: LoadedScenario, units: Units) -> dict[tuple[str, str], tuple[Array, Array]]:
+    """Every column that a signal of the scenario names."""
+    from ..base.files import read_bytes
+    from ..design.scenario import recorded_parts
+    from ..identification import column_units, decode_record, parse_column
+
+    known = column_units(units)
+    found: dict[tuple[str, str], tuple[Array, Array]] = {}
+    texts: dict[str, str] = {}
+    for path, part, dimension in recorded_parts(loaded.scenario):
+        file, column = str(part.file), str(part.column)
+        name = str(loaded.folder / file)
+        try:
+            if file not in texts:
+                path_of = loaded.folder / file
+                data = read_bytes(path_of, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
+                texts[file] = decode_record(data, name, most=MOST_BYTES)
+            found[file, column] = parse_column(
+                texts[file], column, dimension, name=name, units=known
+            )
+        except InputError as error:
+            at = path if file in texts else f"{path.removesuffix('column')}file"
+            raise InputError([_where(fault, at, loaded) for fault in error.diagnostics]) from None
+    return found
+
+
+def _where(fault: Diagnostic, path: str, loaded: LoadedScenario) -> Diagnostic:
+    """A fault of a record without a line stands where the scenario names the file."""
+    if fault.line is not None:
+        return fault
+    return loaded.diagnostic(path, f"{fault.file}: {fault.message}", fault.remedy)
+
+
+def simulate(
+    scenario: Trial | str | Path,
+    *,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+    verify: bool = False,
+    method: Method = "lsoda",
+) -> Simulation:
+    """A scenario around its design over time.
+
+    Parameters
+    ----------
+    scenario : as read, or its path
+    set : values to replace, by PATH of the scenario, else of its design; a bare number is SI
+    verify : integrate again by another method and tell the difference
+    method : "lsoda"; "cvodes" is faster (extra ``fast``); "radau"
+
+    Returns
+    -------
+    what happened, SI: `time` and `signals` by name over it, `told` (label and quantity of each),
+    `values` by the names of `quantities.RESULTS` (None with a reason in `why`), `requirements`,
+    `servo`, `balance`, `events`, `notes`; printed, a table
+
+    Raises
+    ------
+    InputError
+        as `read_scenario`; a gain that no rule gives
+    Unsolvable
+        where the integration cannot go on, with the time
+    """
+    from ..simulation import simulate as run
+
+    trial = as_trial(scenario, set)
+    with placed(trial):
+        return run(
+            trial.scenario,
+            trial.actuator.subject(),
+            records=trial.records,
+            verify=verify,
+            method=method,
+        )
+
+
+@contextmanager
+def placed(trial: Trial) -> Iterator[None]:
+    """Give faults of a scenario's values their place in its file."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(
+            [
+                trial.loaded.diagnostic(fault.path, fault.message, fault.remedy)
+                if fault.path is not None and fault.file is None
+                else fault
+                for fault in error.diagnostics
+            ]
+        ) from None
+
+
+def as_trial(
+    scenario: Trial | str | Path,
+    set: Mapping[str, str | float] | Sequence[tuple[str, str]] = (),
+) -> Trial:
+    """Any form of a scenario as read."""
+    if not isinstance(scenario, Trial):
+        return read_scenario(scenario, set=set)
+    if set:
+        message = "values are set, and the scenario is read already"
+        raise InputError(Diagnostic(message, "set them in read_scenario"))
+    return scenario
+
+
+def write_signals(simulation: Simulation, path: str | Path) -> ReportFile:
+    """Write every signal of a simulation as CSV."""
+    from ..pages.simulation_csv import write_signals as write
+
+    return write(simulation, Path(path))
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """A simulation under a measured record, with the parameters fitted to it."""
+
+    overlay: Overlay
+    """After the fit, where there is one."""
+    fit: Fit | None = None
+
+    @property
+    def simulation(self) -> Simulation:
+        """What lies under the record."""
+        return self.overlay.simulation
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON, SI."""
+        return self.overlay.to_dict() if self.fit is None else self.fit.to_dict()
+
+    def text(self, **style: Unpack[Style]) -> str:
+        """What the terminal shows below the simulation."""
+        from ..pages.measured_rows import measured_text
+
+        return measured_text(self.overlay, self.fit, **style)
+
+    def report(self, **how: Any) -> list[ReportFile]:
+        """Write the page of the simulation with the record; parameters as `write_simulation`."""
+        return write_simulation(self.simulation, measured=self, **how)
+
+
+def compare_measured(
+    scenario: Trial | str | Path,
+    record: str | Path,
+    *,
+    fit: Sequence[str] = (),
+    columns: Mapping[str, str] | None = None,
+    units: Units = None,
+    verify: bool = False,
+    method: Method = "lsoda",
+    simulation: Simulation | None = None,
+) -> Compared:
+    """A measured record over a scenario: residuals, and parameters fitted to it.
+
+    Parameters
+    ----------
+    scenario : as read, or its path
+    record : CSV file with t and any of p1, p2, x, v, F_L, ...
+    fit : names of parameters, as ``air_content``; see `simulation.measured.parameters`
+    columns : header by channel where it is none of the known names
+    units : of columns whose header states none, as `read_record`
+    verify, method : as `simulate`; of a fit, of the run with the fitted values
+    simulation : of the scenario, where it has been run
+
+    Raises
+    ------
+    InputError
+        as `read_scenario`; nothing in common, an unknown parameter
+    """
+    from ..base.files import read_bytes
+    from ..identification import column_units, decode_record
+    from ..simulation.measured import overlay, parse_measured
+    from ..simulation.measured.fit import fit as fitted
+    from ..simulation.run import spec_of
+
+    trial = as_trial(scenario)
+    name = str(record)
+    data = read_bytes(record, most=MOST_BYTES + 1, kinds=_TABLES, what="CSV file")
+    text = decode_record(data, name, most=MOST_BYTES)
+    measured = parse_measured(text, name=name, columns=columns, units=column_units(units))
+    with placed(trial):
+        if not fit:
+            done = simulation or simulate(trial, verify=verify, method=method)
+            return Compared(overlay(done, measured))
+        subject = trial.actuator.subject()
+        found = fitted(
+            trial.scenario, plant(subject), trial.records, measured, fit,
+            verify=verify, method=method, spec=spec_of(subject, trial.scenario),
+        )  # fmt: skip
+    return Compared(found.after, found)
+
+
+def servo_sensitivities(
+    scenario: Trial | str | Path, names: Sequence[str] | None = None
+) -> Sensitivities:
+    """Parameters of a scenario and its design, ranked by what they change in its results.
+
+    Parameters
+    ----------
+    scenario : as read, or its path
+    names : PATHs; default: those that count in a servo
+    """
+    from ..simulation.sensitivity import sensitivities
+
+    trial = as_trial(scenario)
+    with placed(trial):
+        return sensitivities(trial.scenario, trial.actuator.subject(), names, records=trial.records)
+
+
+def verify_dynamics(
+    scenario: Trial | str | Path, design: Actuator | Design | str | Path | None = None
+) -> Verification:
+    """Every dynamic requirement of a design and of a scenario, checked in time.
+
+    Parameters
+    ----------
+    scenario : as read, or its path
+    design : in place of the scenario's own, with the values that the scenario sets
+    """
+    from ..simulation.verification import verify
+
+    trial = as_trial(scenario)
+    actuator = trial.actuator if design is None else fitting(trial, design)
+    with placed(trial):
+        return verify(trial.scenario, actuator.subject(), records=trial.records)
+
+
+def fitting(trial: Trial, design: Actuator | Design | str | Path) -> Actuator:
+    """Another design in a scenario's place, with the values that the scenario sets.
+
+    Raises
+    ------
+    InputError
+        a scenario that this design cannot do, or that has no cylinder to verify
+    """
+    from ..design.scenario import design_faults
+
+    scenario, source = trial.scenario, trial.loaded.source
+    for key in ("motor", "held_ports"):
+        if getattr(scenario, key) is not None:
+            fault = trial.loaded.diagnostic(key, "stands in the place of the cylinder")
+            raise InputError(replace(fault, remedy="verify a design with a scenario without it"))
+    changes = {change.path: change.value for change in trial.loaded.changes}
+    actuator = as_actuator(design)
+    actuator = actuator.changed(changes) if changes else actuator
+    found = sorted(design_faults(scenario, actuator.design), key=source.place)
+    if found:
+        raise InputError([source.at(fault) for fault in found])
+    return actuator
+
+
+def write_simulation(
+    simulation: Simulation,
+    scenario: Trial | None = None,
+    *,
+    measured: Compared | None = None,
+    sensitivities: Sensitivities | None = None,
+    **paper: Unpack[Paper],
+) -> list[ReportFile]:
+    """Write the page of a simulation (PDF and PNG); the scenario is attached.
+
+    Parameters
+    ----------
+    simulation : of `simulate`
+    scenario : as read
+    measured, sensitivities : what else to show
+    paper : as `report`; the name is the scenario file's
+
+    Raises
+    ------
+    UsageError : no `scenario`: the simulation does not keep its file
+    """
+    from ..pages.measured_figures import drawn
+    from ..pages.measured_rows import measured_blocks
+    from ..pages.simulation_document import write_simulation_sheet
+    from ..pages.tables import extra
+    from ..pages.verification_rows import sensitivity_rows
+
+    if scenario is None:
+        message = "the page of a simulation needs its scenario"
+        raise UsageError(Diagnostic(message, "give scenario=read_scenario(...)"))
+    origin, place = _page(scenario, simulation, "", paper)
+    blocks = [] if measured is None else measured_blocks(measured.overlay, measured.fit)
+    blocks += [] if sensitivities is None else map(extra, sensitivity_rows(sensitivities))
+    return write_simulation_sheet(
+        simulation,
+        origin,
+        measured=None if measured is None else drawn(measured.overlay),
+        extra=blocks,
+        **place,
+    )
+
+
+def write_comparison(
+    runs: Sequence[tuple[str, Simulation]],
+    scenario: Trial,
+    *,
+    title: str,
+    notes: Sequence[str] = (),
+    **paper: Unpack[Paper],
+) -> list[ReportFile]:
+    """Write one page about several simulations side by side (PDF and PNG).
+
+    Parameters
+    ----------
+    runs : name and simulation of each; "50 %, extending" and "50 %, retracting" share a colour
+    scenario : that they vary, attached
+    title, notes : of the page
+    paper : as `report`; the name is the scenario file's with "-compared"
+
+    Raises
+    ------
+    InputError
+        no run, a name that stands twice
+    """
+    from ..pages.simulation_comparison import comparison
+    from ..pages.simulation_comparison_document import write_comparison_sheet
+
+    made = comparison(runs, title, notes)
+    origin, place = _page(scenario, runs[0][1], "-compared", paper)
+    return write_comparison_sheet(made, origin, **place)
+
+
+def _page(
+    scenario: Trial, simulation: Simulation, tail: str, paper: Paper
+) -> tuple[Origin, Target]:
+    """As `page_of`; the scenario's file is attached, and names the page."""
+    source = scenario.loaded.source
+    name = "scenario.yaml" if source.file.startswith("<") else Path(source.file).name
+    paper["actuator"] = scenario.actuator
+    page, place = page_of(scenario.actuator.design, tail, beside=name, **paper)
+    spec_hash = simulation.spec_hash or page.spec_hash
+    return replace(page, source_text=source.text, source_name=name, spec_hash=spec_hash), place

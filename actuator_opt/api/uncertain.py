@@ -1,0 +1,85 @@
+"""What scatter does to a design, as results and files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
+
+from ..base.errors import Diagnostic, UsageError
+from ..design import Design
+from .actuator import Actuator, Plugins, answered, located
+from .reports import Paper, page_of
+
+if TYPE_CHECKING:
+    from ..pages import ReportFile
+    from ..uncertainties import Uncertainty
+
+LEAST, MOST = 20, 10_000_000
+"""Fewest and most draws of a yield."""
+
+
+def uncertainty(
+    design: Actuator | Design | str | Path,
+    *,
+    count: int = 10_000,
+    seed: int = 0,
+    quasi_random: bool = False,
+    rows: int = 1024,
+    metrics: Sequence[str] = (),
+    plugins: Plugins = (),
+) -> Uncertainty:
+    """Yield, sensitivity indices and tornado from what scatters in a design.
+
+    What scatters is stated in the design (``uncertainty:``, ``measured:``), in the libraries, in
+    ISO 286 and practice.
+
+    Parameters
+    ----------
+    design : the design
+    count : draws of the yield
+    seed : the same seed gives the same result
+    quasi_random : whether to draw scrambled Sobol points, 16 times, instead of independent ones
+    rows : rows behind the indices, (inputs + 2) evaluations each; 0 for no indices
+    metrics : followed beside the margins of all limits; default: those of the objective
+    plugins : the user's own metrics and constraints
+
+    Raises
+    ------
+    InputError
+        a distribution that does not fit its value, or is of a number that no model reads
+    """
+    from ..uncertainties import uncertainty as run
+
+    if not LEAST <= count <= MOST:
+        message = f"{count} draws: need {LEAST} to {MOST}"
+        raise UsageError(Diagnostic(message, "10000 bounds a yield of 99 % within 0.2 %"))
+    actuator, subject = answered(design, plugins)
+    with located(actuator):
+        return run(
+            subject, count=count, seed=seed, quasi_random=quasi_random, rows=rows, metrics=metrics
+        )
+
+
+def write_uncertainty(study: Uncertainty, **paper: Unpack[Paper]) -> list[ReportFile]:
+    """Write the page of a yield as PDF and PNG; parameters as `report`.
+
+    Raises
+    ------
+    UsageError : no `actuator`: the study does not keep its design
+    """
+    from ..pages.uncertainty_document import write_uncertainty_sheet
+
+    actuator = paper.get("actuator")
+    if actuator is None:
+        message = "the page of an uncertainty study needs the design"
+        raise UsageError(Diagnostic(message, "give actuator=..."))
+    origin, place = page_of(actuator.design, "_uncertainty", **paper)
+    return write_uncertainty_sheet(study, origin, **place)
+
+
+def write_draws(found: Uncertainty, path: str | Path) -> ReportFile:
+    """Write the draws that were kept as CSV: inputs, margins of all limits, whether all hold."""
+    from ..pages.uncertainty_csv import write_draws as write
+
+    return write(found, Path(path))

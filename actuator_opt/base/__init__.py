@@ -1,0 +1,1 @@
+"""What every package rests on: errors, units, quantities, numerics, files, databases."""

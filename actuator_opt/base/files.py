@@ -1,0 +1,353 @@
+"""Where files of this package lie: data shipped in the wheel, or the folders of a checkout."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from io import FileIO
+from math import isfinite
+from pathlib import Path
+from typing import BinaryIO, TextIO
+
+from .errors import Diagnostic, InputError
+from .suggest import closest
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+_CREATE = (
+    os.O_WRONLY
+    | os.O_CREAT
+    | os.O_EXCL
+    | getattr(os, "O_NOFOLLOW", 0)  # neither is known everywhere
+    | getattr(os, "O_BINARY", 0)
+)
+_PRIVATE = 0o600
+"""Permissions of what is the user's own."""
+DIGITS = 19
+"""Letters of a whole number in JSON, at most: counts, seeds and times have fewer."""
+
+
+def data_folder(name: str, *, package: Path = _PACKAGE) -> Path:
+    """Folder of shipped data (``materials``, ``designs``): packaged data first, else the checkout.
+
+    Parameters
+    ----------
+    name : name of the folder
+    package : folder of the installed package, for tests
+
+    Raises
+    ------
+    InputError : neither place has the folder
+
+    Notes
+    -----
+    A wheel carries the folder as ``_data/NAME`` inside the package. A folder beside the package
+    counts only where ``pyproject.toml`` shows a checkout: site-packages may hold a stranger's
+    ``materials``. Plain paths, because importing ``importlib.resources`` would cost more than
+    reading the files does.
+    """
+    packaged = package / "_data" / name
+    if packaged.is_dir():
+        return packaged
+    checkout = package.parent
+    if (checkout / "pyproject.toml").is_file() and (checkout / name).is_dir():
+        return checkout / name
+    message = f'the data folder "{name}" is missing from this installation'
+    raise InputError(Diagnostic(message, "install the package again", str(packaged)))
+
+
+def read_bytes(source: str | Path, *, most: int, kinds: tuple[str, ...], what: str) -> bytes:
+    """The first `most` bytes of a file that a person named.
+
+    Parameters
+    ----------
+    source : of the file, as the person wrote it; ``"-"`` for standard input
+    most : bytes to read
+    kinds : endings of such files, to suggest one of a near name
+    what : such a file is, in words
+
+    Raises
+    ------
+    InputError : it is not there, a folder, or not to be read
+    """
+    path, name = Path(source), str(source)
+    if name == "-":
+        return _given(most)
+    try:
+        with path.open("rb") as stream:
+            return stream.read(most)
+    except FileNotFoundError:
+        raise InputError(Diagnostic("no such file", _near(path, kinds), name)) from None
+    except IsADirectoryError:
+        raise InputError(Diagnostic("is a folder", f"name a {what} in it", name)) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(Diagnostic(f"cannot be read: {reason}", "", name)) from None
+
+
+def _given(most: int) -> bytes:
+    """The first `most` bytes of standard input; raises `InputError`."""
+    stream: TextIO | None = sys.stdin
+    if stream is None:  # closed by the shell
+        raise InputError(Diagnostic("standard input is closed", "name a file", "-"))
+    try:
+        return stream.buffer.read(most)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(Diagnostic(f"standard input cannot be read: {reason}", "", "-")) from None
+
+
+def _near(path: Path, kinds: tuple[str, ...]) -> str:
+    try:
+        names = [one.name for one in path.parent.iterdir() if one.suffix in kinds]
+    except OSError:
+        return "check the path"
+    match = closest(path.name, names)
+    return f"did you mean {path.parent / match}?" if match else "check the path"
+
+
+def read_json(text: bytes | str) -> object:
+    """The JSON of a stranger: finite numbers alone, whole ones of at most `DIGITS` digits.
+
+    Raises
+    ------
+    ValueError : it is none, or nested without end
+    """
+    import json
+
+    try:
+        return json.loads(text, parse_int=_whole, parse_float=_finite, parse_constant=_finite)
+    except RecursionError:
+        raise ValueError("nested too deeply") from None
+
+
+def _whole(text: str) -> int:
+    if len(text) > DIGITS:
+        raise ValueError("too many digits")
+    return int(text)
+
+
+def _finite(text: str) -> float:
+    found = float(text)
+    if not isfinite(found):
+        raise ValueError("no finite number")
+    return found
+
+
+def require_writable(path: Path) -> None:
+    """Refuse a file that cannot be written, before the work that would fill it.
+
+    Raises
+    ------
+    InputError : a folder stands there, its own folder is missing, or permission is; or it is "-"
+    """
+    with writing(path):
+        reason = _unwritable_file(path)
+    if reason:
+        raise InputError(Diagnostic(reason, "choose another file or folder", str(path)))
+
+
+def _unwritable_file(path: Path) -> str:
+    """Why a file cannot be written; "" where it can. Raises `OSError`."""
+    folder, reason = path.parent, ""
+    if str(path) == "-":
+        reason = "is standard output, which carries the results"
+    elif path.is_dir():
+        reason = "is a folder"
+    elif path.exists() and not path.is_file():
+        reason = "is no regular file"
+    elif not folder.is_dir():
+        reason = "its folder does not exist"
+    elif not os.access(path if path.exists() else folder, os.W_OK):
+        reason = "no permission to write"
+    return reason
+
+
+def require_folder(folder: Path) -> None:
+    """Refuse a folder that cannot be made or written, before the work that would fill it.
+
+    Raises
+    ------
+    InputError : a file stands in the way, or permission is missing
+    """
+    place = folder
+    with writing(folder, "choose a folder with --out"):
+        place = _nearest(folder)
+    if not place.is_dir():
+        reason = f"{place} is a file" if place != folder else "is a file"
+    elif not os.access(place, os.W_OK):
+        reason = "no permission to write"
+    else:
+        return
+    raise InputError(Diagnostic(reason, "choose a folder with --out", str(folder)))
+
+
+def _nearest(folder: Path) -> Path:
+    """The folder, or the nearest one above it that is there; raises `OSError`."""
+    while not folder.exists() and folder != folder.parent:
+        folder = folder.parent
+    return folder
+
+
+def require_apart(target: Path, *sources: str) -> None:
+    """Refuse to write over a file that is read.
+
+    Raises
+    ------
+    InputError : the target is one of the sources, or a link to it
+    """
+    for source in sources:
+        with contextlib.suppress(OSError, ValueError):
+            if target.samefile(source):
+                message = "would be written over what is read"
+                raise InputError(Diagnostic(message, "choose another file", str(target)))
+
+
+def write_text(path: Path, text: str) -> Path:
+    """Write a text file whole: aside first, then renamed; no partial file on failure.
+
+    A link stays one: what it points at is written.
+    """
+    with aside(path) as stream:
+        stream.write(text)
+    return path.resolve() if path.is_symlink() else path
+
+
+@contextlib.contextmanager
+def aside(path: Path) -> Iterator[TextIO]:
+    """A text file to write piece by piece, aside; it is in place once all is written.
+
+    Raises
+    ------
+    InputError : it cannot be written; nothing partial is left
+    """
+    with _part(path) as part, open(part, "w", encoding="utf-8", closefd=False) as stream:
+        yield stream
+
+
+@contextlib.contextmanager
+def aside_bytes(path: Path) -> Iterator[BinaryIO]:
+    """As `aside`, of bytes."""
+    with _part(path) as part, open(part, "wb", closefd=False) as stream:
+        yield stream
+
+
+@contextlib.contextmanager
+def _part(path: Path) -> Iterator[int]:
+    """Descriptor of a file aside; it is renamed once that is written, and gone if it is not."""
+    path = path.resolve() if path.is_symlink() else path
+    if path.exists() and not path.is_file():
+        message = "is a folder" if path.is_dir() else "is no regular file"
+        raise InputError(Diagnostic(message, "choose another file or folder", str(path)))
+    with writing(path), private_part(path.parent) as (file, part):
+        yield file.fileno()
+        _publish(file)
+        part.replace(path)
+
+
+@contextlib.contextmanager
+def private_part(folder: Path) -> Iterator[tuple[FileIO, Path]]:
+    """A new file in a folder, open for writing; it is gone afterwards unless it was renamed.
+
+    Nobody but the user can read it, nobody can guess its name, and it is never a file or a link
+    that stands there already: in a shared folder, others can neither read nor divert what is
+    written.
+
+    Raises
+    ------
+    OSError : it cannot be made
+    """
+    part = folder / f".{os.urandom(16).hex()}.part"
+    file = FileIO(os.open(part, _CREATE, _PRIVATE), "w")
+    try:
+        yield file, part
+    finally:
+        with contextlib.suppress(OSError):
+            file.close()
+            part.unlink(missing_ok=True)
+
+
+def make_private(path: Path) -> None:
+    """Make an empty file that is the user's own, where there is none; a link stays one."""
+    with contextlib.suppress(OSError):  # whoever opens it says what is wrong
+        os.close(os.open(os.path.realpath(path), _CREATE, _PRIVATE))
+
+
+def _publish(file: FileIO) -> None:
+    """Give a file the permissions that new files of this process have (its umask); close it."""
+    mask = os.umask(0o077)
+    os.umask(mask)
+    if sys.platform != "win32":
+        with contextlib.suppress(OSError):  # a file system without permissions
+            os.fchmod(file.fileno(), 0o666 & ~mask)
+    file.close()
+
+
+@contextlib.contextmanager
+def writing(path: Path, remedy: str = "choose another file or folder") -> Iterator[None]:
+    """Say in one line why a file cannot be written; raises `InputError`."""
+    try:
+        yield
+    except OSError as error:
+        reason = f"cannot write: {error.strerror or type(error).__name__}"
+        raise InputError(Diagnostic(reason, remedy, str(path))) from None
+
+
+def write_all(folder: Path, contents: Mapping[str, bytes], *, what: str = "the report") -> None:
+    """Write every file of a folder aside, then rename all: whole or not at all.
+
+    Parameters
+    ----------
+    folder : where to; made if missing
+    contents : of every file, by name
+    what : the files are, in words
+
+    Raises
+    ------
+    InputError : the folder cannot be written, or a folder stands in a file's way
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with contextlib.ExitStack() as stack:
+            parts: list[tuple[Path, Path]] = []
+            for name, content in contents.items():
+                file, part = stack.enter_context(private_part(folder))
+                parts.append((part, folder / name))
+                with open(file.fileno(), "wb", closefd=False) as stream:
+                    stream.write(content)
+                _publish(file)
+            for _, target in parts:
+                if target.is_dir():
+                    raise IsADirectoryError(errno.EISDIR, "a folder stands in the way", str(target))
+            for part, target in parts:
+                part.replace(target)
+    except OSError as error:
+        reason = f"cannot write {what}: {error.strerror or type(error).__name__}"
+        fault = Diagnostic(reason, "choose a folder with --out", file=str(folder))
+        raise InputError(fault) from None
+
+
+def unwritable(folder: Path) -> str:
+    """Why nothing can be written into a folder, by trying it; "" where it can.
+
+    A folder that is missing is judged by the nearest one above it that is there.
+    """
+    try:
+        place = _nearest(folder.absolute())
+    except OSError as error:
+        return error.strerror or type(error).__name__
+    if not place.is_dir():
+        return f"{place} is a file"
+    try:
+        descriptor, name = tempfile.mkstemp(prefix=".actuator-opt.", suffix=".part", dir=place)
+        try:
+            os.write(descriptor, b"\n")
+        finally:
+            os.close(descriptor)
+            os.unlink(name)
+    except OSError as error:
+        return f"{place}: {error.strerror or type(error).__name__}"
+    return ""

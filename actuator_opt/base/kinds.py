@@ -1,0 +1,160 @@
+"""A registry of kinds: seal types, friction laws and whatever else a design file names by a word.
+
+Each kind is one module with one frozen dataclass; the registry lists them. Words, help, JSON
+Schema, faults and tests read the registry, so that nothing else names a kind.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import fields
+from importlib import import_module
+from types import MappingProxyType
+from typing import Any, Protocol, TypeVar
+
+from .suggest import remedy
+
+_WORD = re.compile(r"[a-z][a-z0-9_]*")
+
+
+class Kind(Protocol):
+    """What the registry reads of a kind; every kind is a frozen dataclass."""
+
+    @property
+    def name(self) -> str:
+        """Word in a design file."""
+
+    @property
+    def help(self) -> str:
+        """Meaning of the word, in half a sentence."""
+
+
+K = TypeVar("K", bound=Kind)
+V = TypeVar("V")
+
+
+class UnknownKind(KeyError):
+    """A word that names no kind."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class Kinds(dict[str, K]):
+    """Kinds by name, in the order given; an unknown name raises `UnknownKind`."""
+
+    def __init__(self, what: str, entries: Iterable[K]) -> None:
+        super().__init__()
+        self.what = what
+        for entry in entries:
+            _complete(what, entry)
+            if entry.name in self:
+                raise ValueError(f'{what} "{entry.name}": there are two of this name')
+            self[entry.name] = entry
+
+    def __missing__(self, name: str) -> K:
+        raise UnknownKind(f'no {self.what} "{name}"; {remedy(str(name), self)}')
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Every name, in order."""
+        return tuple(self)
+
+    @property
+    def help(self) -> str:
+        """Every name with its meaning, as the help of a field lists them."""
+        return "; ".join(f"{entry.name}: {entry.help}" for entry in self.values())
+
+
+def kinds(what: str, *entries: K) -> Kinds[K]:
+    """A registry of complete kinds.
+
+    Parameters
+    ----------
+    what : what they are, in the singular
+    entries : frozen dataclasses with `name` and `help`
+
+    Raises
+    ------
+    ValueError
+        two of one name, a name that is no word in lower case, a piece that is None, empty text or
+        no function where its annotation has none of these
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True)
+    ... class Joint:
+    ...     name: str
+    ...     help: str
+    >>> joints = kinds("joint", Joint("bond", "skirts glued over it"), Joint("thread", "screwed"))
+    >>> joints.names, joints.help
+    (('bond', 'thread'), 'bond: skirts glued over it; thread: screwed')
+    >>> joints["bnd"]
+    Traceback (most recent call last):
+    actuator_opt.base.kinds.UnknownKind: no joint "bnd"; did you mean "bond"?
+    """
+    return Kinds(what, entries)
+
+
+def kinds_in(what: str, package: str, name: str, *modules: str) -> Kinds[Any]:
+    """A registry of the kinds that modules of a package declare under one name.
+
+    Parameters
+    ----------
+    what : what they are, in the singular
+    package : of the modules
+    name : under which each declares its kind
+    modules : in the order of lists; each is the name of its kind
+
+    Raises
+    ------
+    ValueError : as `kinds`, a module that declares none, or one of another name
+    """
+    found = []
+    for module in modules:
+        declared = getattr(import_module(f".{module}", package), name, None)
+        if declared is None:
+            raise ValueError(f"{package}.{module}: declares no {name}")
+        if declared.name != module:
+            raise ValueError(f'{package}.{module}: its {name} is named "{declared.name}"')
+        found.append(declared)
+    return kinds(what, *found)
+
+
+def per_kind(registry: Mapping[str, Any], functions: Mapping[str, V]) -> Mapping[str, V]:
+    """What a higher layer adds to every kind of a registry: one entry each, no other.
+
+    Raises
+    ------
+    ValueError : a kind without an entry, or an entry without a kind
+
+    Examples
+    --------
+    >>> per_kind({"p": 1, "pi": 2}, {"p": abs})
+    Traceback (most recent call last):
+    ValueError: pi: no entry
+    """
+    lacking = [name for name in registry if name not in functions]
+    unknown = [name for name in functions if name not in registry]
+    if lacking or unknown:
+        words = [f"{name}: no entry" for name in lacking] + [f"{name}: no kind" for name in unknown]
+        raise ValueError("; ".join(words))
+    return MappingProxyType(dict(functions))
+
+
+def _complete(what: str, entry: Any) -> None:
+    """Refuse an entry that lacks a piece."""
+    label = f'{what} "{getattr(entry, "name", "")}"'
+    if not _WORD.fullmatch(entry.name):
+        raise ValueError(f"{label}: its name is no word of small letters, digits and _")
+    for field in fields(entry):
+        value, kind = getattr(entry, field.name), str(field.type)
+        optional = "None" in kind
+        if value is None and not optional:
+            raise ValueError(f"{label}: {field.name} is missing")
+        if isinstance(value, str) and not value.strip():
+            raise ValueError(f"{label}: {field.name} is empty")
+        if kind.startswith("Callable") and not (callable(value) or (optional and value is None)):
+            raise ValueError(f"{label}: {field.name} is no function")

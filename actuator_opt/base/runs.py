@@ -1,0 +1,286 @@
+"""Records of runs: one file each in a folder of the person's own, written whole or not at all.
+
+A record is a file of two lines of JSON: a short head, by which records are listed, and the rest.
+Each line ends with the checksum of what stands before it, so that damage is noticed. It is no
+signature: whoever writes a record can write its checksum. Nothing here knows what a run is;
+nothing is ever deleted unless asked.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .errors import Diagnostic, InputError
+from .files import private_part, read_json
+from .suggest import shown
+
+FOLDER, SWITCH = "ACTUATOR_OPT_RUNS", "ACTUATOR_OPT_NO_RECORD"
+"""Environment variables: where records go, and that none are made (any text but "0")."""
+FORMAT = 2
+"""Of the files; a newer one is refused by name. Files of format 1 have no checksums."""
+SUFFIX = ".run"
+_ID = re.compile(r"[0-9]{8}-[0-9]{6}-[0-9a-f]{6}")
+_BEGINNING = re.compile(r"[0-9]{4,8}(-[0-9]{0,6}(-[0-9a-f]{0,6})?)?")
+_MOST = 200_000_000
+"""Bytes of a record, at most: a choice far above what a run leaves."""
+_HEAD = 4_000_000
+"""Bytes of its first line, at most: twice what a command line may be."""
+_SEAL = "blake2b"
+"""Key of a line's checksum, the last of its object."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A record as listed: its file and its head."""
+
+    path: Path
+    head: Mapping[str, Any]
+
+    @property
+    def id(self) -> str:
+        """What it is called by: its file's name."""
+        return self.path.name.removesuffix(SUFFIX)
+
+
+def folder() -> Path | None:
+    """Where records go: ACTUATOR_OPT_RUNS, else the person's data folder; None: switched off.
+
+    Raises
+    ------
+    InputError : it names a home folder that nobody has
+    """
+    if os.environ.get(SWITCH, "") not in ("", "0"):
+        return None
+    stated = os.environ.get(FOLDER, "")
+    try:
+        return Path(stated).expanduser() if stated else _data() / "actuator-opt" / "runs"
+    except RuntimeError:  # nobody of that name, or a person without a home
+        message = f"{FOLDER}: {shown(stated) or 'unset'}, and no home folder is known for it"
+        raise InputError(
+            Diagnostic(message, f"set {FOLDER} to a folder by its full path")
+        ) from None
+
+
+def _data() -> Path:
+    """Folder of a person's own data by the custom of the system."""
+    if sys.platform == "win32":
+        local = os.environ.get("LOCALAPPDATA", "")
+        return Path(local) if local else Path.home() / "AppData" / "Local"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Application Support"
+    stated = os.environ.get("XDG_DATA_HOME", "")
+    if Path(stated).is_absolute():  # others are to be ignored, says the standard
+        return Path(stated)
+    return Path.home() / ".local" / "share"
+
+
+def write(place: Path, started: str, head: Mapping[str, Any], body: Mapping[str, Any]) -> Path:
+    """Write a record aside, then give it a name that no other has.
+
+    Parameters
+    ----------
+    place : folder, made where missing
+    started : ``20261122-104500``, the beginning of its id
+    head, body : plain data; the head is what lists show
+
+    Raises
+    ------
+    InputError : it cannot be written; nothing is left
+    """
+    from .plain_json import encoded
+
+    lines = [
+        encoded(part, separators=(",", ":")) for part in ({"record": FORMAT} | dict(head), body)
+    ]
+    try:
+        place.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with private_part(place) as (file, part):
+            with open(file.fileno(), "wb", closefd=False) as stream:
+                stream.writelines(_sealed(line.encode("ascii")) + b"\n" for line in lines)
+            file.close()
+            while True:
+                path = place / f"{started}-{_random(3)}{SUFFIX}"
+                with contextlib.suppress(FileExistsError):
+                    _claim(part, path)
+                    return path
+    except OSError as error:
+        reason = f"cannot write: {error.strerror or type(error).__name__}"
+        raise InputError(Diagnostic(reason, "", str(place))) from None
+
+
+def _random(size: int) -> str:
+    """Hexadecimal digits of random bytes."""
+    return os.urandom(size).hex()
+
+
+def _claim(part: Path, path: Path) -> None:
+    """Give a written file its name; FileExistsError where another has it."""
+    try:
+        os.link(part, path)
+    except FileExistsError:
+        raise
+    except OSError:  # a file system without links
+        if path.exists():
+            raise FileExistsError(path) from None
+        part.replace(path)
+
+
+def entries(place: Path) -> tuple[list[Entry], list[Diagnostic]]:
+    """The records of a folder, newest first, and what is wrong with those that cannot be read."""
+    found: list[tuple[int, str, Entry]] = []
+    faults = []
+    try:
+        paths = sorted(path for path in place.iterdir() if is_record(path))
+    except FileNotFoundError:
+        return [], []
+    except OSError as error:
+        reason = f"cannot be read: {error.strerror or type(error).__name__}"
+        raise InputError(
+            Diagnostic(reason, f"set {FOLDER} to another folder", str(place))
+        ) from None
+    for path in paths:
+        try:
+            with path.open("rb") as stream:
+                line, written = stream.readline(_HEAD), os.fstat(stream.fileno()).st_mtime_ns
+            entry = Entry(path, _parsed(line, path)[0])
+        except FileNotFoundError:  # deleted meanwhile
+            continue
+        except OSError as error:
+            reason = f"cannot be read: {error.strerror or type(error).__name__}"
+            faults.append(Diagnostic(reason, "", str(path)))
+        except InputError as error:
+            faults += error.diagnostics
+        else:
+            found.append((written, entry.id, entry))
+    found.sort(key=lambda row: row[:2], reverse=True)
+    return [entry for _, _, entry in found], faults
+
+
+def is_record(path: Path) -> bool:
+    """Whether a file is called as records are."""
+    return path.suffix == SUFFIX and _ID.fullmatch(path.stem) is not None
+
+
+def _parsed(line: bytes, path: Path, *, sealed: bool = False) -> tuple[dict[str, Any], bool]:
+    """A line of a record as an object, and whether a checksum vouches for it.
+
+    Raises
+    ------
+    InputError : it is none, its checksum is another, or it is `sealed` no longer
+    """
+    line = line.rstrip()
+    try:
+        data = read_json(line)
+    except ValueError:
+        data = None
+    if isinstance(data, dict):
+        if data.pop(_SEAL, None) is None:
+            whole, sealed = not sealed and data.get("record") != FORMAT, False
+        else:
+            whole, sealed = line == _sealed(_bare(line)), True
+        if whole:
+            return data, sealed
+    remedy = "delete the file and repeat the run"
+    raise InputError(Diagnostic("is no record of a run, or a damaged one", remedy, str(path)))
+
+
+def _sealed(line: bytes) -> bytes:
+    """A line of JSON with its checksum as the last key of the object."""
+    import hashlib
+
+    found = hashlib.blake2b(line, digest_size=16).hexdigest()
+    comma = "" if line == b"{}" else ","
+    return line[:-1] + f'{comma}"{_SEAL}":"{found}"}}'.encode()
+
+
+def _bare(line: bytes) -> bytes:
+    """A line as it was before its checksum."""
+    return line.rpartition(f'"{_SEAL}":'.encode())[0].removesuffix(b",") + b"}"
+
+
+def is_name(text: str) -> bool:
+    """Whether a text names a run, and no design file of that name is there."""
+    if Path(text).suffix == SUFFIX:
+        return True
+    named = text == "last" or _BEGINNING.fullmatch(text) is not None
+    return named and not Path(text).exists()
+
+
+def find(place: Path | None, name: str) -> Path:
+    """The file of a record: by id, the beginning of one, ``last``, or the path of a file.
+
+    Raises
+    ------
+    InputError : none, or several
+    """
+    path = Path(name)
+    if path.suffix == SUFFIX or os.sep in name:
+        return path
+    if place is None:
+        raise InputError(Diagnostic("no runs are recorded", f"unset {SWITCH}"))
+    if name == "last":
+        known, _ = entries(place)
+        if not known:
+            raise InputError(Diagnostic("no run is recorded yet", "run e.g. optimise", str(place)))
+        return known[0].path
+    found = [one for one in _named(place) if one.name.startswith(name)] if name else []
+    if len(found) == 1:
+        return found[0]
+    what = f'"{shown(name)}"'
+    if found:
+        ids = ", ".join(one.stem for one in found[:3])
+        more = f" and {len(found) - 3} more" if len(found) > 3 else ""
+        raise InputError(Diagnostic(f"{what} begins several runs: {ids}{more}", "write more of it"))
+    raise InputError(Diagnostic(f"no run {what}", "see: actuator-opt runs list", str(place)))
+
+
+def _named(place: Path) -> list[Path]:
+    try:
+        return sorted(path for path in place.iterdir() if is_record(path))
+    except OSError:
+        return []
+
+
+def read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Head and body of a record.
+
+    Raises
+    ------
+    InputError : no such file, no record, a damaged or a newer one
+    """
+    from .files import read_bytes
+
+    data = read_bytes(path, most=_MOST, kinds=(SUFFIX,), what="record")
+    lines = data.splitlines()
+    head, sealed = _parsed(lines[0] if lines else b"", path)
+    known = head.get("record")
+    if isinstance(known, int) and known > FORMAT:
+        version = shown(str(head.get("version", "")))
+        message = f"was written by actuator-opt {version}, in a newer form"
+        raise InputError(Diagnostic(message, "install that version, or a later one", str(path)))
+    body, _ = _parsed(lines[1] if len(lines) > 1 else b"", path, sealed=sealed)
+    return head, body
+
+
+def delete(path: Path) -> bool:
+    """Delete a record; False where it is gone already.
+
+    Raises
+    ------
+    InputError : it cannot be
+    """
+    try:
+        path.unlink()
+        return True
+    except FileNotFoundError:
+        return False
+    except OSError as error:
+        reason = f"cannot be deleted: {error.strerror or type(error).__name__}"
+        raise InputError(Diagnostic(reason, "", str(path))) from None

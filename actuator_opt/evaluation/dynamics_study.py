@@ -1,0 +1,377 @@
+"""Dynamics along the stroke and over frequency, beside the metrics: modes, Bode data, shares.
+
+SI throughout. Only the load case and place that govern are told; `study` fills the record.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from ..base.numeric import Array
+from ..base.polynomial import Polynomial, add, at_frequency, roots, scale
+from ..design.model import Design
+from ..models import dynamics, linear, loop
+from . import distributed
+from .kernel import ModelRun, PreparedDesign
+from .motion import Motion
+from .values import Values, of_case
+
+FREQUENCIES = np.geomspace(0.1, 1000.0, 121)
+"""Where responses are told (Hz), and about every resonance between."""
+AROUND = np.array([-8.0, -3.0, -1.0, 0.0, 1.0, 3.0, 8.0])
+"""Half-widths of a resonance at which it is told too, so that none falls between two points."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pole:
+    """A pole of the held actuator: frequency [Hz] and damping ratio; above 1 it does not swing."""
+
+    frequency: float
+    damping_ratio: float
+
+
+@dataclass(frozen=True, slots=True)
+class ShakenCase:
+    """A load case that shakes the actuator, where its dynamic stiffness is least."""
+
+    name: str
+    frequency: float
+    """[Hz]"""
+    place: str
+    stiffness: float
+    """[N/m]"""
+    phase: float
+    """By which the force leads there [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """Dynamic stiffness [N/m] and the phase [rad] by which the force leads, over frequency."""
+
+    place: str
+    position: float
+    magnitude: Array
+    phase: Array
+    static: float
+    """Stiffness with closed ports at this place."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoopStudy:
+    """The position loop in one case at one place; arrays over the frequencies of the study."""
+
+    case: str
+    place: str
+    gain: float
+    tuned: bool
+    """Whether the gain is the tool's (half the ultimate gain) and not the design's."""
+    ultimate_gain: float
+    ultimate_frequency: float
+    gain_margin: float
+    phase_margin: float
+    crossover: float | None
+    bandwidth: float | None
+    governs: tuple[str, ...]
+    """Metrics that are least here: gain_margin, phase_margin, bandwidth."""
+    open_magnitude: Array
+    open_phase: Array
+    """[rad], falling from -pi/2 without jumps."""
+    closed_magnitude: Array
+
+
+@dataclass(frozen=True, slots=True)
+class DynamicsStudy:
+    """What the linear model says of one design, in the case of least stiffness."""
+
+    case: str
+    mass: float
+    end: str
+    """What ends the lines: closed, valve, constant_pressure, reducing_valve."""
+    position: Array
+    """[m] from the cap end; the next three are arrays along it"""
+    closed_frequency: Array
+    """[Hz], ports closed"""
+    frequency: Array
+    """[Hz], lines ended as `end` says"""
+    damping_ratio: Array
+    friction_share: float
+    """Damping ratio from friction and oil shear at the weakest position: lost without them."""
+    conductance_share: float
+    """Damping ratio from leakage, lines and what ends them there: left without friction."""
+    poles: tuple[Pole, ...]
+    """All of them at the weakest position, slowest first."""
+    frequencies: Array
+    response_case: str
+    """Case of the responses: of least dynamic stiffness, or `case` where none shakes."""
+    responses: tuple[Response, ...]
+    """At the cap end, the weakest position and the rod end."""
+    distributed: Array | None
+    """Magnitude at the weakest position with the lines as transmission lines; None without."""
+    shaken: tuple[ShakenCase, ...]
+    """Load cases that shake the actuator, each at its worst place."""
+    position_loop: LoopStudy | None
+    """Where its gain margin is least; None without a valve."""
+    other_loops: tuple[LoopStudy, ...] = ()
+    """Where phase margin and bandwidth are least, if elsewhere."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data for JSON."""
+        return {name: _plain(getattr(self, name)) for name in self.__dataclass_fields__}
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "__dataclass_fields__"):
+        return {name: _plain(getattr(value, name)) for name in value.__dataclass_fields__}
+    if isinstance(value, np.ndarray):
+        return [_plain(x) for x in value.tolist()]
+    if isinstance(value, (list, tuple)):
+        return [_plain(x) for x in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return value
+
+
+def study(
+    subject: PreparedDesign, v: Values, done: ModelRun, case: str | None
+) -> DynamicsStudy | None:
+    """Dynamics of one design in the case of least stiffness; None where nothing moves."""
+    motion = done.motion
+    index = v.cases.index(case) if case in v.cases else 0
+    stroke = float(np.squeeze(done.geometry.stroke))
+    weakest = of_case(done.places["weakest position"], index)
+    position = np.unique(np.append(np.linspace(0.0, stroke, 61), weakest))
+    model = motion.model(position)
+    along = motion.mode(model, position)
+    closed = dynamics.natural_frequency(
+        stiffness=motion.springs.stiffness(position), mass=motion.mass
+    )
+    there = np.array([[weakest]])
+    whole = _damping_ratio(motion, there, index)
+    ends = _damping_ratio(replace(motion, damping=0.0 * motion.damping), there, index)
+    design = subject.design
+    shaken = _worst(done, "dynamic_stiffness", design)
+    asked = index if shaken is None else shaken[0]
+    places = {
+        "cap end": 0.0,
+        "weakest position": of_case(done.places["weakest position"], asked),
+        "rod end": stroke,
+    }
+    models = {name: motion.model(np.array([[[x]]])) for name, x in places.items()}
+    loops = _loops(done, design)
+    polynomials = [(p, asked) for m in models.values() for p in (m.characteristic, m.mobile)]
+    polynomials += [(p, one.index) for one in loops for p in one.polynomials()]
+    frequencies = _frequencies(polynomials)
+    told = [_loop(subject, v, done, one, frequencies) for one in loops]
+    return DynamicsStudy(
+        case=v.cases[index],
+        mass=of_case(motion.mass, index),
+        end=design.ports.end,
+        position=position,
+        closed_frequency=_row(closed, index, position),
+        frequency=_row(along.natural_frequency, index, position),
+        damping_ratio=_row(along.damping_ratio, index, position),
+        friction_share=whole - ends,
+        conductance_share=ends,
+        poles=_poles(motion.model(there), index),
+        frequencies=frequencies,
+        response_case=v.cases[asked],
+        responses=tuple(
+            _response(motion, name, x, asked, models[name], frequencies)
+            for name, x in places.items()
+        ),
+        distributed=_distributed(v, design, done, asked, places["weakest position"], frequencies),
+        shaken=_shaken(design, done),
+        position_loop=told[0] if told else None,
+        other_loops=tuple(told[1:]),
+    )
+
+
+def _damping_ratio(motion: Motion, there: Array, index: int) -> float:
+    """Damping ratio of one case at a position."""
+    return of_case(motion.mode(motion.model(there), there).damping_ratio, index)
+
+
+def _loops(done: ModelRun, design: Design) -> list[_Loop]:
+    """Every loop that governs a margin or the bandwidth, with what it governs."""
+    rows: dict[tuple[int, str], tuple[str, ...]] = {}
+    for metric in ("gain_margin", "phase_margin", "bandwidth"):
+        row = _worst(done, metric, design)
+        if row is not None:
+            rows[row] = (*rows.get(row, ()), metric)
+    return [_Loop.of(done, *row, governs=metrics) for row, metrics in rows.items()]
+
+
+def _shaken(design: Design, done: ModelRun) -> tuple[ShakenCase, ...]:
+    """Every shaken case at its place of least dynamic stiffness."""
+    found = []
+    for i, case in enumerate(design.load_cases):
+        if case.frequency is None:
+            continue
+        rows = done.computed.metrics["dynamic_stiffness"]
+        place = min(rows, key=lambda name: of_case(rows[name], i))
+        phase = of_case(done.computed.metrics["dynamic_phase"][place], i)
+        found.append(ShakenCase(case.name, case.frequency, place, of_case(rows[place], i), phase))
+    return tuple(found)
+
+
+def _distributed(
+    v: Values, design: Design, done: ModelRun, index: int, position: float, frequencies: Array
+) -> Array | None:
+    if not design.lines:
+        return None
+    return np.abs(
+        distributed.dynamic_stiffness(
+            v, design, done.state, done.motion, index, position, frequencies
+        )
+    )
+
+
+def _row(value: Array, index: int, along: Array) -> Array:
+    """One case's row of an array (cases, points)."""
+    array = np.broadcast_to(np.atleast_2d(value), (np.shape(np.atleast_2d(value))[0], along.size))
+    return array[min(index, array.shape[0] - 1)]
+
+
+def _poles(model: linear.LinearActuator, index: int) -> tuple[Pole, ...]:
+    found = loop.poles(model=model)
+    found = found[min(index, found.shape[0] - 1), 0] if found.ndim == 3 else found.reshape(-1)
+    rows = [
+        Pole(float(abs(one)) / (2 * pi), float(-one.real / abs(one)))
+        for one in found
+        if one.imag >= 0 and abs(one) > 0
+    ]
+    return tuple(sorted(rows, key=lambda pole: pole.frequency))
+
+
+def _worst(done: ModelRun, metric: str, design: Design) -> tuple[int, str] | None:
+    """Case and place of a metric's least value; None where it was not computed."""
+    shaken = [case.frequency is not None for case in design.load_cases]
+    rows = [
+        (float(value[i, 0]), i, place)
+        for place, value in done.computed.metrics.get(metric, {}).items()
+        for i in range(len(value))
+        if metric != "dynamic_stiffness" or shaken[i]
+    ]
+    known = [row for row in rows if np.isfinite(row[0])] or rows
+    return min(known)[1:] if known else None
+
+
+def _frequencies(polynomials: list[tuple[Polynomial, int]]) -> Array:
+    """`FREQUENCIES` and points about every resonance and anti-resonance of some polynomials.
+
+    Each comes with the load case that counts.
+    """
+    found = [FREQUENCIES]
+    for polynomial, index in polynomials:
+        polynomial = polynomial[_integrators(polynomial) :]
+        if len(polynomial) < 2:
+            continue
+        zeros = roots(polynomial)
+        zeros = zeros.reshape(-1, zeros.shape[-1])
+        swings = zeros[min(index, len(zeros) - 1)]
+        swings = swings[swings.imag > 0]
+        size = np.abs(swings) / (2 * pi)
+        near = (size > FREQUENCIES[0]) & (size < FREQUENCIES[-1])
+        width = np.clip(-swings.real / np.abs(swings), 1e-9, 0.05)
+        found.append((size * (1 + width * AROUND[:, None]))[:, near].reshape(-1))
+    grid = np.unique(np.concatenate(found))
+    return grid[(grid >= FREQUENCIES[0]) & (grid <= FREQUENCIES[-1])]
+
+
+def _integrators(polynomial: Polynomial) -> int:
+    """How many roots at zero a polynomial has: coefficients that are 0."""
+    known = (k for k, one in enumerate(polynomial) if np.any(np.asarray(one) != 0))
+    return next(known, len(polynomial))
+
+
+def _response(
+    motion: Motion,
+    name: str,
+    position: float,
+    index: int,
+    model: linear.LinearActuator,
+    frequencies: Array,
+) -> Response:
+    parts = linear.dynamic_stiffness(model=model, frequency=frequencies.reshape(-1, 1, 1))
+    value = np.asarray(parts.complex)
+    value = value[:, min(index, value.shape[1] - 1), 0]
+    return Response(
+        place=name,
+        position=position,
+        magnitude=np.abs(value),
+        phase=np.angle(value),
+        static=of_case(motion.springs.stiffness(np.array([[position]])), index),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Loop:
+    """The open loop in one case at one place."""
+
+    index: int
+    place: str
+    gain: float
+    open_loop: loop.OpenLoop
+    governs: tuple[str, ...]
+
+    @classmethod
+    def of(cls, done: ModelRun, index: int, place: str, governs: tuple[str, ...]) -> _Loop:
+        """From the names of the metrics' rows."""
+        direction, _, where = place.partition(", ")
+        position = np.asarray(done.places[where])
+        one = done.motion.position_loop(position, extending=np.array(direction == "extending"))
+        gain = of_case(done.computed.metrics["position_gain"][""], index)
+        return cls(index, place, gain, one, governs)
+
+    def polynomials(self) -> list[Polynomial]:
+        """Numerator, denominator, and the denominator of the closed loop."""
+        one = self.open_loop
+        return [
+            one.numerator,
+            one.denominator,
+            add(one.denominator, scale(one.numerator, self.gain)),
+        ]
+
+
+def _loop(
+    subject: PreparedDesign, v: Values, done: ModelRun, at: _Loop, frequencies: Array
+) -> LoopStudy:
+    """What one loop does over frequency, with its figures from the metrics."""
+
+    def of(metric: str) -> float:
+        return of_case(done.computed.metrics[metric][at.place], at.index)
+
+    one, gain = at.open_loop, at.gain
+    limit = loop.ultimate_gain(loop=one)
+    figures = loop.margins(loop=one, gain=gain)
+    s = 2 * pi * frequencies.reshape(-1, 1, 1)
+    top, low = at_frequency(one.numerator, s), at_frequency(one.denominator, s)
+    response = gain * top.complex / low.complex
+    response = response[:, min(at.index, response.shape[1] - 1), 0]
+    crossover, width = of_case(figures.crossover, at.index), of("bandwidth")
+    return LoopStudy(
+        case=v.cases[at.index],
+        place=at.place,
+        gain=gain,
+        tuned=subject.design.control is None or subject.design.control.gain is None,
+        ultimate_gain=of("ultimate_gain"),
+        ultimate_frequency=of_case(limit.frequency, at.index),
+        gain_margin=of("gain_margin"),
+        phase_margin=of("phase_margin"),
+        crossover=crossover if np.isfinite(crossover) else None,
+        bandwidth=width if np.isfinite(width) and width > 0 else None,
+        governs=at.governs,
+        open_magnitude=np.abs(response),
+        open_phase=_unwrapped(response),
+        closed_magnitude=np.abs(response / (1 + response)),
+    )
+
+
+def _unwrapped(response: Array) -> Array:
+    """Phase without jumps, starting next to -pi/2 where the integrator rules."""
+    phase = np.unwrap(np.angle(response))
+    return phase - 2 * pi * np.round((phase[0] + pi / 2) / (2 * pi))

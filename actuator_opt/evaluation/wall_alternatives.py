@@ -1,0 +1,338 @@
+"""What the barrel's wall could be instead: thicker or thinner, thin by theory, or of a metal.
+
+Also how its growth settles beside the pressure step under the piston seal. Floats only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import e, isfinite, pi
+
+import numpy as np
+
+from ..base.numeric import Array
+from ..design.materials import load_library
+from ..models import barrel, barrel_ends, laminate, liner, ply
+from ..models.layered_tube import layered_tube, tube_state
+from .allow import MaterialValues, allowances, extremes
+from .barrel import Wall, laminate as laminated
+from .geometry import Geometry
+from .kernel import ModelRun, PreparedDesign
+from .plies import Layer
+from .values import Values
+
+METALS = ("steel_e355", "al_7075_t6")
+"""The metal barrels set beside every wall: the usual honed steel tube, the usual light one."""
+
+FACTORS = (0.8, 1.25)
+"""Bore growths for which a thickness is sought, over the present one."""
+
+LARGEST = 2.0
+"""Largest thickness sought, in bore radii."""
+
+
+@dataclass(frozen=True, slots=True)
+class Thickness:
+    """Thickness [m] of one layer that brings the bore growth [m] to `factor` times the present.
+
+    `mass_per_length` [kg/m] is the whole wall's then; both None where no thickness does it.
+    """
+
+    factor: float
+    growth: float
+    thickness: float | None
+    mass_per_length: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A wall quantity (SI) by the exact tube and by the thin laminate; None where unlimited."""
+
+    name: str
+    exact: float | None
+    thin: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Settling:
+    """How growth settles beside the pressure step under the piston seal.
+
+    `decay_length` is 1/beta [m], `radius_ratio` mid-radius over thickness (thin shells above about
+    5), `at_seal` the share of the far growth at the step, `shares` at distances into the pressure
+    [m].
+    """
+
+    decay_length: float
+    radius_ratio: float
+    at_seal: float
+    shares: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MetalTube:
+    """A barrel of the same bore for the same pressure; without a material, the design's own.
+
+    `for_growth` and `for_burst` are the walls [m] that hold either, None where none does or none
+    is asked; `thickness` is the larger. Growth [m] is at supply pressure without axial force,
+    burst and yield pressures [Pa] are those of the worse axial force, mass is per length [kg/m].
+    """
+
+    material: str
+    for_growth: float | None
+    for_burst: float | None
+    thickness: float | None = None
+    growth: float | None = None
+    burst_pressure: float | None = None
+    yield_pressure: float | None = None
+    mass_per_length: float | None = None
+
+
+def single(value: Array) -> float:
+    """The only number of a design's array."""
+    return float(np.squeeze(np.real(value)))
+
+
+def least(pressures: Mapping[str, Array]) -> tuple[float | None, str]:
+    """The smallest finite one of some pressures, and its place; None where there is none."""
+    found = {place: single(value) for place, value in pressures.items()}
+    usable = {place: value for place, value in found.items() if isfinite(value)}
+    if not usable:
+        return None, ""
+    place = min(usable, key=lambda name: usable[name])
+    return usable[place], place
+
+
+def governing_force(wall: Wall) -> float:
+    """Axial force [N] at the largest bore growth: that of a load case, or none."""
+    pushed = np.atleast_1d(np.squeeze(np.real(wall.swelling.growth_by_force * wall.path.cases)))
+    worst = int(np.argmax(pushed))
+    force = np.atleast_1d(np.squeeze(np.real(wall.path.cases)))
+    return float(force[worst]) if pushed[worst] > 0 else 0.0
+
+
+def mass_per_length(layers: Sequence[Layer], densities: Sequence[float], inner: float) -> float:
+    """Mass of the wall per length [kg/m]."""
+    total = 0.0
+    for layer, density in zip(layers, densities, strict=True):
+        outer = inner + float(layer.thickness)
+        total += density * pi * (outer * outer - inner * inner)
+        inner = outer
+    return total
+
+
+def main_layer(layers: Sequence[Layer], inner_radius: float) -> int:
+    """The layer that carries the most hoop force; a ply before a liner."""
+    tube = layered_tube(layers=[layer.as_tube() for layer in layers], inner_radius=inner_radius)
+    carried = tube.wall[3] * (tube.outer - tube.inner)
+    plies = [i for i, layer in enumerate(layers) if not layer.isotropic] or range(len(layers))
+    return max(plies, key=lambda i: float(carried[i]))
+
+
+def thicknesses(
+    layers: Sequence[Layer],
+    densities: Sequence[float],
+    g: Geometry,
+    *,
+    pressure: float,
+    force: float,
+    index: int,
+) -> tuple[Thickness, ...]:
+    """Thickness of layer `index` for bore growths around the present one, by the exact tube."""
+    inner = float(g.inner_radius)
+    wall = [layer.as_tube() for layer in layers]
+    tube = layered_tube(layers=wall, inner_radius=inner)
+    state = tube_state(tube=tube, inner_pressure=pressure, axial_force=force)
+    growth = float(state.bore_displacement)
+
+    def solved(factors: Sequence[float]) -> list[float | None]:
+        try:
+            found = liner.layer_thickness_for_strain(
+                layers=wall,
+                index=index,
+                inner_radius=inner,
+                strain=np.array(factors) * growth / inner,
+                pressure=pressure,
+                axial_force_per_pressure=force / pressure,
+                largest_thickness=LARGEST * inner,
+            )
+        except ValueError:  # one of them is out of reach: find out which
+            return [x for one in factors for x in solved([one])] if len(factors) > 1 else [None]
+        return [float(value) for value in found]
+
+    rows = []
+    known = (float(layers[index].thickness), *solved(FACTORS))
+    for factor, found in zip((1.0, *FACTORS), known, strict=True):
+        mass = None
+        if found is not None:
+            changed = list(layers)
+            changed[index] = replace(layers[index], thickness=found)
+            mass = mass_per_length(changed, densities, inner)
+        rows.append(Thickness(factor, factor * growth, found, mass))
+    return tuple(sorted(rows, key=lambda row: row.factor))
+
+
+def differences(
+    subject: PreparedDesign, v: Values, stock: MaterialValues, done: ModelRun, *, exact: bool
+) -> tuple[Difference, ...]:
+    """The wall by both laminate theories; `exact` says which one the design uses."""
+    other = laminated.compute(v, subject.design, stock, done.geometry, done.state, exact=not exact)
+    pair = (done.wall, other) if exact else (other, done.wall)
+    growths = [float(np.max(np.real(wall.growth))) for wall in pair]
+    rows = [Difference("bore_growth", *growths)]
+    for name in ("yield_pressure", "first_ply_pressure", "burst_pressure"):
+        pressures = [least(getattr(wall, name))[0] for wall in pair]
+        if pressures != [None, None]:
+            rows.append(Difference(name, *pressures))
+    return tuple(rows)
+
+
+def settling(layers: Sequence[Layer], g: Geometry) -> Settling:
+    """Decay length of the wall as a thin shell, and the growth it leaves beside the step."""
+    turned = []
+    for layer in layers:
+        c = layer.constants
+        stiffness = ply.ply_stiffness(
+            youngs_modulus_1=c["youngs_modulus_1"],
+            youngs_modulus_2=c["youngs_modulus_2"],
+            poissons_ratio_12=c["poissons_ratio_12"],
+            shear_modulus_12=c["shear_modulus_12"],
+        )
+        turned.append(ply.rotated(stiffness=stiffness, angle=layer.angle))
+    sizes = [layer.thickness for layer in layers]
+    axial, cross, hoop = laminate.membrane(plies=turned, thicknesses=sizes)
+    middle = (g.inner_radius + g.outer_radius) / 2
+    length = float(
+        barrel_ends.shell_decay_length(
+            radius=middle,
+            hoop_stiffness=hoop - cross * cross / axial,
+            bending_stiffness=laminate.bending_stiffness(plies=turned, thicknesses=sizes),
+        )
+    )
+
+    def share(distance: float) -> float:
+        return float(barrel_ends.pressure_step_factor(distance=distance, decay_length=length))
+
+    return Settling(
+        decay_length=length,
+        radius_ratio=float(middle / sum(sizes)),
+        at_seal=share(0.0),
+        shares=tuple((k * length, share(k * length)) for k in (1.0, 2.0)),
+    )
+
+
+def metal_tubes(
+    subject: PreparedDesign,
+    v: Values,
+    layers: Sequence[Layer],
+    densities: Sequence[float],
+    done: ModelRun,
+) -> tuple[MetalTube, ...]:
+    """The design's wall, and the thinnest barrel of each of `METALS` for the same duty.
+
+    The duty is its bore growth without axial force, and the burst pressure it must have (its own
+    where that is lower, or where the burst check is waived) under every load path.
+    """
+    wall, inner, pressure = done.wall, float(done.geometry.inner_radius), v["supply.pressure"]
+    burst = least(wall.burst_pressure)[0]
+    own = MetalTube(
+        material="",
+        for_growth=None,
+        for_burst=None,
+        thickness=sum(float(layer.thickness) for layer in layers),
+        growth=pressure * single(wall.swelling.growth),
+        burst_pressure=burst,
+        yield_pressure=least(wall.yield_pressure)[0],
+        mass_per_length=mass_per_length(layers, densities, inner),
+    )
+    if burst is not None and "burst_factor" not in subject.design.waivers:
+        burst = min(burst, pressure * v["requirements.burst_factor.min"])
+    strain = pressure * single(wall.swelling.growth) / inner
+    forces = [single(area) for area in wall.path.per_pressure.values()]
+    return (
+        own,
+        *(
+            metal_tube(
+                _stock_of(subject, name),
+                name,
+                inner_radius=inner,
+                pressure=pressure,
+                strain=strain,
+                burst_pressure=burst,
+                axial_forces_per_pressure=forces,
+            )
+            for name in METALS
+        ),
+    )
+
+
+def _stock_of(subject: PreparedDesign, name: str) -> MaterialValues:
+    """One library metal with the knock-downs of this design's temperatures."""
+    material = subject.materials.get(name) or load_library().get(name)
+    numbers = {f"materials.{name}.{key}": value for key, value in material.numbers.items()}
+    numbers |= {key: subject.numbers[key] for key in numbers if key in subject.numbers}
+    environment = subject.design.environment
+    factors = allowances(
+        {name: material},
+        numbers,
+        temperatures=extremes(subject.design, subject.numbers),
+        wet=environment is None or environment.wet,
+    )
+    return MaterialValues(Values(numbers, ()), {name: material}, factors, {})
+
+
+def metal_tube(
+    stock: MaterialValues,
+    name: str,
+    *,
+    inner_radius: float,
+    pressure: float,
+    strain: float,
+    burst_pressure: float | None,
+    axial_forces_per_pressure: Sequence[float],
+) -> MetalTube:
+    """The thinnest tube of one metal for a bore strain (no axial force) and a burst pressure."""
+    inner, density = inner_radius, stock.get(name, "density")
+    elastic = {
+        "youngs_modulus": stock.get(name, "youngs_modulus"),
+        "poissons_ratio": stock.get(name, "poissons_ratio"),
+    }
+    strength = stock.allowable(name, "yield_strength")
+    ultimate = stock.allowable(name, "ultimate_strength")
+    if strength is None or ultimate is None:  # a person's own entry of that name
+        return MetalTube(name, None, None)
+    strengths = {"yield_strength": strength, "ultimate_strength": ultimate}
+    ratios = [force / (pi * inner * inner) for force in axial_forces_per_pressure]
+    held = None
+    if burst_pressure is not None:  # Faupel's pressure is proportional to the logarithm of k
+        unit = {"inner_radius": 1.0, "outer_radius": e} | strengths
+        least_flow = min(
+            float(barrel.burst_pressure_thick(**unit, axial_force_ratio=ratio)) for ratio in ratios
+        )
+        held = float(inner * np.expm1(burst_pressure / least_flow))
+    try:
+        stiff = barrel.wall_ratio_for_strain(
+            strain=strain, pressure=pressure, closed=False, **elastic
+        )
+    except ValueError:  # no wall of this metal is stiff enough
+        return MetalTube(name, None, held)
+    growth = float(inner * (stiff - 1))
+    thickness = max(growth, held or 0.0)
+    size = {"inner_radius": inner, "outer_radius": inner + thickness}
+    yields, bursts = [], []
+    for force, ratio in zip(axial_forces_per_pressure, ratios, strict=True):
+        hoop, radial, axial = barrel.bore_stresses(pressure=1.0, axial_force=force, **size)
+        used = barrel.von_mises(hoop=hoop, radial=radial, axial=axial)
+        yields.append(float(strength / used))
+        bursts.append(barrel.burst_pressure_thick(**size, **strengths, axial_force_ratio=ratio))
+    area = pi * (size["outer_radius"] * size["outer_radius"] - inner * inner)
+    return MetalTube(
+        material=name,
+        for_growth=growth,
+        for_burst=held,
+        thickness=thickness,
+        growth=float(barrel.bore_growth(pressure=pressure, **size, **elastic)),
+        burst_pressure=float(min(bursts)),
+        yield_pressure=min(yields),
+        mass_per_length=float(density * area),
+    )

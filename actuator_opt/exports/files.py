@@ -1,0 +1,101 @@
+"""An evaluation as files for other programs, all of them whole or none."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..base.errors import Diagnostic, UsageError
+from ..base.extras import library
+from ..base.files import write_all
+from ..base.suggest import shown
+from ..evaluation.result import Evaluation
+
+FORMATS = ("step", "dxf", "xlsx")
+"""Formats, each the ending of its files."""
+
+_NEEDS = {"dxf": "ezdxf", "xlsx": "openpyxl"}
+
+
+@dataclass(frozen=True, slots=True)
+class ExportFile:
+    """A written file with its hash."""
+
+    path: Path
+    sha256: str
+
+    def to_dict(self) -> dict[str, object]:
+        """The JSON form."""
+        return {"path": str(self.path), "sha256": self.sha256}
+
+
+def require_formats(formats: Sequence[str]) -> tuple[str, ...]:
+    """The formats asked for, each once; refuse what is none, and what lacks its library.
+
+    Raises
+    ------
+    UsageError : no such format, or none named
+    ActuatorError : its library is not installed
+    """
+    if not formats:
+        raise UsageError(Diagnostic("no format named", f"add --format {'|'.join(FORMATS)}"))
+    for name in formats:
+        if name not in FORMATS:
+            remedy = f"use {', '.join(FORMATS)}, each with a --format of its own"
+            raise UsageError(Diagnostic(f'no format "{shown(name)}"', remedy))
+        if name in _NEEDS:
+            library(_NEEDS[name])
+    return tuple(dict.fromkeys(formats))
+
+
+def _content(evaluation: Evaluation, name: str, date: str | None) -> bytes:
+    program = f"actuator-opt {evaluation.version}"
+    if name == "step":
+        from .solids import bodies
+        from .step import step
+
+        made = step(bodies(evaluation), name=evaluation.name, program=program, date=date)
+        return made.encode("ascii")
+    if name == "dxf":
+        from .dxf import dxf
+
+        return dxf(evaluation, program=program, date=date)
+    from .xlsx import xlsx
+
+    return xlsx(evaluation, program=program, date=date)
+
+
+def write_exports(
+    evaluation: Evaluation,
+    *,
+    formats: Sequence[str],
+    folder: Path,
+    stem: str,
+    date: str | None = None,
+) -> list[ExportFile]:
+    """Write ``STEM.FORMAT`` for every format into `folder`.
+
+    Parameters
+    ----------
+    evaluation : of the design to export
+    formats : of `FORMATS`
+    folder, stem : where to; the folder is made if missing
+    date : ISO date the files carry, or None for none
+
+    Returns
+    -------
+    the files, in the order asked for
+
+    Raises
+    ------
+    InputError : a part cannot be drawn, or the folder cannot be written; nothing is left
+    """
+    asked = require_formats(formats)
+    contents = {f"{stem}.{name}": _content(evaluation, name, date) for name in asked}
+    write_all(folder, contents, what="the export")
+    return [
+        ExportFile(folder / name, hashlib.sha256(content).hexdigest())
+        for name, content in contents.items()
+    ]

@@ -1,0 +1,9 @@
+"""Reports: one page of data, drawn as PDF and PNG, or as text for the terminal."""
+
+from __future__ import annotations
+
+from ..rendering.blocks import ExtraTable
+from ..rendering.paper import Attachment, ReportFile, read_attachment
+from .page import write_report
+
+__all__ = ["Attachment", "ExtraTable", "ReportFile", "read_attachment", "write_report"]

@@ -1,0 +1,188 @@
+"""Figures of the report as ink: stiffness over the stroke with its compliance contributions.
+
+Readable in black and white: areas differ in lightness, lines in dash, and every curve carries
+its own label.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, TypeAlias
+
+from .ink import BLUE, GREY, PALE, RED, Ink, Point, text_width
+from .text import MINUS, number, trimmed
+
+AREAS = (
+    "#0b3c5d", "#9ec3da", "#d5e6f0", "#4f86a8", "#f0e2b6", "#b98b3e",
+    "#d9c9e3", "#7a5a8c", "#7d868e", "#e3e6e8", "#2b3138",
+)  # fmt: skip
+"""Fills of stacked areas: distinct in hue for colour-blind eyes, in lightness on a grey print."""
+Ticks: TypeAlias = Sequence[tuple[float, str]]
+"""Places on an axis with what is written there."""
+
+
+def ticks(low: float, high: float, count: int = 5) -> list[float]:
+    """Round tick values inside [low, high], about `count` of them.
+
+    >>> ticks(0.0, 110.0)
+    [0.0, 25.0, 50.0, 75.0, 100.0]
+    """
+    span = high - low
+    if not span > 0:
+        return [low]
+    raw = span / count
+    decade = 10.0 ** math.floor(math.log10(raw))
+    step = next((m * decade for m in (1, 2, 2.5, 5) if m * decade >= raw * 0.9999), 10 * decade)
+    first = math.ceil(low / step - 1e-9)
+    last = math.floor(high / step + 1e-9)
+    return [round(k * step, 12) + 0.0 for k in range(first, last + 1)]
+
+
+class Axes:
+    """A plot frame on ink; its axes are linear in what they are given (a logarithm, say)."""
+
+    def __init__(
+        self,
+        ink: Ink,
+        box: tuple[float, float, float, float],
+        x_range: tuple[float, float],
+        y_range: tuple[float, float],
+    ) -> None:
+        self.ink = ink
+        self.left, self.top, self.width, self.height = box
+        self.x_range, self.y_range = x_range, y_range
+
+    def x(self, value: float) -> float:
+        """Millimetres from the left of the paper."""
+        low, high = self.x_range
+        return self.left + (value - low) / (high - low) * self.width
+
+    def y(self, value: float) -> float:
+        """Millimetres from the top of the paper."""
+        low, high = self.y_range
+        return self.top + (high - value) / (high - low) * self.height
+
+    def frame(self, title: str, x_label: str) -> None:
+        """Grid, ticks, axis labels; the y label stands as the title above the axis."""
+        self.frame_at(
+            title,
+            x_label,
+            [(value, trimmed(value)) for value in ticks(*self.x_range, 6)],
+            [(value, trimmed(value)) for value in ticks(*self.y_range, 5)],
+        )
+
+    def frame_at(
+        self, title: str, x_label: str, x_ticks: Ticks, y_ticks: Ticks, *, upright: bool = False
+    ) -> None:
+        """The same with ticks at stated places; `upright` draws their grid lines too.
+
+        Without an x label the ticks stay without their numbers: another frame stands below.
+        """
+        bottom = self.top + self.height
+        for value, words in y_ticks:
+            y = self.y(value)
+            self.ink.line((self.left, y), (self.left + self.width, y), stroke=PALE, pen=0.1)
+            self.ink.text(self.left - 1.4, y, words, size=6.5, anchor="right")
+        for value, words in x_ticks:
+            x = self.x(value)
+            if upright:
+                self.ink.line((x, self.top), (x, bottom), stroke=PALE, pen=0.1)
+            self.ink.line((x, bottom), (x, bottom + 1.0), pen=0.13)
+            if x_label:
+                self.ink.text(x, bottom + 3.0, words, size=6.5, anchor="center")
+        self.ink.line(
+            (self.left, self.top), (self.left, bottom), (self.left + self.width, bottom), pen=0.18
+        )
+        middle = self.left + self.width / 2
+        if x_label:
+            self.ink.text(middle, bottom + 7.0, x_label, size=6.5, anchor="center", color=GREY)
+        if title:
+            self.ink.text(self.left - 1.4, self.top - 3.6, title, size=7.0, bold=True)
+
+    def clipped(self, xs: Sequence[float], ys: Sequence[float]) -> list[list[Point]]:
+        """Polyline on paper, cut where it leaves the top or the bottom of the frame."""
+        low, high = self.y_range
+        lines: list[list[Point]] = [[]]
+        for index, (x, y) in enumerate(zip(xs, ys, strict=True)):
+            before = ys[index - 1] if index else y
+            for level, beyond in ((low, y < low), (high, y > high))[:: 1 if y > before else -1]:
+                outside = before > level if level == high else before < level
+                if outside == beyond:
+                    continue
+                share = (level - before) / (y - before)
+                edge = xs[index - 1] + share * (x - xs[index - 1])
+                lines[-1].append((self.x(edge), self.y(level)))
+                if beyond:
+                    lines.append([])
+            if low <= y <= high:
+                lines[-1].append((self.x(x), self.y(y)))
+        return [line for line in lines if len(line) > 1]
+
+
+def fitted(words: str, room: float, size: float = 6.5) -> str:
+    """Words cut with an ellipsis to what fits into `room` mm.
+
+    >>> fitted("weakest position", 12.0)
+    'weakest…'
+    """
+    if text_width(words, size) <= room:
+        return words
+    while words and text_width(words + "…", size) > room:
+        words = words[:-1]
+    return words.rstrip() + "…"
+
+
+def legend(
+    ink: Ink,
+    x: float,
+    y: float,
+    entries: Sequence[tuple[str, dict[str, Any]]],
+    *,
+    ends: bool = True,
+) -> None:
+    """Names of curves in one line that ends at `x`, or starts there, each after its line."""
+    if ends:
+        x -= sum(text_width(words, 6.5) + 11.0 for words, _ in entries) - 3.5
+    for words, style in entries:
+        ink.line((x, y), (x + 6.0, y), **style)
+        ink.text(x + 7.5, y, words, size=6.5)
+        x += 11.0 + text_width(words, 6.5)
+
+
+def lowest(axes: Axes, place: float, value: float, limits: Sequence[float]) -> None:
+    """The lowest point of a curve (place in mm) with its words below it, clear of the limits."""
+    x, y = axes.x(place), axes.y(value)
+    axes.ink.circle(x, y, 0.8, fill=BLUE, stroke="#ffffff", pen=0.2)
+    label = f"minimum {number(value)} at {trimmed(place, 3)} mm"
+    half = text_width(label, 6.5) / 2
+    text_x = min(max(x, axes.left + half + 1.0), axes.left + axes.width - half - 1.0)
+    text_y = y + 4.0
+    for limit in limits:
+        level = axes.y(limit)
+        if level > y:
+            text_y = max(text_y, level + 3.0) if level - y < 6.5 else y + 3.0
+    if text_y > axes.top + axes.height - 1.8:
+        text_y = y - 3.4
+    axes.ink.text(text_x, text_y, label, anchor="center", halo=True, color=BLUE)
+
+
+def required(axes: Axes, level: float, words: str) -> None:
+    """A limit over the whole frame, named to its right; left out where it is off the frame."""
+    if axes.y_range[0] <= level <= axes.y_range[1]:
+        right, y = axes.left + axes.width, axes.y(level)
+        axes.ink.line((axes.left, y), (right, y), stroke=RED, pen=0.25, dash=(1.8, 1.0))
+        axes.ink.text(right + 1.0, y, words, color=RED, anchor="left")
+
+
+def per_cent(share: float) -> str:
+    """A share in whole per cent, small ones with a decimal.
+
+    >>> per_cent(0.44), per_cent(0.0031), per_cent(0.0002), per_cent(0.0)
+    ('44 %', '0.3 %', '< 0.1 %', '0 %')
+    """
+    size = 100 * abs(share)
+    if 0 < size < 0.05:
+        return "< 0.1 %"
+    decimals = 1 if 0 < size < 0.95 else 0
+    return f"{100 * share:.{decimals}f} %".replace("-", MINUS)

@@ -1,0 +1,155 @@
+"""Attach files to a finished PDF by an incremental update, and read them back."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from collections.abc import Iterator, Sequence
+from datetime import UTC, datetime
+
+from ..base.errors import Diagnostic, InputError
+
+MOST_BYTES = 50_000_000
+"""Of an attachment: a choice far above any input."""
+MOST_FILES = 16
+"""Attachments: a choice above the two of a report and what an editor may add."""
+NEAR = 4096
+"""Bytes from a dictionary's type to its begin and to its end: a choice; ours have some 200."""
+_MARK, _OBJECT = b"/EmbeddedFile", b" obj"
+_STREAM = re.compile(rb">>\s{0,16}stream\r?\n")
+_STEP = 1_000_000
+"""Bytes unpacked at once."""
+_DAMAGED = Diagnostic("its attachment is damaged", "take the original file")
+
+
+def embed(pdf: bytes, files: Sequence[tuple[str, str, bytes]], timestamp: int = 0) -> bytes:
+    """The PDF with (name, media type, content) files attached; ISO 32000-1, 7.5.6 and 7.11.4.
+
+    Serves PDFs with a plain cross-reference table, such as matplotlib's.
+    """
+    start = int(pdf.rsplit(b"startxref", 1)[1].split()[0])
+    trailer = pdf.rsplit(b"trailer", 1)[1]
+    size = int(re.search(rb"/Size (\d+)", trailer)[1])  # type: ignore[index]
+    root = int(re.search(rb"/Root (\d+) 0 R", trailer)[1])  # type: ignore[index]
+    found = re.search(rb"(?:^|\n)%d 0 obj\s*<<(.*?)>>\s*endobj" % root, pdf, re.DOTALL)
+    if found is None:
+        raise InputError("cannot attach the input: the PDF has no catalogue")
+    day = datetime.fromtimestamp(timestamp, UTC).strftime("D:%Y%m%d%H%M%SZ").encode()
+    objects: dict[int, bytes] = {}
+    names = []
+    for index, (name, kind, content) in enumerate(files):
+        stream, record = size + 2 * index, size + 2 * index + 1
+        packed = zlib.compress(content, 9)
+        subtype = kind.replace("/", "#2F").encode()
+        objects[stream] = (
+            b"<</Length %d/Type/EmbeddedFile/Filter/FlateDecode/Subtype/%s"
+            b"/Params<</Size %d/ModDate(%s)>>>>\nstream\n%s\nendstream"
+            % (len(packed), subtype, len(content), day, packed)
+        )
+        written = b"<FEFF" + name.encode("utf-16-be").hex().upper().encode() + b">"
+        objects[record] = (
+            b"<</Type/Filespec/F%s/UF%s/EF<</F %d 0 R/UF %d 0 R>>/AFRelationship/Source>>"
+            % (written, written, stream, stream)
+        )
+        names.append((written, record))
+    listed = b" ".join(b"%s %d 0 R" % entry for entry in sorted(names))
+    refs = b" ".join(b"%d 0 R" % record for _, record in names)
+    extra = b"/Names<</EmbeddedFiles<</Names[%s]>>>>/AF[%s]" % (listed, refs)
+    objects[root] = b"<<" + found[1].strip() + extra + b">>"
+    return pdf + _update(objects, len(pdf), size + 2 * len(files), root, start)
+
+
+def _update(objects: dict[int, bytes], offset: int, size: int, root: int, previous: int) -> bytes:
+    """Objects, cross-reference section and trailer of an incremental update."""
+    body, table = b"\n", b"xref\n"
+    for number in sorted(objects):
+        table += b"%d 1\n%010d 00000 n \n" % (number, offset + len(body))
+        body += b"%d 0 obj\n%s\nendobj\n" % (number, objects[number])
+    trailer = b"trailer\n<</Size %d/Root %d 0 R/Prev %d>>\nstartxref\n%d\n%%%%EOF\n"
+    return body + table + trailer % (size, root, previous, offset + len(body))
+
+
+def extract(pdf: bytes, kinds: Sequence[str]) -> dict[str, bytes]:
+    """Attached files by media type; reads what `embed`, the Typst report and most editors write.
+
+    Streams are found by their own dictionaries, whatever the cross-reference table says. A PDF may
+    come from a stranger: whatever it holds, it is looked through once, and at most `MOST_FILES`
+    dictionaries of at most `NEAR` bytes to either side and `MOST_BYTES` of content are read.
+
+    Parameters
+    ----------
+    pdf : the file
+    kinds : media types to read; others are passed over
+
+    Raises
+    ------
+    InputError : an attachment is damaged, too large, or not alone of its kind
+    """
+    found: dict[str, bytes] = {}
+    for about, begin in streams(pdf):
+        kind = re.search(rb"/Subtype\s*/([\w#.+-]+)", about)
+        if kind is None:
+            continue
+        name = kind[1].replace(b"#2F", b"/").replace(b"#2f", b"/").decode("ascii", "replace")
+        if name not in kinds:
+            continue
+        content = _content(pdf, begin, about)
+        if found.setdefault(name, content) != content:
+            message = f"carries several attachments of the kind {name}"
+            raise InputError(Diagnostic(message, "give the report of one design"))
+    return found
+
+
+def streams(pdf: bytes) -> Iterator[tuple[bytes, int]]:
+    """Dictionaries of embedded files, and where their streams begin."""
+    count, place = 0, pdf.find(_MARK)
+    while place >= 0:
+        end = place + len(_MARK)
+        if count == MOST_FILES:
+            raise InputError(f"names more than {MOST_FILES} attachments")
+        if not pdf[end : end + 1].isalnum():  # another word
+            count += 1
+            begin = pdf.rfind(_OBJECT, max(place - NEAR, 0), place)
+            opened = _STREAM.search(pdf, end, end + NEAR)
+            if begin >= 0 and opened is not None and pdf.find(b"endobj", begin, opened.start()) < 0:
+                yield pdf[begin + len(_OBJECT) : opened.start()], opened.end()
+        place = pdf.find(_MARK, end)
+
+
+def _content(pdf: bytes, begin: int, about: bytes) -> bytes:
+    """What an embedded file holds; its size must be the one it states."""
+    if re.search(rb"/Filter\s*(?:\[\s*)?/FlateDecode\s*\]?", about):
+        content, whole = _unpacked(pdf, begin)
+    elif b"/Filter" in about:
+        raise InputError("its attachment is packed in a way that is not read")
+    else:
+        length = re.search(rb"/Length\s+(\d{1,12})(?!\d|\s+\d+\s+R)", about)
+        end = begin + int(length[1]) if length else pdf.find(b"endstream", begin)
+        whole = begin <= end <= len(pdf)
+        if end - begin > MOST_BYTES:
+            raise _too_large()
+        content = pdf[begin:end] if length else pdf[begin:end].removesuffix(b"\n")
+    size = re.search(rb"/Size\s+(\d{1,12})(?!\d)", about)
+    if not whole or (size is not None and int(size[1]) != len(content)):
+        raise InputError(_DAMAGED)
+    return content
+
+
+def _unpacked(pdf: bytes, begin: int) -> tuple[bytes, bool]:
+    """The content of a packed stream, and whether its end was reached."""
+    packed, parts, room = zlib.decompressobj(), list[bytes](), MOST_BYTES
+    for place in range(begin, min(len(pdf), begin + MOST_BYTES), _STEP):
+        try:
+            parts.append(packed.decompress(pdf[place : place + _STEP], room + 1))
+        except zlib.error:
+            raise InputError(_DAMAGED) from None
+        room -= len(parts[-1])
+        if room < 0:
+            raise _too_large()
+        if packed.eof:
+            break
+    return b"".join(parts), packed.eof
+
+
+def _too_large() -> InputError:
+    return InputError(f"its attachment is larger than {MOST_BYTES // 1_000_000} MB")

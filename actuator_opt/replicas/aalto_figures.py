@@ -1,0 +1,242 @@
+"""Figures 5, 29, 32 and 42 of [AaltoThesis] and its dynamic tests as ink.
+
+Curves differ in dash as well as in colour and carry their label beside the frame.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from ..base.numeric import Array
+from ..pages.wall_figures import GREEN, OCHRE
+from ..rendering.axes import Axes
+from ..rendering.ink import BLACK, BLUE, GREY, PALE, Ink, Point, spread_within
+from ..rendering.text import DASH, trimmed
+from .aalto import PAPER, Theory
+from .aalto_dynamic import FREQUENCIES, DynamicTest, End, Response
+from .aalto_static import StaticTest
+from .aalto_text import area_text
+
+Style: TypeAlias = dict[str, Any]
+FULL: Style = {"stroke": BLUE, "pen": 0.45}
+DASHED: Style = {"stroke": OCHRE, "pen": 0.4, "dash": (1.6, 0.8)}
+CHAIN: Style = {"stroke": GREEN, "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)}
+DOTTED: Style = {"stroke": GREY, "pen": 0.4, "dash": (0.5, 0.6)}
+THIN: Style = {"stroke": BLACK, "pen": 0.2, "dash": (3.2, 0.9)}
+_BAND = "#e9eef2"
+_POSITION = "piston position from the cap end, mm"
+_COLUMNS, _PANEL, _HEIGHT, _ROW, _TOP = (10.0, 101.0), 50.0, 36.0, 56.0, 9.0
+_LABEL = 3.2
+"""Height (mm) of a line of a label."""
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A curve with the lines of its label; NaN interrupts it."""
+
+    xs: Sequence[float]
+    ys: Sequence[float]
+    style: Style
+    label: tuple[str, ...]
+
+
+def _curve(xs: Array, ys: Array, style: Style, *label: str) -> Curve:
+    return Curve([float(x) for x in xs], [float(y) for y in ys], style, label)
+
+
+def _pieces(curve: Curve) -> Iterable[tuple[list[float], list[float]]]:
+    """Stretches of a curve without gaps."""
+    xs: list[float] = []
+    ys: list[float] = []
+    for x, y in zip(curve.xs, curve.ys, strict=True):
+        if math.isfinite(y):
+            xs.append(x)
+            ys.append(y)
+        elif xs:
+            yield xs, ys
+            xs, ys = [], []
+    if xs:
+        yield xs, ys
+
+
+def _panel(
+    ink: Ink,
+    place: tuple[int, int],
+    title: str,
+    x_label: str,
+    curves: Sequence[Curve],
+    *,
+    span: tuple[float, float],
+    top: float,
+    band: tuple[float, float] | None = None,
+    mark: float | None = None,
+) -> None:
+    """Curves in a frame at a (row, column), each labelled where it ends or leaves the frame."""
+    row, column = place
+    box = (_COLUMNS[column], _TOP + row * _ROW, _PANEL, _HEIGHT)
+    axes = Axes(ink, box, span, (0.0, top))
+    right, bottom = box[0] + box[2], box[1] + box[3]
+    if band is not None:
+        high = axes.y(min(band[1], top))
+        ink.box(box[0], high, box[2], axes.y(band[0]) - high, fill=_BAND, stroke=None)
+    if mark is not None:
+        ink.line((axes.x(mark), box[1]), (axes.x(mark), bottom), stroke=PALE, pen=0.25)
+    axes.frame(title, x_label)
+    ends: list[tuple[Point, Style, tuple[str, ...]]] = []
+    if band is not None:
+        ends.append(
+            ((right, axes.y(sum(band) / 2)), {"stroke": GREY}, ("measured", _between(band)))
+        )
+    for curve in curves:
+        lines = [line for xs, ys in _pieces(curve) for line in axes.clipped(xs, ys)]
+        ink.path(lines, **curve.style)
+        if lines:
+            ends.append((lines[-1][-1], curve.style, curve.label))
+    ends.sort(key=lambda end: end[0][1])
+    heights = [_LABEL * len(label) for *_, label in ends]
+    gaps = [(a + b) / 2 + 0.6 for a, b in itertools.pairwise(heights)]
+    places = spread_within([end[1] for end, *_ in ends], gaps, box[1], bottom + 3.0)
+    for (end, style, label), height, y in zip(ends, heights, places, strict=True):
+        ink.line(end, (right + 1.0, end[1]), (right + 3.0, y), pen=0.13, stroke=GREY)
+        for k, words in enumerate(label):
+            level = y - height / 2 + _LABEL * (k + 0.5)
+            ink.text(right + 3.6, level, words, size=6.5, color=style["stroke"])
+
+
+def _between(band: tuple[float, float]) -> str:
+    """A measured range in mm, as the thesis prints it."""
+    return f"{band[0]:.2f}{DASH}{band[1]:.2f} mm"
+
+
+def _weakest(theory: Theory, per_chamber: bool) -> str:
+    values = theory.per_chamber if per_chamber else theory.published
+    return f"min. {trimmed(float(np.min(values)) / 1e6)} kN/mm"
+
+
+def theory_figure(
+    stroke: float,
+    oil: Sequence[tuple[str, Theory]],
+    figure_29: Theory,
+    figure_32: Theory,
+    *,
+    width: float = 180.0,
+) -> Ink:
+    """Figure 5, 29 and 32 along the stroke, and what the totals in series make of it."""
+    ink = Ink(width, 2 * _ROW)
+
+    span = (0.0, 1e3 * stroke)
+
+    def millimetres(theory: Theory) -> Array:
+        return 1e3 * theory.position
+
+    curves = [
+        _curve(millimetres(one), one.published / 1e6, style, words, _weakest(one, False))
+        for (words, one), style in zip(oil, (DASHED, FULL, CHAIN), strict=False)
+    ]
+    title = "Figure 5: oil alone, kN/mm"
+    _panel(ink, (0, 0), title, _POSITION, curves, span=span, top=100.0)
+    for place, title, one, equation in (
+        ((0, 1), "Figure 29: pipes, K 1600 MPa, kN/mm", figure_29, "eq. 37"),
+        ((1, 0), "Figure 32: hoses, K 1300 MPa, kN/mm", figure_32, "eq. 38"),
+    ):
+        most = float(max(one.published.max(), one.per_chamber.max())) / 1e6
+        _panel(
+            ink,
+            place,
+            title,
+            _POSITION,
+            [
+                _curve(
+                    millimetres(one), one.published / 1e6, DASHED, equation, _weakest(one, False)
+                ),
+                _curve(
+                    millimetres(one),
+                    one.per_chamber / 1e6,
+                    FULL,
+                    "per chamber",
+                    _weakest(one, True),
+                ),
+            ],
+            span=span,
+            top=1.08 * most,
+        )
+    excess = [
+        _curve(millimetres(one), 100 * (one.published / one.per_chamber - 1), style, words)
+        for one, style, words in ((figure_29, DASHED, "eq. 37"), (figure_32, CHAIN, "eq. 38"))
+    ]
+    highest = max(max(curve.ys) for curve in excess)
+    title = "Totals in series over per chamber, %"
+    _panel(ink, (1, 1), title, _POSITION, excess, span=span, top=1.08 * highest)
+    return ink
+
+
+def static_figure(stroke: float, test: StaticTest, *, width: float = 180.0) -> Ink:
+    """Displacement over position under every assumption, on the measured range."""
+    ink = Ink(width, _ROW)
+    styles = (FULL, DASHED, THIN, CHAIN, DOTTED)
+    for column, words, load, band in (
+        (0, "up", sum(PAPER.load_up) / 2, PAPER.moved_up),
+        (1, "down", sum(PAPER.load_down) / 2, PAPER.moved_down),
+    ):
+        curves = []
+        for one, style in zip(test.assumptions[1:], styles, strict=True):
+            moved = (one.up if words == "up" else one.down).displacement
+            label = one.name.split(", ")
+            tail = [label[0] + ",", *label[1:]] if len(label) > 1 else label
+            curves.append(_curve(1e3 * test.position, 1e3 * moved, style, *tail))
+        _panel(
+            ink,
+            (0, column),
+            f"Displacement, {trimmed(load / 1e3)} kN {words}, mm",
+            _POSITION,
+            curves,
+            span=(0.0, 1e3 * stroke),
+            top=0.55,
+            band=(1e3 * band[0], 1e3 * band[1]),
+        )
+    return ink
+
+
+def _throttle(opening: float) -> str:
+    return f"throttle {100 * (1 - opening):.0f} %"
+
+
+def dynamic_figure(test: DynamicTest, *, width: float = 180.0) -> Ink:
+    """Dynamic stiffness over frequency for every throttle, with and without the valve."""
+    ink = Ink(width, 2 * _ROW)
+    columns: tuple[tuple[End, str], ...] = (
+        ("constant_pressure", "constant line pressure"),
+        ("reducing_valve", "reducing valve, ours"),
+    )
+    needles: tuple[tuple[str, dict[End, tuple[Response, ...]]], ...] = (
+        (area_text(test.area), test.stated),
+        (area_text(test.needle.area), test.read_back),
+    )
+    for row, (needle, found) in enumerate(needles):
+        for column, (end, words) in enumerate(columns):
+            curves = [
+                _curve(FREQUENCIES, np.abs(one.over) / 1e6, style, _throttle(one.opening))
+                for one, style in zip(found[end], (FULL, DASHED, CHAIN), strict=True)
+            ]
+            shut = np.abs(test.closed.over) / 1e6
+            curves.append(_curve(FREQUENCIES, shut, THIN, "throttle 100 %"))
+            static = np.full(FREQUENCIES.shape, test.static / 1e6)
+            curves.append(_curve(FREQUENCIES, static, DOTTED, "static, with hoses"))
+            most = max(max(curve.ys) for curve in curves)
+            _panel(
+                ink,
+                (row, column),
+                f"kN/mm, {words}, needle {needle}",
+                "loading frequency, Hz",
+                curves,
+                span=(0.0, float(FREQUENCIES[-1])),
+                top=1.08 * most,
+                mark=PAPER.peak,
+            )
+    return ink

@@ -1,0 +1,186 @@
+"""What [Huang2017] prints of its seal damping, and what its own numbers make of it.
+
+Table 2 (in `models.friction`) stands for the measured curves, whose figures carry no numbers. SI
+throughout. The text copy that was read loses leading minus signs (eq. 2 and 31), so the printed
+conditions b > 0 of its two fits may be meant for exponents -b; as they stand they cannot hold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.numeric import Array
+from ..design.material_fits import Fit, fit_double_exponential, fit_power_law
+from ..models import damping, forces, friction
+from ..models.friction import HUANG_TABLE_2, StribeckParameters
+
+
+@dataclass(frozen=True, slots=True)
+class Paper:
+    """What the paper prints beside table 2, SI; the comment is its place."""
+
+    bore: float = 0.110  # table 1, test A: piston, DAS seal
+    rod: float = 0.080
+    stroke: float = 0.560  # section 2
+    plunger: float = 0.125  # table 1, test B: one chamber, step ring and Yx seal
+    speeds: tuple[float, float] = (0.5e-3, 10e-3)  # section 2
+    shown_a: tuple[float, float] = (9.17e-3, 7.15e6)  # figure 3, speed and pressure
+    pressures: tuple[float, float] = (0.6e6, 6e6)  # section 2, test B
+    claimed: tuple[float, float] = (0.65e6, 0.2e6)  # B at these pressures, at no stated speed
+    compared: float = 6e6  # figure 15, measured and simulated
+    simulated: tuple[float, float] = (8e6, 10e6)  # figure 16
+    tightest: float = 5e6  # figure 17: beyond it the largest contact stress falls
+    ring_speeds: tuple[float, float, float] = (0.5e-3, 1e-3, 3e-3)  # figures 19 and 20
+    chamber_shear: float = 41.72  # section 4
+    dry_friction: tuple[float, float] = (0.1, 0.25)  # step ring and Yx seal, section 3.1.2
+    interpolation: tuple[float, float] = (1.3691e-26, 4.4979e-26)  # figures 3, 6: sums of squares
+
+    @property
+    def plunger_area(self) -> float:
+        """Area that the chamber pressure of test B acts on."""
+        return float(forces.piston_area(bore=self.plunger))
+
+
+PAPER = Paper()
+SPEEDS = np.linspace(*PAPER.speeds, 20)
+"""Speeds the curves of figures 7 and 15 are drawn and fitted at: the printed range, our places."""
+TOLERANCE = 0.15
+"""How near a printed value counts as holding."""
+SEAL_VISCOSITY = 0.043
+"""Of the published rod-seal studies the paper takes its friction from (Pa s); it prints none."""
+
+
+def friction_of(row: StribeckParameters, speed: Array) -> Array:
+    """Friction of the plunger at a pressure of table 2 and speeds > 0."""
+    curve = {key: value for key, value in asdict(row).items() if key != "pressure"}
+    return friction.stribeck(speed=speed, **curve)
+
+
+def secant_of(row: StribeckParameters, speed: Array) -> Array:
+    """Secant VDC of the plunger, eq. 31."""
+    return damping.secant(friction=friction_of(row, speed), speed=speed)
+
+
+class Claim(NamedTuple):
+    """The printed 0.65 to 0.2 MN s/m set against table 2 at one speed."""
+
+    speed: float
+    low: float
+    """B at 0.6 MPa."""
+    high: float
+    """B at 6 MPa."""
+    errors: tuple[float, float]
+    """These over the claimed ones, less 1."""
+    bend: float
+    """Largest distance of B at 2 and 4 MPa from the straight line, over its B."""
+
+
+def claim_at(speed: float) -> Claim:
+    """What table 2 makes of the printed linear fall at a speed."""
+    pressures = np.array([row.pressure for row in HUANG_TABLE_2])
+    found = np.array([float(secant_of(row, speed)) for row in HUANG_TABLE_2])
+    line = np.interp(pressures, pressures[[0, -1]], found[[0, -1]])
+    errors = (found[0] / PAPER.claimed[0] - 1, found[-1] / PAPER.claimed[1] - 1)
+    return Claim(
+        speed=speed,
+        low=float(found[0]),
+        high=float(found[-1]),
+        errors=(float(errors[0]), float(errors[1])),
+        bend=float(np.max(np.abs(found / line - 1))),
+    )
+
+
+def claim_speeds(tolerance: float = TOLERANCE) -> tuple[float, float]:
+    """Least and largest speed at which both printed values hold within a tolerance.
+
+    B falls with speed, so each value holds between the speeds of its two limits; in the wrong order
+    where the two have no speed in common.
+    """
+    speeds = np.geomspace(1e-4, 0.1, 200_001)
+    slowest, fastest = 0.0, np.inf
+    for row, value in zip((HUANG_TABLE_2[0], HUANG_TABLE_2[-1]), PAPER.claimed, strict=True):
+        curve = secant_of(row, speeds)
+        most, least = value * (1 + tolerance), value * (1 - tolerance)
+        slow, fast = np.interp([-most, -least], -curve, speeds)
+        slowest, fastest = max(slowest, float(slow)), min(fastest, float(fast))
+    return slowest, fastest
+
+
+def asymptote_speed(row: StribeckParameters, excess: float = 0.1) -> float:
+    """Speed from which B <= (1 + excess) sigma2, F_C/(excess sigma2): the Stribeck part is gone."""
+    return row.coulomb / (excess * row.viscous)
+
+
+def viscous_share(row: StribeckParameters, speed: float) -> float:
+    """Share of sigma2 v in the friction."""
+    return float(row.viscous * speed / friction_of(row, speed))
+
+
+def balance_error(speed: float) -> float:
+    """Error of the force balance, over the change of pressure force, that looks like the fall.
+
+    Friction is the chamber's pressure force less the load's (eq. 1). This share of the change of
+    pressure force from 0.6 to 6 MPa is as large as the whole fall of friction.
+    """
+    first, last = HUANG_TABLE_2[0], HUANG_TABLE_2[-1]
+    fall = float(friction_of(first, speed) - friction_of(last, speed))
+    return fall / (PAPER.plunger_area * (last.pressure - first.pressure))
+
+
+class CurveFits(NamedTuple):
+    """Both laws of the paper fitted to one pressure of table 2."""
+
+    row: StribeckParameters
+    power: Fit
+    double: Fit
+
+
+def fitted(row: StribeckParameters, *, relative: bool = False) -> CurveFits:
+    """Fits over the tested speeds, by equal weights or by relative errors."""
+    curve = secant_of(row, SPEEDS)
+    weights = 1 / curve**2 if relative else None
+    return CurveFits(
+        row,
+        fit_power_law(SPEEDS, curve, weights),
+        fit_double_exponential(SPEEDS, curve, weights),
+    )
+
+
+class Chamber(NamedTuple):
+    """Inputs of eq. 24 and 25 that give the printed shear of the chamber."""
+
+    viscosity: float
+    length: float
+    """Of plunger inside the chamber's oil."""
+    gap: float
+    """h_v of a thin gap."""
+    gap_annular: float
+    """The same when the gap is curved, r_o - r_i."""
+
+
+def chamber(*, length: float, viscosity: float = SEAL_VISCOSITY) -> Chamber:
+    """The member of the family L eta/h_v = B/(pi d) with a length and a viscosity."""
+    thin = damping.flat_gap(
+        dynamic_viscosity=viscosity, diameter=PAPER.plunger, length=length, gap=1.0
+    )
+    gap = float(thin) / PAPER.chamber_shear
+    return Chamber(
+        viscosity, length, gap, PAPER.plunger / 2 * float(np.expm1(2 * gap / PAPER.plunger))
+    )
+
+
+def chamber_length(*, gap: float, viscosity: float = SEAL_VISCOSITY) -> float:
+    """Length of plunger in oil that a gap needs for the printed shear."""
+    return gap / chamber(length=1.0, viscosity=viscosity).gap
+
+
+def plausible_chamber() -> Chamber:
+    """One member with reasons: 560 mm, the one stroke the paper prints, at 0.043 Pa s.
+
+    The paper gives no length, viscosity or gap of the plunger's chamber; nothing is tuned but the
+    gap, which follows.
+    """
+    return chamber(length=PAPER.stroke)

@@ -1,0 +1,279 @@
+"""[AaltoThesis] Table 1 on a design's O-rings: which way each of ten factors moves friction.
+
+Table 1 lists what raises the friction of an O-ring, from an O-ring handbook. Here every factor of a
+design is moved by a little and the friction of its two rings is evaluated again: with coefficients
+of friction, and on the oil film. The relative change of friction over that of the factor, the
+elasticity, bears the verdict. The film answers to the first order by its exact slopes, as in every
+evaluation; where a contact law has a kink, as at a squeeze of 15 %, the slope is of one side.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Container, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from ..base.errors import InputError, Unsolvable
+from ..design.model import Design
+from ..design.seals import Seal
+from ..evaluation.build import prepare
+from ..evaluation.film_tables import floats
+from ..evaluation.kernel import PreparedDesign, base, compute
+from ..evaluation.rings import Place, Ring
+from ..evaluation.seal_contact import seal_contact
+from ..evaluation.values import Values, of_case
+from ..friction import coefficient, film
+from ..seals import o_ring
+from ..seals.kinds import SIZES
+
+Verdict = Literal["agrees", "disagrees", "no effect", "no answer"]
+
+PLACES: tuple[Place, ...] = ("piston", "rod")
+STEP = 1e-3
+"""Relative step of a factor, both ways (absolute temperature: 0.3 K)."""
+NEGLIGIBLE = 1e-3
+"""Elasticity below which a factor has no effect: doubled, it moves friction by 0.1 % (a choice,
+below what the film's own nodes leave uncertain)."""
+ELASTOMER = "nbr_70"
+"""Compound of the O-rings put where the design has another seal: the thesis names none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Factor:
+    """A row of Table 1.
+
+    Parameters
+    ----------
+    name : as printed
+    direction : +1 where the column "to increase friction" prints Increase, -1 where Decrease
+    handbook : the same in the handbook's own table ([ORingFriction], table A6-1)
+    paths : PATHs of a design that are moved together; {place}, {compound} and {case} filled in
+    """
+
+    name: str
+    direction: int
+    handbook: int
+    paths: tuple[str, ...]
+
+
+FACTORS = (
+    Factor("squeeze", 1, 1, ("seals.{place}.squeeze",)),
+    Factor("metal surface finish (RMS)", 1, 1, ("seals.{place}.counterface_roughness",)),
+    Factor("seal material hardness", 1, 1, ("materials.{compound}.hardness",)),
+    Factor(
+        "relative motion speed",
+        -1,
+        -1,
+        ("load_cases[{case}].speed", "load_cases[{case}].joint_speed"),
+    ),
+    Factor("cross section of seal", 1, 1, ("seals.{place}.section",)),
+    Factor(
+        "hydraulic pressure",
+        -1,
+        1,
+        (
+            "supply.pressure",
+            "supply.return_pressure",
+            "load_cases[{case}].pressure",
+            "load_cases[{case}].pressure_a",
+            "load_cases[{case}].pressure_b",
+        ),
+    ),
+    Factor("temperature", -1, -1, ("fluid.temperature", "load_cases[{case}].temperature")),
+    Factor("groove width", -1, -1, ("seals.{place}.groove_width",)),
+    Factor("diameter of rod or bore", 1, 1, ("cylinder.bore", "rod.outer_diameter")),
+    Factor("O-ring surface finish", -1, -1, ("materials.{compound}.seal_roughness",)),
+)
+"""Table 1, in its order: that of significance, as the thesis says.
+
+Both surface finishes are read as RMS roughness, as the metal's is printed.
+"""
+
+Elasticities: TypeAlias = tuple[float, ...]
+"""d ln friction/d ln factor of every factor, in the order of `FACTORS`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """One friction model at the design's point.
+
+    Parameters
+    ----------
+    running, breakaway : friction of both rings [N]; NaN without an answer
+    elasticities : d ln running/d ln factor
+    why : why there is no answer
+    """
+
+    running: float
+    breakaway: float
+    elasticities: Elasticities
+    why: str = ""
+
+    def verdict(self, index: int) -> Verdict:
+        """Whether a factor moves friction the way Table 1 prints."""
+        return verdict(self.elasticities[index], FACTORS[index].direction)
+
+
+@dataclass(frozen=True, slots=True)
+class Trends:
+    """Table 1 on a design.
+
+    Parameters
+    ----------
+    case : load case of the point: of those that move, the one of the highest friction
+    replaced : places where the design has no O-ring of an elastomer, and got one
+    rings : as evaluated, numbers of that case
+    coefficient, film : the two models
+    """
+
+    case: str
+    replaced: tuple[Place, ...]
+    rings: tuple[Ring, ...]
+    coefficient: Model
+    film: Model
+
+    @property
+    def stribeck_ratio(self) -> float:
+        """Speed over Stribeck speed, the lowest of both rings."""
+        return min(float(ring["speed"] / ring["stribeck_speed"]) for ring in self.rings)
+
+    @property
+    def contact_share(self) -> float:
+        """Contact over groove width, the larger of both rings; at 1 the groove's walls hold it."""
+        return max(float(seal_contact(ring).width / ring["groove_width"]) for ring in self.rings)
+
+    @property
+    def roughness_ratio(self) -> float:
+        """Roughness of the ring over that of the metal, the smaller of both rings."""
+        return min(
+            float(ring["seal_roughness"] / ring["counterface_roughness"]) for ring in self.rings
+        )
+
+    def order(self, model: Model) -> tuple[str, ...]:
+        """The factors that act in a model, the strongest first."""
+        sizes = {
+            factor.name: abs(value)
+            for factor, value in zip(FACTORS, model.elasticities, strict=True)
+            if abs(value) >= NEGLIGIBLE
+        }
+        return tuple(sorted(sizes, key=lambda name: -sizes[name]))
+
+
+def verdict(elasticity: float, direction: int) -> Verdict:
+    """Whether an elasticity has the published sign."""
+    if math.isnan(elasticity):
+        return "no answer"
+    if abs(elasticity) < NEGLIGIBLE:
+        return "no effect"
+    return "agrees" if elasticity * direction > 0 else "disagrees"
+
+
+def trends(design: Design) -> Trends | None:
+    """Table 1 on a design; None where no load case moves.
+
+    Everything else stays as the design has it: the barrel grows with bore and pressure, and the
+    gland is cut anew for every section and squeeze.
+    """
+    numbers = prepare(design).numbers
+    replaced = tuple(place for place in PLACES if not _elastomer_o_ring(design, place, numbers))
+    dry, wet = (_fitted(design, replaced, model) for model in (coefficient.LAW.name, film.LAW.name))
+    subject = prepare(dry)
+    v = subject.values()
+    moving = [i for i, case in enumerate(design.load_cases) if case.moves]
+    if not moving:
+        return None
+    (running,) = compute(subject, v).computed.metrics["friction_running"].values()
+    index = max(moving, key=lambda i: np.nan_to_num(of_case(running, i)))
+    case = design.load_cases[index]
+    dry, wet = (one.model_copy(update={"load_cases": (case,)}) for one in (dry, wet))
+    oiled = prepare(wet)
+    return Trends(
+        case=case.name,
+        replaced=replaced,
+        rings=tuple(floats(ring, 0) for ring in base(oiled, oiled.values()).rings),
+        coefficient=_model(prepare(dry)),
+        film=_model(oiled),
+    )
+
+
+def _elastomer_o_ring(design: Design, place: Place, numbers: Container[str]) -> bool:
+    """Whether a place runs on an O-ring whose modulus follows from its hardness."""
+    seal: Seal = getattr(design.seals, place)
+    stated = f"materials.{seal.compound}.youngs_modulus" in numbers
+    return seal.type == o_ring.TYPE.name and not seal.contact and not stated
+
+
+_OF_ANOTHER = (
+    "friction_coefficient",
+    "breakaway_ratio",
+    "stribeck_speed",
+    *(size.key for size in SIZES),
+    "back_up_material",
+    "back_up_thickness",
+)
+"""Fields of another type of seal that say nothing of the O-ring put in its place."""
+
+
+def _fitted(design: Design, replaced: Sequence[Place], model: str) -> Design:
+    """The design with one O-ring at piston and rod and nothing beside them."""
+    alone: dict[str, Any] = {"secondary": None, "wiper": None, "guide": None, "count": 1.0}
+    other: dict[str, Any] = dict.fromkeys(_OF_ANOTHER)
+    other |= {"type": o_ring.TYPE.name, "compound": ELASTOMER, "contact": (), "back_up": "none"}
+    other |= {"viscous_friction": 0.0}
+    seals: dict[str, Any] = {}
+    for place in PLACES:
+        update = {"friction": model} | alone | (other if place in replaced else {})
+        seals[place] = getattr(design.seals, place).model_copy(update=update)
+    return design.model_copy(
+        update={"seals": design.seals.model_copy(update=seals), "variables": {}}
+    )
+
+
+def _model(subject: PreparedDesign) -> Model:
+    """Friction of a design of one load case, and how every factor moves it."""
+    nothing = (math.nan,) * len(FACTORS)
+    try:
+        found = compute(subject, subject.values(_moved(subject))).computed.metrics
+    except (InputError, Unsolvable) as error:
+        return Model(math.nan, math.nan, nothing, error.diagnostics[0].message)
+    columns = 2 * len(FACTORS) + 1
+    (running,), (breakaway,) = (
+        found[name].values() for name in ("friction_running", "friction_breakaway")
+    )
+    row = np.broadcast_to(np.asarray(running, dtype=float), (1, columns))[0]
+    if not (row > 0).all():
+        return Model(math.nan, math.nan, nothing, "no friction: the rings have lost contact")
+    up, down = row[1::2], row[2::2]
+    slopes = np.log(up / down) / math.log((1 + STEP) / (1 - STEP))
+    return Model(float(row[0]), of_case(breakaway, 0), tuple(float(slope) for slope in slopes))
+
+
+def _moved(subject: PreparedDesign) -> dict[str, np.ndarray]:
+    """PATHs with a column for the design and one for each factor a step up and a step down."""
+    v = subject.values()
+    widths = {f"seals.{r.name}.groove_width": r["groove_width"] for r in base(subject, v).rings}
+    varied: dict[str, np.ndarray] = {}
+    for i, factor in enumerate(FACTORS):
+        for path in _paths(subject, factor, v):
+            here = float(np.squeeze(widths[path] if path in widths else v[path]))
+            column = np.full(2 * len(FACTORS) + 1, here)
+            column[2 * i + 1 : 2 * i + 3] *= 1 + STEP, 1 - STEP
+            varied[path] = column
+    return varied
+
+
+def _paths(subject: PreparedDesign, factor: Factor, v: Values) -> Sequence[str]:
+    """PATHs of a factor in a design; a groove's width may be left to its default."""
+    found = [
+        path.format(
+            place=place,
+            compound=getattr(subject.design.seals, place).compound,
+            case=subject.cases[0],
+        )
+        for path in factor.paths
+        for place in PLACES
+    ]
+    return [path for path in dict.fromkeys(found) if path in v or path.endswith("groove_width")]

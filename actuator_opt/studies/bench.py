@@ -1,0 +1,252 @@
+"""What a test bench record is read with: areas, moving mass, contact forces, stiffness."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from math import pi
+
+import numpy as np
+
+from ..base.numeric import Array
+from ..design.model import Design
+from ..evaluation import oil
+from ..evaluation.allow import MaterialValues
+from ..evaluation.barrel import SEAL_STEP
+from ..evaluation.film_tables import floats
+from ..evaluation.kernel import PreparedDesign, compute
+from ..evaluation.rings import Ring
+from ..evaluation.seal_contact import seal_contact
+from ..evaluation.sealing import WiperFriction, wipers
+from ..evaluation.springs import Springs
+from ..models import forces
+from ..seals.contact import SealContact
+
+
+@dataclass(frozen=True, slots=True)
+class Bench:
+    """A design as a test bench meets it, SI.
+
+    Parameters
+    ----------
+    design : the actuator tested
+    growth : radial growth of the bore at the piston seal over chamber pressure [m/Pa]
+    mass : of what moves inside the force sensor: rod, piston, fastening [kg]
+    rings, wipers : of the first load case
+    springs : stiffness budget
+    oil_pressures : of chambers A and B in its first load case [Pa]
+    temperature : of its oil [K]
+    bulk_modulus : of the oil with air over gauge pressure, at the first case's temperature [Pa]
+    """
+
+    design: Design
+    bore: float
+    rod_diameter: float
+    stroke: float
+    growth: float
+    mass: float
+    load_mass: float
+    supply_pressure: float
+    rings: tuple[Ring, ...]
+    wipers: tuple[WiperFriction, ...]
+    springs: Springs
+    oil_pressures: tuple[float, float]
+    temperature: float
+    bulk_modulus: Callable[[Array], Array]
+
+    @property
+    def plunger(self) -> bool:
+        """Whether no piston seal parts the chambers."""
+        return all(ring.name != "piston" for ring in self.rings)
+
+    def areas(self, highest_pressure: Array) -> tuple[Array, Array]:
+        """Piston areas of cap and rod end in the bore as grown at its higher chamber pressure.
+
+        A_1 = pi (D/2 + u)^2, A_2 = A_1 - pi d^2/4, u the growth at the piston seal: what the seal
+        closes is what the pressure pushes. Without a piston seal the rod is a plunger: pi d^2/4 and
+        nothing. Pressure gauge [Pa]; areas [m^2].
+        """
+        if self.plunger:
+            area = forces.piston_area(bore=self.rod_diameter)
+            return area + 0.0 * highest_pressure, 0.0 * highest_pressure
+        bore = self.bore + 2 * self.growth * highest_pressure
+        return (
+            forces.piston_area(bore=bore),
+            forces.annulus_area(bore=bore, rod_diameter=self.rod_diameter),
+        )
+
+    def normal_forces(self, pressure_1: Array, pressure_2: Array) -> list[tuple[Ring, Array]]:
+        """Every ring with its normal force at chamber pressures, f pi D [N].
+
+        The first ring of a place carries the pressure, others in the row their squeeze. Gauge
+        pressures [Pa], any shape.
+        """
+        return [(ring, force) for ring, _, force in self._rubbing(pressure_1, pressure_2)]
+
+    def _rubbing(
+        self, pressure_1: Array, pressure_2: Array
+    ) -> Iterator[tuple[Ring, SealContact, Array]]:
+        """Every ring with its contact, and the normal force of its row [N]."""
+        for ring in self._held(pressure_1, pressure_2):
+            contact = seal_contact(ring)
+            load = contact.line_load
+            count = float(ring["count"])
+            if count != 1.0:
+                idle = seal_contact(ring.at(pressure=0.0 * ring["pressure"]))
+                load = load + (count - 1) * idle.line_load
+            yield ring, contact, pi * ring["diameter"] * load
+
+    def contact_forces(self, pressure_1: Array, pressure_2: Array) -> dict[str, Array]:
+        """Normal force of all rings of piston and rod at chamber pressures [N]."""
+        total = {"piston": 0.0 * pressure_1, "rod": 0.0 * pressure_1}
+        for ring, force in self.normal_forces(pressure_1, pressure_2):
+            total[ring.name] = total[ring.name] + force
+        return total
+
+    def coulomb(self, pressure_1: Array, pressure_2: Array) -> Array:
+        """Coulomb friction that the design states: rings and wipers, no side load on guides [N]."""
+        wiped = sum(float(one.friction) for one in self.wipers)
+        return sum((own for _, own in self._coulomb(pressure_1, pressure_2)), wiped)
+
+    def _coulomb(self, pressure_1: Array, pressure_2: Array) -> Iterator[tuple[Ring, Array]]:
+        """Every ring with the Coulomb friction of its row by its friction law [N]."""
+        for ring, contact, force in self._rubbing(pressure_1, pressure_2):
+            yield ring, ring.element.friction_law.coefficient(ring.sizes, contact) * force
+
+    def sliding(self, speed: Array, pressure_1: Array, pressure_2: Array) -> tuple[Array, Array]:
+        """Friction that the design states, without side load on guides: level and viscous [N].
+
+        The level is Coulomb friction and what of breakaway is left at a speed [m/s]. Gauge
+        pressures [Pa].
+        """
+        level = sum((float(one.friction) for one in self.wipers), 0.0 * speed)
+        viscous = 0.0 * speed
+        for ring, coulomb in self._coulomb(pressure_1, pressure_2):
+            level = level + ring.element.friction_law.level(ring.sizes, coulomb, speed)
+            viscous = viscous + ring["viscous_friction"] * speed
+        return level, viscous
+
+    def contact_pressure(self, pressure_1: float, pressure_2: float) -> float:
+        """Normal force of the rings that hold the pressure over their contact area [Pa]."""
+        held = [ring for ring in self._held(pressure_1, pressure_2) if _leads(ring)]
+        touches = [seal_contact(ring) for ring in held]
+        around = [float(ring["diameter"]) for ring in held]
+        force = sum(d * float(one.line_load) for d, one in zip(around, touches, strict=True))
+        area = sum(d * float(one.width) for d, one in zip(around, touches, strict=True))
+        return force / area
+
+    @property
+    def contact_law(self) -> str:
+        """Contact law of the rings that hold the pressure, in words."""
+        return "; ".join(
+            f"{ring.label}: "
+            + ("stated profile" if ring.element.contact else ring.element.seal_type.title)
+            + (
+                f", {ring.element.law.replace('_', ' ')}"
+                if ring.element.seal_type.round_ring
+                else ""
+            )
+            for ring in self.rings
+            if _leads(ring)
+        )
+
+    def _held(self, pressure_1: Array, pressure_2: Array) -> list[Ring]:
+        """The rings at chamber pressures: the first of a place carries them."""
+        p1, p2 = (np.maximum(one, 0.0) for one in np.broadcast_arrays(pressure_1, pressure_2))
+        seen = {"piston": np.abs(p1 - p2), "rod": p1 if self.plunger else p2}
+        outer = {"piston": np.minimum(p1, p2), "rod": 0.0 * p2}
+        found = []
+        for ring in self.rings:
+            grown = self.growth * np.maximum(p1, p2) if ring.name == "piston" else 0.0
+            found.append(
+                ring.at(
+                    pressure=seen[ring.name] if _leads(ring) else 0.0 * p1,
+                    outer_pressure=outer[ring.name],
+                    squeeze_left=ring["squeeze"] - grown / ring["section"],
+                )
+            )
+        return found
+
+    def stiffness(self, position: Array, pressure_1: Array, pressure_2: Array) -> Array:
+        """Stiffness with the ports closed at a moment of a record [N/m]; NaN of a plunger.
+
+        Position of the piston from the cap end [m], gauge pressures [Pa], all (samples). The oil of
+        each chamber has its bulk modulus with air at the pressure there.
+        """
+        place = np.clip(position, 0.0, self.stroke)[None, :]
+        if self.plunger:
+            return np.full(place.shape[1], np.nan)
+        state = self.oil_pressures
+        soft_a, soft_b = (
+            self.bulk_modulus(held) / self.bulk_modulus(np.maximum(here, 0.0))[None, :]
+            for held, here in zip(state, (pressure_1, pressure_2), strict=True)
+        )
+        chambers = {
+            cause: give._replace(
+                a0=give.a0 * soft_a, a1=give.a1 * soft_a, b0=give.b0 * soft_b, b1=give.b1 * soft_b
+            )
+            if cause in self.springs.oil
+            else give
+            for cause, give in self.springs.chambers.items()
+        }
+        parts = replace(self.springs, chambers=chambers).compliances(place)
+        whole = np.sum([np.broadcast_to(one, (1, place.size)) for one in _first(parts)], axis=0)
+        return 1 / whole[0]
+
+
+def _leads(ring: Ring) -> bool:
+    """Whether a ring is the one of its place that holds the pressure."""
+    return ring.groove.path == f"seals.{ring.name}."
+
+
+def _first(parts: dict[str, Array]) -> list[Array]:
+    """Compliances of the first load case, (1, positions) each."""
+    return [np.atleast_2d(np.asarray(one))[:1] for one in parts.values()]
+
+
+def bench(subject: PreparedDesign) -> Bench:
+    """What a record of the design is read with; its oil and temperature are the first case's."""
+    v = subject.values()
+    done = compute(subject, v)
+    g = done.geometry
+    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
+    temperature = _first_of(done.state.temperature)
+
+    def bulk_modulus(pressure: Array) -> Array:
+        found = oil.bulk_modulus(v, subject.design.fluid, stock, temperature, pressure)
+        return np.real(found) + 0.0 * pressure
+
+    driven = np.broadcast_to(_cases(done.state.driven_pressure), (len(v.cases),))
+    grown = np.max(np.real(np.atleast_2d(SEAL_STEP * done.wall.case_growth)), axis=-1)
+    grown = np.broadcast_to(grown, driven.shape)
+    loaded = driven > 0
+    growth = float(np.max(grown[loaded] / driven[loaded])) if loaded.any() else 0.0
+    return Bench(
+        design=subject.design,
+        bore=float(np.squeeze(g.bore)),
+        rod_diameter=float(np.squeeze(g.rod_diameter)),
+        stroke=float(np.squeeze(g.stroke)),
+        growth=growth,
+        mass=sum(float(np.squeeze(done.mass_parts[x])) for x in ("rod", "piston", "fastening")),
+        load_mass=float(v["load.mass"]),
+        supply_pressure=float(v["supply.pressure"]),
+        rings=tuple(floats(ring, 0) for ring in done.rings),
+        wipers=tuple(
+            WiperFriction(one.path, _first_of(one.coefficient), _first_of(one.friction))
+            for one in wipers(v, subject.design, g, done.state)
+        ),
+        springs=done.springs,
+        oil_pressures=(_first_of(done.state.holding_a), _first_of(done.state.holding_b)),
+        temperature=temperature,
+        bulk_modulus=bulk_modulus,
+    )
+
+
+def _first_of(value: Array) -> float:
+    """A number of the first case of one design."""
+    return float(np.ravel(np.real(np.asarray(value)))[0])
+
+
+def _cases(value: Array) -> Array:
+    """The values of all cases of one design."""
+    return np.real(np.atleast_2d(np.asarray(value))[:, 0])

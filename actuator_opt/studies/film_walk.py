@@ -1,0 +1,199 @@
+"""The films of a sealing over pressure and speed, each begun from the one before."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import nan, pi
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from ..base.numeric import Array
+from ..evaluation.barrel import SEAL_STEP
+from ..evaluation.film import FilmRow, Solved, ring_films, solve
+from ..evaluation.film_tables import floats, of_place
+from ..evaluation.kernel import Base
+from ..evaluation.rings import Place, Ring
+from ..evaluation.seal_contact import seal_contact
+from ..evaluation.values import of_case
+from ..models import friction
+from ..seals.contact import SealContact
+
+Stroke = Literal["out", "in"]
+"""Way of the counterface past the seal: out of the sealed room, or in."""
+
+
+def drives(place: Place) -> Stroke:
+    """The stroke of a driven actuator.
+
+    A driven piston runs away from the pressure it seals: the bore moves in past its seal. Out it
+    moves where a load overruns it.
+    """
+    return "in" if place == "piston" else "out"
+
+
+@dataclass(frozen=True, slots=True)
+class Sealing:
+    """Rings of floats of one place that share the oil, from the sealed side outwards.
+
+    Parameters
+    ----------
+    rings : each with the pressure of its outer side
+    outward : whether their counterface moves to the outer side
+    growth : of the counterface over the pressure on it [m/Pa]
+    """
+
+    rings: tuple[Ring, ...]
+    outward: bool
+    growth: float = 0.0
+
+    def grown(self, pressure: float) -> float:
+        """Growth of the counterface at a pressure difference [m]."""
+        return self.growth * (pressure + float(self.rings[-1]["outer_pressure"]))
+
+    def row(self, pressure: float, speed: float, **changes: float) -> FilmRow:
+        """The rings at a pressure difference and speed; `changes` are of the first."""
+        grown = self.grown(pressure)
+        rings = []
+        for ring in self.rings:
+            left = ring["squeeze"] - grown / ring["section"]
+            rings.append(ring.at(pressure=pressure, speed=speed, squeeze_left=left))
+        rings[0] = rings[0].at(**changes)
+        return FilmRow(tuple(rings), self.outward)
+
+    def alone(self, index: int) -> Sealing:
+        """One of the rings without the others."""
+        return Sealing((self.rings[index],), self.outward, self.growth)
+
+
+def sealing(found: Base, place: Place, case: int) -> Sealing:
+    """The rings of a place with the oil and the outer side of a load case, driven."""
+    rings = tuple(floats(ring, case) for ring in of_place(found.rings, place))
+    pressure = float(of_case(found.state.driven_pressure, case))
+    growth = 0.0
+    if place == "piston" and pressure > 0:
+        grown = SEAL_STEP * of_case(found.wall.case_growth, case)
+        growth = float(np.max(np.real(grown))) / pressure
+    return Sealing(rings, drives(place) == "out", growth)
+
+
+class Missing(NamedTuple):
+    """A point without a film: pressure difference [Pa], speed [m/s], and why."""
+
+    pressure: float
+    speed: float
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class FilmMap:
+    """Friction of a sealing over pressure and speed; NaN where there is no film.
+
+    Parameters
+    ----------
+    pressures, speeds : differences to the outer side (p,) [Pa], (v,) [m/s]
+    parts : friction of every ring (p, v, rings) [N]
+    between : pressure between two rings over the outer side (p, v) [Pa]; NaN for one
+    thickness : mean film of every ring (p, v, rings) [m]
+    viscous : share of the oil's shear in the friction (p, v)
+    breakaway : of all rings, dry (p,) [N]; of two as the film of the lowest speed shares the
+        pressure
+    why : the points without a film
+    """
+
+    pressures: Array
+    speeds: Array
+    parts: Array
+    between: Array
+    thickness: Array
+    viscous: Array
+    breakaway: Array
+    why: tuple[Missing, ...]
+
+    @property
+    def friction(self) -> Array:
+        """Of all rings (p, v) [N]."""
+        return np.sum(self.parts, axis=2)
+
+    @property
+    def damping(self) -> Array:
+        """Secant damping (p, v) [N s/m]."""
+        return self.friction / self.speeds
+
+    def at(self, pressure: float, speed: float) -> tuple[int, int]:
+        """Place of a pressure and a speed in the tables."""
+        return (
+            int(np.argmin(np.abs(self.pressures - pressure))),
+            int(np.argmin(np.abs(self.speeds - speed))),
+        )
+
+
+def film_map(
+    sealing: Sealing, pressures: Sequence[float], speeds: Sequence[float], **changes: float
+) -> FilmMap:
+    """The films at every pressure and speed; `changes` are of the first ring."""
+    shape = len(pressures), len(speeds)
+    count = len(sealing.rings)
+    parts, thickness = np.full((2, *shape, count), nan)
+    between, viscous = np.full((2, *shape), nan)
+    dry: list[float] = []
+    why: list[Missing] = []
+    last: Solved | None = None
+    for i, pressure in enumerate(pressures):
+        held = sealing.row(pressure, speeds[0], **changes).rings
+        dry.append(breakaway(held[0]) if count == 1 else nan)
+        for k in range(len(speeds)):
+            j = k if i % 2 == 0 else len(speeds) - 1 - k
+            found = solve(sealing.row(pressure, speeds[j], **changes), last)
+            if found.why:
+                why.append(Missing(pressure, speeds[j], found.why))
+                continue
+            last = found
+            films = ring_films(found.values)
+            parts[i, j] = ring_friction(found)
+            thickness[i, j] = [film.thickness for film in films]
+            sheared = [
+                pi * ring["diameter"] * film.drag
+                for ring, film in zip(found.row.rings, films, strict=True)
+            ]
+            viscous[i, j] = sum(sheared) / found.friction()
+            if count == 2:
+                between[i, j] = found.between - found.row.inputs()["outer"]
+                if j == 0:
+                    dry[i] = sum(map(breakaway, found.row.between(found.between)))
+    return FilmMap(
+        np.array(pressures),
+        np.array(speeds),
+        parts,
+        between,
+        thickness,
+        viscous,
+        np.array(dry),
+        tuple(why),
+    )
+
+
+def ring_friction(solved: Solved) -> tuple[float, ...]:
+    """Friction of every ring of a row [N]; NaN without a film."""
+    if solved.why:
+        return (nan,) * len(solved.row.rings)
+    return tuple(float(one) for one in solved.row.frictions(solved.values))
+
+
+def breakaway(ring: Ring) -> float:
+    """Friction of a ring with all oil squeezed out [N]; 0 where the pressure lifts it off."""
+    return dry_friction(
+        ring, seal_contact(ring.at(pressure=abs(ring["pressure"]))), "asperity_friction"
+    )
+
+
+def dry_friction(ring: Ring, contact: SealContact, coefficient: str) -> float:
+    """Friction of a ring's contact by one of its coefficients [N]."""
+    return float(
+        friction.seal_friction(
+            line_load=contact.line_load,
+            diameter=ring["diameter"],
+            friction_coefficient=ring[coefficient],
+        )
+    )

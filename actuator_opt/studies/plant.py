@@ -1,0 +1,366 @@
+"""A design as a simulation in time meets it: plain numbers, SI, of the oil's own temperature."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..base.numeric import Array, absolute, maximum
+from ..design.model import Design
+from ..evaluation import circuit, oil
+from ..evaluation.allow import MaterialValues
+from ..evaluation.circuit import CHAMBERS, Chamber
+from ..evaluation.kernel import ModelRun, PreparedDesign, compute
+from ..evaluation.rings import Ring
+from ..evaluation.springs import OIL, Give
+from ..evaluation.values import Values
+from ..models import end_stop, lines, linkage
+from .bench import Bench, bench
+
+LEAST_AIR = 1e-4
+"""Free air from which on it bounds a vacuum itself (a choice, 0.01 %)."""
+
+CAVITY = 1e-6
+"""Content of the cavity that bounds it in oil of less air, below atmospheric pressure only (a
+choice: at 0.05 bar absolute it takes 0.006 % of the volume)."""
+SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Chamber pressures over the supply's at which the friction is read."""
+
+
+@dataclass(frozen=True, slots=True)
+class Oil:
+    """The oil at the temperature of the first load case."""
+
+    temperature: float
+    bulk_modulus: float
+    """Tangent value of the pure oil at zero gauge pressure."""
+    slope: float
+    """Of it over pressure; a Tait law is replaced by its secant to the supply pressure."""
+    air_content: float
+    polytropic_index: float
+    density: float
+    dynamic_viscosity: float
+    kinematic_viscosity: float
+    vapour_pressure: float
+
+    @property
+    def cavity(self) -> float:
+        """Content of the cavity that opens below atmospheric pressure; none where air does it."""
+        return CAVITY if self.air_content < LEAST_AIR else 0.0
+
+    @property
+    def law(self) -> dict[str, float]:
+        """What the functions of `models.chamber` take."""
+        return {
+            "bulk_modulus": self.bulk_modulus,
+            "slope": self.slope,
+            "air_content": self.air_content,
+            "polytropic_index": self.polytropic_index,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class ValveData:
+    """The valve's edges and spool."""
+
+    rated: float
+    leakage_supply: float
+    leakage_tank: float
+    """Coefficients of an edge, fully open and centred [m^3/s/sqrt(Pa)]."""
+    signal: float
+    natural_frequency: float
+    damping_ratio: float
+    offset: float = 0.0
+    """Signal at which the spool is centred."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineData:
+    """The lines of one chamber: what is before a throttle, what lies beyond it or is their half."""
+
+    near_volume: float = 0.0
+    near_wall: float = 0.0
+    far_volume: float = 0.0
+    far_wall: float = 0.0
+    resistance: float = 0.0
+    inertance: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """A force over the chamber pressures, c0 + c1 |p_A - p_B| + c2 p_B + c3 max(p_A, p_B) [N]."""
+
+    constant: float
+    difference: float = 0.0
+    rod_side: float = 0.0
+    higher: float = 0.0
+    error: float = 0.0
+    """Largest difference from the seals' own law, over its largest value."""
+
+    def at(self, pressure_a: Array, pressure_b: Array) -> Array:
+        """The force at chamber pressures [Pa]."""
+        higher = maximum(pressure_a, pressure_b) if self.higher else 0.0
+        across = absolute(pressure_a - pressure_b) if self.difference else 0.0
+        rest = self.rod_side * pressure_b + self.higher * higher
+        return self.constant + self.difference * across + rest
+
+
+@dataclass(frozen=True, slots=True)
+class SealData:
+    """Friction of all seals and wipers."""
+
+    coulomb: Plane
+    static: Plane
+    stribeck_speed: float
+    viscous: float
+    bristle_travel: float
+
+
+@dataclass(frozen=True, slots=True)
+class Plant:
+    """The numbers of a design that its equations of motion need, SI.
+
+    Chamber volumes at position x from the cap end: A_A x + dead volume, A_B (s - x) + dead volume,
+    lines not counted; `walls` is what barrel and rod add per pressure, without oil and lines.
+    """
+
+    design: Design
+    area_a: float
+    area_b: float
+    stroke: float
+    dead_a: float
+    dead_b: float
+    walls: Give
+    flexibility: float
+    """Of rod and mount in series [m/N]."""
+    mass: float
+    """Of load, rod, piston and fastening, without a joint's inertia."""
+    leakage: float
+    oil: Oil
+    supply_pressure: float
+    return_pressure: float
+    proof_pressure: float
+    valve: ValveData | None
+    lines: dict[Chamber, LineData]
+    throttle: dict[str, float] | None
+    """What the functions of `models.one_way_valve` take beside the pressures."""
+    reducing_valve: dict[str, float] | None
+    seals: SealData
+    films: dict[str, bool]
+    """Whether the seal of piston and rod runs on an oil film in the design."""
+    oil_damping: float
+    """Shear of the oil in gaps, at the piston [N s/m]."""
+    stop_stiffness: float
+    closed_length: float
+
+    def joint(self, position: Array) -> tuple[linkage.Linkage, linkage.ReflectedInertia] | None:
+        """The linkage at a position, with the joint's inertia as the rod feels it."""
+        pivots = self.design.linkage
+        if pivots is None:
+            return None
+        arm = linkage.linkage(
+            joint_angle=self.joint_angle(position),
+            base_radius=pivots.base_radius,
+            crank_radius=pivots.crank_radius,
+            angle_offset=pivots.angle_offset,
+        )
+        felt = linkage.reflected_inertia(
+            inertia=self.design.load.inertia, lever_arm=arm.lever_arm, lever_slope=arm.lever_slope
+        )
+        return arm, felt
+
+    def joint_angle(self, position: Array) -> Array:
+        """Angle of the joint at a position [rad]; of a design with a linkage."""
+        pivots = self.design.linkage
+        assert pivots is not None
+        return linkage.linkage_angle(
+            length=self.closed_length + position,
+            base_radius=pivots.base_radius,
+            crank_radius=pivots.crank_radius,
+            angle_offset=pivots.angle_offset,
+        )
+
+    def moving_mass(self, position: float) -> float:
+        """Everything the rod moves, a joint's inertia included [kg]."""
+        joint = self.joint(position)
+        return self.mass + (0.0 if joint is None else float(joint[1].mass))
+
+
+def plant(subject: PreparedDesign) -> Plant:
+    """The plant of a design, at the temperature of its first load case.
+
+    Friction of an oil film is taken as dry, by its coefficient.
+    """
+    v = subject.values()
+    done = compute(subject, v)
+    design, g = subject.design, done.geometry
+    own = bench(subject)
+    give = done.springs.total([c for c in done.springs.chambers if c not in _NOT_WALLS])
+    across = done.springs.series_compliance()
+    supply = float(v["supply.pressure"])
+    return Plant(
+        design=design,
+        area_a=_one(g.area_a),
+        area_b=_one(g.area_b),
+        stroke=_one(g.stroke),
+        dead_a=_one(v["cylinder.dead_volume_a"]),
+        dead_b=_one(v["cylinder.dead_volume_b"]) + _one(g.area_b) * _extra(done),
+        walls=Give(*(_one(part) for part in give)),
+        flexibility=_one(across),
+        mass=float(v["load.mass"]) + own.mass,
+        leakage=_one(done.motion.leakage),
+        oil=_oil(subject, v, own, supply),
+        supply_pressure=supply,
+        return_pressure=float(v["supply.return_pressure"]),
+        proof_pressure=supply * float(v["supply.proof_ratio"]),
+        valve=_valve(v, design, done),
+        lines={chamber: _lines(v, design, done, chamber) for chamber in CHAMBERS},
+        throttle=_throttle(v, design, done),
+        reducing_valve=_numbers(v, design.ports.reducing_valve, "ports.reducing_valve."),
+        seals=_seals(v, own, supply),
+        films={
+            one: getattr(design.seals, one).friction_law.film is not None
+            for one in ("piston", "rod")
+        },
+        oil_damping=_one(
+            done.computed.metrics["damping_pipe"][""] + done.computed.metrics["damping_annular"][""]
+        ),
+        stop_stiffness=float(
+            end_stop.stop_stiffness(
+                area=_one(g.area_a), pressure=supply, travel=v["cylinder.stop_travel"]
+            )
+        ),
+        closed_length=_one(done.computed.metrics["closed_length"][""]),
+    )
+
+
+_NOT_WALLS = (*OIL, "pipes", "hoses")
+
+
+def _one(value: Array) -> float:
+    """The number of the first case of one design."""
+    return float(np.ravel(np.real(np.asarray(value)))[0])
+
+
+def _extra(done: ModelRun) -> float:
+    """Length of the barrel that neither stroke nor parts take."""
+    g = done.geometry
+    return _one(g.barrel_length - g.piston_length - g.head_length - g.stroke)
+
+
+def _oil(subject: PreparedDesign, v: Values, own: Bench, supply: float) -> Oil:
+    section, temperature = subject.design.fluid, own.temperature
+    stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
+
+    def modulus(pressure: float) -> float:
+        return _one(oil.pure_bulk_modulus(v, section, stock, temperature, pressure))
+
+    at_rest = modulus(0.0)
+    density = _one(oil.density(v, section, stock, temperature))
+    kinematic = _one(oil.kinematic_viscosity(v, section, stock, temperature))
+    vapour = oil.vapour_pressure(stock, section.material, temperature)
+    return Oil(
+        temperature=temperature,
+        bulk_modulus=at_rest,
+        slope=(modulus(supply) - at_rest) / supply,
+        air_content=float(v["fluid.air_content"]),
+        polytropic_index=float(v["fluid.polytropic_index"]),
+        density=density,
+        dynamic_viscosity=kinematic * density,
+        kinematic_viscosity=kinematic,
+        vapour_pressure=0.0 if vapour is None else _one(vapour),
+    )
+
+
+def _valve(v: Values, design: Design, done: ModelRun) -> ValveData | None:
+    if design.valve is None:
+        return None
+    edges = circuit.valve_edges(v, design, done.state)
+    return ValveData(
+        rated=_one(edges.rated),
+        leakage_supply=_one(edges.supply),
+        leakage_tank=_one(edges.tank),
+        signal=float(v["valve.signal"]),
+        natural_frequency=float(v["valve.natural_frequency"]),
+        damping_ratio=float(v["valve.damping_ratio"]),
+        offset=float(v["valve.offset"]),
+    )
+
+
+def _lines(v: Values, design: Design, done: ModelRun, chamber: Chamber) -> LineData:
+    branch = circuit.branches(v, design, done.state)[chamber]
+    throttled = design.ports.throttle is not None
+    volumes, walls = [0.0, 0.0], [0.0, 0.0]
+    for i, line in enumerate(design.lines):
+        if line.chamber != chamber:
+            continue
+        at = f"lines[{i}]."
+        size = {"inner_diameter": v[at + "inner_diameter"], "length": v[at + "length"]}
+        volume, wall = lines.line_volume(**size), circuit.wall_compliance(v, line, at)
+        far = float(line.beyond_throttle) if throttled else 0.5
+        for k, share in ((0, 1 - far), (1, far)):
+            volumes[k] += share * _one(volume)
+            walls[k] += share * _one(wall)
+    return LineData(
+        near_volume=volumes[0],
+        near_wall=walls[0],
+        far_volume=volumes[1],
+        far_wall=walls[1],
+        resistance=_one(branch.resistance),
+        inertance=_one(branch.inertance),
+    )
+
+
+def _throttle(v: Values, design: Design, done: ModelRun) -> dict[str, float] | None:
+    found = _numbers(v, design.ports.throttle, "ports.throttle.")
+    if found is None:
+        return None
+    return {
+        "opening": found["opening"],
+        "needle_area": found["area"],
+        "check_area": found["check_area"],
+        "cracking_pressure": found["cracking_pressure"],
+        "density": _one(done.state.density),
+        "dynamic_viscosity": _one(done.state.dynamic_viscosity),
+    }
+
+
+def _numbers(v: Values, section: Any, at: str) -> dict[str, float] | None:
+    if section is None:
+        return None
+    return {name: float(v[at + name]) for name in type(section).model_fields if at + name in v}
+
+
+def _seals(v: Values, own: Bench, supply: float) -> SealData:
+    """Friction as a function of the pressures, fitted to that of the seals."""
+    p_a, p_b = (one.ravel() for one in np.meshgrid(*2 * (supply * np.array(SHARES),)))
+    loads = [(ring, force) for ring, force in own.normal_forces(p_a, p_b)]
+    coulomb = own.coulomb(p_a, p_b)
+    static, _ = own.sliding(0.0 * p_a, p_a, p_b)
+    weights = [float(np.mean(_falling(ring) * force)) for ring, force in loads]
+    speeds = [float(ring["stribeck_speed"]) for ring, _ in loads]
+    falling = sum(weights) > 0
+    return SealData(
+        coulomb=_plane(p_a, p_b, coulomb),
+        static=_plane(p_a, p_b, static),
+        stribeck_speed=float(np.average(speeds, weights=weights)) if falling else 1e-3,
+        viscous=sum(float(ring["viscous_friction"]) for ring, _ in loads),
+        bristle_travel=float(v["stiffness.seal_deflection"]),
+    )
+
+
+def _falling(ring: Ring) -> Array:
+    """What of a seal's friction falls with speed, over its Coulomb friction, by its law [-]."""
+    return ring.element.friction_law.breakaway(ring.sizes, 1.0) - 1.0
+
+
+def _plane(p_a: Array, p_b: Array, force: Array) -> Plane:
+    basis = np.stack([np.ones_like(p_a), abs(p_a - p_b), p_b, np.maximum(p_a, p_b)], axis=1)
+    scale = np.array([1.0, *3 * (max(float(p_a.max()), 1.0),)])
+    fit = np.linalg.lstsq(basis / scale, force, rcond=None)[0] / scale
+    most = float(np.max(np.abs(force)))
+    error = float(np.max(np.abs(basis @ fit - force))) / most if most > 0 else 0.0
+    constant, difference, rod_side, higher = (float(one) for one in fit)
+    return Plane(constant, difference, rod_side, higher, error)

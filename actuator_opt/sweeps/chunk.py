@@ -1,0 +1,300 @@
+"""One chunk of a sweep: its designs evaluated, each group that differs in numbers alone at once."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import inspect
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..base.database import Column, Rows
+from ..base.errors import InputError
+from ..base.numeric import Array
+from ..base.quantities import Quantity
+from ..design import Design
+from ..design.paths import quantity_of
+from ..design.writer import to_yaml
+from ..evaluation.build import spec_hash
+from ..evaluation.many import Many, evaluate_many, limits_of
+from ..evaluation.plugin import Plugin
+from ..optimisation.actuator import Goal, goal_of
+from .designs import KEPT, Designs, first_fault
+from .engine import Engine, Scores
+from .plan import Plan, Points
+from .screen import roomy, screen
+
+LOOKED = 1024
+"""Designs evaluated at once in search of the best of a chunk."""
+
+WORTH = 2048
+"""Designs from which a screen, some 20 ms of work, is worth it."""
+
+NO_ANSWER = "the models have no finite answer for these dimensions"
+MARGIN, MISSED, FEASIBLE = "least_margin", "governing_limit", "feasible"
+"""Columns beside the metrics: the least margin, the number of its limit, whether all are met."""
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Rows from point `first` on, and how many of them were computed now.
+
+    A reduced chunk has rows of its points numbered `places` alone: none of the others can be among
+    the best.
+    """
+
+    first: int
+    rows: Rows
+    computed: int
+    objective: Array
+    feasible: Array
+    places: Array | None = None
+    damaged: int = 0
+    """Rows computed now because those in the database were damaged."""
+
+    @property
+    def ranked(self) -> Array:
+        """Whether each row may be among the best: feasible, and with a value of the objective."""
+        found: Array = self.feasible & ~np.isnan(self.objective)
+        return found
+
+    @property
+    def numbers(self) -> Array:
+        """Number of the point of each row."""
+        return self.first + np.arange(len(self.objective)) if self.places is None else self.places
+
+
+@dataclass
+class Study:
+    """A design with what varies: rows of any of its points."""
+
+    design: Design
+    plan: Plan
+    plugins: tuple[Plugin, ...] = ()
+    full: bool = True
+    """Whether every metric is asked for, or only what tells the best."""
+    more: tuple[str, ...] = ()
+    """Metrics asked for beside what tells the best."""
+    engine: Engine = "numpy"
+    """What tells early which designs cannot be among the best."""
+    goal: Goal = field(init=False)
+    designs: Designs = field(init=False)
+    _screens: dict[tuple[object, ...], Scores | None] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        self.designs = Designs(self.design, self.plan, self.plugins)
+        subject = self.designs.made({})
+        self.goal = goal_of(subject)
+        self._quantities = dict(subject.quantities)
+        self.binding = limits_of(subject)
+        self.limits = tuple(limit.name for limit in self.binding)
+        judged = {limit.metric for limit in self.binding} | {*self.goal.weights, "mass", *self.more}
+        self.wanted = None if self.full or self.plugins else frozenset(judged)
+        self.metrics = tuple(
+            name for name in self._quantities if self.wanted is None or name in self.wanted
+        )
+        paths = [axis.path for axis in self.plan.numeric]
+        self.order = sorted(range(len(paths)), key=paths.__getitem__)
+        """The plan's numbers by PATH, whatever the order they are given in."""
+        self.columns = (
+            *(Column(paths[k], quantity_of(paths[k], self.design).si_unit) for k in self.order),
+            *(Column(name, subject.quantities[name].si_unit) for name in self.metrics),
+            Column(MARGIN, "1"),
+            Column(MISSED, "1"),
+            Column(FEASIBLE, "1"),
+        )
+
+    def __getstate__(self) -> dict[str, object]:
+        return self.__dict__ | {"_screens": {}}
+
+    def chunk(self, first: int, count: int, some: Array | None = None) -> Chunk:
+        """Rows of some points in a row, or of those of them that are numbered in `some`."""
+        points = self.plan.points(first, count)
+        return self.evaluated(first, points if some is None else points.some(some))
+
+    def evaluated(self, first: int, points: Points, keep: int | None = None) -> Chunk:
+        """Rows of points; where `keep` is given, only so many of the best must stand as designs."""
+        n = len(points.variant)
+        rows = np.full((n, len(self.columns)), np.nan)
+        rows[:, : len(points.numbers)] = points.numbers[self.order].T
+        failures: dict[int, str] = {}
+        for places, subject, varied in self.designs.groups(points):
+            if isinstance(subject, str):
+                failures |= dict.fromkeys(map(int, places), subject)
+                continue
+            found = evaluate_many(subject, varied, len(places), self.wanted)
+            self._fill(rows, places, found)
+            lost = places[np.isnan(found.metrics["mass"])]
+            failures |= dict.fromkeys(map(int, lost), NO_ANSWER)
+        rows[list(failures), len(points.numbers) :] = np.nan
+        chunk = self.judged(first, Rows(rows, failures), n)
+        if not self.designs.contradicts:
+            return chunk
+        failures |= self._contradictions(chunk, points, keep)
+        rows[list(failures), len(points.numbers) :] = np.nan
+        return self.judged(first, Rows(rows, failures), n)
+
+    def reduced(self, first: int, count: int, limit: float, keep: int) -> Chunk:
+        """Rows of points that may be among the `keep` best, with an objective below `limit`.
+
+        The most promising are evaluated first, until so many stand that the others cannot join.
+        """
+        points = self.plan.points(first, count)
+        scores = self._scores(points, limit)
+        order = np.argsort(scores, kind="stable")
+        order = order[scores[order] < np.inf]
+        parts: list[Chunk] = []
+        best: list[float] = []
+        for start in range(0, len(order), LOOKED):
+            some = order[start : start + LOOKED]
+            if len(best) == keep and scores[some[0]] > roomy(best[-1]):
+                break
+            part = self.evaluated(first, points.some(some), keep)
+            parts.append(replace(part, places=first + some))
+            best = sorted([*best, *part.objective[part.ranked].tolist()])[:keep]
+        return self._joined(first, parts, len(scores), keep)
+
+    def _scores(self, points: Points, limit: float) -> Array:
+        """The objective that each point promises: infinite where ruled out, minus where unknown."""
+        found = np.full(len(points.variant), -np.inf)
+        apart = self.designs.apart
+        moving = [k for k, axis in enumerate(self.plan.numeric) if axis.path not in apart]
+        for own, variant, fixed in self.designs.alike(points):
+            sieve = self._screen(variant, fixed)
+            if sieve is not None:
+                found[own] = sieve(points.numbers[np.ix_(moving, own)], limit)
+        return found
+
+    def _joined(self, first: int, parts: Sequence[Chunk], computed: int, keep: int) -> Chunk:
+        """Parts as one reduced chunk, without feasible designs beyond the `keep` best."""
+        rows, failures, places = [np.empty((0, len(self.columns)))], {}, [np.empty(0, dtype=int)]
+        done = 0
+        for part in parts:
+            good = np.flatnonzero(part.feasible)
+            worse = good[np.argsort(part.objective[good], kind="stable")[keep:]]
+            left = np.setdiff1d(np.arange(len(part.feasible)), worse)
+            rows.append(part.rows.numbers[left])
+            places.append(part.numbers[left])
+            for k in np.flatnonzero(np.isin(left, list(part.rows.failures))):
+                failures[done + int(k)] = part.rows.failures[int(left[k])]
+            done += len(left)
+        joined = self.judged(first, Rows(np.concatenate(rows), failures), computed)
+        return replace(joined, places=np.concatenate(places))
+
+    def _screen(self, variant: int, fixed: Mapping[str, float]) -> Scores | None:
+        """The screen of designs that differ in numbers alone, where they are enough to be worth it.
+
+        None for the user's own metrics, which are no expressions.
+        """
+        axes = [axis for axis in self.plan.numeric if axis.path not in self.designs.apart]
+        alike = self.plan.count / self.plan.variants / self.designs.apart_count
+        if not axes or self.plugins or alike < WORTH:
+            return None
+        key = (variant, *fixed.values())
+        if key not in self._screens:
+            if len(self._screens) >= KEPT:
+                self._screens.pop(next(iter(self._screens)))
+            found: Scores | None = None
+            values: dict[str, float | str] = {**self.plan.texts(variant), **fixed}
+            ends = np.array([axis.ends for axis in axes])
+            with contextlib.suppress(InputError):
+                design = self.designs.changed(values)
+                found = screen(design, [axis.path for axis in axes], ends, self.engine)
+            self._screens[key] = found
+        return self._screens[key]
+
+    def _contradictions(self, chunk: Chunk, points: Points, most: int | None) -> dict[int, str]:
+        """What the design's file would refuse among feasible rows; models look at less.
+
+        Rows are tried from the best on, until `most` stand.
+        """
+        found: dict[int, str] = {}
+        good = np.flatnonzero(chunk.feasible)
+        order = good[np.argsort(chunk.objective[good], kind="stable")]
+        for tried, k in enumerate(map(int, order)):
+            if most is not None and tried - len(found) >= most:
+                break
+            try:
+                self.designs.changed(self._at(points, k))
+            except InputError as error:
+                found[k] = first_fault(error)
+        return found
+
+    def judged(self, first: int, rows: Rows, computed: int) -> Chunk:
+        """A chunk with the objective, to be minimised, and whether designs are feasible."""
+        place = {column.name: k for k, column in enumerate(self.columns)}
+        total = np.zeros(len(rows.numbers))
+        for name, weight in self.goal.weights.items():
+            total += weight / self.goal.scales[name] * rows.numbers[:, place[name]]
+        feasible = rows.numbers[:, place[FEASIBLE]] == 1.0
+        return Chunk(first, rows, computed, self.goal.sign * total, feasible)
+
+    def _fill(self, rows: Array, places: Array, found: Many) -> None:
+        start = len(self.plan.numeric)
+        for k, name in enumerate(self.metrics):
+            rows[places, start + k] = found.metrics[name]
+        margin = np.where(np.isfinite(found.margin), found.margin, np.nan)
+        rows[places, -3:] = np.stack([margin, found.missed, found.feasible], axis=1)
+
+    def quantity(self, metric: str) -> Quantity:
+        """What a metric is."""
+        return self._quantities[metric]
+
+    def place(self, name: str) -> int:
+        """The column of a number that varies, of a metric or of what tells the verdict."""
+        return next(k for k, column in enumerate(self.columns) if column.name == name)
+
+    @property
+    def text(self) -> str:
+        """The design as a file."""
+        return to_yaml(self.design, metrics=self._quantities)
+
+    def values(self, number: int) -> dict[str, float | str]:
+        """The varied values of a point, by PATH (SI)."""
+        return self._at(self.plan.points(number, 1), 0)
+
+    def _at(self, points: Points, k: int) -> dict[str, float | str]:
+        paths = [axis.path for axis in self.plan.numeric]
+        numbers = dict(zip(paths, map(float, points.numbers[:, k]), strict=True))
+        found: dict[str, float | str] = {**numbers, **self.plan.texts(int(points.variant[k]))}
+        return {axis.path: found[axis.path] for axis in self.plan.axes}
+
+    @property
+    def hash(self) -> str:
+        """Hash of the design, its materials, its own metrics, the models and what varies."""
+        sources = [_source(plugin) for plugin in self.plugins]
+        paths = sorted(axis.path for axis in self.plan.axes)
+        text = json.dumps([spec_hash(self.designs.made({})), sources, paths, self.columns])
+        return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+    def keys(self, first: int, count: int) -> list[bytes]:
+        """Hash of the values of every point of a chunk."""
+        points = self.plan.points(first, count)
+        data = np.ascontiguousarray(points.numbers[self.order].T, dtype="<f8").tobytes()
+        width = 8 * len(points.numbers)
+        heads = {
+            variant: key_head(self.plan.texts(variant))
+            for variant in map(int, np.unique(points.variant))
+        }
+        found = []
+        for k, variant in enumerate(points.variant.tolist()):
+            digest = heads[variant].copy()
+            digest.update(data[k * width : (k + 1) * width])
+            found.append(digest.digest())
+        return found
+
+
+def key_head(texts: Mapping[str, str]) -> hashlib.blake2b:
+    """A key as far as its texts decide it; the row's numbers come after them."""
+    return hashlib.blake2b(json.dumps(dict(texts), sort_keys=True).encode(), digest_size=16)
+
+
+def _source(plugin: Plugin) -> str:
+    """The text of a user's metric, so that a changed one is another study."""
+    try:
+        return inspect.getsource(plugin.function)
+    except (OSError, TypeError):
+        return plugin.name

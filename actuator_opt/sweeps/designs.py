@@ -1,0 +1,231 @@
+"""The designs of a plan: which of its numbers move as arrays, which make a design anew."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.errors import Diagnostic, InputError
+from ..base.numeric import Array
+from ..design import Design, with_values
+from ..design.paths import quantity_of
+from ..evaluation import PreparedDesign, prepare
+from ..evaluation.allow import extremes
+from ..evaluation.many import Many, evaluate_many
+from ..evaluation.plugin import Plugin, with_own
+from .axes import Axis
+from .plan import Plan, Points
+
+KEPT = 64
+"""Prepared designs that a process keeps."""
+
+VARIANTS = 8
+"""Most combinations of texts in which a number is tried."""
+
+AT_ONCE = 4096
+"""Most designs of one call of the models: more would take memory, not less time."""
+
+TRIED = (0.0, 1.0, 0.5, 0.25, 0.75)
+"""Shares of a range that are tried until two make a design."""
+
+LISTED = 32
+"""Most values of a list that are tried, an even choice of more."""
+
+AGREE = 1e-9
+"""Relative difference up to which a number that varies counts as the same as one that is set."""
+
+
+class _Moved(NamedTuple):
+    """Whether a number may be moved as an array, and whether any model reads it."""
+
+    moves: bool
+    read: bool
+
+
+@dataclass
+class Designs:
+    """The designs of a plan, prepared where needed.
+
+    `apart` are numbers that a design must be made anew for: temperatures of strengths, say. A
+    number that no model reads in any of few combinations of texts is refused: `InputError`.
+    """
+
+    design: Design
+    plan: Plan
+    plugins: tuple[Plugin, ...] = ()
+    apart: tuple[str, ...] = field(init=False)
+    contradicts: bool = field(init=False, default=False)
+    """Whether some value of an axis contradicts the rest of the design, as its file would say."""
+    _subjects: dict[tuple[object, ...], PreparedDesign | str] = field(
+        default_factory=dict, repr=False
+    )
+
+    def __post_init__(self) -> None:
+        same = self._same_extremes()
+        self.apart = tuple(
+            axis.path
+            for axis in self.plan.numeric
+            if (self._is_temperature(axis) and not same) or not self._moves(axis)
+        )
+
+    def __getstate__(self) -> dict[str, object]:
+        return self.__dict__ | {"_subjects": {}}
+
+    def changed(self, values: Mapping[str, float | str]) -> Design:
+        """The design with other values; raises `InputError`."""
+        if not values:
+            return self.design
+        own = with_own(self.plugins)
+        return with_values(self.design, dict(values), metrics=own)
+
+    def made(self, values: Mapping[str, float | str]) -> PreparedDesign:
+        """As `changed`, prepared."""
+        return prepare(self.changed(values), plugins=self.plugins)
+
+    def _is_temperature(self, axis: Axis) -> bool:
+        return quantity_of(axis.path, self.design).dimension == "temperature"
+
+    def _same_extremes(self) -> bool:
+        """Whether the lowest and the highest of all temperatures stay where they are.
+
+        Strengths are prepared for these two, which rise with each temperature: they are the same
+        everywhere where they are at both ends of what varies.
+        """
+        warm = {a.path: a.ends for a in self.plan.numeric if self._is_temperature(a)}
+        found = []
+        for end in (0, 1) if warm else ():
+            ends = {path: both[end] for path, both in warm.items()}
+            try:
+                subject = self.made({**self.plan.texts(0), **ends})
+            except InputError:
+                return False
+            found.append(extremes(subject.design, subject.numbers))
+        return all(one == found[0] for one in found)
+
+    @property
+    def apart_count(self) -> float:
+        """Designs that must be made anew for numbers that are set apart, infinite for a range."""
+        found = 1.0
+        for axis in self.plan.numeric:
+            if axis.path in self.apart:
+                found *= axis.size or math.inf
+        return found
+
+    def _moves(self, axis: Axis) -> bool:
+        """Whether a number may be moved as an array in some of the designs that texts make.
+
+        Raises
+        ------
+        InputError
+            no model reads it, and it makes no other design
+        """
+        count = self.plan.variants
+        tried = np.unique(np.linspace(0, count - 1, min(count, VARIANTS)).astype(int))
+        found = [self._moves_in(axis, self.plan.texts(int(variant))) for variant in tried]
+        moves = all(one.moves for one in found)
+        if moves and len(tried) == count and not any(one.read for one in found):
+            remedy = "vary another, or check that the part it belongs to is used"
+            raise InputError(
+                Diagnostic("no model reads this number of this design", remedy, path=axis.path)
+            )
+        return moves
+
+    def _moves_in(self, axis: Axis, texts: Mapping[str, str]) -> _Moved:
+        """Whether the `_telling` values of a number as an array are those set in the design."""
+        alone: dict[float, Many] = {}
+        for value, needed in _telling(axis):
+            if len(alone) >= 2 and not needed:
+                continue
+            try:
+                alone[value] = evaluate_many(self.made({**texts, axis.path: value}), {}, 1)
+            except InputError:
+                self.contradicts = True
+        if not alone:
+            return _Moved(False, True)
+        try:
+            base = self.made(texts)  # as its rows are evaluated; "worst" there heeds no position
+        except InputError:
+            base = self.made({**texts, axis.path: next(iter(alone))})
+        together = evaluate_many(base, {axis.path: np.array(list(alone))}, len(alone))
+        moves = all(
+            np.isclose(values[k], one.metrics[name][0], rtol=AGREE, atol=0.0, equal_nan=True)
+            for name, values in together.metrics.items()
+            for k, one in enumerate(alone.values())
+        )
+        return _Moved(moves, axis.path in together.read)
+
+    def alike(self, points: Points) -> Iterator[tuple[Array, int, dict[str, float]]]:
+        """Numbers of points of one prepared design, its combination of texts, what is set apart."""
+        paths = [axis.path for axis in self.plan.numeric]
+        apart = [k for k, path in enumerate(paths) if path in self.apart]
+        if not apart and self.plan.variants == 1:
+            yield np.arange(len(points.variant)), 0, {}
+            return
+        keys = np.vstack([points.variant.astype(float), points.numbers[apart]])
+        unique, which = np.unique(keys, axis=1, return_inverse=True)
+        order = np.argsort(which.ravel(), kind="stable")
+        starts = np.searchsorted(which.ravel()[order], np.arange(unique.shape[1]))
+        for number, every in enumerate(np.split(order, starts[1:])):
+            variant, *set_apart = unique[:, number]
+            fixed = {paths[k]: float(x) for k, x in zip(apart, set_apart, strict=True)}
+            yield every, int(variant), fixed
+
+    def groups(
+        self, points: Points
+    ) -> Iterator[tuple[Array, PreparedDesign | str, dict[str, Array]]]:
+        """Points of one prepared design, with the arrays that vary; why, where there is none."""
+        paths = [axis.path for axis in self.plan.numeric]
+        for every, variant, fixed in self.alike(points):
+            subject = self._prepared(variant, fixed)
+            for first in range(0, len(every), AT_ONCE):
+                places = every[first : first + AT_ONCE]
+                varied = {
+                    path: points.numbers[k][places]
+                    for k, path in enumerate(paths)
+                    if path not in self.apart
+                }
+                yield places, subject, varied
+
+    def _prepared(self, variant: int, fixed: dict[str, float]) -> PreparedDesign | str:
+        """A prepared design, or why there is none; the last few are kept."""
+        key = (variant, *fixed.values())
+        if key not in self._subjects:
+            if len(self._subjects) >= KEPT:
+                self._subjects.pop(next(iter(self._subjects)))
+            try:
+                self._subjects[key] = self.made({**self.plan.texts(variant), **fixed})
+            except InputError as error:
+                self._subjects[key] = first_fault(error)
+        return self._subjects[key]
+
+
+def _telling(axis: Axis) -> Iterator[tuple[float, bool]]:
+    """Values to try in a design, and whether each must be tried or two in all are enough.
+
+    All of a short list, and zero wherever it is taken, must: a design may be another there (no
+    speed, no angle), whatever it is on either side.
+    """
+    assert axis.values is not None
+    low, high = axis.values[[0, -1]]
+    if axis.listed:
+        step = -(-len(axis.values) // LISTED)
+        chosen = [*axis.values[::step].tolist(), float(high)]
+        yield from ((value, True) for value in dict.fromkeys(chosen))
+        if 0.0 in axis.values and 0.0 not in chosen:
+            yield 0.0, True
+    elif low * high < 0 and axis.count:
+        near = round(low / (low - high) * (axis.count - 1))
+        if float(axis.at(np.array(near))) == 0.0:
+            yield 0.0, True
+    for share in TRIED:
+        yield float(low + share * (high - low)), False
+
+
+def first_fault(error: InputError) -> str:
+    """The first fault in words."""
+    fault = error.diagnostics[0]
+    return fault.message if fault.path is None else f"{fault.path}: {fault.message}"

@@ -1,0 +1,230 @@
+"""A grid of two numbers as a field: metrics and margins at its nodes, lines of zero margin."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from ..base.errors import Diagnostic, UsageError
+from ..base.numeric import Array
+from ..evaluation.build import TOLERANCE
+from ..evaluation.many import margins_of
+from .chunk import Study
+from .plan import Plan, Points
+
+FINEST = 161
+"""Nodes drawn along an axis (a choice: one per mm of paper); of more, an even choice."""
+
+FAR = 2.0
+"""Margin beyond which it does not matter how far it is (a choice: +-200 %)."""
+
+NOTHING = -1.0
+"""Margin of a wall of no thickness."""
+
+STEPS = 12
+"""Most rounds of the search for a zero on an edge of the grid."""
+
+CLOSE = 1e-9
+"""Margin that counts as zero."""
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """Where one limit of a study (`number` of its `binding`) is just met, in SI.
+
+    `lines` are (n, 2) points of zero margin; `missed` the areas where it is not met, each a list
+    of rings.
+    """
+
+    number: int
+    lines: list[Array]
+    missed: list[list[Array]]
+
+
+@dataclass(frozen=True)
+class Field:
+    """Nodes of a grid (first axis, second axis), in SI.
+
+    `rows` are those of the sweep, (nodes, nodes, columns), NaN where a design failed; `margins`
+    are (limits, nodes, nodes), NaN where there is none; `failed` are nodes without a design, for a
+    reason of its own or a wall of less than nothing. Margins of limits that some nodes just meet
+    have `room`, (limits,): what still counts as met. `thinned`: the sweep had more nodes.
+    """
+
+    study: Study
+    xs: Array
+    ys: Array
+    rows: Array
+    margins: Array
+    failed: Array
+    room: Array
+    thinned: bool
+
+    def metric(self, name: str) -> Array:
+        """A metric at the nodes, (nodes, nodes)."""
+        found: Array = self.rows[:, :, self.study.place(name)]
+        return found
+
+    def boundaries(self) -> Iterator[Boundary]:
+        """The lines of every limit that some nodes meet and others miss."""
+        from contourpy import FillType, LineType, contour_generator
+
+        for number, margins in enumerate(self.margins):
+            table = np.clip(margins, -FAR, FAR)
+            known = table[np.isfinite(table)]
+            if not len(known) or known.min() >= 0 or known.max() < 0:
+                continue
+            maker = contour_generator(
+                self.xs, self.ys, np.ma.masked_invalid(table.T),
+                fill_type=FillType.OuterOffset, line_type=LineType.Separate, corner_mask=True,
+            )  # fmt: skip
+            filled: Any = maker.filled(-2 * FAR, 0.0)
+            found: Any = maker.lines(0.0)
+            lines = [np.asarray(one) for one in found]
+            areas = [
+                [np.asarray(one)[a:b] for a, b in pairwise(starts)]
+                for one, starts in zip(*filled, strict=True)
+            ]
+            rings = [ring for area in areas for ring in area]
+            moved = self._on_zero(number, table, [*lines, *rings])
+            rest = iter(moved[len(lines) :])
+            yield Boundary(
+                number, moved[: len(lines)], [[next(rest) for _ in area] for area in areas]
+            )
+
+    def _on_zero(self, number: int, table: Array, curves: Sequence[Array]) -> list[Array]:
+        """Curves whose points between a met and a missed node are moved to zero margin.
+
+        They move along that edge; they stay where each design must be made anew.
+        """
+        if self.study.designs.apart or not curves:
+            return list(curves)
+        every = np.concatenate(curves)
+        points, which = np.unique(np.round(every, 15), axis=0, return_inverse=True)
+        edges = [self._edge(table, point) for point in points]
+        moving = np.array([k for k, edge in enumerate(edges) if edge is not None], dtype=np.intp)
+        if len(moving):
+            low = np.array([edge[0] for edge in edges if edge is not None])
+            high = np.array([edge[1] for edge in edges if edge is not None])
+            ends = np.array([edge[2] for edge in edges if edge is not None])
+            points[moving] = self._zeros(number, low, high, ends)
+        found = points[which.ravel()]
+        cuts = np.cumsum([len(curve) for curve in curves])[:-1]
+        return list(np.split(found, cuts))
+
+    def _edge(
+        self, table: Array, point: Array
+    ) -> tuple[list[float], list[float], list[float]] | None:
+        """Ends and margins of the edge of the grid that a point lies on, where it crosses zero."""
+        nodes = (self.xs, self.ys)
+        places = []
+        for axis, value in zip(nodes, point, strict=True):
+            near = int(np.argmin(np.abs(axis - value)))
+            on = abs(axis[near] - value) <= 1e-9 * float(axis[-1] - axis[0])
+            below = min(max(int(np.searchsorted(axis, value)) - 1, 0), len(axis) - 2)
+            places.append((near, near) if on else (below, below + 1))
+        (i, k), (j, m) = places
+        if (i == k) == (j == m):  # a node, or inside a cell
+            return None
+        ends = [float(table[i, j]), float(table[k, m])]
+        if (ends[0] < 0) == (ends[1] < 0) or not np.isfinite(ends).all():
+            return None
+        return [self.xs[i], self.ys[j]], [self.xs[k], self.ys[m]], ends
+
+    def _zeros(self, number: int, low: Array, high: Array, ends: Array) -> Array:
+        """Points of zero margin between ends of either sign, by the Illinois method."""
+        a, b = np.zeros(len(low)), np.ones(len(low))
+        f, g = ends[:, 0].copy(), ends[:, 1].copy()
+        t, going = np.where(f == 0, 0.0, 1.0), (f != 0) & (g != 0)
+        for _ in range(STEPS):
+            at = np.flatnonzero(going)
+            if not len(at):
+                break
+            t[at] = (a - f * (b - a) / np.where(g == f, 1.0, g - f))[at]
+            points = low[at] + t[at, None] * (high - low)[at]
+            value = margins_at(self.study, points.T)[number] + self.room[number]
+            value = np.clip(np.where(np.isnan(value), -FAR, value), -FAR, FAR)
+            same = (value < 0) == (g[at] < 0)
+            f[at] = np.where(same, f[at] / 2, g[at])
+            a[at] = np.where(same, a[at], b[at])
+            b[at], g[at] = t[at], value
+            going[at] = np.abs(value) > CLOSE
+        found: Array = low + t[:, None] * (high - low)
+        return found
+
+
+def margins_at(study: Study, numbers: Array) -> Array:
+    """The margin of every limit, (limits, n), where the plan's numbers are (axes, n)."""
+    count = numbers.shape[1]
+    found = np.full((len(study.binding), count), np.nan)
+    for places, subject, varied in study.designs.groups(
+        Points(np.zeros(count, dtype=int), numbers)
+    ):
+        if not isinstance(subject, str):
+            found[:, places] = margins_of(subject, varied, len(places))
+    return found
+
+
+def require_grid(plan: Plan) -> None:
+    """Refuse a sweep that is no grid of two numbers.
+
+    Raises
+    ------
+    UsageError
+        another method, other than two axes, names on one, or a single value
+    """
+    for axis in plan.named:
+        message = f"a contour needs numbers, {axis.path} takes names"
+        raise UsageError(Diagnostic(message, "set it with --set, and vary two numbers"))
+    if len(plan.axes) != 2:
+        message = f"a contour needs exactly two --vary, not {len(plan.axes)}"
+        raise UsageError(Diagnostic(message, "set the others with --set"))
+    if plan.method != "grid":
+        message = f"a contour needs a grid, not --method {plan.method}"
+        raise UsageError(Diagnostic(message, "leave out --method and write PATH=A..B:N"))
+    for axis in plan.axes:
+        if axis.size < 2:
+            raise UsageError(
+                Diagnostic(f"a contour needs two values or more of {axis.path}", "add values")
+            )
+
+
+def _cut_away(study: Study, margins: Array) -> Array:
+    """Nodes where a wall or room is less than nothing; other limits have no margin there."""
+    shapes = np.array([one.origin == "geometry" for one in study.binding])
+    gone: Array = (margins[shapes] < NOTHING).any(axis=0)
+    for number in np.flatnonzero(~shapes):
+        margins[number][gone] = np.nan
+    return gone
+
+
+def field(study: Study) -> Field:
+    """The grid of a sweep of two numbers, evaluated again, of at most `FINEST` nodes an axis."""
+    require_grid(study.plan)
+    values = [axis.numbers() for axis in study.plan.axes]
+    wide = len(values[1])
+    kept = []
+    for one in values:
+        order = np.argsort(one)
+        at = np.unique(np.round(np.linspace(0, len(one) - 1, min(len(one), FINEST))).astype(int))
+        kept.append(order[at])
+    chunks = [study.chunk(int(i) * wide, wide, kept[1]) for i in kept[0]]
+    xs, ys = (one[at] for one, at in zip(values, kept, strict=True))
+    failed = np.zeros((len(xs), len(ys)), dtype=bool)
+    for k, one in enumerate(chunks):
+        failed[k, list(one.rows.failures)] = True
+    mesh = np.stack([part.ravel() for part in np.meshgrid(xs, ys, indexing="ij")])
+    margins = margins_at(study, mesh).reshape(-1, len(xs), len(ys))
+    just = np.abs(margins) <= TOLERANCE  # met, as in every verdict
+    room = np.where(just.any(axis=(1, 2)), TOLERANCE, 0.0)
+    margins += room[:, None, None]
+    gone = _cut_away(study, margins)
+    margins[:, failed & ~gone] = np.nan  # a wall below nothing keeps the margins of its shape
+    failed |= gone
+    rows = np.stack([one.rows.numbers for one in chunks])
+    thinned = any(len(one) > FINEST for one in values)
+    return Field(study, xs, ys, rows, margins, failed, room, thinned)

@@ -1,0 +1,254 @@
+"""The points of a sweep: full factorial, Sobol or Latin hypercube, any part of them by number.
+
+Nothing is held but the axes: point k of n is found from k, so that a sweep of any size takes the
+same memory, may start anywhere and comes out alike in any number of processes.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal, get_args
+
+import numpy as np
+
+from ..base.errors import Diagnostic, UsageError
+from ..base.numeric import Array
+from .axes import Axis
+
+Method = Literal["grid", "sobol", "lhs"]
+METHODS = get_args(Method)
+MOST = 2**30
+"""Most points of the sampled methods: those of a Sobol sequence of 30 bits."""
+
+MOST_GRID = 10**12
+"""Most points of a grid (a choice: some days of work, where the best alone are kept)."""
+
+BITS = 30
+"""Of a coordinate of a Sobol point."""
+
+DIGITS = 12
+"""Binary digits of the numbers of Sobol points in a table."""
+
+ROUNDS = 6
+"""Rounds of the permutation of a Latin hypercube."""
+
+
+@dataclass(frozen=True)
+class Points:
+    """Some points: number of the combination of texts each belongs to, and numbers (axes, n)."""
+
+    variant: Array
+    numbers: Array
+
+    def some(self, places: Array) -> Points:
+        """Those at some places."""
+        return Points(self.variant[places], self.numbers[:, places])
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Axes with the points to visit.
+
+    `named` axes make another design for each of their texts, the others vary numbers.
+    """
+
+    axes: tuple[Axis, ...]
+    method: Method
+    count: int
+    seed: int = 0
+
+    @property
+    def named(self) -> tuple[Axis, ...]:
+        """Axes of texts."""
+        return tuple(axis for axis in self.axes if axis.values is None)
+
+    @property
+    def numeric(self) -> tuple[Axis, ...]:
+        """Axes of numbers."""
+        return tuple(axis for axis in self.axes if axis.values is not None)
+
+    @property
+    def variants(self) -> int:
+        """Combinations of texts."""
+        return math.prod(axis.size for axis in self.named)
+
+    def texts(self, variant: int) -> dict[str, str]:
+        """The texts of one combination, by PATH."""
+        found = {}
+        for axis in reversed(self.named):
+            variant, at = divmod(variant, axis.size)
+            found[axis.path] = axis.texts[at]
+        return dict(reversed(found.items()))
+
+    def points(self, first: int, count: int) -> Points:
+        """Points `first` to `first + count`, less what lies beyond the last."""
+        index = np.arange(first, min(first + count, self.count), dtype=np.int64)
+        places = self._grid(index) if self.method == "grid" else self._sampled(index)
+        variant = np.zeros(len(index), dtype=np.int64)
+        numbers = np.empty((len(self.numeric), len(index)))
+        row = 0
+        for axis, place in zip(self.axes, places, strict=True):
+            if axis.values is None:
+                variant = variant * axis.size + place.astype(np.int64)
+            else:
+                numbers[row] = axis.at(place.astype(np.int64)) if axis.listed else place
+                row += 1
+        return Points(variant, numbers)
+
+    def _grid(self, index: Array) -> list[Array]:
+        """Of every axis the number of the value, or the value of a range; the last runs fastest."""
+        sizes = tuple(axis.size for axis in self.axes)
+        places = np.unravel_index(index, sizes)
+        return [
+            place if axis.listed else axis.at(place)
+            for axis, place in zip(self.axes, places, strict=True)
+        ]
+
+    def _sampled(self, index: Array) -> list[Array]:
+        unit = _sobol if self.method == "sobol" else _latin
+        shares = unit(index, len(self.axes), self.count, self.seed)
+        found = []
+        for axis, share in zip(self.axes, shares, strict=True):
+            if axis.listed:
+                found.append(np.minimum((share * axis.size).astype(np.int64), axis.size - 1))
+            else:
+                assert axis.values is not None
+                low, high = axis.values
+                found.append(low + (high - low) * share)
+        return found
+
+
+def plan(axes: Sequence[Axis], *, method: Method, count: int | None, seed: int = 0) -> Plan:
+    """The points of a sweep.
+
+    Parameters
+    ----------
+    axes : what to vary
+    method : full factorial, Sobol or Latin hypercube
+    count : points of the sampled methods
+    seed : of the sampled methods
+
+    Raises
+    ------
+    UsageError
+        an unknown method, nothing to vary, a PATH twice, a range without steps, or no count
+    """
+    if method not in METHODS:
+        raise UsageError(Diagnostic(f"--method {method}: unknown", f"use {', '.join(METHODS)}"))
+    if not axes:
+        raise UsageError(Diagnostic("nothing to vary", 'add --vary PATH=A..B:N or PATH="a,b,c"'))
+    paths = [axis.path for axis in axes]
+    for path in paths:
+        if paths.count(path) > 1:
+            raise UsageError(Diagnostic(f"--vary {path}: given twice", "join its values in one"))
+    if method == "grid":
+        if count is not None:
+            raise UsageError(Diagnostic("-n: a grid has its steps", "write PATH=A..B:N"))
+        for axis in axes:
+            if axis.range and axis.count is None:
+                message = f"--vary {axis.path}: the range has no steps"
+                raise UsageError(Diagnostic(message, "write A..B:N, or --method sobol -n N"))
+        points = math.prod(axis.size for axis in axes)
+        if points > MOST_GRID:
+            message = f"{points:,} points".replace(",", " ")
+            raise UsageError(Diagnostic(message, "take fewer steps, or --method sobol -n N"))
+        return Plan(tuple(axes), method, points, seed)
+    if count is None or not 1 <= count <= MOST:
+        message = f"--method {method}: no number of points" if count is None else f"-n {count}"
+        raise UsageError(Diagnostic(message, f"add -n N, 1 to {MOST}"))
+    return Plan(tuple(axes), method, count, seed)
+
+
+def _sobol(index: Array, dimension: int, count: int, seed: int) -> Array:
+    """Scrambled Sobol points (dimension, n) of some numbers [Sobol1967] [Owen1998].
+
+    A point is the exclusive or of one number for each digit of the Gray code of its own number k,
+    k ^ k/2, and of the first point; the lower `DIGITS` come from a table.
+    """
+    table, digits = _sobol_parts(dimension, max(count - 1, 1).bit_length(), seed)
+    low, high = index & (len(table) - 1), index >> DIGITS
+    unique, which = np.unique(high, return_inverse=True)
+    heads = np.zeros((len(unique), dimension), dtype=np.int64)
+    gray = (unique << DIGITS) ^ (unique << DIGITS >> 1)
+    for number, digit in enumerate(digits, start=DIGITS - 1):
+        heads ^= np.where((gray >> number & 1)[:, None], digit, 0)
+    found: Array = (table[low] ^ heads[which.ravel()]).T * 2.0**-BITS
+    return found
+
+
+@lru_cache(maxsize=4)
+def _sobol_parts(dimension: int, bits: int, seed: int) -> tuple[Array, Array]:
+    """The first points, and the numbers of the digits of the Gray code from `DIGITS` - 1 on."""
+    from scipy.stats import qmc
+
+    engine = qmc.Sobol(dimension, scramble=True, bits=BITS, rng=np.random.default_rng(seed))
+    table = (engine.random(2**DIGITS) * 2.0**BITS).astype(np.int64)
+    digits = [table[-1] ^ table[0]]
+    for number in range(DIGITS, bits):
+        engine.fast_forward(2 ** (number + 1) - 1 - engine.num_generated)
+        with warnings.catch_warnings():  # it asks for powers of two in every part
+            warnings.simplefilter("ignore", UserWarning)
+            digits.append((engine.random(1)[0] * 2.0**BITS).astype(np.int64) ^ table[0])
+    return table, np.array(digits)
+
+
+def _latin(index: Array, dimension: int, count: int, seed: int) -> Array:
+    """A Latin hypercube [McKay1979]: of every axis each of n equal parts once.
+
+    The part of point k is a permutation of k that needs no table: a Feistel network over the next
+    power of four, walked on while it leaves the range [Black2002].
+    """
+    found = np.empty((dimension, len(index)))
+    for axis in range(dimension):
+        keys = np.random.default_rng([seed, axis]).integers(2**63, size=ROUNDS + 1, dtype=np.uint64)
+        jitter = _mixed(index.astype(np.uint64) ^ keys[ROUNDS]) >> np.uint64(11)
+        found[axis] = jitter
+        found[axis] *= 2.0**-53
+        found[axis] += _permuted(index.astype(np.uint32), count, keys[:ROUNDS].astype(np.uint32))
+        found[axis] /= count
+    return found
+
+
+def _permuted(index: Array, count: int, keys: Array) -> Array:
+    """Numbers below `count` (at most 2^32) in another order."""
+    half = max(math.ceil(math.log2(max(count, 2)) / 2), 1)
+    mask, shift = np.uint32(2**half - 1), np.uint32(half)
+    place = _rounds(index, keys, mask, shift)
+    out = np.flatnonzero(place >= count)
+    while len(out):
+        moved = _rounds(place[out], keys, mask, shift)
+        place[out] = moved
+        out = out[moved >= count]
+    return place
+
+
+def _rounds(place: Array, keys: Array, mask: np.uint32, shift: np.uint32) -> Array:
+    left, right = place >> shift, place & mask
+    for key in keys:
+        mixed = _mixed_half(right ^ key)
+        mixed &= mask
+        left, right = right, left ^ mixed
+    found: Array = (left << shift) | right
+    return found
+
+
+def _mixed_half(x: Array) -> Array:
+    """A mix of 32 bits (the finaliser of MurmurHash3 [Appleby2011])."""
+    x = x ^ (x >> np.uint32(16))
+    x *= np.uint32(0x85EBCA6B)
+    x ^= x >> np.uint32(13)
+    x *= np.uint32(0xC2B2AE35)
+    x ^= x >> np.uint32(16)
+    return x
+
+
+def _mixed(x: Array) -> Array:
+    """A mix of 64 bits (the finaliser of SplitMix64 [Steele2014])."""
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    mixed: Array = x ^ (x >> np.uint64(31))
+    return mixed

@@ -1,0 +1,169 @@
+"""What a variant must have to be among the best, by closed expressions: most variants end here.
+
+The models are called once with symbols; objective and limits that come out as expressions of what
+varies are compiled. What passes is evaluated in full, so that a screen changes no answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..base.errors import InputError
+from ..base.numeric import Array
+from ..base.symbolic import Symbol, vectorised
+from ..base.symbolic.order import needed
+from ..design import Design
+from ..design.variable import Variable
+from ..evaluation import prepare
+from ..evaluation.build import TOLERANCE
+from ..optimisation.actuator import build
+from ..optimisation.certificate.relaxation import Unknown
+from ..optimisation.certificate.trace import Claim, trace
+from .engine import Engine, Scores, array_library, fused
+
+ROOM = 2 * TOLERANCE
+"""Margin below which a variant is out: beyond the rounding of another order of operations."""
+
+CLOSE = 1e-9
+"""Relative room of the objective, for the same reason."""
+
+TRIED = 512
+"""Points that tell which limits rule out most."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Compiled values of some limits, with their bounds and senses (1 for a least value)."""
+
+    compiled: Any
+    bounds: Array
+    signs: Array
+
+    def missed(self, numbers: Array) -> Iterator[Array]:
+        """For each limit in turn whether it is missed, (n,) or one for all."""
+        with np.errstate(all="ignore"):
+            for value, bound, sign in zip(
+                self.compiled(numbers), self.bounds, self.signs, strict=True
+            ):
+                yield sign * (value - bound) < -ROOM * (abs(bound) or 1.0)
+
+
+@dataclass(frozen=True)
+class Screen:
+    """Compiled objective and limits of variants that differ in numbers (axes, n).
+
+    `stages` are limits one after the other: later ones see only what passes those before. They
+    are compiled for arrays of `library`.
+    """
+
+    objective: Any
+    stages: tuple[Limits, ...]
+    library: Any = np
+
+    def scores(self, numbers: Array, limit: Array) -> Array:
+        """What designs promise as objective, (n,): infinite where they miss a limit or `limit`.
+
+        Minus infinity where that has no finite value.
+        """
+        found = self.promised(numbers, limit) + np.zeros(numbers.shape[1])
+        for stage in self.stages:
+            left = np.flatnonzero(found < np.inf)
+            passed = np.ones(len(left), dtype=bool)
+            for missed in stage.missed(numbers[:, left]):
+                passed &= ~missed
+            found[left[~passed]] = np.inf
+        return found
+
+    def promised(self, numbers: Array, limit: Array) -> Array:
+        """The objective, (n,) or one for all: infinite where it is above `limit`."""
+        arrays = self.library
+        with np.errstate(all="ignore"):
+            found, *others = self.objective(numbers)
+        for other in others:
+            found = arrays.maximum(found, other)
+        found = arrays.where(arrays.isnan(found), -np.inf, found)
+        return arrays.where(found > roomy(limit), np.inf, found)
+
+    def scores_at_once(self, numbers: Array, limit: Array) -> Array:
+        """As `scores`, with every limit of every design: arithmetic alone, for a compiler."""
+        found = self.promised(numbers, limit)
+        for stage in self.stages:
+            for missed in stage.missed(numbers):
+                found = self.library.where(missed, np.inf, found)
+        return found
+
+
+def roomy(objective: Array) -> Array:
+    """An objective with room for rounding, above which designs are worse."""
+    return objective + CLOSE * abs(objective)
+
+
+def screen(
+    design: Design, paths: Sequence[str], ends: Array, engine: Engine = "numpy"
+) -> Scores | None:
+    """What tells early how good designs are whose numbers at `paths` vary between `ends` (axes, 2).
+
+    None where the objective is no closed expression of them, or a number is none that may move.
+    """
+    variables = {
+        path: Variable(lower=float(low), upper=float(high), start=float((low + high) / 2))
+        for path, (low, high) in zip(paths, ends, strict=True)
+    }
+    try:
+        actuator = build(prepare(design.model_copy(update={"variables": variables})))
+        traced = trace(actuator, ends.mean(axis=1))
+    except (InputError, Unknown):
+        return None
+    own = {symbol: f"v[{k}]" for k, symbol in enumerate(traced.variables.values())}
+    objectives = list(dict.fromkeys(traced.objectives))
+    if not objectives or not all(_closed(one, own) for one in objectives):
+        return None
+    claims = list(
+        {
+            (claim.value, claim.bound, claim.limit.sense): claim
+            for claim in traced.claims
+            if _closed(claim.value, own)
+        }.values()
+    )
+    shares = np.random.default_rng(0).random((len(paths), TRIED))
+    tried = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * shares
+    first = _telling(_limits(claims, own), tried) if claims else []
+    rest = [claim for k, claim in enumerate(claims) if k not in first]
+    stages = [[claims[k] for k in first], rest]
+    library = array_library(engine)
+    found = Screen(
+        vectorised("objective", "v", {}, objectives, known=own, library=library),
+        tuple(_limits(some, own, library) for some in stages if some),
+        library,
+    )
+    return found.scores if library is np else fused(found.scores_at_once)
+
+
+def _limits(claims: Sequence[Claim], own: Mapping[Symbol, str], library: Any = np) -> Limits:
+    values = [claim.value for claim in claims]
+    return Limits(
+        vectorised("limits", "v", {}, values, known=own, library=library),
+        np.array([claim.bound for claim in claims]),
+        np.array([1.0 if claim.limit.sense == "min" else -1.0 for claim in claims]),
+    )
+
+
+def _telling(limits: Limits, tried: Array) -> list[int]:
+    """Numbers of few limits that together rule out every point that any of them does."""
+    missed = np.stack([np.broadcast_to(one, tried.shape[1]) for one in limits.missed(tried)])
+    found = []
+    while missed.any():
+        found.append(int(missed.sum(axis=1).argmax()))
+        missed = missed & ~missed[found[-1]]
+    return found
+
+
+def _closed(value: Any, own: dict[Symbol, str]) -> bool:
+    """Whether a traced value depends on nothing but what varies."""
+    if not isinstance(value, Symbol):
+        return True
+    return all(node in own for node in needed([value]) if node.op == "variable")

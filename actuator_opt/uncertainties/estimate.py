@@ -1,0 +1,198 @@
+"""Estimates with bounds: probabilities from counts, variance-based indices from replicates.
+
+Functions of points of the unit cube; what they mean is the caller's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.progress import tell
+from ..optimisation.problem import Vector
+
+LEVEL = 0.95
+"""Confidence of all bounds."""
+
+Outputs = Callable[[Vector], Vector]
+"""Outputs (k, n) at points (d, n) of the unit cube."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rate:
+    """A probability with its 95 % bounds."""
+
+    value: float
+    lower: float
+    upper: float
+
+    def to_dict(self) -> dict[str, float]:
+        """The JSON form."""
+        return {"value": self.value, "lower": self.lower, "upper": self.upper}
+
+
+def exact(hits: int, count: int) -> Rate:
+    """The probability behind `hits` of `count` independent draws, exact bounds [Clopper1934].
+
+    >>> bounds = exact(0, 100)
+    >>> round(bounds.lower, 4), round(bounds.upper, 4)
+    (0.0, 0.0362)
+    """
+    lower = _least(hits, count) if hits > 0 else 0.0
+    upper = 1 - _least(count - hits, count) if hits < count else 1.0
+    return Rate(hits / count, lower, upper)
+
+
+SUMMED = 2000
+"""Most draws whose binomial probabilities are summed: without SciPy, which is slow to load."""
+
+
+def _least(hits: int, count: int) -> float:
+    """The probability at which `hits` or more of `count` draws come up in 2.5 % of all samples."""
+    tail = (1 - LEVEL) / 2
+    if count > SUMMED:
+        from scipy.special import betaincinv
+
+        return float(betaincinv(hits, count - hits + 1, tail))
+    number = np.arange(1, count + 1)
+    ways = np.concatenate([[0.0], np.cumsum(np.log((count - number + 1) / number))])[hits:]
+    number = np.arange(hits, count + 1)
+    low, high = 0.0, 1.0
+    for _ in range(60):  # halves the bracket to the precision of a float
+        middle = (low + high) / 2
+        share = np.exp(ways + number * np.log(middle) + (count - number) * np.log1p(-middle)).sum()
+        low, high = (low, middle) if share > tail else (middle, high)
+    return (low + high) / 2
+
+
+def replicated(hits: Vector, each: int) -> Rate:
+    """The probability behind hits of independent replicates of `each` quasi-random points.
+
+    Student's t over the replicates [Owen2013]; where fewer than one miss or hit per replicate was
+    seen, their spread says nothing and the bounds are those of as many independent draws, which is
+    wider than what such points scatter by.
+    """
+    total, replicates = int(hits.sum()), len(hits)
+    pooled = exact(total, each * replicates)
+    if min(total, each * replicates - total) < replicates:
+        return pooled
+    half = half_width(hits / each)
+    return Rate(pooled.value, max(0.0, pooled.value - half), min(1.0, pooled.value + half))
+
+
+def half_width(values: Vector) -> float:
+    """Half the 95 % interval of the mean of independent replicates, by Student's t."""
+    return _student(len(values)) * float(np.std(values, ddof=1))
+
+
+def _student(count: int) -> float:
+    """Half the 95 % interval of a mean, over the standard deviation of the values."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(count - 1, (1 + LEVEL) / 2)) / float(np.sqrt(count))
+
+
+def quasi(dimension: int, power: int, seed: tuple[int, ...]) -> Vector:
+    """2^power scrambled Sobol points (dimension, n) [Sobol1967] [Owen2013]."""
+    from scipy.stats import qmc
+
+    generator = np.random.default_rng(seed)
+    points = qmc.Sobol(dimension, scramble=True, seed=generator).random_base2(power)
+    return np.asarray(points.T)
+
+
+@dataclass(frozen=True, slots=True)
+class Indices:
+    """Variance-based sensitivity indices of outputs (k) by inputs (d), with half widths.
+
+    Parameters
+    ----------
+    first, total : (d, k); NaN where an output does not vary
+    first_half, total_half : half of their 95 % intervals
+    variance : (k,)
+    dropped : share of the rows without a number somewhere
+    """
+
+    first: Vector
+    total: Vector
+    first_half: Vector
+    total_half: Vector
+    variance: Vector
+    dropped: float
+
+
+TOGETHER = 2048
+"""Points of several columns that are evaluated in one call."""
+REPLICATES = 8
+"""Independent randomisations behind an interval of an index."""
+
+
+def indices(outputs: Outputs, dimension: int, *, rows: int, seed: int) -> Indices:
+    """First-order and total indices of every output.
+
+    First order by V_i = E[f(B) (f(AB_i) - f(A))] / V [Saltelli2010], total by
+    E[(f(A) - f(AB_i))^2] / 2V [Jansen1999]; A and B are halves of one scrambled Sobol sequence in
+    2d dimensions, AB_i is A with column i of B. Bounds come from `REPLICATES` randomisations.
+
+    Parameters
+    ----------
+    outputs : (k, n) at points (d, n)
+    dimension : d
+    rows : points of all replicates together; (d + 2) evaluations each
+    seed : of the randomisations
+    """
+    power = max(3, round(np.log2(max(rows, 1) / REPLICATES)))
+    parts = []
+    lost = 0
+    for replicate in range(REPLICATES):
+        points = quasi(2 * dimension, power, (seed, 1, replicate))
+        found, bad = _one(outputs, points, dimension, replicate)
+        parts.append(found)
+        lost += bad
+    sums = np.array(parts)  # (replicates, 2 d + 1, k)
+    variance = sums[:, -1]
+    with np.errstate(all="ignore"):
+        shares = sums[:, :-1] / variance[:, None]
+        pooled = sums[:, :-1].mean(axis=0) / variance.mean(axis=0)
+    flat = ~(variance.mean(axis=0) > 0)
+    pooled[:, flat], shares[:, :, flat] = np.nan, np.nan
+    half = _student(REPLICATES) * np.std(shares, axis=0, ddof=1)
+    return Indices(
+        first=pooled[:dimension],
+        total=pooled[dimension:],
+        first_half=half[:dimension],
+        total_half=half[dimension:],
+        variance=variance.mean(axis=0),
+        dropped=lost / (REPLICATES << power),
+    )
+
+
+def _one(outputs: Outputs, points: Vector, dimension: int, replicate: int) -> tuple[Vector, int]:
+    """V_i, V_Ti (2 d of them) and V (2 d + 1, k) of one randomisation; rows left out."""
+    first, second = points[:dimension], points[dimension:]
+    a, b = outputs(first), outputs(second)
+    mixed: list[Vector] = []
+    count = first.shape[1]
+    together = max(1, TOGETHER // count)
+    for begin in range(0, dimension, together):
+        tell("indices", (replicate + begin / dimension) / REPLICATES)
+        group = range(begin, min(begin + together, dimension))
+        swapped = np.tile(first, len(group))
+        for place, index in enumerate(group):
+            swapped[index, place * count : (place + 1) * count] = second[index]
+        mixed += np.split(outputs(swapped), len(group), axis=1)
+    whole = np.isfinite(np.stack([a, b, *mixed])).all(axis=0)  # (k, n)
+    number = np.maximum(whole.sum(axis=1), 1)
+    mean = np.where(whole, a + b, 0.0).sum(axis=1) / (2 * number)
+    a, b = (np.where(whole, one - mean[:, None], 0.0) for one in (a, b))
+    variance = ((a**2 + b**2).sum(axis=1)) / (2 * number)
+    noise = (1e-12 * np.maximum(np.abs(mean), 1e-30)) ** 2
+    variance = np.where(variance > noise, variance, 0.0)
+    firsts, totals = [], []
+    for one in mixed:
+        changed = np.where(whole, one - mean[:, None], 0.0)
+        firsts.append((b * (changed - a)).sum(axis=1) / number)
+        totals.append(((a - changed) ** 2).sum(axis=1) / (2 * number))
+    return np.array([*firsts, *totals, variance]), int((~whole).any(axis=0).sum())

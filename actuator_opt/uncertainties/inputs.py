@@ -1,0 +1,241 @@
+"""What scatters in a design: what its file states, what tests measured, libraries, practice.
+
+In this order: an entry of ``uncertainty``; bounds of ``measured`` (95 %, normal); the scatter that
+a library states of a property (a coefficient of variation is normal, a tolerance uniform and a
+factor uniform in the logarithm, since of bounds nothing more is known [JCGM100]); ISO 286 and
+practice for diameters, walls, angles and air. What an evaluation already takes at its worst is not
+drawn again: strengths stand at their allowables, tolerances of glands at their ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..base.errors import Diagnostic, InputError
+from ..base.quantities import Quantity
+from ..design import quantity_of
+from ..design.distributions import misfit
+from ..design.kinds import ValueFault
+from ..design.material import Property, Spread
+from ..design.standards import citation, tables
+from ..design.tolerances import source
+from ..evaluation import PreparedDesign, compute
+from ..models.elastomer import MODULUS_LAWS
+from .draw import Distribution, about
+
+GUARANTEED = ("limit", "minimum", "maximum", "A", "B", "S")
+"""Bases of values that are bounds already."""
+OWN = ("friction_coefficient", "breakaway_ratio", "stribeck_speed")
+"""Numbers of a seal that a design may state instead of its compound's."""
+NORMAL_95 = 1.959964
+_ANYTHING = (-np.inf, np.inf)
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A number that scatters.
+
+    Parameters
+    ----------
+    path : PATH
+    quantity : its quantity
+    value : of the design, SI
+    distribution : of its draws
+    origin : design, measured, library or practice
+    why : where its scatter comes from
+    confidence : of that source
+    """
+
+    path: str
+    quantity: Quantity
+    value: float
+    distribution: Distribution
+    origin: str
+    why: str
+    confidence: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON form, SI."""
+        ends = self.distribution.at(np.array([0.05, 0.5, 0.95])).tolist()
+        return {
+            "path": self.path, "unit": self.quantity.si_unit, "value": self.value,
+            "distribution": self.distribution.shape,
+            "lower": self.distribution.low, "upper": self.distribution.high,
+            "deviation": self.distribution.deviation,
+            "p5": ends[0], "p50": ends[1], "p95": ends[2],
+            "origin": self.origin, "source": self.why, "confidence": self.confidence,
+        }  # fmt: skip
+
+
+def inputs(subject: PreparedDesign) -> tuple[Input, ...]:
+    """Every number of a design that scatters, by PATH.
+
+    Raises
+    ------
+    InputError
+        an entry of ``uncertainty`` on what no model reads, or that leaves the valid range
+    """
+    read = read_by_models(subject)
+    found = {one.path: one for one in (*_library(subject), *_practice(subject))}
+    found |= {one.path: one for one in _measured(subject)}
+    kept = {path: one for path, one in found.items() if path in read}
+    for path, entry in subject.design.uncertainty.items():
+        if path not in read and subject.design.choices:
+            continue  # another choice reads it
+        kept[path] = _stated(subject, path, entry.model_dump(), path in read)
+    return tuple(one for _, one in sorted(kept.items()) if one.distribution.shape != "fixed")
+
+
+def read_by_models(subject: PreparedDesign) -> set[str]:
+    """PATHs that the models read, the factor on a modulus by hardness among them."""
+    factors = {f"materials.{name}.{_FACTOR}": np.ones(2) for name in _compounds(subject)}
+    values = subject.values(factors)
+    compute(subject, values)
+    return values.read
+
+
+# ---- what the file states ----
+
+
+def _stated(subject: PreparedDesign, path: str, entry: dict[str, Any], is_read: bool) -> Input:
+    quantity = quantity_of(path, subject.design)
+    at = f"uncertainty.{path}.distribution"
+    value = subject.numbers.get(path, 1.0 if path.endswith(_FACTOR) else None)
+    if value is None or not is_read:
+        message = "no model reads this for this design, so it cannot scatter"
+        raise InputError(Diagnostic(message, "remove the entry", path=at))
+    message, remedy = misfit(entry["distribution"], entry, value, quantity)
+    if message:
+        raise InputError(Diagnostic(message, remedy, path=at))
+    drawn = about(entry["distribution"], entry, value, (quantity.lower, quantity.upper))
+    words = entry["source"] or "stated in the design"
+    if entry["tolerance"]:
+        words += f", {entry['tolerance']} of {source()}"
+    return Input(path, quantity, value, drawn, "design", words)
+
+
+def _measured(subject: PreparedDesign) -> Iterator[Input]:
+    for path, bounds in subject.design.measured.items():
+        quantity, value = quantity_of(path, subject.design), subject.numbers.get(path)
+        deviation = (bounds.upper - bounds.lower) / (2 * NORMAL_95)
+        if value is not None:
+            stated = {"deviation": deviation}
+            drawn = about("normal", stated, value, (quantity.lower, quantity.upper))
+            why = f"95 % bounds of {bounds.record}"
+            yield Input(path, quantity, value, drawn, "measured", why, "verified")
+
+
+# ---- libraries ----
+
+
+def _library(subject: PreparedDesign) -> Iterator[Input]:
+    """Scatter that libraries state of properties, and of seals that state their own."""
+    for name, material in subject.materials.items():
+        for key, entry in material.properties.items():
+            if "strength" not in key and entry.basis not in GUARANTEED:
+                yield from _property(subject, f"materials.{name}.{key}", entry, name)
+    for place in ("piston", "rod"):
+        for tail, element in getattr(subject.design.seals, place).elements().items():
+            known = subject.materials[element.compound].properties
+            for key in OWN:
+                path = f"seals.{place}.{tail}{key}"
+                if path in subject.numbers and key in known:
+                    yield from _property(subject, path, known[key], element.compound)
+    yield from _moduli(subject)
+
+
+def _property(subject: PreparedDesign, path: str, entry: Property, name: str) -> Iterator[Input]:
+    value = subject.numbers[path]
+    if entry.spread is None or value == 0:
+        return
+    shape, stated = _shape(entry.spread, value)
+    quantity = quantity_of(path, subject.design)
+    within = (quantity.lower, quantity.upper)
+    if shape == "loguniform" and value < 0:
+        return
+    drawn = about(shape, stated, value, within)
+    why = f"{name}: {entry.scatter}"
+    yield Input(path, quantity, value, drawn, "library", why, entry.confidence)
+
+
+def _shape(spread: Spread, value: float) -> tuple[str, dict[str, float]]:
+    """A library's scatter as a distribution about a value."""
+    if spread.kind == "cv":
+        return "normal", {"cv": spread.size}
+    if spread.kind == "tolerance":
+        return "uniform", {"half_width": spread.size * abs(value)}
+    return "loguniform", {"factor": spread.size}
+
+
+_FACTOR = "hardness_modulus_factor"
+
+
+def _compounds(subject: PreparedDesign) -> list[str]:
+    return [name for name, one in subject.materials.items() if one.kind == "seal"]
+
+
+def _moduli(subject: PreparedDesign) -> Iterator[Input]:
+    """Modulus over that of the law a ring uses: between the laws of the registry, in logarithms."""
+    laws: dict[str, set[str]] = {}
+    for place in ("piston", "rod"):
+        for element in getattr(subject.design.seals, place).elements().values():
+            laws.setdefault(element.compound, set()).add(element.hardness_model)
+    for name, used in laws.items():
+        hardness = subject.numbers.get(f"materials.{name}.hardness")
+        if hardness is None:
+            continue
+        own = min(used)
+        moduli = {key: float(law.modulus(hardness=hardness)) for key, law in MODULUS_LAWS.items()}
+        ratios = [modulus / moduli[own] for modulus in moduli.values()]
+        path = f"materials.{name}.{_FACTOR}"
+        stated = {"lower": min(ratios), "upper": max(ratios)}
+        drawn = about("loguniform", stated, 1.0, _ANYTHING)
+        cited = " and ".join(law.reference for law in MODULUS_LAWS.values())
+        why = f"the laws from hardness to modulus differ: {cited}"
+        quantity = quantity_of(path, subject.design)
+        value = subject.numbers.get(path, 1.0)
+        yield Input(path, quantity, value, drawn, "library", why, "verified")
+
+
+# ---- practice ----
+
+
+def _practice(subject: PreparedDesign) -> Iterator[Input]:
+    """Diameters, walls, angles and air, where nobody says more."""
+    table: Mapping[str, str] = tables()["scatter_of_dimensions"]
+    origin = f"{citation(table['source'])}"
+    classes = {
+        "cylinder.bore": table["bore"],
+        "rod.outer_diameter": table["rod"],
+        "rod.inner_diameter": table["rod_bore"],
+    }
+    shares: dict[str, tuple[str, dict[str, Any]]] = {
+        "fluid.air_content": ("lognormal", {"factor": float(table["air_content_factor"])})
+    }
+    for tube in ("barrel", "rod"):
+        for index, ply in enumerate(getattr(subject.design, tube).layup):
+            at = f"{tube}.layup[{index}]"
+            if subject.materials[ply.material].isotropic:
+                classes[f"{at}.thickness"] = table["metal_wall"]
+                continue
+            share = float(table["ply_thickness_percent"]) / 100
+            shares[f"{at}.thickness"] = ("uniform", {"half_width": share * ply.thickness})
+            wide = np.radians(float(table["angle_deg"]))
+            shares[f"{at}.angle"] = ("uniform", {"half_width": float(wide)})
+    shares |= {path: ("uniform", {"tolerance": name}) for path, name in classes.items()}
+    for path, (shape, stated) in shares.items():
+        value = subject.numbers.get(path, 0.0)
+        if value == 0 and not path.endswith("angle"):
+            continue
+        quantity = quantity_of(path, subject.design)
+        try:
+            drawn = about(shape, stated, value, (quantity.lower, quantity.upper))
+        except ValueFault:  # beyond the table of ISO 286
+            continue
+        said = f"{stated['tolerance']}, " if "tolerance" in stated else ""
+        why = f"{said}{origin}"
+        yield Input(path, quantity, value, drawn, "practice", why, table["confidence"])

@@ -1,0 +1,225 @@
+"""What scatter does to a design, as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from ..base.tables import aligned
+from ..optimisation.problem import Vector
+from .estimate import Rate
+from .inputs import Input
+
+
+@dataclass(frozen=True, slots=True)
+class LimitYield:
+    """How often one limit holds.
+
+    Parameters
+    ----------
+    name, metric, sense, limit : of the limit, SI
+    required : whether it is a requirement of the design; else it is a line of the check list
+    margin : of the design as it stands; None where it has no number
+    rate : probability that it holds
+    margins : at 1, 5, 50, 95 and 99 % of the draws; None where a draw there has no number
+    """
+
+    name: str
+    metric: str
+    sense: str
+    limit: float
+    required: bool
+    margin: float | None
+    rate: Rate
+    margins: tuple[float | None, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON form."""
+        names = ("p1", "p5", "p50", "p95", "p99")
+        return {
+            "name": self.name, "metric": self.metric, "sense": self.sense, "limit": self.limit,
+            "required": self.required, "margin": self.margin, "yield": self.rate.to_dict(),
+            "margins": dict(zip(names, self.margins, strict=True)),
+        }  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Index:
+    """Share of the variance of an output that an input is behind: alone, and with all others.
+
+    `first` and `total` with half of their 95 % intervals; None where the output does not vary.
+    """
+
+    path: str
+    output: str
+    first: float | None
+    total: float | None
+    first_half: float | None
+    total_half: float | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON form."""
+
+        def bounds(value: float | None, half: float | None) -> dict[str, float] | None:
+            if value is None or half is None:
+                return None
+            return {"value": value, "lower": value - half, "upper": value + half}
+
+        return {
+            "parameter": self.path,
+            "output": self.output,
+            "first": bounds(self.first, self.first_half),
+            "total": bounds(self.total, self.total_half),
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Swing:
+    """An output where one input stands at its 5 % and 95 % point, all others at their value."""
+
+    path: str
+    output: str
+    at_5: float | None
+    at_95: float | None
+
+    @property
+    def size(self) -> float:
+        """Distance between both ends; infinite where one has no number."""
+        if self.at_5 is None or self.at_95 is None:
+            return float("inf")
+        return abs(self.at_95 - self.at_5)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON form."""
+        return {
+            "parameter": self.path, "output": self.output, "p5": self.at_5, "p95": self.at_95,
+        }  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """Draws that were kept: values of the inputs (d, n), margins of the limits (m, n)."""
+
+    values: Vector
+    margins: Vector
+
+
+LEAST = "least margin"
+"""The output that is the least margin of the requirements."""
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Yield, indices and tornado of a design whose numbers scatter.
+
+    Parameters
+    ----------
+    name, version, spec_hash : of the design
+    inputs : what scatters
+    count, method, seed : how it was drawn
+    rate : probability that all requirements hold
+    rate_checks : the same with the check list
+    limits : each requirement, then each check
+    nominal : outputs of the design as it stands, by name: margins by the name of the limit
+    units : metrics among the outputs, with their SI unit
+    indices, swings : by input and output
+    index_rows, dropped : rows behind the indices, and the share of them without a number
+    kept : draws for tables and figures
+    notes : what the yield means here
+    """
+
+    name: str
+    version: str
+    spec_hash: str
+    inputs: tuple[Input, ...]
+    count: int
+    method: str
+    seed: int
+    rate: Rate
+    rate_checks: Rate
+    limits: tuple[LimitYield, ...]
+    nominal: dict[str, float | None]
+    units: dict[str, str]
+    indices: tuple[Index, ...]
+    swings: tuple[Swing, ...]
+    index_rows: int
+    dropped: float
+    kept: Kept
+    notes: tuple[str, ...]
+    seconds: float
+
+    @property
+    def required(self) -> tuple[LimitYield, ...]:
+        """The requirements, the one that fails most first."""
+        return tuple(sorted((x for x in self.limits if x.required), key=_worst))
+
+    @property
+    def checks(self) -> tuple[LimitYield, ...]:
+        """The check list, the line that fails most first."""
+        return tuple(sorted((x for x in self.limits if not x.required), key=_worst))
+
+    @property
+    def met(self) -> bool:
+        """Whether every requirement holds as the design stands."""
+        return all(x.margin is not None and x.margin >= -1e-6 for x in self.required)
+
+    def of_output(self, output: str) -> tuple[list[Index], list[Swing]]:
+        """Indices and swings of one output, the largest first."""
+        found = [one for one in self.indices if one.output == output]
+        swings = [one for one in self.swings if one.output == output]
+        found.sort(key=lambda one: (-(one.total or 0.0), one.path))
+        swings.sort(key=lambda one: (-one.size, one.path))
+        return found, swings
+
+    def to_dict(self) -> dict[str, Any]:
+        """The `uncertainty --json` object (SI)."""
+        return {
+            "name": self.name,
+            "version": self.version,
+            "spec_hash": self.spec_hash,
+            "yield": self.rate.to_dict(),
+            "yield_with_checks": self.rate_checks.to_dict(),
+            "samples": self.count,
+            "method": self.method,
+            "seed": self.seed,
+            "inputs": [one.to_dict() for one in self.inputs],
+            "requirements": [one.to_dict() for one in self.required],
+            "checks": [one.to_dict() for one in self.checks],
+            "outputs": {
+                name: {"value": value, "unit": self.units.get(name, "")}
+                for name, value in self.nominal.items()
+            },
+            "indices": [one.to_dict() for one in self.indices],
+            "index_rows": self.index_rows,
+            "dropped": self.dropped,
+            "tornado": [one.to_dict() for one in self.swings],
+            "notes": list(self.notes),
+            "seconds": self.seconds,
+        }
+
+    def __str__(self) -> str:
+        """Yield and requirements as a table."""
+        rows = [["requirement", "margin", "holds", "lower", "upper"]]
+        for one in self.required:
+            margin = "-" if one.margin is None else f"{100 * one.margin:.2f} %"
+            bounds = (one.rate.value, one.rate.lower, one.rate.upper)
+            rows.append([one.name, margin, *(f"{100 * x:.2f} %" for x in bounds)])
+        rate = self.rate
+        words = (
+            f"yield {100 * rate.value:.2f} % ({100 * rate.lower:.2f} to {100 * rate.upper:.2f} %) "
+            f"of {self.count} draws"
+        )
+        return "\n".join([words, "", aligned(rows, right=(1, 2, 3, 4))])
+
+
+def _worst(one: LimitYield) -> tuple[float, float, str]:
+    low = one.margins[0]
+    return one.rate.value, -np.inf if low is None else low, one.name
+
+
+def number(value: float) -> float | None:
+    """A number, or None where there is none."""
+    return float(value) if isfinite(value) else None

@@ -1,0 +1,215 @@
+"""Draw a design's scatter: yield with bounds, indices, tornado."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.progress import tell
+from ..evaluation import PreparedDesign
+from ..evaluation.build import spec_hash
+from ..optimisation.problem import Vector
+from ..version import VERSION
+from .estimate import Rate, exact, indices, quasi, replicated
+from .inputs import inputs
+from .model import CHUNK, Model
+from .notes import notes
+from .result import LEAST, Index, Kept, LimitYield, Swing, Uncertainty, number
+
+COUNT = 10_000
+"""Draws of the yield."""
+ROWS = 1024
+"""Rows behind the indices, (inputs + 2) evaluations each."""
+BLOCKS = 16
+"""Randomisations of quasi-random draws."""
+MOST_KEPT = 16_384
+"""Draws kept for quantiles, figures and tables; any share of independent draws is fair."""
+ENDS = (0.05, 0.95)
+POINTS = (0.01, 0.05, 0.5, 0.95, 0.99)
+
+
+def uncertainty(
+    subject: PreparedDesign,
+    *,
+    count: int = COUNT,
+    seed: int = 0,
+    quasi_random: bool = False,
+    rows: int = ROWS,
+    metrics: Sequence[str] = (),
+) -> Uncertainty:
+    """What scatter does to a design.
+
+    Parameters
+    ----------
+    subject : the prepared design
+    count : draws of the yield
+    seed : the same seed gives the same draws
+    quasi_random : whether to draw scrambled Sobol points in `BLOCKS` randomisations
+    rows : rows behind the indices; 0 for none
+    metrics : followed beside the margins; default: those of the objective
+
+    Raises
+    ------
+    InputError
+        an entry of ``uncertainty`` that does not fit, or a metric that the design does not have
+    """
+    began = time.perf_counter()
+    found = inputs(subject)
+    model = Model(subject, found, metrics or subject.design.objective.metrics)
+    blocks = BLOCKS if quasi_random else 1
+    tally = draw(model, count, seed, blocks)
+    rates = tally.rates()
+    outputs = [*(limit.name for limit in model.limits), LEAST, *model.metrics]
+    first, dropped = _indices(model, outputs, rows, seed)
+    nominal = model.flat(model.nominal)[:, 0]
+    return Uncertainty(
+        name=subject.design.name,
+        version=VERSION,
+        spec_hash=spec_hash(subject),
+        inputs=found,
+        count=tally.each * blocks,
+        method=f"scrambled Sobol points, {blocks} times" if quasi_random else "independent draws",
+        seed=seed,
+        rate=rates[-2],
+        rate_checks=rates[-1],
+        limits=_limits(model, rates, tally.kept, nominal),
+        nominal={name: number(x) for name, x in zip(outputs, nominal, strict=True)},
+        units={name: subject.quantities[name].si_unit for name in model.metrics},
+        indices=first,
+        swings=_swings(model, outputs),
+        index_rows=rows,
+        dropped=dropped,
+        kept=tally.kept,
+        notes=notes(subject, found),
+        seconds=time.perf_counter() - began,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """Hits (m + 2, blocks): of every limit, of all requirements, of all limits; draws kept."""
+
+    hits: Vector
+    each: int
+    kept: Kept
+
+    def rates(self) -> list[Rate]:
+        """The probabilities behind the rows."""
+        if self.hits.shape[1] == 1:
+            return [exact(int(row[0]), self.each) for row in self.hits]
+        return [replicated(row, self.each) for row in self.hits]
+
+
+def draw(
+    model: Model,
+    count: int,
+    seed: int,
+    blocks: int = 1,
+    stream: int = 0,
+    keep: int = MOST_KEPT,
+) -> Tally:
+    """Draw the inputs and count what holds.
+
+    Parameters
+    ----------
+    model : what is drawn
+    count : draws
+    seed, stream : two streams of one seed are independent
+    blocks : randomisations of quasi-random points; 1 for independent draws
+    keep : draws to keep at most
+    """
+    size, limits = len(model.inputs), len(model.limits)
+    each = count if blocks == 1 else 1 << max(0, int(np.ceil(np.log2(count / blocks))))
+    hits = np.zeros((limits + 2, blocks))
+    kept: list[tuple[Vector, Vector]] = []
+    done = 0
+    for block in range(blocks):
+        source = (seed, 2 + stream, block)
+        for points in _points(size, each, source, blocks > 1):
+            found = model.at(points)
+            met = found.met
+            every = np.stack([met[model.own].all(axis=0), met.all(axis=0)])
+            hits[:, block] += np.concatenate([met, every]).sum(axis=1)
+            room = keep - done
+            if room > 0:
+                kept.append((found.values[:, :room], found.margins[:, :room]))
+            done += points.shape[1]
+            tell("draws", done / (each * blocks))
+    values, margins = (np.concatenate(part, axis=1) for part in zip(*kept, strict=True))
+    return Tally(hits, each, Kept(values, margins))
+
+
+def _points(size: int, count: int, seed: tuple[int, ...], scrambled: bool) -> Iterator[Vector]:
+    """Points of the unit cube in chunks: independent ones, or scrambled Sobol points."""
+    if scrambled and size:
+        yield from chunks(quasi(size, count.bit_length() - 1, seed))
+        return
+    generator = np.random.default_rng(seed)
+    for first in range(0, count, CHUNK):
+        yield generator.random((min(CHUNK, count - first), size)).T
+
+
+def chunks(points: Vector) -> Iterator[Vector]:
+    """Points (d, n) a chunk at a time."""
+    for first in range(0, points.shape[1], CHUNK):
+        yield points[:, first : first + CHUNK]
+
+
+def _limits(model: Model, rates: list[Rate], kept: Kept, nominal: Vector) -> tuple[LimitYield, ...]:
+    found = []
+    numbers = model.subject.values()
+    for row, limit in enumerate(model.limits):
+        drawn = kept.margins[row]
+        points = [number(float(x)) for x in quantiles(drawn)]
+        found.append(
+            LimitYield(
+                name=limit.name,
+                metric=limit.metric,
+                sense=limit.sense,
+                limit=float(np.squeeze(limit.value(numbers))),
+                required=bool(model.own[row]),
+                margin=number(float(nominal[row])),
+                rate=rates[row],
+                margins=tuple(points),
+            )
+        )
+    return tuple(found)
+
+
+def quantiles(drawn: Vector) -> Vector:
+    """Margins at `POINTS`; a draw without a number counts as the least."""
+    ordered = np.where(np.isnan(drawn), -np.inf, drawn)
+    return np.quantile(ordered, POINTS, method="inverted_cdf")
+
+
+def _indices(
+    model: Model, outputs: Sequence[str], rows: int, seed: int
+) -> tuple[tuple[Index, ...], float]:
+    if rows == 0 or not model.inputs:
+        return (), 0.0
+    found = indices(model.outputs, len(model.inputs), rows=rows, seed=seed)
+    named = tuple(
+        Index(one.path, output, *(number(float(x[i, k])) for x in (
+            found.first, found.total, found.first_half, found.total_half)))
+        for k, output in enumerate(outputs)
+        for i, one in enumerate(model.inputs)
+    )  # fmt: skip
+    return named, found.dropped
+
+
+def _swings(model: Model, outputs: Sequence[str]) -> tuple[Swing, ...]:
+    """Every output at both ends of every input, all others at their value."""
+    if not model.inputs:
+        return ()
+    values = np.repeat(np.array([[one.value] for one in model.inputs]), 2 * len(model.inputs), 1)
+    for i, one in enumerate(model.inputs):
+        values[i, 2 * i : 2 * i + 2] = one.distribution.at(np.array(ENDS))
+    found = model.flat(model.where(values))
+    return tuple(
+        Swing(one.path, output, *(number(float(found[k, 2 * i + end])) for end in (0, 1)))
+        for k, output in enumerate(outputs)
+        for i, one in enumerate(model.inputs)
+    )
