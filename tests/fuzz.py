@@ -36,7 +36,7 @@ from actuator_opt.api.reports import origin
 from actuator_opt.cli import faults
 from actuator_opt.design.template import init_text
 from actuator_opt.pages.page import outcome
-from actuator_opt.rendering.embed import embed
+from actuator_opt.rendering.attachments import embed
 
 BOUND = 30.0
 """Seconds of processor time for any of these inputs: a choice, ten times what the slowest takes."""

@@ -115,7 +115,7 @@ def test_pages_carry_the_scenario(short, tmp_path):
     result = run("simulate", str(short), "--report", "--out", str(out))
     assert {p.name for p in out.iterdir()} == {"short.pdf", "short.png"}
     assert result.err.count("wrote ") == 2
-    from actuator_opt.rendering.paper import read_attachment
+    from actuator_opt.rendering.attachments import read_attachment
 
     assert read_attachment(out / "short.pdf").source == SHORT
 

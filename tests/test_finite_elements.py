@@ -297,7 +297,7 @@ def test_a_missing_library_is_one_clear_line(monkeypatch):
 def test_the_core_never_loads_the_library():
     """Importing the program loads neither the library nor this package."""
     code = (
-        "import sys, actuator_opt, actuator_opt.verbs\n"
+        "import sys, actuator_opt, actuator_opt.api\n"
         "assert not [m for m in sys.modules if m == 'skfem' or 'finite_elements' in m]"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120)

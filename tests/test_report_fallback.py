@@ -7,7 +7,7 @@ import pytest
 import report_fixture as fixture
 
 from actuator_opt.pages import read_attachment, write_report
-from actuator_opt.rendering import embed, paper_plain as fallback
+from actuator_opt.rendering import attachments as embed, paper_plain as fallback
 
 
 @pytest.fixture

@@ -535,7 +535,7 @@ def test_the_sheet_is_a_document_with_equal_bytes(tmp_path):
     data = seal_document.sheet_page(one, ORIGIN)
     data |= {"title": "x", "source": "a: 1\n", "source_file": "a.yaml", "run": "{}"}
     assert fallback.render(data, 0)[1]
-    assert ao.rendering.paper.read_attachment(tmp_path / "1" / "s.pdf").source == "a: 1\n"
+    assert ao.rendering.attachments.read_attachment(tmp_path / "1" / "s.pdf").source == "a: 1\n"
 
 
 def test_the_report_carries_the_sheets(tmp_path):

@@ -33,7 +33,7 @@ from actuator_opt.pages import (
     simulation_text,
     simulation_words,
 )
-from actuator_opt.rendering.blocks import column, table
+from actuator_opt.rendering.blocks import Column, Table
 from actuator_opt.rendering.ink import Ink
 from actuator_opt.rendering.origin import Origin
 from actuator_opt.simulation.integrate import Event
@@ -555,7 +555,7 @@ def test_one_value_of_every_run_is_no_range():
 def test_what_the_caller_adds_goes_on_to_the_next_sheet(tmp_path):
     """An extra table that has no room leaves the figures as high as they were."""
     rows = [[f"frequency {k}", "1 Hz"] for k in range(40)]
-    extra = [table("Linear and not", [column("what", "left", 1.0), column("value")], rows)]
+    extra = [Table("Linear and not", [Column("what", "left", 1.0), Column("value")], rows)]
     found = case.simulated("step")
     files = document.write_simulation_sheet(found, ORIGIN, folder=tmp_path, stem="s", extra=extra)
     assert files[0].pages == 2

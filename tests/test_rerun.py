@@ -15,7 +15,7 @@ from actuator_opt import cli
 from actuator_opt.api import repeating
 from actuator_opt.base.errors import InputError
 from actuator_opt.cli import options
-from actuator_opt.rendering import embed
+from actuator_opt.rendering import attachments as embed
 
 KINDS = ("application/yaml", "application/json")
 SMALL = BENCH.replace("  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n", "")
@@ -87,7 +87,7 @@ def test_what_differs_is_named(reports, tmp_path):
 
 def _tampered(tmp_path, source, change):
     """A PDF that carries another run record, made by the plain attacher."""
-    inside = ao.rendering.paper.read_attachment(source)
+    inside = ao.rendering.attachments.read_attachment(source)
     facts = json.loads(json.dumps(inside.run))
     change(facts)
     return _pdf(tmp_path, inside.source, facts)

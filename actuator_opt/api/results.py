@@ -39,7 +39,8 @@ class ResultKind:
     ----------
     type : of the result, "module:class"
     exit_code : of a command that gives this result
-    text : lines for the terminal of (result, colour=, unicode=, width=)
+    page : builds the `Page` of a result: its text, its report and its HTML
+    text : lines for the terminal of (result, colour=, unicode=, width=), where there is no page
     report : writes the report of (result, **`Paper`); more keywords where a kind needs them
     csv : writes the result to a path
     record : records the run of (result, actuator=, command=, date=)
@@ -50,10 +51,11 @@ class ResultKind:
 
     type: str
     exit_code: Callable[[Any], ExitCode]
-    text: str | None
     report: str | None
     csv: str | None
     record: str | None
+    page: str | None = None
+    text: str | None = None
     data: str | None = "to_dict"
     remarks: Callable[[Any], list[str]] | None = None
     writes: Callable[[Any], bool] | None = None
@@ -133,7 +135,7 @@ KINDS = kinds(
         record="api:record_front", writes=lambda front: bool(front.points),
     ),
     ResultKind(
-        "uncertainties.result:Uncertainty", _met, text="pages.uncertainty_text:uncertainty_text",
+        "uncertainties.result:Uncertainty", _met, page="pages.uncertainty:page",
         report="api:write_uncertainty", csv="api:write_draws", record=None,
     ),
     ResultKind(
@@ -190,11 +192,11 @@ KINDS = kinds(
         report="api:report_run", csv=None, record=None,
     ),
     ResultKind(
-        "api.kept_sweeps:KeptSweep", lambda kept: _missed(not kept.run.head["met"]), text=None,
+        "api.kept_sweeps:KeptSweep", lambda kept: _missed(not kept.run.head["met"]),
         report="api.kept_sweeps:report_sweep", csv=None, record=None, data=None,
     ),
     ResultKind(
-        "api.restoring:Restored", lambda restored: exit_code(restored.result), text=None,
+        "api.restoring:Restored", lambda restored: exit_code(restored.result),
         report="api:report_run", csv=None, record=None, data=None,
     ),
     ResultKind(
@@ -229,8 +231,12 @@ def exit_code(result: object) -> ExitCode:
 
 def text(result: object, **style: Unpack[Style]) -> str:
     """What the terminal shows of a result; "" for what has no text."""
-    name = kind_of(result).text
-    return "" if name is None else str(piece(name, result)(**style))
+    kind = kind_of(result)
+    if kind.page is not None:
+        from ..rendering import terminal
+
+        return terminal.text(piece(kind.page, result)(), **style)
+    return "" if kind.text is None else str(piece(kind.text, result)(**style))
 
 
 def data(result: object) -> dict[str, Any]:

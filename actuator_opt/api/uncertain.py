@@ -68,18 +68,20 @@ def write_uncertainty(study: Uncertainty, **paper: Unpack[Paper]) -> list[Report
     ------
     UsageError : no `actuator`: the study does not keep its design
     """
-    from ..pages.uncertainty_document import write_uncertainty_sheet
+    from ..pages.uncertainty import page
+    from ..rendering import paper as printed
 
     actuator = paper.get("actuator")
     if actuator is None:
         message = "the page of an uncertainty study needs the design"
         raise UsageError(Diagnostic(message, "give actuator=..."))
     origin, place = page_of(actuator.design, "_uncertainty", **paper)
-    return write_uncertainty_sheet(study, origin, **place)
+    return printed.write(page(study), origin, **place)
 
 
-def write_draws(found: Uncertainty, path: str | Path) -> ReportFile:
+def write_draws(study: Uncertainty, path: str | Path) -> ReportFile:
     """Write the draws that were kept as CSV: inputs, margins of all limits, whether all hold."""
-    from ..pages.uncertainty_csv import write_draws as write
+    from ..pages.uncertainty import series
+    from ..rendering.series import write_csv
 
-    return write(found, Path(path))
+    return write_csv(series(study), Path(path))

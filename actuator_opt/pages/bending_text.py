@@ -7,7 +7,8 @@ from ..base.quantities import MATERIAL_PROPERTIES
 from ..identification.bending import BendingResult
 from ..metrics import METRICS
 from ..rendering import text
-from ..rendering.console import Column, Console, visible
+from ..rendering.blocks import Column
+from ..rendering.console import Console, visible
 from .optimum import sentence
 
 _MODULUS, _SLOPE = MATERIAL_PROPERTIES["youngs_modulus"], METRICS["stiffness_rod"]

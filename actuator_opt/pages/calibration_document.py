@@ -3,14 +3,28 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from ..evaluation.reserve import count_words
 from ..identification.calibration import Calibration
 from ..optimisation.redesign import Redesign, solved
 from ..rendering import paper as writer, text
-from ..rendering.blocks import Block, Cell, column, notes, short, soft, table
-from ..rendering.origin import Origin, tile
+from ..rendering.blocks import (
+    Block,
+    Cell,
+    Column,
+    Notes,
+    Page,
+    Pair,
+    State,
+    Status,
+    Table,
+    Tile,
+    Verdict,
+    short,
+    soft,
+    tile,
+)
+from ..rendering.origin import Origin
 from ..studies.bench import Bench
 from . import calibration_rows as rows
 from .calibration_figure import calibration_figure
@@ -38,10 +52,9 @@ def write_calibration_sheet(
     folder, stem : where to
     """
     record = found.identification.record
-    return writer.write_page(
-        calibration_page(found, changes, measured, origin),
+    return writer.write(
+        calibration_page(found, changes, measured),
         origin,
-        title=changes.evaluation.name,
         folder=folder,
         stem=stem,
         record=record.file_name,
@@ -49,32 +62,32 @@ def write_calibration_sheet(
     )
 
 
-def calibration_page(
-    found: Calibration, changes: Redesign, measured: Bench, origin: Origin
-) -> dict[str, Any]:
-    """The page as plain data for the renderers."""
+def calibration_page(found: Calibration, changes: Redesign, measured: Bench) -> Page:
+    """The page of a calibration."""
     own = found.identification
-    heading = origin.heading(name=changes.evaluation.name, kind="From test record to redesign")
-    return heading | {
-        "verdict": verdict(changes),
-        "sentence": soft(rows.what(found)),
-        "tiles": _tiles(found, changes),
-        "section": calibration_figure(own.points, own.bench, measured, changes).data(),
-        "scale": "",
-        "items": [],
-        "blocks": blocks(found, changes),
-    }
+    return Page(
+        name=changes.evaluation.name,
+        kind="From test record to redesign",
+        verdict=verdict(changes),
+        sentence=rows.what(found),
+        tiles=_tiles(found, changes),
+        hero=lambda room: calibration_figure(own.points, own.bench, measured, changes),
+        blocks=blocks(found, changes),
+    )
 
 
-def verdict(changes: Redesign) -> dict[str, Any]:
+def verdict(changes: Redesign) -> Verdict:
     """Whether a design with the measured values meets its requirements."""
     total = len(changes.evaluation.requirements)
     met = sum(row.met for row in changes.evaluation.requirements)
     lines = [f"as tested: {met} of {total} requirements met"]
     best, count = changes.best_after, 0
+    state: State
     if best is None:
         met = changes.evaluation.met
-        state, words = ("met", "REQUIREMENTS MET") if met else ("missed", "REQUIREMENTS MISSED")
+        state, words = "missed", "REQUIREMENTS MISSED"
+        if met:
+            state, words = "met", "REQUIREMENTS MET"
         count = len(changes.evaluation.tight) if met else 0
     elif solved(best):
         state, words = "met", "REDESIGN MEETS ALL"
@@ -86,10 +99,10 @@ def verdict(changes: Redesign) -> dict[str, Any]:
     if count:
         state, words = "checks", f"{words}, {count_words(count).upper()}"
     plain, cautions = doubts(changes.evaluation)
-    return {"state": state, "text": words, "lines": lines + plain, "cautions": cautions}
+    return Verdict(state, words, lines + plain, cautions)
 
 
-def _tiles(found: Calibration, changes: Redesign) -> list[dict[str, Any]]:
+def _tiles(found: Calibration, changes: Redesign) -> list[Tile]:
     """Coulomb friction, what moved most, and the objective."""
     ratio = found.coulomb / found.stated
     own = found.identification
@@ -105,7 +118,7 @@ def _tiles(found: Calibration, changes: Redesign) -> list[dict[str, Any]]:
         limit = text.limit_text(quantity, moved.after.sense, moved.after.limit)
         words = moved.after.name.replace("_", " ")
         note = f"was {text.value_text(quantity, moved.before.value)}, {limit}"
-        state = "met" if moved.after.met else "missed"
+        state: State = "met" if moved.after.met else "missed"
         tiles.append(tile(short(words, 28), value, note, state))
     for one in changes.goals[:1]:
         if one.after is not None:
@@ -120,7 +133,7 @@ def blocks(found: Calibration, changes: Redesign) -> list[Block]:
     parts = [_learned(found), _shifts(changes)]
     if lines := rows.optimum(changes):
         parts.append(_optimum(lines))
-    return [*parts, notes("What changed, and what this rests on", rows.remarks(found, changes))]
+    return [*parts, Notes("What changed, and what this rests on", rows.remarks(found, changes))]
 
 
 def _learned(found: Calibration) -> Block:
@@ -128,43 +141,43 @@ def _learned(found: Calibration) -> Block:
         [soft(line.cells[0], 60), *line.cells[1:]] for line in rows.learned(found)
     ]
     columns = [
-        column(rows.LEARNED_HEADS[0], "left", 1.0, mono=True),
-        *(column(head, "right", strong=head == "measured") for head in rows.LEARNED_HEADS[1:5]),
-        column(rows.LEARNED_HEADS[5]),
+        Column(rows.LEARNED_HEADS[0], "left", 1.0, mono=True),
+        *(Column(head, "right", strong=head == "measured") for head in rows.LEARNED_HEADS[1:5]),
+        Column(rows.LEARNED_HEADS[5]),
     ]
-    return table("Numbers the record gave, 95 % bounds", columns, body)
+    return Table("Numbers the record gave, 95 % bounds", columns, body)
 
 
 def _shifts(changes: Redesign) -> Block:
     body: list[list[Cell]] = []
     for line in rows.shifts(changes, moved=True):
-        state: Cell = {"status": line.state, "text": line.cells[-1]}
+        state: Cell = Status(line.state, line.cells[-1])
         body.append([soft(line.cells[0], 60), *line.cells[1:-1], state])
     columns = [
-        column(rows.SHIFT_HEADS[0], "left", 1.0, mono=True),
-        *(column(head, "right", strong=head == "as measured") for head in rows.SHIFT_HEADS[1:6]),
-        column(rows.SHIFT_HEADS[6]),
+        Column(rows.SHIFT_HEADS[0], "left", 1.0, mono=True),
+        *(Column(head, "right", strong=head == "as measured") for head in rows.SHIFT_HEADS[1:6]),
+        Column(rows.SHIFT_HEADS[6]),
     ]
     still = sum(one.move == 0 for one in changes.shifts)
     note = f"{still} more do not depend on what was measured." if still else ""
-    return table("Requirements of the actuator as tested that move", columns, body, note=note)
+    return Table("Requirements of the actuator as tested that move", columns, body, note=note)
 
 
 def _optimum(lines: list[rows.Line]) -> Block:
     """Objective and variables in two halves side by side."""
     columns = [
-        column(rows.OPTIMUM_HEADS[0], "left", 1.0, mono=True),
-        *(column(head, "right", strong=head == "as measured") for head in rows.OPTIMUM_HEADS[1:]),
+        Column(rows.OPTIMUM_HEADS[0], "left", 1.0, mono=True),
+        *(Column(head, "right", strong=head == "as measured") for head in rows.OPTIMUM_HEADS[1:]),
     ]
     cells: list[list[Cell]] = [[soft(line.cells[0], 60), *line.cells[1:]] for line in lines]
     if len(cells) < 6:
-        return table("The best design", columns, cells)
+        return Table("The best design", columns, cells)
     half = (len(cells) + 1) // 2
     sides = [
-        [table(title, columns, part)]
+        [Table(title, columns, part)]
         for title, part in (
             ("The best design", cells[:half]),
             ("The best design, continued", cells[half:]),
         )
     ]
-    return {"kind": "pair", "title": "", "sides": sides, "note": ""}
+    return Pair(sides)

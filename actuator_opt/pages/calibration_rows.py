@@ -9,6 +9,7 @@ from ..evaluation.reserve import count_words
 from ..identification.calibration import Calibration
 from ..optimisation.redesign import Redesign, Shift, solved
 from ..rendering import text
+from ..rendering.blocks import State
 from .optimum import sentence
 
 LEARNED_HEADS = ("value", "stated", "measured", "lower", "upper", "from")
@@ -20,7 +21,7 @@ class Line(NamedTuple):
     """A row of cells; `state` is met, missed or empty."""
 
     cells: tuple[str, ...]
-    state: str = ""
+    state: State = ""
 
 
 def learned(found: Calibration) -> list[Line]:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from ..identification.calibration import Calibration
 from ..optimisation.redesign import Redesign
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Column
+from ..rendering.console import Console
 from . import calibration_rows as rows
 
 
@@ -44,7 +45,7 @@ def _table(
         Column(
             head,
             "left" if k == 0 or head in words else "right",
-            flexible=k == 0,
+            width=1.0 if k == 0 else "auto",
             drop=drops[k],
             least=20,
         )

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from ..design import choice_list
 from ..optimisation.result import Choices, Combination, Optimisation
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, column, soft, table
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Block, Cell, Column, Table, soft
+from ..rendering.console import Console
 from ..rendering.text import DASH
 from .optimum import sentence
 
@@ -109,14 +109,14 @@ def block(optimisation: Optimisation) -> Block | None:
     ]
     label = text.metric(optimisation.objective_metric).label
     columns = [
-        *(column(head, "left", mono=True) for head in _value_heads(choices)),
-        column(label, "right", strong=not sized(choices)),
-        *([column("with sizes", "right", strong=True)] if sized(choices) else []),
-        column("cost", "right"),
-        column("what became of it", "left", 2.0),
+        *(Column(head, "left", mono=True) for head in _value_heads(choices)),
+        Column(label, "right", strong=not sized(choices)),
+        *([Column("with sizes", "right", strong=True)] if sized(choices) else []),
+        Column("cost", "right"),
+        Column("what became of it", "left", 2.0),
     ]
     note = " ".join(notes(optimisation, most))
-    return table(_title(optimisation, choices), columns, rows, note=note)
+    return Table(_title(optimisation, choices), columns, rows, note=note)
 
 
 def terminal(
@@ -128,11 +128,11 @@ def terminal(
         return ""
     console = Console(colour, unicode, width)
     columns = [
-        *(Column(head, flexible=True) for head in _value_heads(choices)),
+        *(Column(head, width=1.0) for head in _value_heads(choices)),
         Column(optimisation.objective_metric, "right"),
         *([Column("with sizes", "right")] if sized(choices) else []),
         Column("cost", "right"),
-        Column("what became of it", flexible=True, least=30),
+        Column("what became of it", width=1.0, least=30),
     ]
     rows = _rows(optimisation, choices, most)
     styles = [["bold" if index == 0 else ""] * len(columns) for index in range(len(rows))]

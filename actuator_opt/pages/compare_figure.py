@@ -5,8 +5,8 @@ from __future__ import annotations
 from ..evaluation.comparison import Comparison, Question
 from ..metrics import METRICS
 from ..rendering.axes import AREAS
+from ..rendering.heights import wrap
 from ..rendering.ink import BLACK, GREY, Ink, text_width
-from ..rendering.paper_plain import wrap
 from ..rendering.text import limit_text, number, pretty
 from .compare_text import PART_TITLES, PART_UNITS, answer, duties, named, optimality, part_name
 from .stiffness_figure import fills

@@ -10,7 +10,8 @@ from ..evaluation.comparison import Change, Comparison, Question, Value
 from ..evaluation.reserve import count_words
 from ..metrics import of_metric
 from ..rendering import text
-from ..rendering.console import Column, Console, visible
+from ..rendering.blocks import Column
+from ..rendering.console import Console, visible
 from ..rendering.text import DASH, number
 
 _WORST = {"lighter": "light", "stiffer": "stiff", "smoother": "smooth"}
@@ -237,8 +238,8 @@ def _tables(
         while others and (len(piece) < 2 or left >= sizes[others[0] + 1] + _GAP):
             left -= sizes[others[0] + 1] + _GAP
             piece.append(others.pop(0))
-        columns = [Column("", flexible=True, least=10)]
-        columns += [Column(found.labels[k], "right", flexible=True, least=8) for k in piece]
+        columns = [Column("", width=1.0, least=10)]
+        columns += [Column(found.labels[k], "right", width=1.0, least=8) for k in piece]
         cells = [[row[0], *(row[k + 1] for k in piece)] for row in rows]
         lines += ["", console.heading(title), *console.table(columns, cells)]
     return lines

@@ -12,7 +12,7 @@ import numpy as np
 from ..evaluation.dynamics_study import DynamicsStudy, LoopStudy
 from ..evaluation.result import Evaluation, Requirement
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, clean, column, figure, short, soft, table
+from ..rendering.blocks import Block, Cell, Column, Drawing, Table, clean, short, soft
 from ..rendering.text import DASH
 from .bode import Shaken, compact_figure, modes_figure, response_figure
 from .bode_loop import LoopLimits, closed_figure, open_figure
@@ -81,7 +81,7 @@ def _compact(evaluation: Evaluation, study: DynamicsStudy) -> Block:
         f" {damping_sentence(study)} Dynamic stiffness counts the mass; above the resonance it is"
         " the mass that resists."
     )
-    return figure("Dynamics", ink, note)
+    return Drawing("Dynamics", ink, note)
 
 
 def _modes(evaluation: Evaluation, study: DynamicsStudy) -> Block:
@@ -92,7 +92,7 @@ def _modes(evaluation: Evaluation, study: DynamicsStudy) -> Block:
         f"Case {study.case}, {text.number(study.mass)} kg at the rod; while the load shakes it:"
         f" {_held(study)}. {damping_sentence(study)}"
     )
-    return figure("Dynamics along the stroke", ink, note)
+    return Drawing("Dynamics along the stroke", ink, note)
 
 
 def shaken_cases(study: DynamicsStudy) -> list[Shaken]:
@@ -118,7 +118,7 @@ def _response(evaluation: Evaluation, study: DynamicsStudy) -> Block:
         )
     note += " The position loop is open"
     note += ": slowly, what leaks lets the piston creep." if study.end != "closed" else "."
-    return figure("Dynamic stiffness", ink, note + lumped_sentence(study))
+    return Drawing("Dynamic stiffness", ink, note + lumped_sentence(study))
 
 
 def lumped_sentence(study: DynamicsStudy) -> str:
@@ -159,16 +159,16 @@ def _poles(study: DynamicsStudy) -> Block:
             what += "; grows"
         rows.append([text.number(pole.frequency), _ratio(pole.damping_ratio), what])
     columns = [
-        column("frequency, Hz", "right", 0.5),
-        column("damping ratio", "right", 0.5),
-        column("what", "left", 2.0),
+        Column("frequency, Hz", "right", 0.5),
+        Column("damping ratio", "right", 0.5),
+        Column("what", "left", 2.0),
     ]
     fast = len(study.poles) - len(shown)
     note = f"At the weakest position, case {study.case}, {_held(study)}."
     if fast:
         plural = "poles lie" if fast > 1 else "pole lies"
         note += f" {fast} {plural} above 10 kHz, where the model describes nothing."
-    return table("Dynamics: poles", columns, rows, note=note)
+    return Table("Dynamics: poles", columns, rows, note=note)
 
 
 # ---- the loop ----
@@ -193,8 +193,8 @@ def _loop(
             " one."
         )
     return [
-        figure("Position loop, open", open_figure(study, loops, limits), note),
-        figure("Position loop, closed", closed_figure(study, loops, limits)),
+        Drawing("Position loop, open", open_figure(study, loops, limits), note),
+        Drawing("Position loop, closed", closed_figure(study, loops, limits)),
         _loop_table(evaluation, loops),
     ]
 
@@ -236,11 +236,11 @@ def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:
 
     names = ("position_gain", "ultimate_gain", "gain_margin", "phase_margin", "bandwidth")
     columns = [
-        column("", "left", 0.7),
-        column("value", "right", strong=True),
-        column("", "left", 1.3),
-        column("required", "right"),
-        column("where it is least", "left", 1.3),
+        Column("", "left", 0.7),
+        Column("value", "right", strong=True),
+        Column("", "left", 1.3),
+        Column("required", "right"),
+        Column("where it is least", "left", 1.3),
     ]
     worst = first.place.partition(", ")[0]
     note = (
@@ -248,7 +248,7 @@ def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:
         " least over load cases, places and directions."
     )
     rows = [row(name) for name in names if name in evaluation.metrics]
-    return table("Position loop: gain, margins, bandwidth", columns, rows, note=note)
+    return Table("Position loop: gain, margins, bandwidth", columns, rows, note=note)
 
 
 def _remark(name: str, one: LoopStudy, tuned: str) -> str:

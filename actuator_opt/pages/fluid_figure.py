@@ -19,9 +19,10 @@ from ..design.material_laws import bulk_modulus_law, viscosity_law
 from ..evaluation import oil
 from ..models.fluid import LEAST_VISCOSITY
 from ..models.oil_laws import VISCOSITY_LAWS
-from ..rendering import paper_plain as fallback
 from ..rendering.axes import Axes, ticks
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Column
+from ..rendering.console import Console
+from ..rendering.heights import wrap
 from ..rendering.image import write_ink
 from ..rendering.ink import BLUE, GREY, PALE, RED, WHITE, Ink, spread_within, text_width
 from ..rendering.text import MINUS, number, trimmed
@@ -123,7 +124,7 @@ def _row(material: Material, temperature: float) -> list[str]:
 def fluid_figure(material: Material) -> Ink:
     """Viscosity, bulk modulus and density of an oil over temperature and pressure."""
     over = _range(material)
-    notes = [line for text in _sources(material) for line in fallback.wrap(text, _WIDTH - 4, 6.0)]
+    notes = [line for text in _sources(material) for line in wrap(text, _WIDTH - 4, 6.0)]
     rows = 16.0, 16.0 + _TALL + 19.0
     ink = Ink(_WIDTH, rows[1] + _TALL + 17.0 + 2.8 * len(notes))
     ink.text(

@@ -12,8 +12,8 @@ from ..base.fitting import NORMAL
 from ..base.numeric import Array
 from ..identification.points import Point
 from ..rendering.axes import Axes, Ticks, ticks
+from ..rendering.heights import wrap
 from ..rendering.ink import BLACK, BLUE, GREY, PALE, WHITE, Ink, text_width
-from ..rendering.paper_plain import wrap
 from ..rendering.text import fixed, trimmed
 from .bode import level_ticks
 

@@ -18,6 +18,7 @@ from ..identification.coefficient import Coefficient
 from ..identification.record import CHANNELS, Record
 from ..identification.result import Identification
 from ..metrics import METRICS
+from ..rendering.blocks import State, Verdict
 from ..rendering.text import (
     DASH,
     decimals,
@@ -39,7 +40,7 @@ MASS = METRICS["mass"]
 _VISCOUS = quantities.INPUTS["viscous_friction"]
 VERDICTS = {"identifiable": "yes", "weakly identifiable": "weakly", "not identifiable": "no"}
 """Verdicts in the column "identifiable"."""
-STATES = {"yes": "met", "weakly": "not_checked", "no": "missed"}
+STATES: dict[str, State] = {"yes": "met", "weakly": "not_checked", "no": "missed"}
 """State of the sign before it."""
 FITS = {"power_law": "power law", "double_exponential": "double exponential"}
 LAWS = {"power_law": "a v^b", "double_exponential": "a₁ exp(b₁ v) + a₂ exp(b₂ v)"}
@@ -374,18 +375,19 @@ def fit_note(fits: Mapping[str, Fit | str]) -> str:
     return sentence("; ".join(parts) + "; relative errors weighted, v in m/s")
 
 
-def verdict(found: Identification) -> dict[str, Any]:
+def verdict(found: Identification) -> Verdict:
     """Whether friction models were found and how many of their parameters are identifiable."""
     models = {"Stribeck curve": found.stribeck, "LuGre model": found.lugre}
     names = [name for name, one in models.items() if not isinstance(one, str)]
     known = every_parameter(found)
     sure = sum(one.identifiable for one in known)
     if not names:
-        return {"state": "missed", "text": "NO MODEL", "lines": ["friction over time alone"]}
+        return Verdict("missed", "NO MODEL", ["friction over time alone"])
+    state: State
     state, words = "checks", "FOUND IN PART"
     if not sure:
         state, words = "missed", "NOT IDENTIFIABLE"
     elif len(names) == len(models) and sure == len(known):
         state, words = "met", "MODELS FOUND"
     lines = [" and ".join(names), f"{sure} of {len(known)} parameters identifiable"]
-    return {"state": state, "text": words, "lines": lines}
+    return Verdict(state, words, lines)

@@ -7,7 +7,8 @@ import numpy as np
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
 from ..rendering import terminal_curve as plot
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Column
+from ..rendering.console import Console
 from ..rendering.text import DASH, number
 from . import identification_rows as rows
 
@@ -34,14 +35,14 @@ def identification_text(
 def _head(found: Identification, console: Console) -> str:
     seen = rows.verdict(found)
     name = console.paint(console.say(found.bench.design.name), "bold")
-    state = console.paint(console.say(seen["text"].lower()), *_PAINTS[seen["state"]].split())
-    lines = [f"{name}  {state}", console.wrap(", ".join(seen["lines"]), "dim")]
+    state = console.paint(console.say(seen.text.lower()), *_PAINTS[seen.state].split())
+    lines = [f"{name}  {state}", console.wrap(", ".join(seen.lines), "dim")]
     return "\n".join([*lines, console.wrap(rows.what(found))])
 
 
 def _friction(found: Identification, console: Console) -> str:
     """Mean, maximum, equivalent pressure and coefficient of friction."""
-    columns = [Column("friction", flexible=True), Column("value", "right")]
+    columns = [Column("friction", width=1.0), Column("value", "right")]
     columns += [Column("lower", "right", drop=1), Column("upper", "right", drop=1)]
     mean, area, mu = found.mean, found.area, found.coefficient
     low, high = number(mean.lower), number(mean.upper)
@@ -65,7 +66,7 @@ def _parameters(found: Identification, console: Console) -> str:
     """Parameters of every model with bounds and verdict."""
     columns = [
         Column("model"),
-        Column("parameter", flexible=True),
+        Column("parameter", width=1.0),
         Column("symbol", drop=4),
         Column("value", "right"),
         Column("lower", "right", drop=1),

@@ -8,13 +8,11 @@ from typing import Any
 from ..optimisation.infeasibility_card import percent
 from ..optimisation.result import Infeasibility, Optimisation
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, column, notes, soft, table
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Block, Cell, Column, Notes, Table, soft
+from ..rendering.console import Console
+from ..rendering.terminal import block_text
 from ..rendering.text import DASH
 from .optimum import sentence
-
-_DROP = {"stands for": 2, "change": 1}
-"""Columns that a narrow terminal leaves out, the highest first."""
 
 
 def terminal(
@@ -24,31 +22,18 @@ def terminal(
     console = Console(colour, unicode, width)
     if subject.infeasibility is None:
         return ""
-    lines = []
-    for block in blocks(subject.infeasibility):
-        lines += ["", console.heading(block["title"])]
-        if block["kind"] == "notes":
-            lines += [console.wrap("".join(item)) for item in block["items"]]
-            continue
-        columns = [
-            Column(c["head"], c["align"], c["head"] == "stands for", _DROP.get(c["head"], 0))
-            for c in block["columns"]
-        ]
-        rows = [["".join(cell) for cell in row] for row in block["rows"]]
-        lines += console.table(columns, rows)
-        lines.append(console.wrap(block["note"], "dim"))
-    return "\n".join(lines[1:])
+    return "\n\n".join(block_text(block, console) for block in blocks(subject.infeasibility))
 
 
 def blocks(card: Infeasibility) -> list[Block]:
     """The card of an infeasible design: what conflicts, by how much, what would repair it."""
-    found = [notes("Why nothing fits", [_arrows(card.sentence)])]
+    found: list[Block] = [Notes("Why nothing fits", [_arrows(card.sentence)])]
     if card.joint:
         these = "this" if len(card.joint) == 1 else "all of these together"
         note = f"With {these} a design exists: the one shown here. No smaller sum was found."
         if any(entry["safety_factor"] for entry in card.joint):
             note += " It weakens a safety factor, which is not advised."
-        found.append(table("Smallest joint relaxation", *_limits(card.joint), note=note))
+        found.append(Table("Smallest joint relaxation", *_limits(card.joint), note=note))
     others = [str(e["parameter"] or e["requirement"]) for e in card.sole if e["needed"] is None]
     words = ""
     if card.cures:
@@ -58,13 +43,13 @@ def blocks(card: Infeasibility) -> list[Block]:
     if card.untried:
         words += f"Not tried, for the time it takes: {', '.join(card.untried)}."
     if card.cures:
-        found.append(table("What is enough alone", *_cures(card.cures), note=words.strip()))
+        found.append(Table("What is enough alone", *_cures(card.cures), note=words.strip()))
     elif words:
-        found.append(notes("What is enough alone", [words.strip()]))
+        found.append(Notes("What is enough alone", [words.strip()]))
     if card.bounds:
         found.append(_bounds(card))
     if card.evidence:
-        found.append(notes("What is proven", [sentence(card.evidence)]))
+        found.append(Notes("What is proven", [sentence(card.evidence)]))
     return found
 
 
@@ -72,17 +57,17 @@ def _arrows(words: str) -> str:
     return text.pretty(sentence(words)).replace("->", "→")
 
 
-def _columns(first: str) -> list[Block]:
+def _columns(first: str) -> list[Column]:
     return [
-        column(first, "left", 1.3, mono=True),
-        column("stands for", "left", 1.3),
-        column("now", "right"),
-        column("needed", "right", strong=True),
-        column("change", "right"),
+        Column(first, "left", 1.3, mono=True),
+        Column("stands for", "left", 1.3, drop=2),
+        Column("now", "right"),
+        Column("needed", "right", strong=True),
+        Column("change", "right", drop=1),
     ]
 
 
-def _limits(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Block], list[list[Cell]]]:
+def _limits(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Column], list[list[Cell]]]:
     """Columns and rows of limits that give way."""
     rows: list[list[Cell]] = [
         [
@@ -97,7 +82,7 @@ def _limits(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Block], list[lis
     return _columns("limit"), rows
 
 
-def _cures(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Block], list[list[Cell]]]:
+def _cures(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Column], list[list[Cell]]]:
     """Columns and rows of what is enough alone."""
     rows: list[list[Cell]] = [
         [
@@ -129,11 +114,11 @@ def _change(share: float | None) -> str:
 def _bounds(card: Infeasibility) -> Block:
     """Bounds that the relaxed design stands at: what opening them helps."""
     columns = [
-        column("bound", "left", 1.3, mono=True),
-        column("now", "right"),
-        column("gap closed by 1 %", "right"),
-        column("enough at", "right", strong=True),
-        column("change", "right"),
+        Column("bound", "left", 1.3, mono=True),
+        Column("now", "right"),
+        Column("gap closed by 1 %", "right"),
+        Column("enough at", "right", strong=True),
+        Column("change", "right", drop=1),
     ]
     rows: list[list[Cell]] = [
         [
@@ -150,7 +135,7 @@ def _bounds(card: Infeasibility) -> Block:
         f"The gap is what the joint relaxation gives up in sum, {total}; 1 % more room closes this"
         f" much of it, to begin with. {DASH}: no design found by opening this bound alone."
     )
-    return table("Bounds in the way", columns, rows, note=note)
+    return Table("Bounds in the way", columns, rows, note=note)
 
 
 def _closes(gain: float, total: float | None) -> str:

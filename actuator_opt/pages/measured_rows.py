@@ -6,8 +6,8 @@ import math
 from pathlib import Path
 
 from ..base.quantities import Quantity
-from ..rendering.blocks import Block, Cell, column, figure, notes, short, soft, table
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Block, Cell, Column, Drawing, Notes, Table, short, soft
+from ..rendering.console import Console
 from ..rendering.text import DASH, decimals, fixed, number, pretty, trimmed, unit_text, with_unit
 from ..simulation.measured import Overlay
 from ..simulation.measured.fit import Fit, Fitted
@@ -108,17 +108,17 @@ def measured_blocks(overlay: Overlay, fit: Fit | None) -> list[Block]:
     blocks.append(_block(title, RESIDUALS[: len(rows[0])], rows))
     said = remarks(overlay, fit)
     if said:
-        blocks.append(notes("What to know of the record", [tied(one) for one in said]))
+        blocks.append(Notes("What to know of the record", [tied(one) for one in said]))
     for k, ink in enumerate(measured_figures(overlay)):
-        blocks.append(figure("The record over the simulation" if k == 0 else "", ink))
+        blocks.append(Drawing("The record over the simulation" if k == 0 else "", ink))
     return blocks
 
 
 def _block(title: str, heads: tuple[str, ...], rows: list[list[str]]) -> Block:
-    columns = [column(heads[0], "left", 1.0), column(heads[1], "left")]
-    columns += [column(head, "left" if head == "verdict" else "right") for head in heads[2:]]
+    columns = [Column(heads[0], "left", 1.0), Column(heads[1], "left")]
+    columns += [Column(head, "left" if head == "verdict" else "right") for head in heads[2:]]
     body: list[list[Cell]] = [[soft(cell) for cell in row] for row in rows]
-    return table(title, columns, body)
+    return Table(title, columns, body)
 
 
 def measured_text(
@@ -136,7 +136,9 @@ def measured_text(
         parts += [console.heading("fitted parameters"), *_parameters(console, fit), ""]
     rows = residual_rows(overlay, None if fit is None else fit.before)
     columns = [
-        Column(head, "left" if k < 2 else "right", flexible=k == 0, drop=drop, least=10)
+        Column(
+            head, "left" if k < 2 else "right", width=1.0 if k == 0 else "auto", drop=drop, least=10
+        )
         for k, (head, drop) in enumerate(zip(RESIDUALS, DROPS, strict=True))
     ][: len(rows[0])]
     styles = [["", "dim", "bold", *["dim"] * (len(columns) - 3)]] * len(rows)
@@ -153,7 +155,13 @@ def _parameters(console: Console, fit: Fit) -> list[str]:
     rows = parameter_rows(fit)
     drops = (0, 0, 2, 0, 0, 0, 1)
     columns = [
-        Column(head, "left" if k in (0, 1, 6) else "right", flexible=k == 0, drop=drop, least=14)
+        Column(
+            head,
+            "left" if k in (0, 1, 6) else "right",
+            width=1.0 if k == 0 else "auto",
+            drop=drop,
+            least=14,
+        )
         for k, (head, drop) in enumerate(zip(PARAMETERS, drops, strict=True))
     ]
     styles = [["", "dim", "dim", "bold", "dim", "dim", ""]] * len(rows)

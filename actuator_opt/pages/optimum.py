@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..optimisation.result import Optimisation
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, clean, column, soft, table
+from ..rendering.blocks import Block, Cell, Column, Slot, Table, clean, soft
 
 
 def variables(optimisation: Optimisation) -> Block:
@@ -25,24 +25,24 @@ def variables(optimisation: Optimisation) -> Block:
                 text.number(value),
                 text.trimmed(upper),
                 text.unit_text(quantity.unit),
-                {"slot": round(min(max(place, 0.0), 1.0), 4), "at": row.at_bound or ""},
+                Slot(place, row.at_bound or ""),
                 bound,
             ]
         )
     columns = [
-        column("variable", "left", 1.3, mono=True),
-        column("dimension", "left", 1.1),
-        column("lower", "right"),
-        column("start", "right"),
-        column(heading(optimisation).replace(" ", "\n"), "right", strong=True),
-        column("upper", "right"),
-        column("unit"),
-        column("between bounds", "left", "26mm"),
-        column(""),
+        Column("variable", "left", 1.3, mono=True),
+        Column("dimension", "left", 1.1),
+        Column("lower", "right"),
+        Column("start", "right"),
+        Column(heading(optimisation).replace(" ", "\n"), "right", strong=True),
+        Column("upper", "right"),
+        Column("unit"),
+        Column("between bounds", "left", "26mm"),
+        Column(""),
     ]
     held = [row.path for row in optimisation.best_variables if row.at_bound]
     note = f"{len(held)} of {len(rows)} variables are at a bound." if held else ""
-    return table("Design variables", columns, rows, note=note)
+    return Table("Design variables", columns, rows, note=note)
 
 
 def heading(optimisation: Optimisation) -> str:

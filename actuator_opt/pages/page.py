@@ -13,9 +13,17 @@ from ..evaluation.result import Evaluation, Requirement
 from ..metrics.table import ROWS
 from ..optimisation.result import Optimisation
 from ..rendering import text
-from ..rendering.blocks import Block, ExtraTable, clean, listing, notes, short, soft
+from ..rendering.blocks import (
+    Block,
+    ExtraTable,
+    Notes,
+    Page,
+    State,
+    Tile,
+    Verdict,
+)
 from ..rendering.origin import Origin
-from ..rendering.paper import ReportFile, write_page
+from ..rendering.paper import ReportFile, write
 from ..studies.seal import SealStudy
 from . import (
     choices_table,
@@ -76,7 +84,7 @@ def reserve_sentences(subject: Evaluation | Optimisation) -> list[str]:
     """Limits without reserve and the yield, where requirements are met and nothing said it."""
     evaluation, optimisation = parts_of(subject)
     told = optimisation is not None and optimisation.robust is not None
-    if told or verdict(subject)["state"] not in _MET:
+    if told or verdict(subject).state not in _MET:
         return []
     return [text.pretty(part) for part in evaluation.reserve_sentences]
 
@@ -87,7 +95,7 @@ def warnings(subject: Evaluation | Optimisation) -> list[str]:
     return [*evaluation.warnings, *(() if optimisation is None else optimisation.warnings)]
 
 
-def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
+def verdict(subject: Evaluation | Optimisation) -> Verdict:
     """The badge: state, words, how many rows and checks stand behind it, and what to doubt.
 
     `cautions` are lines in amber: limits without reserve, values nobody has verified, values
@@ -99,6 +107,7 @@ def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
     rounding = None if optimisation is None else optimisation.rounding
     robust = None if optimisation is None else optimisation.robust
     tight = len((optimisation or evaluation).tight)
+    state: State
     none_made = rounding.name if rounding is not None and rounding.design is None else ""
     of = "continuous: " if none_made else f"{rounding.name}: " if rounding else ""
     if optimisation is not None and optimisation.infeasibility is not None:
@@ -122,21 +131,21 @@ def verdict(subject: Evaluation | Optimisation) -> dict[str, Any]:
         for name in ("met", "missed", "not_checked")
     }
     lines, cautions = doubts(evaluation)
-    return {
-        "state": state,
-        "text": words,
-        "lines": [
+    return Verdict(
+        state,
+        words,
+        [
             f"{of}{evaluation.tally}{_misfit(optimisation)}"
             + (", without reserves for the yield" if robust and state in _SHORT_OF else ""),
             f"checks: {counts['met']} met · {counts['missed']} missed"
             f" · {counts['not_checked']} not checked",
             *lines,
         ],
-        "cautions": [
+        [
             *([count_words(tight)] if tight and failed and state == "checks" else []),
             *cautions,
         ],
-    }
+    )
 
 
 def doubts(evaluation: Evaluation) -> tuple[list[str], list[str]]:
@@ -165,7 +174,7 @@ def _tile_label(name: str, quantity: Quantity) -> str:
     return (row.short if row else "") or quantity.label
 
 
-def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
+def key_figures(subject: Evaluation | Optimisation) -> list[Tile]:
     """Five numbers to remember, the objective first, each with its limit or where it came from."""
     evaluation, optimisation = parts_of(subject)
     first = () if optimisation is None else (optimisation.objective_metric,)
@@ -175,7 +184,8 @@ def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
     for name in names:
         metric, quantity = evaluation.metrics[name], text.metric(name)
         row = _limited(evaluation, name)
-        value, state, note = metric.value, "none", f"case {metric.case}" if metric.case else ""
+        value, note = metric.value, f"case {metric.case}" if metric.case else ""
+        state: State = ""
         before = _before(optimisation, name)
         if name in first and before is not None and metric.value is not None:
             change = text.number(100 * (metric.value / before[1] - 1), before[2], signed=True)
@@ -189,14 +199,14 @@ def key_figures(subject: Evaluation | Optimisation) -> list[dict[str, Any]]:
             if oil is not None and oil.value is not None:
                 note = f"with oil {text.value_text(quantity, metric.value + oil.value)}"
         tiles.append(
-            {
-                "label": short(_tile_label(name, quantity), 30),
-                "symbol": quantity.symbol,
-                "value": text.number(text.display(quantity, value)),
-                "unit": text.unit_text(quantity.unit),
-                "note": short(note, 44),
-                "state": state,
-            }
+            Tile(
+                _tile_label(name, quantity),
+                text.number(text.display(quantity, value)),
+                text.unit_text(quantity.unit),
+                note,
+                state,
+                quantity.symbol,
+            )
         )
     return tiles
 
@@ -221,14 +231,17 @@ def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float, i
 def page(
     subject: Evaluation | Optimisation,
     *,
-    source_text: str,
-    source_name: str,
-    command: str,
-    date: str | None,
     extra_tables: Sequence[ExtraTable] = (),
     seals: Sequence[SealStudy] = (),
-) -> dict[str, Any]:
-    """The whole report as plain data; equal input gives equal data."""
+) -> Page:
+    """The report of a design.
+
+    Parameters
+    ----------
+    subject : what to report
+    extra_tables : further tables, before the input listing
+    seals : the seals of piston or rod to show on a sheet
+    """
     evaluation, optimisation = parts_of(subject)
     drawing = section(evaluation)
     kind = "Optimisation report" if optimisation is not None else "Evaluation report"
@@ -255,33 +268,30 @@ def page(
     blocks += _remarks(evaluation, optimisation)
     for given in extra_tables:
         blocks += [tables.extra(given)] + ([given.drawing] if given.drawing is not None else [])
-    blocks.append(listing(f"Input: {source_name}", source_text))
     said = [] if optimisation is None else sentences(optimisation)
     said += reserve_sentences(subject)
-    origin = Origin(source_text, source_name, command, evaluation.spec_hash, date)
-    return origin.heading(name=evaluation.name, kind=kind) | {
-        "version": clean(evaluation.version),
-        "verdict": verdict(subject),
-        "sentence": soft(" ".join(said)),
-        "tiles": key_figures(subject),
-        "section": drawing.ink.data(),
-        "scale": drawing.scale,
-        "items": [
-            {"number": item.number, "part": clean(item.part), "material": clean(item.material)}
-            for item in drawing.items
-        ],
-        "blocks": blocks,
-    }
+    return Page(
+        name=evaluation.name,
+        kind=kind,
+        verdict=verdict(subject),
+        sentence=" ".join(said),
+        tiles=key_figures(subject),
+        hero=lambda room: drawing.ink,
+        scale=drawing.scale,
+        items=[(item.number, item.part, item.material) for item in drawing.items],
+        blocks=blocks,
+        lists_input=True,
+    )
 
 
 def _remarks(evaluation: Evaluation, optimisation: Optimisation | None) -> list[Block]:
-    blocks = []
+    blocks: list[Block] = []
     if lines := warnings(optimisation or evaluation):
-        blocks.append(notes("Warnings", [text.pretty(line) for line in lines]))
+        blocks.append(Notes("Warnings", [text.pretty(line) for line in lines]))
     blocks.append(tables.assumptions(evaluation))
     if evaluation.design.notes:
         lines = [line for line in evaluation.design.notes.splitlines() if line.strip()]
-        blocks.append(notes("Notes of the author", lines))
+        blocks.append(Notes("Notes of the author", lines))
     return blocks
 
 
@@ -318,20 +328,10 @@ def write_report(
     InputError : when the folder cannot be written; no partial file is left
     """
     evaluation, _ = parts_of(subject)
-    data = page(
-        subject,
-        source_text=source_text,
-        source_name=source_name,
-        command=command,
-        date=date,
-        extra_tables=extra_tables,
-        seals=seals,
-    )
     origin = Origin(source_text, source_name, command, evaluation.spec_hash, date)
-    return write_page(
-        data,
+    return write(
+        page(subject, extra_tables=extra_tables, seals=seals),
         origin,
-        title=evaluation.name,
         folder=folder,
         stem=stem,
         actuator_opt=evaluation.version,

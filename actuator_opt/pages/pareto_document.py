@@ -4,14 +4,25 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
-from typing import Any
 
+from ..base.files import write_all
 from ..evaluation.reserve import count_words
 from ..optimisation.pareto_result import ParetoFront
 from ..rendering import paper as writer, text
-from ..rendering.blocks import Block, Cell, column, notes, short, soft, table
+from ..rendering.blocks import (
+    Block,
+    Cell,
+    Column,
+    Notes,
+    Page,
+    Table,
+    Tile,
+    Verdict,
+    short,
+    tile,
+)
 from ..rendering.image import images
-from ..rendering.origin import Origin, tile
+from ..rendering.origin import Origin
 from . import pareto_rows as rows
 from .page import doubts
 from .pareto_figure import front_figure
@@ -31,45 +42,41 @@ def write_front_sheet(
     origin : of the page
     folder, stem : where to
     """
-    page = front_page(found, origin)
-    files = writer.write_page(
-        page, origin, title=found.subject.name, folder=folder, stem=stem,
-        result=rows.front_outcome(found),
-    )  # fmt: skip
+    files = writer.write(
+        front_page(found), origin, folder=folder, stem=stem, result=rows.front_outcome(found)
+    )
     pictures = images(front_figure(found), f"{stem}_figure")
-    writer.write_all(folder, pictures)
+    write_all(folder, pictures)
     return files + [
         writer.ReportFile(folder / name, hashlib.sha256(content).hexdigest(), 1)
         for name, content in pictures.items()
     ]
 
 
-def front_page(found: ParetoFront, origin: Origin) -> dict[str, Any]:
-    """The page as plain data for the renderers."""
-    heading = origin.heading(name=found.subject.name, kind="Pareto front")
-    return heading | {
-        "verdict": _verdict(found),
-        "sentence": soft(text.pretty(found.sentence)),
-        "tiles": _tiles(found),
-        "section": front_figure(found).data(),
-        "scale": "",
-        "items": [],
-        "blocks": _blocks(found),
-    }
+def front_page(found: ParetoFront) -> Page:
+    """The page of a Pareto front."""
+    return Page(
+        name=found.subject.name,
+        kind="Pareto front",
+        verdict=_verdict(found),
+        sentence=text.pretty(found.sentence),
+        tiles=_tiles(found),
+        hero=lambda room: front_figure(found),
+        blocks=_blocks(found),
+    )
 
 
-def _verdict(found: ParetoFront) -> dict[str, Any]:
+def _verdict(found: ParetoFront) -> Verdict:
     lines = [f"{len(found.points)} designs", "none dominated, every requirement met"]
     tight = len(found.evaluation.tight)
-    state = "checks" if tight else "met"
     plain, cautions = doubts(found.evaluation)
     if tight:
         cautions.insert(0, f"{rows.evaluated(found)}: {count_words(tight)}")
     lines += plain
-    return {"state": state, "text": "PARETO FRONT", "lines": lines, "cautions": cautions}
+    return Verdict("checks" if tight else "met", "PARETO FRONT", lines, cautions)
 
 
-def _tiles(found: ParetoFront) -> list[dict[str, Any]]:
+def _tiles(found: ParetoFront) -> list[Tile]:
     """The range of every objective, and its value at the knee."""
     tiles = []
     for one in found.objectives:
@@ -95,13 +102,13 @@ def _blocks(found: ParetoFront) -> list[Block]:
         [str(k + 1), *(cells[name][k] for name in wanted), rows.role(found, k)] for k in kept
     ]
     columns = [
-        column("design", "right"),
-        *(column(head, "right", 1.0) for head in heads),
-        column("", "left", 1.2),
+        Column("design", "right"),
+        *(Column(head, "right", 1.0) for head in heads),
+        Column("", "left", 1.2),
     ]
     more = len(found.points) - len(kept)
     note = f"{more} more designs between these." if more else ""
     return [
-        table("Designs of the front", columns, body, note=note),
-        notes("How far to trust it", [text.pretty(line) for line in rows.remarks(found)]),
+        Table("Designs of the front", columns, body, note=note),
+        Notes("How far to trust it", [text.pretty(line) for line in rows.remarks(found)]),
     ]

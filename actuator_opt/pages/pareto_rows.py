@@ -16,7 +16,8 @@ from ..evaluation.reserve import count_words
 from ..optimisation.front.even import Gap
 from ..optimisation.pareto_result import ParetoFront
 from ..rendering import text
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Column
+from ..rendering.console import Console
 from ..rendering.paper import ReportFile
 
 SHOWN = 21

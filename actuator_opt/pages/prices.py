@@ -8,8 +8,10 @@ from ..optimisation.price_words import PER_CENT, display_of
 from ..optimisation.result import Optimisation
 from ..optimisation.sensitivity import STRAIGHT, Sensitivity
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, column, notes, soft, table
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Block, Cell, Column, Notes, Table, soft
+from ..rendering.console import Console
+from ..rendering.heights import cells_of, joined
+from ..rendering.terminal import block_text
 from ..rendering.text import DASH
 from . import tornado
 
@@ -27,9 +29,9 @@ def blocks(optimisation: Optimisation) -> list[Block]:
     """Prices, the tornado of their re-solved ends, and which dimensions move."""
     if not optimisation.sensitivities:
         return []
-    found = [
+    found: list[Block | None] = [
         sensitivities(optimisation),
-        notes("What would buy the most", buys_most(optimisation)),
+        Notes("What would buy the most", buys_most(optimisation)),
         tornado.block(optimisation),
         moves(optimisation),
     ]
@@ -54,7 +56,7 @@ def terminal(
     block = sensitivities(optimisation)
     unit = text.unit_text(text.metric(optimisation.objective_metric).unit)
     columns = [
-        Column("parameter", flexible=True, least=34),
+        Column("parameter", width=1.0, least=34),
         Column("limit", "right"),
         Column("value", "right", drop=4),
         Column("margin", "right", drop=3),
@@ -65,11 +67,11 @@ def terminal(
         Column("+ solved", "right"),
         Column(f"at -{PER_CENT} %", "right", drop=1),
         Column("- solved", "right"),
-        Column("holds until, then active", flexible=True, drop=2),
+        Column("holds until, then active", width=1.0, drop=2),
     ]
     rows, styles = [], []
-    for cells in block["rows"]:
-        row = [cell if isinstance(cell, str) else "".join(cell) for cell in cells]
+    for cells in block.rows:
+        row = [joined(cell) for cell in cells_of(cells)]
         active = row[4] != ""
         row[4] = "" if not active else "●" if unicode else "*"
         rows.append(row)
@@ -77,7 +79,7 @@ def terminal(
         styles.append(
             [strong, "", "dim", "dim", "yellow", strong, strong, *("dim", strong) * 2, "dim"]
         )
-    lines = [console.heading(block["title"]), *console.table(columns, rows, styles)]
+    lines = [console.heading(block.title), *console.table(columns, rows, styles)]
     lines += [
         console.wrap(quality(optimisation), "dim"),
         "",
@@ -85,16 +87,11 @@ def terminal(
     ]
     moved = moves(optimisation) if moving else None
     if moved is not None:
-        heads = [
-            Column(c["head"], c["align"], flexible=not k) for k, c in enumerate(moved["columns"])
-        ]
-        heads[-1] = Column(heads[-1].head, flexible=True)
-        body = [["".join(cell) for cell in row] for row in moved["rows"]]
-        lines += ["", console.heading(moved["title"]), *console.table(heads, body)]
+        lines += ["", block_text(moved, console)]
     return "\n".join(lines)
 
 
-def sensitivities(optimisation: Optimisation) -> Block:
+def sensitivities(optimisation: Optimisation) -> Table:
     """Price of every limit and parameter, checked by solving again at ±10 %."""
     objective = text.metric(optimisation.objective_metric)
     required = {row.path: row for row in optimisation.evaluation.requirements}
@@ -118,21 +115,21 @@ def sensitivities(optimisation: Optimisation) -> Block:
         )
     unit = text.unit_text(objective.unit) or objective.name
     columns = [
-        column("requirement or parameter", "left", 1.0, mono=True),
-        column("limit", "right"),
-        column("value", "right"),
-        column("margin", "right"),
-        column("act.", "center"),
-        column(f"price,\n{unit}/unit", "right"),
-        column("% per\n+1 %", "right"),
-        column(f"+{PER_CENT} %\npredicted", "right"),
-        column(f"+{PER_CENT} %\nsolved", "right", strong=True),
-        column(f"−{PER_CENT} %\npredicted", "right"),
-        column(f"−{PER_CENT} %\nsolved", "right", strong=True),
-        column("holds until, then active", "left", 1.25),
+        Column("requirement or parameter", "left", 1.0, mono=True),
+        Column("limit", "right"),
+        Column("value", "right"),
+        Column("margin", "right"),
+        Column("act.", "center"),
+        Column(f"price,\n{unit}/unit", "right"),
+        Column("% per\n+1 %", "right"),
+        Column(f"+{PER_CENT} %\npredicted", "right"),
+        Column(f"+{PER_CENT} %\nsolved", "right", strong=True),
+        Column(f"−{PER_CENT} %\npredicted", "right"),
+        Column(f"−{PER_CENT} %\nsolved", "right", strong=True),
+        Column("holds until, then active", "left", 1.25),
     ]
     title = f"What each requirement costs ({objective.label}, {unit})"
-    return table(title, columns, rows, note=quality(optimisation))
+    return Table(title, columns, rows, note=quality(optimisation))
 
 
 def _margin(found: Requirement) -> str:
@@ -240,12 +237,12 @@ def moves(optimisation: Optimisation) -> Block | None:
     if not rows:
         return None
     columns = [
-        column("requirement or parameter", "left", 0.9, mono=True),
-        column("1 % of it", "right"),
-        column("which dimensions move, per +1 %", "left", 3.0),
+        Column("requirement or parameter", "left", 0.9, mono=True),
+        Column("1 % of it", "right"),
+        Column("which dimensions move, per +1 %", "left", 3.0),
     ]
     note = (
         f"Derivative of the optimum: the {MOVING} largest movements of the first {MOST_MOVES} rows"
         " that move any; ~ only as far as the price holds."
     )
-    return table("Which dimension moves", columns, rows, note=note)
+    return Table("Which dimension moves", columns, rows, note=note)

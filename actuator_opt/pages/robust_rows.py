@@ -6,7 +6,7 @@ from ..evaluation.result import Evaluation
 from ..optimisation.result import Optimisation
 from ..rendering import text
 from ..rendering.blocks import ExtraTable
-from .uncertainty_rows import percent
+from .uncertainty import percent
 
 WORTH = 10.0
 """Reserves beyond this many times the limit say only that the limit is far away."""

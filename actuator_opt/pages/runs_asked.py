@@ -7,7 +7,8 @@ from typing import Any
 
 from ..base.quantities import INPUTS, MATERIAL_PROPERTIES, Quantity
 from ..metrics import METRICS, of_metric
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Column
+from ..rendering.console import Console
 from ..rendering.text import DASH
 
 _LISTED = 8
@@ -66,7 +67,7 @@ def sweep_lines(head: Mapping[str, Any], body: Mapping[str, Any], console: Conso
     axes = {axis["path"]: axis for axis in body["plan"]["axes"]}
     columns = [
         Column("", "right"),
-        *(Column(path, "right", flexible=True) for path in axes),
+        *(Column(path, "right", width=1.0) for path in axes),
         *(Column(name, "right") for name in goal),
     ]
     cells = []
@@ -104,7 +105,7 @@ def front_lines(head: Mapping[str, Any], body: Mapping[str, Any], console: Conso
         ]
         cells.append([f"{name} {one['sense']}", *told])
     columns = [
-        Column("objective", flexible=True),
+        Column("objective", width=1.0),
         Column("least", "right"),
         Column("most", "right"),
         Column("knee", "right"),

@@ -7,8 +7,8 @@ from typing import Any
 
 from ..base.quantities import INPUTS
 from ..metrics import of_metric
-from ..rendering.blocks import short
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Column, short
+from ..rendering.console import Console
 from ..rendering.text import DASH, number, pretty
 from . import runs_asked
 
@@ -33,9 +33,9 @@ def runs_table(
     columns = [
         Column("run"),
         Column("command", drop=2),
-        Column("design", flexible=True),
-        Column("outcome", flexible=True),
-        Column("objective", flexible=True, drop=1),
+        Column("design", width=1.0),
+        Column("outcome", width=1.0),
+        Column("objective", width=1.0, drop=1),
         Column("seed", "right", drop=4),
         Column("version", drop=3),
     ]
@@ -142,7 +142,7 @@ def _asked(head: Mapping[str, Any], body: Mapping[str, Any]) -> list[tuple[str, 
 
 def _variables(rows: Sequence[Mapping[str, Any]], console: Console) -> list[str]:
     columns = [
-        Column("variable", flexible=True),
+        Column("variable", width=1.0),
         Column("value", "right"),
         Column("lower", "right", drop=2),
         Column("upper", "right", drop=2),

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
-from typing import Any
 
 from ..base.files import write_text
 from ..rendering import paper as writer, text
-from ..rendering.blocks import soft
-from ..rendering.origin import Origin, tile
+from ..rendering.blocks import Page, Tile, Verdict, tile
+from ..rendering.origin import Origin
 from ..studies.seal import FilmMap, SealStudy
 from . import seal_rows as rows
 from .seal_figures import bars, stroke_names
@@ -32,41 +31,37 @@ def write_sheet(
     origin : of the page
     folder, stem : where to
     """
-    data = sheet_page(study, origin)
-    return writer.write_page(data, origin, title=study.design.name, folder=folder, stem=stem)
+    return writer.write(sheet_page(study), origin, folder=folder, stem=stem)
 
 
-def sheet_page(study: SealStudy, origin: Origin) -> dict[str, Any]:
-    """The sheet of one place as plain data for the renderers."""
+def sheet_page(study: SealStudy) -> Page:
+    """The sheet of one place."""
     gland = gland_drawing(study)
-    heading = origin.heading(name=study.design.name, kind=f"Seal sheet: {study.place}")
-    return heading | {
-        "verdict": _verdict(study),
-        "sentence": soft(_sentence(study)),
-        "tiles": _tiles(study),
-        "section": gland.ink.data(),
-        "scale": gland.scale,
-        "items": [],
-        "blocks": blocks(study, drawing=False),
-    }
+    return Page(
+        name=study.design.name,
+        kind=f"Seal sheet: {study.place}",
+        verdict=_verdict(study),
+        sentence=_sentence(study),
+        tiles=_tiles(study),
+        hero=lambda room: gland.ink,
+        scale=gland.scale,
+        blocks=blocks(study, drawing=False),
+    )
 
 
-def _verdict(study: SealStudy) -> dict[str, Any]:
+def _verdict(study: SealStudy) -> Verdict:
     found = study.converged
     count = len(study.drive.rings)
     rings = "one ring" if count == 1 else f"{count} rings"
-    return {
-        "state": "met" if found else "missed",
-        "text": "FILM FOUND" if found else "NO FILM",
-        "lines": [f"{rings}, {' and '.join(stroke_names(study))}", f"at {rows.at(study)}"],
-    }
+    lines = [f"{rings}, {' and '.join(stroke_names(study))}", f"at {rows.at(study)}"]
+    return Verdict("met", "FILM FOUND", lines) if found else Verdict("missed", "NO FILM", lines)
 
 
 def _sentence(study: SealStudy) -> str:
     return rows.why(study) or rows.leakage(study)
 
 
-def _tiles(study: SealStudy) -> list[dict[str, Any]]:
+def _tiles(study: SealStudy) -> list[Tile]:
     """Friction, damping, breakaway and leakage at the operating point."""
     point, (driven, _), at = study.drive, stroke_names(study), f"at {rows.at(study)}"
     found = [

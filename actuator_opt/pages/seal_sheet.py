@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, column, figure, notes, soft, table
+from ..rendering.blocks import Block, Cell, Column, Drawing, Notes, Table, soft
 from ..studies.seal import SealStudy
 from . import seal_rows as rows
 from .seal_elements_figure import (
@@ -27,10 +27,10 @@ def sheets(studies: Sequence[SealStudy]) -> list[Block]:
 
 def blocks(study: SealStudy, *, drawing: bool = True) -> list[Block]:
     """The blocks of one place; `drawing`: the gland too."""
-    found = []
+    found: list[Block] = []
     if drawing:
         ink = gland_drawing(study).ink
-        found.append(figure(f"{_named(study)}: gland", ink, _gland_note(study)))
+        found.append(Drawing(f"{_named(study)}: gland", ink, _gland_note(study)))
     found += [_gland_table(study), _squeeze(study), _operating(study), _contact_table(study)]
     if study.elements:
         found += _elements(study)
@@ -40,7 +40,7 @@ def blocks(study: SealStudy, *, drawing: bool = True) -> list[Block]:
         found.append(_speeds(study))
     if drawable(study.map):
         found.append(_map(study))
-    found.append(notes(f"{_named(study)}: how far to trust this", rows.notes(study)))
+    found.append(Notes(f"{_named(study)}: how far to trust this", rows.notes(study)))
     return found
 
 
@@ -57,7 +57,7 @@ def _gland_note(study: SealStudy) -> str:
 
 def _gland_table(study: SealStudy) -> Block:
     columns = [
-        column(head, "left" if k < 3 else "right", 1.2 if k < 3 else "auto")
+        Column(head, "left" if k < 3 else "right", 1.2 if k < 3 else "auto")
         for k, head in enumerate(rows.GLAND_HEADS)
     ]
     body: list[list[Cell]] = [[soft(cell) for cell in row] for row in rows.gland(study)]
@@ -68,7 +68,7 @@ def _gland_table(study: SealStudy) -> Block:
         "mm; gland depth from the counterface to the groove's floor, with the tolerance of both;"
         f" ring: axial × radial. Radial gap {text.trimmed(1e3 * study.clearance)}{growth}."
     )
-    return table(f"{_named(study)}: sizes", columns, body, note=note)
+    return Table(f"{_named(study)}: sizes", columns, body, note=note)
 
 
 def _squeeze(study: SealStudy) -> Block:
@@ -81,24 +81,24 @@ def _squeeze(study: SealStudy) -> Block:
     )
     if any(row.loosest <= 0 for row in study.squeezes):
         note += " Red: the ring loses contact."
-    return figure(f"{_named(study)}: squeeze", squeeze_figure(study), note)
+    return Drawing(f"{_named(study)}: squeeze", squeeze_figure(study), note)
 
 
 def _operating(study: SealStudy) -> Block:
-    columns = [column("quantity", "left", 1.6)]
-    columns += [column(name, "right", 1.0) for name in stroke_names(study)]
+    columns = [Column("quantity", "left", 1.6)]
+    columns += [Column(name, "right", 1.0) for name in stroke_names(study)]
     body: list[list[Cell]] = [[one.name, one.drive, one.other] for one in rows.operating(study)]
     said = (rows.strokes(study), rows.why(study), rows.leakage(study))
     note = " ".join(words for words in said if words)
     note += (
         " Flow and oil are negative where they return to the sealed side; residuals are relative."
     )
-    return table(f"{_named(study)}: at {rows.at(study)}", columns, body, note=note.strip())
+    return Table(f"{_named(study)}: at {rows.at(study)}", columns, body, note=note.strip())
 
 
 def _contact_table(study: SealStudy) -> Block:
     columns = [
-        column(head, "right" if 2 <= k < 7 else "left", {0: 1.0, 7: 1.4}.get(k, "auto"))
+        Column(head, "right" if 2 <= k < 7 else "left", {0: 1.0, 7: 1.4}.get(k, "auto"))
         for k, head in enumerate(rows.CONTACT_HEADS)
     ]
     body: list[list[Cell]] = [[soft(cell) for cell in row] for row in rows.contacts(study)]
@@ -106,14 +106,14 @@ def _contact_table(study: SealStudy) -> Block:
         "Static contact. Line load per length of circumference, peak above the outer side;"
         " modulus of what is squeezed: lowest, assumed and highest over its scatter."
     )
-    return table(f"{_named(study)}: contact", columns, body, note=note)
+    return Table(f"{_named(study)}: contact", columns, body, note=note)
 
 
 def _elements(study: SealStudy) -> list[Block]:
     label = study.drive.rings[0].ring.label.capitalize()
     return [
-        figure(f"{label}: stress by finite elements", stress_figure(study), stress_note(study)),
-        figure(
+        Drawing(f"{label}: stress by finite elements", stress_figure(study), stress_note(study)),
+        Drawing(
             f"{label}: contact by finite elements",
             elements_contact_figure(study),
             f"{sentence(study)} {contact_note(study)}",
@@ -128,7 +128,7 @@ def _contact(study: SealStudy, index: int) -> Block:
         " film is the distance of the mean planes of both rough surfaces."
     )
     title = f"{label.capitalize()}: contact pressure and oil film"
-    return figure(title, contact_figure(study, index), note)
+    return Drawing(title, contact_figure(study, index), note)
 
 
 def _speeds(study: SealStudy) -> Block:
@@ -146,7 +146,7 @@ def _speeds(study: SealStudy) -> Block:
     )
     assert study.curves is not None
     title = f"{_named(study)}: friction and damping over speed"
-    return figure(title, speed_figure(study), said + rows.missing(study.curves))
+    return Drawing(title, speed_figure(study), said + rows.missing(study.curves))
 
 
 def _map(study: SealStudy) -> Block:
@@ -157,4 +157,4 @@ def _map(study: SealStudy) -> Block:
     if study.map.why:
         note += " Crosses: points without a film; hatched: not known between them."
     title = f"{_named(study)}: friction and damping over speed and pressure"
-    return figure(title, map_figure(study), note)
+    return Drawing(title, map_figure(study), note)

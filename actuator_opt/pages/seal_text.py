@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ..rendering import text
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Column
+from ..rendering.console import Console
 from ..studies.seal import SealStudy
 from . import seal_rows as rows
 from .seal_elements_figure import sentence
@@ -44,7 +45,7 @@ def _head(study: SealStudy, console: Console) -> str:
 
 
 def _operating(study: SealStudy, console: Console) -> str:
-    columns = [Column("", flexible=True)]
+    columns = [Column("", width=1.0)]
     columns += [Column(name, "right") for name in stroke_names(study)]
     found = rows.operating(study)
     body = [[line.name, line.drive, line.other] for line in found]
@@ -67,7 +68,7 @@ def _contact(study: SealStudy, console: Console) -> str:
 
 def _squeeze(study: SealStudy, console: Console) -> str:
     columns = [
-        Column("ring", flexible=True),
+        Column("ring", width=1.0),
         Column("", "right"),
         Column("pressure", "right"),
         Column("loosest", "right"),

@@ -10,8 +10,7 @@ from typing import Any
 from ..base.errors import Diagnostic, InputError
 from ..base.quantities import RESULTS
 from ..base.suggest import remedy
-from ..rendering.blocks import Block, Cell, column, soft, table
-from ..rendering.origin import tile
+from ..rendering.blocks import Block, Cell, Column, State, Status, Table, Tile, Verdict, soft, tile
 from ..rendering.text import DASH, number, pretty, unit_text, with_unit
 from ..simulation.gains import Tuned
 from ..simulation.result import Simulation
@@ -85,7 +84,7 @@ def comparison(
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class Number:
     """A number of a run with its unit; None where it has none."""
 
     head: str
@@ -102,22 +101,22 @@ class Column:
         return number(0.0 if abs(value) < self.least else value)
 
 
-def _result(name: str) -> Column:
+def _result(name: str) -> Number:
     quantity = RESULTS[name]
 
     def value(found: Simulation) -> float | None:
         own = rows.known(name, found.values.get(name))
         return None if own is None else quantity.to_display(own)
 
-    return Column(rows.label(name), unit_text(quantity.unit), value)
+    return Number(rows.label(name), unit_text(quantity.unit), value)
 
 
-def _of_gains(head: str, unit: str, read: Callable[[Tuned, Simulation], float | None]) -> Column:
+def _of_gains(head: str, unit: str, read: Callable[[Tuned, Simulation], float | None]) -> Number:
     def value(found: Simulation) -> float | None:
         own = None if found.tuned is None else read(found.tuned, found)
         return None if own is None or not math.isfinite(own) or own == 0 else own
 
-    return Column(head, unit, value)
+    return Number(head, unit, value)
 
 
 def _gain(tuned: Tuned, found: Simulation) -> float:
@@ -130,7 +129,7 @@ def _phase(tuned: Tuned, found: Simulation) -> float | None:
     return None if phase is None else math.degrees(phase)
 
 
-COLUMNS: dict[str, Column] = {name: _result(name) for name in RESULTS} | {
+COLUMNS: dict[str, Number] = {name: _result(name) for name in RESULTS} | {
     "gain": _of_gains("gain K", "", _gain),
     "integral_time": _of_gains(
         "integral time", "ms", lambda tuned, _: 1e3 * float(tuned.gains.integral_time)
@@ -182,24 +181,24 @@ def missed(found: Simulation, name: str) -> bool:
 
 def run_table(one: Comparison) -> Block:
     """One row per run."""
-    columns = [column("run", "left", 1.0)]
+    columns = [Column("run", "left", 1.0)]
     for name in one.columns:
         unit = unit_of(one, name)
         first, _, rest = COLUMNS[name].head.rpartition(" ")
         words = f"{first}\n{rest}" if first else rest
-        columns.append(column(f"{words}, {unit}" if unit else words, "right"))
+        columns.append(Column(f"{words}, {unit}" if unit else words, "right"))
     body: list[list[Cell]] = []
     for name, found in one.runs:
         cells: list[Cell] = [soft(name)]
         for key in one.columns:
             words = COLUMNS[key].text(found)
-            state = {"status": "missed", "text": words}
+            state = Status("missed", words)
             cells.append(state if missed(found, key) else words)
         body.append(cells)
     note = ""
     if any(found.requirements for _, found in one.runs):
         note = "A cross marks what misses the limit of its own run."
-    return table("Runs", columns, body, note=note)
+    return Table("Runs", columns, body, note=note)
 
 
 # ---- what a page says of them ----
@@ -215,7 +214,7 @@ def what(one: Comparison) -> str:
     return f"{said} {sentence(words.pop())}" if len(words) == 1 else said
 
 
-def verdict(one: Comparison) -> dict[str, Any]:
+def verdict(one: Comparison) -> Verdict:
     """How many runs keep their limits and their balances."""
     simulations = [found for _, found in one.runs]
     stated = [found for found in simulations if found.requirements]
@@ -223,14 +222,14 @@ def verdict(one: Comparison) -> dict[str, Any]:
     lines = [f"{met} of {len(stated)} runs meet their limits" if stated else "no limit stated"]
     doubtful = sum(not rows.sound(found) for found in simulations)
     lines.append(f"{doubtful} runs in doubt" if doubtful else "all balances closed")
-    state = "checks" if doubtful or met < len(stated) else "met"
-    return {"state": state, "text": "COMPARED", "lines": lines}
+    state: State = "checks" if doubtful or met < len(stated) else "met"
+    return Verdict(state, "COMPARED", lines)
 
 
-def tiles(one: Comparison) -> list[dict[str, Any]]:
+def tiles(one: Comparison) -> list[Tile]:
     """From least to most of the first columns, the results before the gains."""
     order = sorted(one.columns, key=lambda name: name not in RESULTS)
-    made: list[dict[str, Any]] = []
+    made: list[Tile] = []
     for name in order:
         values = [(COLUMNS[name].value(found), run) for run, found in one.runs]
         known = [(value, run) for value, run in values if value is not None]

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from ..rendering import paper as writer
-from ..rendering.blocks import Block, notes, soft
+from ..rendering.blocks import Block, Notes, Page
 from ..rendering.origin import Origin
 from . import simulation_comparison as compare
 from .simulation_comparison import Comparison
 from .simulation_comparison_figures import LEAST, MOST, comparison_figure
-from .simulation_document import headed, room
 from .simulation_series import Measured
 from .simulation_stiffness import Static
 from .simulation_words import tied
@@ -30,49 +28,45 @@ def write_comparison_sheet(
     static: Static | None = None,
     extra: Sequence[Block] = (),
 ) -> list[writer.ReportFile]:
-    """Write the page as ``STEM.pdf`` and ``STEM.png``; parameters as `comparison_document`.
+    """Write the page as ``STEM.pdf`` and ``STEM.png``; parameters as `comparison_page`.
 
     Parameters
     ----------
     folder, stem : where to
     """
-    data = comparison_document(comparison, origin, measured=measured, static=static, extra=extra)
-    return writer.write_page(data, origin, title=comparison.title, folder=folder, stem=stem)
+    page = comparison_page(comparison, measured=measured, static=static, extra=extra)
+    return writer.write(page, origin, folder=folder, stem=stem)
 
 
-def comparison_document(
+def comparison_page(
     comparison: Comparison,
-    origin: Origin,
     *,
     measured: Measured | None = None,
     static: Static | None = None,
     extra: Sequence[Block] = (),
-) -> dict[str, Any]:
-    """The page as plain data for the renderers.
+) -> Page:
+    """The page of several simulations.
 
     Parameters
     ----------
     comparison : the runs, by `simulation_comparison.comparison`
-    origin : of the page
     measured : time [s] and values (SI) by the name of a signal, drawn under the runs
     static : positions [m] and static stiffness [N/m], drawn beside the dynamic ones
     extra : blocks below all others
     """
     said = [tied(one) for one in compare.trust(comparison)]
-    below = [compare.run_table(comparison), notes("What this rests on", said)]
-    what = tied(compare.what(comparison))
-    left = room(comparison.title, what, [*below, *extra])
-    if left < LEAST:  # what the caller adds goes on to the next sheet
-        left = room(comparison.title, what, below)
-    height = min(max(left, LEAST), MOST)
-    drawing = comparison_figure(comparison, height, measured=measured, static=static)
+    below = [compare.run_table(comparison), Notes("What this rests on", said)]
     designs = dict.fromkeys(found.plant.design.name for _, found in comparison.runs)
-    return headed(comparison.title, ", ".join(designs), origin, KIND) | {
-        "verdict": compare.verdict(comparison),
-        "sentence": soft(what),
-        "tiles": compare.tiles(comparison),
-        "section": drawing.data(),
-        "scale": "",
-        "items": [],
-        "blocks": [*below, *extra],
-    }
+    return Page(
+        name=comparison.title,
+        kind=KIND,
+        design=", ".join(designs),
+        verdict=compare.verdict(comparison),
+        sentence=tied(compare.what(comparison)),
+        tiles=compare.tiles(comparison),
+        hero=lambda room: comparison_figure(
+            comparison, min(room, MOST), measured=measured, static=static
+        ),
+        least=LEAST,
+        blocks=[*below, *extra],
+    )

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..base.quantities import RESULTS, SCENARIOS, Quantity
 from ..evaluation.reserve import count_words
 from ..rendering import text
-from ..rendering.origin import tile
+from ..rendering.blocks import State, Tile, Verdict, tile
 from ..rendering.text import DASH, number, pretty, trimmed, unit_text, value_text, with_unit
 from ..simulation.loops import LOOPS, loop_of
 from ..simulation.result import RequirementResult, Simulation
@@ -80,7 +80,7 @@ class Shown(NamedTuple):
         return "" if self.row is None else text.margin_text(self.row.margin, met=self.row.met)
 
     @property
-    def state(self) -> str:
+    def state(self) -> State:
         """Whether its limit is met; empty without one."""
         return "" if self.row is None else self.row.state
 
@@ -279,7 +279,7 @@ def _open(found: Simulation) -> Iterator[str]:
 # ---- verdict and key figures ----
 
 
-def verdict(found: Simulation) -> dict[str, Any]:
+def verdict(found: Simulation) -> Verdict:
     """Whether the requirements are met, and whether the run can be trusted."""
     total = len(found.requirements)
     met = sum(row.met for row in found.requirements)
@@ -287,7 +287,7 @@ def verdict(found: Simulation) -> dict[str, Any]:
     lines = [f"{met} of {total} requirements met" if total else "no requirement stated"]
     lines.append(f"balances: {f'mass {mass} · ' if found.balance.mass else ''}energy {energy}")
     if met < total:
-        return {"state": "missed", "text": "REQUIREMENTS MISSED", "lines": lines}
+        return Verdict("missed", "REQUIREMENTS MISSED", lines)
     words = "REQUIREMENTS MET" if total else "SIMULATED"
     tight = sum(row.state == "no_reserve" for row in found.requirements)
     if tight:
@@ -295,8 +295,8 @@ def verdict(found: Simulation) -> dict[str, Any]:
     if not sound(found):
         words += ", IN DOUBT"
     if tight or not sound(found):
-        return {"state": "checks", "text": words, "lines": lines}
-    return {"state": "met", "text": words, "lines": lines}
+        return Verdict("checks", words, lines)
+    return Verdict("met", words, lines)
 
 
 _KEYS = (
@@ -308,7 +308,7 @@ _KEYS = (
 MOST_TILES = 6
 
 
-def tiles(found: Simulation) -> list[dict[str, Any]]:
+def tiles(found: Simulation) -> list[Tile]:
     """Up to six key figures, each with its limit or what to know of it."""
     shown = {one.name: one for one in reversed(results(found))}
     made = [*bench(found)]
@@ -318,7 +318,7 @@ def tiles(found: Simulation) -> list[dict[str, Any]]:
             note = one.limit or _note(found, name)
             if one.value is None:
                 note = found.why.get(name, "")
-            made.append(tile(one.label, one.words, _cut(note), one.state or "none"))
+            made.append(tile(one.label, one.words, _cut(note), one.state))
     return made
 
 
@@ -352,7 +352,7 @@ def _note(found: Simulation, name: str) -> str:
     return notes.get(name, "")
 
 
-def bench(found: Simulation) -> list[dict[str, Any]]:
+def bench(found: Simulation) -> list[Tile]:
     """Flows of a valve whose ports are held."""
     if found.scenario.held_ports is None:
         return []

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..rendering import terminal_curve as plot
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Column
+from ..rendering.console import Console
 from ..rendering.text import number, unit_text
 from ..simulation.loops import LOOPS
 from ..simulation.result import Simulation
@@ -39,8 +40,8 @@ def simulation_text(
 def _head(found: Simulation, console: Console) -> str:
     seen = rows.verdict(found)
     name = console.paint(console.say(found.scenario.name), "bold")
-    state = console.paint(console.say(seen["text"].lower()), *_PAINTS[seen["state"]].split())
-    lines = [f"{name}  {state}", console.wrap(seen["lines"][0], "dim")]
+    state = console.paint(console.say(seen.text.lower()), *_PAINTS[seen.state].split())
+    lines = [f"{name}  {state}", console.wrap(seen.lines[0], "dim")]
     missed = [rows.label(row.metric) for row in found.requirements if not row.met]
     if missed:
         lines.append(console.wrap("missed: " + ", ".join(dict.fromkeys(missed)), "red"))
@@ -60,14 +61,14 @@ def _results(found: Simulation, console: Console) -> str:
     """Every result with its limit and margin, then what has no value."""
     shown = rows.results(found)
     columns = [
-        Column("result", flexible=True),
+        Column("result", width=1.0),
         Column("value", "right"),
         Column("unit"),
         Column("limit", "right", drop=2),
         Column("margin", "right", drop=1),
         Column("", drop=3),
         Column(""),
-        Column("what", flexible=True, drop=4, least=30),
+        Column("what", width=1.0, drop=4, least=30),
     ]
     half = 5 if console.width >= 110 else 3
     body, styles, before = [], [], ""
@@ -94,7 +95,7 @@ def _results(found: Simulation, console: Console) -> str:
         styles.append(["", "bold", "dim", "", paint, paint, paint, "dim"])
     lines = console.table(columns, body, styles) if body else []
     for key in rows.bench(found):
-        words = f"{key['label']} {key['value']} {key['unit']}, {key['note']}"
+        words = f"{key.label} {key.value} {key.unit}, {key.note}"
         lines.append(console.wrap(words))
     for why, names in rows.reasons(found).items():
         lines.append(console.wrap(f"no {', no '.join(names)}: {why}", "dim"))
@@ -127,7 +128,7 @@ def _energies(found: Simulation, console: Console) -> str:
     if not shown:
         return ""
     columns = [
-        Column("energy of the run", flexible=True),
+        Column("energy of the run", width=1.0),
         Column("in (+), out (-)" if not console.unicode else "in (+), out (−)", "right"),
         Column("share", "right"),
     ]

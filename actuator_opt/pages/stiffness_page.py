@@ -9,7 +9,7 @@ import numpy as np
 from ..evaluation.result import Evaluation, StrokeCurve
 from ..rendering import text
 from ..rendering.axes import per_cent
-from ..rendering.blocks import Block, Cell, column, figure, table
+from ..rendering.blocks import Block, Cell, Column, Drawing, Table
 from .stiffness_figure import stiffness_figure
 
 SHARES = ((0.0, "cap end"), (0.25, "25 %"), (0.5, "50 %"), (0.75, "75 %"), (1.0, "rod end"))
@@ -34,7 +34,9 @@ def blocks(evaluation: Evaluation) -> list[Block]:
     required = next((r for r in rows if r.metric == "stiffness_min" and r.sense == "min"), None)
     curve = evaluation.curve
     note = f"Case {curve.case}, ports closed. {_topology(evaluation)}."
-    found = [figure("Stiffness over the stroke", stiffness_figure(curve, required), note)]
+    found: list[Block] = [
+        Drawing("Stiffness over the stroke", stiffness_figure(curve, required), note)
+    ]
     if len(parts(curve)) > 1 and _usable(curve):
         found.append(_budget(curve))
     return found
@@ -120,9 +122,9 @@ def _budget(curve: StrokeCurve) -> Block:
     total = ["stiffness, kN/mm", *(text.number(k) for k in totals), text.number(totals[-1])]
     rows.append(list(total))
     columns = [
-        column("part", "left", 1.3),
-        *(column(name, "right", 0.8) for _, name in SHARES),
-        column(f"weakest, {text.trimmed(1e3 * places[-1], 3)} mm", "right", 1.2, strong=True),
-        column("alone there, kN/mm", "right", 1.2),
+        Column("part", "left", 1.3),
+        *(Column(name, "right", 0.8) for _, name in SHARES),
+        Column(f"weakest, {text.trimmed(1e3 * places[-1], 3)} mm", "right", 1.2, strong=True),
+        Column("alone there, kN/mm", "right", 1.2),
     ]
-    return table("Stiffness budget", columns, rows, note=sentence(curve), total=1)
+    return Table("Stiffness budget", columns, rows, note=sentence(curve), total=1)

@@ -13,6 +13,7 @@ import numpy as np
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..rendering.axes import Axes
+from ..rendering.heights import wrap
 from ..rendering.ink import (
     BLACK,
     BLUE,
@@ -26,7 +27,6 @@ from ..rendering.ink import (
     hatch,
     text_width,
 )
-from ..rendering.paper_plain import wrap
 from ..rendering.text import trimmed
 from ..sweeps.field import Boundary, Field, field as field_of, require_grid
 from .identification_axes import even_ticks, spaced

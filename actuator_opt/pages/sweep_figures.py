@@ -7,8 +7,8 @@ from pathlib import Path
 
 from ..base.bounds import SWEEP_FIGURES
 from ..base.errors import Diagnostic, UsageError
+from ..base.files import write_all
 from ..base.suggest import remedy, shown
-from ..rendering import paper as writer
 from ..rendering.image import images
 from ..rendering.ink import Ink
 from ..sweeps import Swept
@@ -86,5 +86,5 @@ def write_figures(
     contents: dict[str, bytes] = {}
     for name, ink in sweep_figures(swept, kinds, show).items():
         contents |= images(ink, f"{stem}-sweep-{name}")
-    writer.write_all(folder, contents)
+    write_all(folder, contents)
     return [folder / name for name in contents]

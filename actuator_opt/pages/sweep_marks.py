@@ -15,8 +15,8 @@ from ..design.paths import quantity_of
 from ..evaluation import prepare
 from ..evaluation.limits import Limit
 from ..rendering.axes import fitted
+from ..rendering.heights import wrap
 from ..rendering.ink import GREY, PALE, Ink
-from ..rendering.paper_plain import wrap
 from ..rendering.text import SENSES, limit_text, number, unit_text, with_unit
 from ..sweeps import Best, Swept
 

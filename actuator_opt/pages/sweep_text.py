@@ -6,7 +6,8 @@ from ..base.quantities import Quantity
 from ..design.paths import quantity_of
 from ..evaluation.reserve import NO_RESERVE
 from ..rendering import text
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Column
+from ..rendering.console import Console
 from ..sweeps import Best, Swept
 
 FAILURES = 3
@@ -73,7 +74,7 @@ def _table(console: Console, swept: Swept) -> list[str]:
     }
     columns = [
         Column("", "right"),
-        *(Column(_head(_short(path, axes), told[path]), "right", flexible=True) for path in axes),
+        *(Column(_head(_short(path, axes), told[path]), "right", width=1.0) for path in axes),
         *(Column(_head(name, study.quantity(name)), "right") for name in goal),
         Column("least margin", "right"),
     ]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ..base.errors import Diagnostic, InputError
 from ..evaluation import evaluate
+from ..rendering.heights import wrap
 from ..rendering.ink import Ink
-from ..rendering.paper_plain import wrap
 from ..rendering.text import limit_text, margin_text
 from .sweep_figure import SweepFigure, fits
 from .sweep_marks import SweepFigureData, heading, value_words

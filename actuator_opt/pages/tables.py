@@ -8,21 +8,22 @@ from ..evaluation.result import Evaluation, Requirement
 from ..metrics import METRICS
 from ..rendering import text
 from ..rendering.blocks import (
+    Bar,
     Block,
     Cell,
+    Column,
     ExtraTable,
-    bar,
+    Flag,
+    Notes,
+    Share,
+    Status,
+    Table,
     clean,
-    column,
-    notes,
-    share,
     soft,
-    status,
-    table,
 )
 from ..rendering.text import DASH
 
-_BAR = column("", "left", "22mm")
+_BAR = Column("", "left", "22mm")
 
 
 def where(case: str | None, place: str | None) -> Cell:
@@ -42,26 +43,26 @@ def requirements(evaluation: Evaluation) -> Block:
                 text.limit_text(quantity, row.sense, row.limit),
                 _result(evaluation, row),
                 text.margin_of(quantity, row.limit, row.margin, met=row.met),
-                bar(row.margin, met=row.met),
-                status(row.state),
+                Bar(row.margin, met=row.met),
+                Status(row.state),
                 where(row.case, row.place),
             ]
         )
     columns = [
-        column("requirement", "left", 1.15, mono=True),
-        column("quantity", "left", 1.6),
-        column("limit", "right"),
-        column("result", "right"),
-        column("margin", "right"),
+        Column("requirement", "left", 1.15, mono=True),
+        Column("quantity", "left", 1.6),
+        Column("limit", "right"),
+        Column("result", "right"),
+        Column("margin", "right"),
         _BAR,
-        column("status"),
-        column("governing case", "left", 1.15),
+        Column("status"),
+        Column("governing case", "left", 1.15),
     ]
     note = "Margin is the room left, relative to the limit; the bar is full at 100 %."
     note = " ".join([note, *(f"{line}." for line in row_notes(evaluation))])
     if not rows:
-        return notes("Requirements", ["The design states no requirement."])
-    return table("Requirements", columns, rows, note=note)
+        return Notes("Requirements", ["The design states no requirement."])
+    return Table("Requirements", columns, rows, note=note)
 
 
 def _result(evaluation: Evaluation, row: Requirement) -> Cell:
@@ -88,7 +89,7 @@ def masses(evaluation: Evaluation) -> Block:
             soft(part.replace("_", " ")),
             grams(mass),
             text.share_text(mass / total if total else 0.0),
-            share(mass / largest if largest else 0.0),
+            Share(mass / largest if largest else 0.0),
         ]
         for part, mass in parts.items()
     ]
@@ -100,12 +101,12 @@ def masses(evaluation: Evaluation) -> Block:
         rows.append(["filled", grams(total + oil.value), "", ""])
         rows_below = 3
     columns = [
-        column("part", "left", 1.0),
-        column(f"mass, {unit}", "right"),
-        column("share", "right"),
-        column("", "left", "80mm"),
+        Column("part", "left", 1.0),
+        Column(f"mass, {unit}", "right"),
+        Column("share", "right"),
+        Column("", "left", "80mm"),
     ]
-    return table("Mass", columns, rows, total=rows_below)
+    return Table("Mass", columns, rows, total=rows_below)
 
 
 def checks(evaluation: Evaluation) -> Block:
@@ -121,19 +122,19 @@ def checks(evaluation: Evaluation) -> Block:
                 text.limit_text(quantity, row.sense, row.limit),
                 text.value_text(quantity, row.value) if shown else DASH,
                 text.margin_of(quantity, row.limit, row.margin, met=row.status != "missed"),
-                status(row.state),
+                Status(row.state),
                 where(row.case, row.place),
                 soft(remark or DASH),
             ]
         )
     columns = [
-        column("check", "left", 1.25),
-        column("limit", "right"),
-        column("result", "right"),
-        column("margin", "right"),
-        column("status"),
-        column("governing case", "left", 1.0),
-        column("reason; source of the limit", "left", 1.45),
+        Column("check", "left", 1.25),
+        Column("limit", "right"),
+        Column("result", "right"),
+        Column("margin", "right"),
+        Column("status"),
+        Column("governing case", "left", 1.0),
+        Column("reason; source of the limit", "left", 1.45),
     ]
     counts = {
         name: sum(row.status == name for row in evaluation.checks)
@@ -144,8 +145,8 @@ def checks(evaluation: Evaluation) -> Block:
         " a line that was not checked is no statement that it holds."
     )
     if not rows:
-        return notes("Check list", ["No check list."])
-    return table("Check list", columns, rows, note=note)
+        return Notes("Check list", ["No check list."])
+    return Table("Check list", columns, rows, note=note)
 
 
 def models(evaluation: Evaluation) -> Block:
@@ -157,23 +158,23 @@ def models(evaluation: Evaluation) -> Block:
             soft(row.reference or "not stated"),
             soft(text.pretty(row.valid_range) or "not stated"),
             soft(text.pretty(row.used_at)),
-            {"flag": not row.in_range, "text": "inside" if row.in_range else "EXTRAPOLATED"},
+            Flag("inside" if row.in_range else "EXTRAPOLATED", not row.in_range),
         ]
         for row in evaluation.models
     ]
     columns = [
-        column("model", "left", 1.0, mono=True),
-        column("equation", "left", 1.35),
-        column("source", "left", 1.0),
-        column("valid range", "left", 1.25),
-        column("used at", "left", 1.0),
-        column("range"),
+        Column("model", "left", 1.0, mono=True),
+        Column("equation", "left", 1.35),
+        Column("source", "left", 1.0),
+        Column("valid range", "left", 1.25),
+        Column("used at", "left", 1.0),
+        Column("range"),
     ]
     outside = sum(not row.in_range for row in evaluation.models)
     note = f"{outside} of {len(rows)} models used outside their valid range." if outside else ""
     if not rows:
-        return notes("Models", ["No models recorded."])
-    return table("Models", columns, rows, note=note)
+        return Notes("Models", ["No models recorded."])
+    return Table("Models", columns, rows, note=note)
 
 
 def assumptions(evaluation: Evaluation) -> Block:
@@ -198,21 +199,21 @@ def assumptions(evaluation: Evaluation) -> Block:
         for metric, reason in evaluation.design.waivers.items()
     ]
     if not rows:
-        return notes(
+        return Notes(
             "Assumptions and unverified data",
             ["Every library value used is marked as checked; no check is waived."],
         )
     columns = [
-        column("material", "left", 1.05),
-        column("values", "left", 2.0),
-        column("source", "left", 1.4),
-        column("note", "left", 1.3),
+        Column("material", "left", 1.05),
+        Column("values", "left", 2.0),
+        Column("source", "left", 1.4),
+        Column("note", "left", 1.3),
     ]
     note = (
         f"{len(evaluation.unverified)} library values are used that nobody has compared with their"
         " primary source; see the materials files."
     )
-    return table("Assumptions and unverified data", columns, rows, note=note)
+    return Table("Assumptions and unverified data", columns, rows, note=note)
 
 
 def extra(given: ExtraTable) -> Block:
@@ -230,10 +231,10 @@ def extra(given: ExtraTable) -> Block:
     ]
     widths = given.widths or [1.0] * len(given.columns)
     columns = [
-        column(clean(head), "right" if right else "left", width)
+        Column(clean(head), "right" if right else "left", width)
         for head, right, width in zip(given.columns, numeric, widths, strict=True)
     ]
-    return table(given.title, columns, rows, note=given.note)
+    return Table(given.title, columns, rows, note=given.note)
 
 
 NO_RESERVE = f"No reserve: met, with a margin below {100 * reserve.NO_RESERVE:g} %"

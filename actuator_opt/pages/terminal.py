@@ -11,7 +11,8 @@ from typing import Unpack
 from ..evaluation.result import Evaluation, Requirement, StrokeCurve
 from ..optimisation.result import Optimisation
 from ..rendering import terminal_curve as plot, text
-from ..rendering.console import Column, Console, Style
+from ..rendering.blocks import Column
+from ..rendering.console import Console, Style
 from ..rendering.text import DASH
 from . import (
     choices_table,
@@ -67,18 +68,18 @@ def verdict(
     console = Console(colour, unicode, width)
     evaluation, optimisation = page.parts_of(subject)
     found = page.verdict(subject)
-    state = found["state"]
+    state = found.state
     mark = f"{_mark(console, state)} " if unicode else ""
     lines = [
         console.paint(console.say(evaluation.name), "bold")
         + "  "
-        + console.paint(mark + found["text"].lower(), *_STATE_STYLE[state].split())
+        + console.paint(mark + found.text.lower(), *_STATE_STYLE[state].split())
     ]
-    lines.append(console.wrap("; ".join(found["lines"]), "dim"))
-    if found["cautions"]:
+    lines.append(console.wrap("; ".join(found.lines), "dim"))
+    if found.cautions:
         names = ", ".join(evaluation.extrapolated)
         lines.append(
-            console.wrap("; ".join(found["cautions"]) + (f" ({names})" if names else ""), "yellow")
+            console.wrap("; ".join(found.cautions) + (f" ({names})" if names else ""), "yellow")
         )
     missed = [row.name for row in evaluation.requirements if not row.met]
     if missed:
@@ -105,8 +106,8 @@ def evaluation_table(
         Column("limit", "right"),
         Column("margin", "right"),
         Column("", drop=2),
-        Column("case", flexible=True, drop=1),
-        Column("what", flexible=True, drop=3, least=45),
+        Column("case", width=1.0, drop=1),
+        Column("what", width=1.0, drop=3, least=45),
     ]
     limits: dict[str, list[Requirement]] = {}
     for required in evaluation.requirements:
@@ -160,12 +161,12 @@ def requirements_table(
         return console.paint("no requirements", "dim")
     columns = [
         Column(""),
-        Column("requirement", flexible=True),
+        Column("requirement", width=1.0),
         Column("limit", "right"),
         Column("result", "right"),
         Column("margin", "right"),
         Column("", drop=1),
-        Column("governing case", flexible=True, drop=2),
+        Column("governing case", width=1.0, drop=2),
     ]
     rows, styles, half = [], [], 5 if width >= 110 else 3
     for row in evaluation.requirements:
@@ -207,10 +208,10 @@ def checks_table(
     title = f"checks: {met} of {len(evaluation.checks)} met"
     columns = [
         Column(""),
-        Column("check", flexible=True),
+        Column("check", width=1.0),
         Column("limit", "right"),
         Column("result", "right"),
-        Column("why", flexible=True),
+        Column("why", width=1.0),
     ]
     rows, styles = [], []
     for row in shown:
@@ -239,7 +240,7 @@ def variables_table(
     """Free dimensions: bounds, start, best value, and where between its bounds each one is."""
     console = Console(colour, unicode, width)
     columns = [
-        Column("variable", flexible=True),
+        Column("variable", width=1.0),
         Column("lower", "right"),
         Column("start", "right", drop=2),
         Column(optimum.heading(optimisation), "right"),

@@ -10,7 +10,7 @@ from ..optimisation.result import Optimisation
 from ..optimisation.sensitivity import Sensitivity
 from ..rendering import text
 from ..rendering.axes import Axes, fitted, ticks
-from ..rendering.blocks import Block, figure
+from ..rendering.blocks import Block, Drawing
 from ..rendering.ink import BLACK, BLUE, GREY, RED, Ink
 
 MOST = 16
@@ -58,7 +58,7 @@ def block(optimisation: Optimisation) -> Block | None:
         "Bars are solved again, each an optimum of its own; strokes are what the price predicts."
         f" Ranked by the larger bar.{rest}"
     )
-    return figure(f"What ±{PER_CENT} % of each changes", tornado(optimisation), note)
+    return Drawing(f"What ±{PER_CENT} % of each changes", tornado(optimisation), note)
 
 
 @dataclass(frozen=True, slots=True)

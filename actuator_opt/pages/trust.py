@@ -11,7 +11,7 @@ from ..optimisation.outcome import MET
 from ..optimisation.result import Optimisation
 from ..rendering import text
 from ..rendering.axes import Axes, ticks
-from ..rendering.blocks import Block, figure, notes
+from ..rendering.blocks import Block, Drawing, Notes
 from ..rendering.ink import BLACK, BLUE, GREY, PALE, Ink, spread_within, text_width
 from .optimum import convergence, sentence
 
@@ -27,7 +27,7 @@ WIDTH = 180.0
 
 def blocks(optimisation: Optimisation) -> list[Block]:
     """The statement, the scale of what is proven and found, and the course of the search."""
-    found = [notes("How good is this?", lines(optimisation))]
+    found: list[Block] = [Notes("How good is this?", lines(optimisation))]
     if optimisation.infeasibility is None:
         found += _scale_block(optimisation)
         found += _course_block(optimisation)
@@ -106,7 +106,7 @@ def _scale_block(optimisation: Optimisation) -> list[Block]:
         return []
     note = "Left of the bound no design meets the covered limits; right of it a better one may."
     title = "Proven, found, and what comes near"
-    return [figure(title, scale(optimisation), "" if bound is None else note)]
+    return [Drawing(title, scale(optimisation), "" if bound is None else note)]
 
 
 def _bound(optimisation: Optimisation) -> float | None:
@@ -178,7 +178,7 @@ def _course_block(optimisation: Optimisation) -> list[Block]:
     note = (
         "Designs that meet every limit, over the evaluations of all starts; none: below 0.0001 %."
     )
-    return [figure("How the search went", ink, note)]
+    return [Drawing("How the search went", ink, note)]
 
 
 def _above(value: float, best: float) -> float:

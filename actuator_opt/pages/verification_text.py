@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Column
+from ..rendering.console import Console
 from ..rendering.text import pretty
 from ..simulation.sensitivity import Sensitivities
 from ..simulation.verification import Verification
@@ -25,7 +26,7 @@ def verification_text(
     parts = [console.heading("dynamic requirements in time")]
     lines = [rows.line(row) for row in found.rows]
     if lines:
-        columns = [Column(""), Column(rows.HEADS[0], flexible=True, least=20)]
+        columns = [Column(""), Column(rows.HEADS[0], width=1.0, least=20)]
         columns += [
             Column(name, "right", drop=drop)
             for name, drop in zip(rows.HEADS[1:], (2, 3, 0, 0, 1, 4), strict=True)
@@ -61,7 +62,7 @@ def sensitivity_text(
     results = rows.shown_results(found)
     if results:
         columns = [
-            Column("parameter", flexible=True, least=24),
+            Column("parameter", width=1.0, least=24),
             Column("value", "right", drop=len(results) + 1),
             Column("for", "right", drop=len(results) + 2),
         ]

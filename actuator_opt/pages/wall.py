@@ -10,7 +10,7 @@ from ..evaluation.wall_alternatives import Difference
 from ..evaluation.wall_result import YIELD, Ratio, WallStudy
 from ..models.criteria import CRITERIA
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, clean, column, figure, short, soft, table
+from ..rendering.blocks import Block, Cell, Column, Drawing, Table, clean, short, soft
 from ..rendering.ink import WHITE
 from ..rendering.text import DASH
 from .stiffness_figure import wall_figure
@@ -80,7 +80,7 @@ def _drawing(evaluation: Evaluation) -> Block:
         angle = turned(ply.angle, balanced=ply.balanced)
         turn = f", {angle} from the tube axis" if kind == "composite" else ""
         layers.append((clean(f"{index}  {ply.material}{turn}"), ply.thickness, kind))
-    return figure("Barrel wall, from the bore outwards", wall_figure(layers))
+    return Drawing("Barrel wall, from the bore outwards", wall_figure(layers))
 
 
 def _layers(study: WallStudy) -> Block:
@@ -108,23 +108,23 @@ def _layers(study: WallStudy) -> Block:
             ]
         )
     columns = [
-        column(""),
-        column("material", "left", 1.0),
-        column("angle", "right"),
-        column("thick,\nmm", "right"),
-        column("radii, mm", "right"),
-        column("E₁, GPa", "right"),
-        column("E₂, GPa", "right"),
-        column("G₁₂, GPa", "right"),
-        column("ν₁₂", "right"),
-        column("allowables at the hottest, MPa (share left)", "left", 2.6),
+        Column(""),
+        Column("material", "left", 1.0),
+        Column("angle", "right"),
+        Column("thick,\nmm", "right"),
+        Column("radii, mm", "right"),
+        Column("E₁, GPa", "right"),
+        Column("E₂, GPa", "right"),
+        Column("G₁₂, GPa", "right"),
+        Column("ν₁₂", "right"),
+        Column("allowables at the hottest, MPa (share left)", "left", 2.6),
     ]
     note = (
         "From the bore outwards; angles from the tube axis, ± a balanced pair. X along the fibre,"
         " Y across it, t tension, c compression, S shear; the share is what temperature, moisture,"
         " basis and process leave of the library value."
     )
-    return table("Barrel wall: layers", columns, rows, note=note)
+    return Table("Barrel wall: layers", columns, rows, note=note)
 
 
 def _stresses(study: WallStudy) -> Block:
@@ -135,7 +135,7 @@ def _stresses(study: WallStudy) -> Block:
         f"At supply pressure, {text.trimmed(study.ladder.working / 1e5)} bar, by the exact tube,"
         f" far from the ends; numbers are the layers.{rest}"
     )
-    return figure("Barrel wall: stress through the wall", stress_figure(study), note)
+    return Drawing("Barrel wall: stress through the wall", stress_figure(study), note)
 
 
 def _strength(study: WallStudy) -> Block:
@@ -151,7 +151,7 @@ def _strength(study: WallStudy) -> Block:
         f"Left: plies by {criterion}, metals by von Mises, the worst climate; SR is the factor on"
         f" the supply pressure to first failure.{right}"
     )
-    return figure("Barrel wall: strength used through the wall", strength_figure(study), note)
+    return Drawing("Barrel wall: strength used through the wall", strength_figure(study), note)
 
 
 def _criteria(study: WallStudy) -> Block:
@@ -173,9 +173,9 @@ def _criteria(study: WallStudy) -> Block:
         rows.append([str(layer + 1), *(cell(one) for one in own), spread])
     heads = [f"{named(name)}{' ●' if name == study.criterion else ''}" for name in CRITERIA]
     columns = [
-        column(""),
-        *(column(head, "left", 1.0) for head in heads),
-        column("spread", "right"),
+        Column(""),
+        *(Column(head, "left", 1.0) for head in heads),
+        Column("spread", "right"),
     ]
     metals = [
         f"layer {row.layer + 1} yields at {text.number(row.ratio, 3)} ({row.face},"
@@ -195,7 +195,7 @@ def _criteria(study: WallStudy) -> Block:
         note += " Hashin and Puck are made for unidirectional plies, not for a fabric."
     if metals:
         note += f" Metals by von Mises: {'; '.join(metals)}."
-    return table("Barrel wall: strength ratios by every criterion", columns, rows, note=note)
+    return Table("Barrel wall: strength ratios by every criterion", columns, rows, note=note)
 
 
 def _woven(study: WallStudy, index: int) -> bool:
@@ -255,7 +255,7 @@ def _ladder(evaluation: Evaluation, study: WallStudy) -> Block:
     if left_out:
         note += f" {left_out} steps are left out."
     ink = ladder_figure(rungs, ladder.working)
-    return figure("Barrel wall: from working pressure to burst", ink, note)
+    return Drawing("Barrel wall: from working pressure to burst", ink, note)
 
 
 def _differences(evaluation: Evaluation, study: WallStudy) -> Block:
@@ -270,17 +270,17 @@ def _differences(evaluation: Evaluation, study: WallStudy) -> Block:
         return [f"{name}, {unit}", *(text.number(value) for value in values), change]
 
     columns = [
-        column("", "left", 1.0),
-        column("exact layered tube", "right", 0.7, strong=not thin),
-        column("thin laminate", "right", 0.7, strong=thin),
-        column("thin against exact", "right", 0.7),
+        Column("", "left", 1.0),
+        Column("exact layered tube", "right", 0.7, strong=not thin),
+        Column("thin laminate", "right", 0.7, strong=thin),
+        Column("thin against exact", "right", 0.7),
     ]
     used = "thin laminate" if thin else "exact tube"
     note = f"The design uses the {used}; the thin laminate is a fast mode, for thin walls."
     if evaluation.design.barrel.autofrettage_pressure is not None:
         note += " It knows no autofrettage."
     rows = [row(one) for one in study.differences]
-    return table("Barrel wall: exact tube against thin laminate", columns, rows, note=note)
+    return Table("Barrel wall: exact tube against thin laminate", columns, rows, note=note)
 
 
 def _thicknesses(study: WallStudy) -> Block:
@@ -305,12 +305,12 @@ def _thicknesses(study: WallStudy) -> Block:
             ]
         )
     columns = [
-        column("bore growth", "left", 1.0),
-        column("growth, µm", "right", 0.8),
-        column("bore strain, %", "right", 0.8),
-        column(f"layer {study.main_layer + 1}, {short(layer.material, 24)}, mm", "right", 1.2),
-        column("wall, g/m", "right", 0.8),
-        column("change, g/m", "right", 0.8),
+        Column("bore growth", "left", 1.0),
+        Column("growth, µm", "right", 0.8),
+        Column("bore strain, %", "right", 0.8),
+        Column(f"layer {study.main_layer + 1}, {short(layer.material, 24)}, mm", "right", 1.2),
+        Column("wall, g/m", "right", 0.8),
+        Column("change, g/m", "right", 0.8),
     ]
     s = study.settling
     shares = " and ".join(
@@ -327,7 +327,7 @@ def _thicknesses(study: WallStudy) -> Block:
         f" {text.trimmed(100 * s.at_seal, 3)} % of it acts at the seal, {shares} into the pressure."
     )
     title = "Barrel wall: thickness for another bore growth"
-    return table(title, columns, rows, note=note)
+    return Table(title, columns, rows, note=note)
 
 
 def _metals(study: WallStudy) -> Block:
@@ -359,19 +359,19 @@ def _metals(study: WallStudy) -> Block:
             ]
         )
     columns = [
-        column("barrel", "left", 1.0),
-        column("for the\ngrowth, mm", "right"),
-        column("for\nburst, mm", "right"),
-        column("wall, mm", "right", strong=True),
-        column("bore growth,\nµm", "right"),
-        column("burst over\nworking", "right"),
-        column("yield over\nworking", "right"),
-        column("mass,\ng/m", "right", strong=True),
-        column("against this\ndesign", "right"),
+        Column("barrel", "left", 1.0),
+        Column("for the\ngrowth, mm", "right"),
+        Column("for\nburst, mm", "right"),
+        Column("wall, mm", "right", strong=True),
+        Column("bore growth,\nµm", "right"),
+        Column("burst over\nworking", "right"),
+        Column("yield over\nworking", "right"),
+        Column("mass,\ng/m", "right", strong=True),
+        Column("against this\ndesign", "right"),
     ]
     note = (
         "The thinnest tube of each metal of the library for the same bore, with this design's bore"
         " growth (no axial load) and the burst pressure it is asked for (its own where that is"
         " lower), by Lamé and Faupel, under the same axial forces; no least wall for turning."
     )
-    return table("Barrel wall: metal barrels for the same duty", columns, rows, note=note)
+    return Table("Barrel wall: metal barrels for the same duty", columns, rows, note=note)

@@ -8,8 +8,9 @@ from ..base.quantities import Quantity
 from ..design import quantity_of
 from ..optimisation.result import Optimisation, Rounding
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, column, soft, table
-from ..rendering.console import Column, Console
+from ..rendering.blocks import Block, Cell, Column, Table, soft
+from ..rendering.console import Console
+from ..rendering.terminal import block_text
 from ..rendering.text import DASH
 from .optimum import sentence
 
@@ -37,16 +38,16 @@ def block(optimisation: Optimisation) -> Block | None:
             ]
         )
     columns = [
-        column("variable", "left", 1.3, mono=True),
-        column("continuous", "right"),
-        column(rounding.name, "right", strong=True),
-        column("change", "right"),
-        column("unit"),
-        *([column("plies", "right")] if counted else []),
-        column("sizes", "left"),
+        Column("variable", "left", 1.3, mono=True),
+        Column("continuous", "right"),
+        Column(rounding.name, "right", strong=True),
+        Column("change", "right"),
+        Column("unit"),
+        *([Column("plies", "right")] if counted else []),
+        Column("sizes", "left"),
     ]
     note = " ".join(notes(optimisation))
-    return table(_title(optimisation, rounding), columns, rows, note=note)
+    return Table(_title(optimisation, rounding), columns, rows, note=note)
 
 
 def terminal(
@@ -57,10 +58,7 @@ def terminal(
     if made is None:
         return ""
     console = Console(colour, unicode, width)
-    columns = [Column(c["head"], c["align"], flexible=not k) for k, c in enumerate(made["columns"])]
-    rows = [["".join(cell) for cell in row] for row in made["rows"]]
-    lines = [console.wrap(made["title"], "bold")]
-    lines += console.table(columns, rows) if rows else []
+    lines = [block_text(made, console)]
     return "\n".join([*lines, *(console.wrap(line, "dim") for line in notes(optimisation))])
 
 

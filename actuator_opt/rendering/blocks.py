@@ -1,43 +1,28 @@
-"""The building blocks of a report page: tables, figures, notes, listings, as plain data.
+"""A page as data: verdict, key figures, one large figure, and blocks below each other.
 
-A cell is a text, a list of texts (pieces between which a line may break), or one of the records
-of `status`, `bar` and `share`. Both renderers (Typst template, plain fallback) read these.
+Subjects build a `Page`; `paper`, `terminal` and `html` render it. A block says where it belongs
+(`on`): on paper, on the terminal, or on both; HTML shows what paper shows.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, TypeAlias
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
 
 from ..base.suggest import CONTROLS
 from .ink import Ink
 from .text import STATUS_WORDS
 
-Cell: TypeAlias = str | list[str] | dict[str, Any]
-Block: TypeAlias = dict[str, Any]
+State: TypeAlias = Literal["", "met", "no_reserve", "missed", "not_checked", "checks", "infeasible"]
+"""How a requirement, a check or a whole page fares; empty where nothing is judged."""
+Medium: TypeAlias = Literal["both", "paper", "terminal"]
+Align: TypeAlias = Literal["left", "center", "right"]
 
 _PIECES = re.compile(r"[^._/=)\]]{0,17}(?:[._/=)\]]+(?![0-9])|$)|.{1,18}", re.DOTALL)
 _WORDS = re.compile(r"\s*\S+\s*|\s+")
 _CONTROL = re.compile(rf"[{CONTROLS}]")
-
-
-@dataclass(frozen=True, slots=True)
-class ExtraTable:
-    """A table the caller adds to the report, such as published numbers beside ours.
-
-    A cell may be text or a number; `note` stands under the table, a `drawing` (as `figure` makes
-    it) after it.
-    """
-
-    title: str
-    columns: Sequence[str]
-    rows: Sequence[Sequence[object]]
-    note: str = ""
-    drawing: Block | None = None
-    widths: Sequence[float] = ()
-    """Of the columns, over one another; default: all alike."""
 
 
 def clean(text: str) -> str:
@@ -52,20 +37,14 @@ _PAPER = re.compile(
 """What the report's typeface cannot draw (it covers Latin, Greek, Cyrillic and technical signs)."""
 
 
-def printable(data: Any) -> Any:
-    """Data whose texts the typeface can draw; other letters as their code point, ``⟨U+4E2D⟩``."""
-    if isinstance(data, str):
-        if data.isascii():
-            return data
-        return _PAPER.sub(lambda m: f"⟨U+{ord(m[0]):04X}⟩", data)
-    if isinstance(data, dict):
-        return {key: printable(value) for key, value in data.items()}
-    if isinstance(data, list):
-        return [printable(value) for value in data]
-    return data
+def printable(text: str) -> str:
+    """Text that the typeface can draw; other letters as their code point, ``⟨U+4E2D⟩``."""
+    if text.isascii():
+        return text
+    return _PAPER.sub(lambda m: f"⟨U+{ord(m[0]):04X}⟩", text)
 
 
-def soft(text: str, longest: int = 14) -> Cell:
+def soft(text: str, longest: int = 14) -> str | list[str]:
     """A text that may break inside words beyond `longest` letters (paths, absurd names)."""
     text = clean(text)
     pieces: list[str] = [""]
@@ -85,62 +64,239 @@ def short(text: str, length: int) -> str:
     return text if len(text) <= length else text[: length - 1].rstrip() + "…"
 
 
-def status(state: str) -> Cell:
-    """A status with its mark: met, missed or not checked."""
-    return {"status": state, "text": STATUS_WORDS[state]}
+@dataclass(frozen=True, slots=True)
+class Status:
+    """A state with its mark and its words; default: those of the state."""
+
+    state: State
+    text: str = ""
+
+    @property
+    def words(self) -> str:
+        """The words."""
+        return self.text or STATUS_WORDS[self.state]
 
 
-def bar(margin: float | None, *, met: bool = True) -> Cell:
-    """A margin bar: right of the line is room left, left of it is missing; full at 100 %."""
-    if margin is None:
-        return ""
-    return {"bar": round(max(-1.0, min(1.0, margin)), 4), "over": abs(margin) > 1.0, "met": met}
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """A margin as a bar: room to the right of the mark, a miss to its left; full at 100 %."""
+
+    margin: float | None
+    met: bool = True
 
 
-def share(value: float) -> Cell:
+@dataclass(frozen=True, slots=True)
+class Share:
     """A bar from zero to one."""
-    return {"share": round(max(0.0, min(1.0, value)), 4)}
+
+    value: float
 
 
-def column(head: str, align: str = "left", width: float | str = "auto", **more: Any) -> Block:
-    """A table column: `width` is "auto", a fraction of the rest (number), or ``"12mm"``."""
-    return {"head": head, "align": align, "width": width} | more
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """Where a value lies between its bounds, from zero to one; `at` names the bound it is at."""
+
+    place: float
+    at: str = ""
 
 
-def table(
-    title: str,
-    columns: Sequence[Mapping[str, Any]],
-    rows: Sequence[Sequence[Cell]],
-    *,
-    note: str = "",
-    total: int = 0,
-    marks: Sequence[str] = (),
-) -> Block:
-    """A table; the last `total` rows stand under a rule; `marks` names rows to emphasise."""
-    return {
-        "kind": "table",
-        "title": clean(title),
-        "columns": [dict(c) for c in columns],
-        "rows": [list(row) for row in rows],
-        "note": clean(note),
-        "total": total,
-        "marks": list(marks),
-    }
+@dataclass(frozen=True, slots=True)
+class Flag:
+    """Words that stand out where `raised`."""
+
+    text: str
+    raised: bool
 
 
-def figure(title: str, ink: Ink, note: str = "") -> Block:
-    """A drawing with a title."""
-    return {"kind": "figure", "title": clean(title), "ink": ink.data(), "note": clean(note)}
+Cell: TypeAlias = str | list[str] | Status | Bar | Share | Slot | Flag
+"""Text (in pieces: a line may break between them), or a mark."""
 
 
-def notes(title: str, items: Sequence[str], note: str = "") -> Block:
-    """A list of sentences."""
-    return {"kind": "notes", "title": title, "items": [soft(i) for i in items], "note": note}
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column of a table, on paper and on the terminal.
+
+    Parameters
+    ----------
+    head : above it; a line break counts on paper
+    align : of its cells
+    width : "auto", a part of the room that is left (number), or ``"12mm"``; a column of the second
+        kind shrinks on a narrow terminal
+    breaks : letters of a word beyond which it may break; 0 never
+    mono, strong : type on paper; on the terminal strong is bold
+    least : letters that a shrinking column keeps on the terminal
+    drop : on a narrow terminal the columns of the highest number go first; 0 never
+    style : on the terminal "bold", "dim", a colour, or "state": the colour of the row's state
+    on : where the column is shown
+    """
+
+    head: str
+    align: Align = "left"
+    width: float | str = "auto"
+    breaks: int = 0
+    mono: bool = False
+    strong: bool = False
+    least: int = 14
+    drop: int = 0
+    style: str = ""
+    on: Medium = "both"
+
+    @property
+    def flexible(self) -> bool:
+        """Whether the column takes what the others leave."""
+        return not isinstance(self.width, str)
 
 
-def listing(title: str, text: str) -> Block:
-    """Numbered source text in monospace."""
-    lines: list[Cell] = [soft(line.expandtabs(4), 40) for line in text.splitlines()]
-    wide = sum(len(line.rstrip()) > 62 for line in text.splitlines()) > len(lines) // 10
-    columns = 1 if wide else 2
-    return {"kind": "listing", "title": clean(title), "lines": lines, "columns": columns}
+@dataclass(frozen=True, slots=True)
+class Row:
+    """Cells of a table; the state colours what its columns say."""
+
+    cells: Sequence[Cell]
+    state: State = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows under their heads, plain cells or with a state; a rule parts the last `total` of them.
+
+    `headless` leaves the title out on the terminal.
+    """
+
+    title: str
+    columns: Sequence[Column]
+    rows: Sequence[Row | Sequence[Cell]]
+    note: str = ""
+    total: int = 0
+    headless: bool = False
+    on: Medium = "both"
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A figure drawn in ink, with a title and what to know of it.
+
+    `instead` is what the terminal shows.
+    """
+
+    title: str
+    ink: Ink
+    note: str = ""
+    instead: TerminalFigure | Table | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TerminalFigure:
+    """A curve in a few lines of text: points (x, y), a level, what stands below both ends."""
+
+    title: str
+    points: Sequence[tuple[float, float]]
+    level: float | None = None
+    ends: tuple[str, str] | None = None
+    height: int = 7
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Notes:
+    """Sentences under a title; `style` and `headless` as on the terminal."""
+
+    title: str
+    items: Sequence[str]
+    note: str = ""
+    headless: bool = False
+    style: str = ""
+    on: Medium = "both"
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """Numbered source text in monospace, on paper alone."""
+
+    title: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Blocks side by side on paper; on the terminal one below the other."""
+
+    sides: Sequence[Sequence[Block]]
+
+
+Block: TypeAlias = Table | Drawing | TerminalFigure | Notes | Listing | Pair
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The badge: state, words in capitals, plain lines below, and cautions in amber."""
+
+    state: State
+    text: str
+    lines: Sequence[str] = ()
+    cautions: Sequence[str] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Tile:
+    """A key figure: what it is, its number and unit, what to know of it."""
+
+    label: str
+    value: str
+    unit: str = ""
+    note: str = ""
+    state: State = ""
+    symbol: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A page about one subject.
+
+    Parameters
+    ----------
+    name, kind : its title, and what kind of page it is
+    verdict, sentence : the badge, and one or two sentences beside it
+    tiles : up to five key figures
+    hero : the large figure below them, for a room of so many millimetres of height
+    blocks : below each other
+    scale : of the large figure, for the title block
+    items : numbered parts of the large figure: (number, part, material)
+    design : what the title block names; default: the name
+    least : height that the large figure needs [mm]; blocks give way to it
+    lists_input : whether the design file is listed at the end
+    """
+
+    name: str
+    kind: str
+    verdict: Verdict
+    sentence: str
+    tiles: Sequence[Tile]
+    hero: Callable[[float], Ink]
+    blocks: Sequence[Block] = field(default=())
+    scale: str = ""
+    items: Sequence[tuple[int, str, str]] = ()
+    design: str = ""
+    least: float = 0.0
+    lists_input: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ExtraTable:
+    """A table that a caller adds to a report.
+
+    A cell may be text or a number; `note` stands under the table, a `drawing` after it.
+    """
+
+    title: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[object]]
+    note: str = ""
+    drawing: Drawing | None = None
+    widths: Sequence[float] = ()
+    """Of the columns, over one another; default: all alike."""
+
+
+def tile(label: str, words: str, note: str, state: State = "") -> Tile:
+    """A key figure whose number and unit are in words ("12.3 N")."""
+    value, _, unit = words.partition(" ")
+    return Tile(label, value, unit, note, state)

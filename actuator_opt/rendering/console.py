@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypedDict
 
-from .blocks import clean
+from .blocks import Column, clean
 from .text import plain
 
 _CODES = {"bold": "1", "dim": "2", "red": "31", "green": "32", "yellow": "33", "cyan": "36"}
@@ -35,17 +35,6 @@ def visible(text: str) -> int:
     """
     wide = sum(unicodedata.east_asian_width(letter) in "WF" for letter in text)
     return len(text) + wide - sum(unicodedata.combining(letter) > 0 for letter in text)
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """A column: a `flexible` one shrinks on a narrow terminal; the highest `drop` goes first."""
-
-    head: str
-    align: str = "left"
-    flexible: bool = False
-    drop: int = 0
-    least: int = 14
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +81,9 @@ class Console:
         rows: Sequence[Sequence[str]],
         styles: Sequence[Sequence[str]] = (),
     ) -> list[str]:
-        """Lines of a table; `styles` gives a style per cell."""
+        """Lines of a table, `styles` by cell; on a narrow terminal columns shrink or go."""
         cells = [[self.say(cell) for cell in row] for row in rows]
-        heads = [self.say(column.head) for column in columns]
+        heads = [self.say(column.head.replace("\n", " ")) for column in columns]
         keep = list(range(len(columns)))
         while True:
             sizes = {k: max([visible(heads[k]), *(visible(row[k]) for row in cells)]) for k in keep}

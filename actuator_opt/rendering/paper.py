@@ -1,4 +1,4 @@
-"""Write a report: PDF and PNG pages, whole or not at all.
+"""A page on paper: PDF and PNG by Typst, whole or not at all.
 
 Everything is made in memory, written beside its place, then renamed. The PDF carries the input
 file and the command inside itself (PDF/A-3), so that a report can be run again.
@@ -10,22 +10,38 @@ import hashlib
 import importlib.util
 import json
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from ..base.errors import Diagnostic, InputError
-from ..base.files import read_bytes, read_json, write_all as write_all
+from ..base.files import write_all
 from ..base.plain_json import encoded
-from .blocks import printable
-from .embed import extract
+from ..version import VERSION
+from .blocks import (
+    Bar,
+    Block,
+    Cell,
+    Drawing,
+    Flag,
+    Listing,
+    Notes,
+    Page,
+    Pair,
+    Share,
+    Slot,
+    Status,
+    Table,
+    clean,
+    printable,
+    short,
+    soft,
+)
+from .heights import cells_of, room
 from .origin import Origin
 
 PIXELS_PER_INCH = 150.0
-_MOST_BYTES = 200_000_000
-_OURS = "give a PDF that actuator-opt wrote"
 TEMPLATE = Path(__file__).with_name("template.typ")
 
 
@@ -42,29 +58,26 @@ class ReportFile:
         return {"path": str(self.path), "sha256": self.sha256, "pages": self.pages}
 
 
-@dataclass(frozen=True, slots=True)
-class Attachment:
-    """What a report carries inside: the design's text and how the report was made."""
-
-    source: str
-    run: Mapping[str, Any]
-
-
-def write_page(
-    data: Mapping[str, Any], origin: Origin, *, title: str, folder: Path, stem: str, **run: Any
-) -> list[ReportFile]:
-    """Write a page of data to PDF and PNG.
+def write(page: Page, origin: Origin, *, folder: Path, stem: str, **run: Any) -> list[ReportFile]:
+    """Write ``STEM.pdf``, ``STEM.png`` (first sheet) and ``STEM-page-N.png`` into a folder.
 
     Parameters
     ----------
-    data : of the page
+    page : to write
     origin : its source, as it is, and how it was made: both are attached to the PDF
-    title : of the PDF, as it is
-    folder, stem : where to
-    run : more of how it was made
+    folder, stem : where to; the folder is made if missing
+    run : more of how it was made, attached
+
+    Returns
+    -------
+    the files, PDF first
+
+    Raises
+    ------
+    InputError : when the folder cannot be written; no partial file is left
     """
-    data = printable(dict(data)) | {
-        "title": _encodable(title),
+    data = _printable(plain(page, origin)) | {
+        "title": _encodable(page.name),
         "source": _encodable(origin.source_text),
         "source_file": _attachment_name(_encodable(origin.source_name)),
         "run": _encodable(encoded(origin.run() | run, ensure_ascii=False, sort_keys=True)),
@@ -85,37 +98,150 @@ def write_page(
     ]
 
 
-def read_attachment(path: Path) -> Attachment:
-    """The input and the command that a report of ours carries.
-
-    Raises
-    ------
-    InputError : no such file, no PDF, encrypted, damaged, or not written by this program
-    """
-    content = read_bytes(path, most=_MOST_BYTES, kinds=(".pdf",), what="PDF")
-    try:
-        if b"%PDF-" not in content[:1024]:
-            raise InputError(Diagnostic("is no PDF", _OURS))
-        if re.search(rb"/Encrypt\s+\d+\s+\d+\s+R", content):
-            raise InputError(Diagnostic("is encrypted", "save it without a password"))
-        found = extract(content, ("application/yaml", "application/json"))
-        source, run = found["application/yaml"].decode(), read_json(found["application/json"])
-        if not isinstance(run, dict) or "actuator_opt" not in run:
-            raise KeyError("actuator_opt")
-    except KeyError:
-        raise InputError(Diagnostic(_carries(content), _OURS, str(path))) from None
-    except ValueError:
-        fault = Diagnostic("its attachment is damaged", "take the original file", str(path))
-        raise InputError(fault) from None
-    except InputError as error:
-        raise InputError([replace(x, file=str(path)) for x in error.diagnostics]) from None
-    return Attachment(source, run)
+# ---- pages as plain data for the template ----
 
 
-def _carries(content: bytes) -> str:
-    """Why there is no input in a PDF: it never was, or the end of the file is lost."""
-    ended = b"%%EOF" in content[-2048:]
-    return "carries no input to run again" if ended else "is cut off and carries no input"
+def plain(page: Page, origin: Origin) -> dict[str, object]:
+    """A page as plain data for the template."""
+    hero = page.hero(max(room(page), page.least))
+    return {
+        "name": soft(page.name),
+        "title": clean(page.name),
+        "short": short(page.design or page.name, 32),
+        "kind": page.kind,
+        "version": VERSION,
+        "hash": clean(origin.spec_hash[:16]),
+        "date": "" if origin.date is None else clean(origin.date),
+        "command": soft(short(origin.command, 260), 30),
+        "verdict": {
+            "state": page.verdict.state,
+            "text": page.verdict.text,
+            "lines": list(page.verdict.lines),
+            "cautions": list(page.verdict.cautions),
+        },
+        "sentence": soft(page.sentence),
+        "tiles": [
+            {
+                "label": short(tile.label, 30),
+                "symbol": tile.symbol,
+                "value": tile.value,
+                "unit": tile.unit,
+                "note": short(tile.note, 44),
+                "state": tile.state,
+            }
+            for tile in page.tiles
+        ],
+        "section": hero.data(),
+        "scale": page.scale,
+        "items": [
+            {"number": number, "part": clean(part), "material": clean(material)}
+            for number, part, material in page.items
+        ],
+        "blocks": plain_blocks(with_input(page, origin)),
+    }
+
+
+def with_input(page: Page, origin: Origin | None) -> list[Block]:
+    """The blocks of a page, the design file listed at the end where the page lists it."""
+    blocks = [*page.blocks]
+    if page.lists_input and origin is not None:
+        blocks.append(Listing(f"Input: {origin.source_name}", origin.source_text))
+    return blocks
+
+
+def plain_blocks(blocks: Sequence[Block]) -> list[dict[str, object]]:
+    """Blocks that paper shows, as plain data for the template."""
+    return [data for block in blocks if (data := _block(block)) is not None]
+
+
+def _block(block: Block) -> dict[str, object] | None:
+    if isinstance(block, Pair):
+        return {"kind": "pair", "sides": [plain_blocks(side) for side in block.sides]}
+    if isinstance(block, Table):
+        return None if block.on == "terminal" else _table(block)
+    if isinstance(block, Drawing):
+        ink, note = block.ink.data(), clean(block.note)
+        return {"kind": "figure", "title": clean(block.title), "ink": ink, "note": note}
+    if isinstance(block, Notes):
+        items = [soft(item) for item in block.items]
+        data: dict[str, object] = {
+            "kind": "notes",
+            "title": block.title,
+            "items": items,
+            "note": block.note,
+        }
+        return None if block.on == "terminal" else data
+    if isinstance(block, Listing):
+        lines = block.text.splitlines()
+        wide = sum(len(line.rstrip()) > 62 for line in lines) > len(lines) // 10
+        return {
+            "kind": "listing",
+            "title": clean(block.title),
+            "lines": [soft(line.expandtabs(4), 40) for line in lines],
+            "columns": 1 if wide else 2,
+        }
+    return None
+
+
+def _table(table: Table) -> dict[str, object]:
+    shown = [k for k, column in enumerate(table.columns) if column.on != "terminal"]
+    columns = [table.columns[k] for k in shown]
+    return {
+        "kind": "table",
+        "title": clean(table.title),
+        "columns": [
+            {
+                "head": one.head,
+                "align": one.align,
+                "width": one.width,
+            }
+            | {name: True for name in ("mono", "strong") if getattr(one, name)}
+            for one in columns
+        ],
+        "rows": [
+            [
+                _cell(cells_of(row)[k], column.breaks)
+                for k, column in zip(shown, columns, strict=True)
+            ]
+            for row in table.rows
+        ],
+        "note": clean(table.note),
+        "total": table.total,
+    }
+
+
+def _cell(cell: Cell, breaks: int) -> object:
+    if isinstance(cell, str):
+        return soft(cell, breaks) if breaks else cell
+    if isinstance(cell, Status):
+        return {"status": cell.state, "text": cell.words}
+    if isinstance(cell, Bar):
+        return "" if cell.margin is None else _bar(cell.margin, cell.met)
+    if isinstance(cell, Share):
+        return {"share": round(max(0.0, min(1.0, cell.value)), 4)}
+    if isinstance(cell, Slot):
+        return {"slot": round(max(0.0, min(1.0, cell.place)), 4), "at": cell.at}
+    if isinstance(cell, Flag):
+        return {"flag": cell.raised, "text": cell.text}
+    return cell
+
+
+def _bar(margin: float, met: bool) -> dict[str, object]:
+    return {"bar": round(max(-1.0, min(1.0, margin)), 4), "over": abs(margin) > 1.0, "met": met}
+
+
+def _printable(data: Any) -> Any:
+    """Data whose texts the typeface can draw."""
+    if isinstance(data, str):
+        return printable(data)
+    if isinstance(data, dict):
+        return {key: _printable(value) for key, value in data.items()}
+    if isinstance(data, list):
+        return [_printable(value) for value in data]
+    return data
+
+
+# ---- files ----
 
 
 def _encodable(text: str) -> str:

@@ -6,7 +6,8 @@ import io
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .embed import embed
+from .attachments import embed
+from .heights import wrap
 from .ink import BLACK, GREY, PALE, RED, WHITE, Ink, text_width
 
 SHEET = (210.0, 297.0)
@@ -77,40 +78,17 @@ class _Flow:
         self.y += drawing["height"]
 
 
-def joined(cell: Any) -> str:
+def _joined(cell: Any) -> str:
     """A cell as one text."""
     if isinstance(cell, dict):
         return str(cell.get("text", ""))
     return cell if isinstance(cell, str) else "".join(cell)
 
 
-def wrap(text: str, width: float, size: float) -> list[str]:
-    """Lines of a text no wider than `width` mm; words that are too long are cut.
-
-    >>> wrap("one two three", 12.0, 7.0)
-    ['one two', 'three']
-    """
-    lines = [""]
-    for word in text.replace("\n", " ").split(" "):
-        trial = f"{lines[-1]} {word}" if lines[-1] else word
-        if text_width(trial, size) <= width:
-            lines[-1] = trial
-            continue
-        if lines[-1]:
-            lines.append("")
-        while word and text_width(word, size) > width:
-            cut = max(1, int(len(word) * width / text_width(word, size)) - 1)
-            lines[-1] = word[:cut]
-            lines.append("")
-            word = word[cut:]
-        lines[-1] = word
-    return lines
-
-
 def _title(flow: _Flow, data: Mapping[str, Any]) -> None:
     flow.words(NOTE, 6.0, color=RED)
     flow.y += 2.0
-    name = joined(data["name"])
+    name = _joined(data["name"])
     flow.words(name, 13.0 if len(name) < 60 else 8.0, bold=True)
     dated = f", {data['date']}" if data["date"] else ""
     flow.words(f"{data['kind']}, actuator-opt {data['version']}, spec {data['hash']}{dated}", 6.5)
@@ -121,7 +99,7 @@ def _title(flow: _Flow, data: Mapping[str, Any]) -> None:
     flow.words("; ".join(verdict["lines"]), 6.5)
     if verdict.get("cautions"):
         flow.words("; ".join(verdict["cautions"]), 6.5, bold=True, color=AMBER)
-    flow.words(joined(data["sentence"]), 7.0)
+    flow.words(_joined(data["sentence"]), 7.0)
     flow.y += 2.0
     for tile in data["tiles"]:
         note = f"  ({tile['note']})" if tile["note"] else ""
@@ -139,7 +117,7 @@ def _title(flow: _Flow, data: Mapping[str, Any]) -> None:
             x + 1.5, flow.y + 2.0, f"{role} (name, date, signature)", size=5.4, color=GREY
         )
     flow.y += 13.0
-    flow.words(f"Command: {joined(data['command'])}", 5.6, color=GREY)
+    flow.words(f"Command: {_joined(data['command'])}", 5.6, color=GREY)
 
 
 def _block(flow: _Flow, block: Mapping[str, Any]) -> None:
@@ -158,10 +136,10 @@ def _block(flow: _Flow, block: Mapping[str, Any]) -> None:
         _table(flow, block)
     elif block["kind"] == "notes":
         for item in block["items"]:
-            flow.words("• " + joined(item), 6.8)
+            flow.words("• " + _joined(item), 6.8)
     else:
         for number, line in enumerate(block["lines"], 1):
-            text = joined(line)
+            text = _joined(line)
             indent = len(text) - len(text.lstrip(" "))
             x = LEFT + 7.0 + indent * 1.1
             for part in wrap(text.strip(" "), RIGHT - x, 5.6) or [""]:
@@ -185,7 +163,7 @@ def _widths(block: Mapping[str, Any]) -> list[float]:
         if isinstance(column["width"], str) and column["width"].endswith("mm"):
             widths[k] = min(float(column["width"][:-2]), 40.0)
         elif column["width"] == "auto":
-            texts = [*column["head"].split("\n"), *(joined(row[k]) for row in rows)]
+            texts = [*column["head"].split("\n"), *(_joined(row[k]) for row in rows)]
             widths[k] = min(max(text_width(t, _SIZE, bold=True) for t in texts) + 2.6, 32.0)
         rest -= widths[k]
     shares = sum(c["width"] for c in columns if not isinstance(c["width"], str))
@@ -198,7 +176,7 @@ def _widths(block: Mapping[str, Any]) -> list[float]:
 def _table(flow: _Flow, block: Mapping[str, Any]) -> None:
     widths = _widths(block)
     heads = [column["head"].replace("\n", " ") for column in block["columns"]]
-    body = [[joined(cell) for cell in row] for row in block["rows"]]
+    body = [[_joined(cell) for cell in row] for row in block["rows"]]
     _row(flow, block, heads, heads, widths, head=True)
     first_total = len(body) - block["total"]
     for index, (cells, texts) in enumerate(zip(block["rows"], body, strict=True)):

@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
-from .paper import TEMPLATE, sheets, write_all
+from ..base.files import write_all
+from .blocks import Block
+from .paper import TEMPLATE, plain_blocks, sheets
 
 _MARK = "// ---- sheet ----"
 """Where the template's definitions end and the sheets of a design begin."""
@@ -38,13 +40,23 @@ def study_sheets(
     ----------
     script : the study's file; its sheets stand beside it with the ending .typ
     study : its numbers, attached as JSON
-    shown : what the sheets take besides ``numbers``
+    shown : what the sheets take besides ``numbers``; blocks become plain data
     """
     definitions, mark, _ = TEMPLATE.read_text("utf-8").partition(_MARK)
     assert mark, "the report template no longer says where its definitions end"
     source = definitions + script.with_suffix(".typ").read_text("utf-8")
     numbers = json.dumps(study, indent=1, allow_nan=False)
-    return sheets(source.encode(), {**shown, "numbers": numbers}, timestamp=0)
+    data = {name: _plain(value) for name, value in shown.items()}
+    return sheets(source.encode(), data | {"numbers": numbers}, timestamp=0)
+
+
+def _plain(value: Any) -> Any:
+    """Blocks, alone or in lists and records, as plain data for a template."""
+    if isinstance(value, get_args(Block)):
+        return plain_blocks([value])[0]
+    if isinstance(value, Mapping):
+        return {name: _plain(one) for name, one in value.items()}
+    return [_plain(one) for one in value] if isinstance(value, list | tuple) else value
 
 
 def write_study(pages: tuple[bytes, list[bytes]], folder: Path, name: str) -> int:

@@ -13,7 +13,7 @@ import numpy as np
 from ..base.numeric import Array
 from ..evaluation import Evaluation
 from ..rendering import text
-from ..rendering.blocks import ExtraTable, figure
+from ..rendering.blocks import Drawing, ExtraTable
 from . import (
     aalto,
     aalto_dynamic,
@@ -71,7 +71,7 @@ def stiffness_table(evaluation: Evaluation) -> ExtraTable:
             aalto.total(design, design.lines, with_air, load_cell=False),
         ),
     ]
-    drawn = figure(
+    drawn = Drawing(
         "Aalto thesis: stiffness along the stroke, as its figures 5, 29 and 32",
         aalto_figures.theory_figure(design.cylinder.stroke, oil, figure_29, figure_32),
         "Both forms with the same numbers, load cell included in figures 29 and 32; per chamber "
@@ -140,7 +140,7 @@ def static_table(evaluation: Evaluation) -> ExtraTable:
         ("the same, with by-pass", air_text(test.air_up[1]),
          air_text(test.air_down[1]), text.DASH, text.DASH),
     ]  # fmt: skip
-    drawn = figure(
+    drawn = Drawing(
         "Aalto thesis: displacement under a force step, as its figure 42",
         aalto_figures.static_figure(design.cylinder.stroke, test),
         "Grey: measured, all positions and both piston directions. Load 3.45 and 4.85 kN, the "
@@ -174,7 +174,7 @@ def dynamic_table(evaluation: Evaluation) -> ExtraTable:
                 (_ENDS[end], needle, f"{100 * (1 - one.opening):.0f} %", *_five(one.tested))
                 for one in responses
             ]
-    drawn = figure(
+    drawn = Drawing(
         "Aalto thesis: dynamic stiffness over frequency",
         aalto_figures.dynamic_figure(test),
         aalto_dynamic_notes.needles_caption(test),

@@ -15,7 +15,7 @@ from ..design.materials import load_library
 from ..evaluation import Evaluation
 from ..models import barrel, damping, fluid, forces, rod, stiffness_published as published
 from ..rendering import text
-from ..rendering.blocks import ExtraTable, figure
+from ..rendering.blocks import Drawing, ExtraTable
 from . import elasswad_bending, elasswad_friction, elasswad_record
 from .elasswad_figures import record_figure
 from .elasswad_paper import PAPER, POISSONS_RATIO, root
@@ -310,7 +310,7 @@ def _record(evaluation: Evaluation) -> ExtraTable:
         f"µ = {text.trimmed(PAPER.friction_coefficient)} and the assumed rings give the published "
         "average and largest friction."
     )
-    drawn = figure(
+    drawn = Drawing(
         "El Asswad 2018: k_eq and radial expansion along a record, as its figure 10",
         record_figure(record, found),
         "A record of our own with the pressures behind the paper's friction, not its measured "

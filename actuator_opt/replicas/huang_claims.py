@@ -12,7 +12,7 @@ import numpy as np
 from ..design.model import Design
 from ..models.friction import HUANG_TABLE_2
 from ..rendering import text
-from ..rendering.blocks import ExtraTable, figure
+from ..rendering.blocks import Drawing, ExtraTable
 from ..studies.film_walk import FilmMap
 from . import huang_figures, huang_notes, huang_published, huang_trend
 from .huang import TYPICAL
@@ -68,7 +68,7 @@ def cylinder_table(design: Design, found: HuangStudy) -> ExtraTable:
             "no number to compare",
         ),
     ]
-    drawn = figure(
+    drawn = Drawing(
         "Huang 2017: piston cylinder, as its figure 3",
         huang_figures.cylinder_figure(found),
         "Piston and rod seals on their films, driven out; the rod chamber at return pressure. "
@@ -87,7 +87,7 @@ def _ends(mapped: FilmMap, low: float, high: float, speed: float) -> tuple[float
 def simulated_table(_: Design, found: HuangStudy) -> ExtraTable:
     """Figures 15 and 16: what the paper says of its simulation, by ours."""
     rows = [*_trends(found), _asymptote(found), *_between(found)]
-    drawn = figure(
+    drawn = Drawing(
         "Huang 2017: plunger at 6, 8 and 10 MPa, as its figures 15 and 16",
         huang_figures.simulated_figure(found),
     )
@@ -216,7 +216,7 @@ def ring_table(_: Design, found: HuangStudy) -> ExtraTable:
             holds(bool(films[-1] > films[0]), float(films[0]), float(films[-1])),
         ),
     ]
-    drawn = figure(
+    drawn = Drawing(
         "Huang 2017: step ring over the sealed pressure, as its figures 17 and 18",
         huang_figures.ring_figure(found),
         "Contact of a run-in face by its radial balance; films of the step ring in the tandem.",

@@ -77,7 +77,7 @@ TRACES: tuple[Trace, ...] = (
         ("models.damping.flat_gap",),
         f"its {PAPER.chamber_shear} N s/m has no inputs",
     ),
-    Trace(26, 26, "total damping", ("evaluation.study.huang_parts.total",)),
+    Trace(26, 26, "total damping", ("replicas.huang_parts.total",)),
     Trace(
         27,
         28,

@@ -16,7 +16,7 @@ from ..design.model import Design
 from ..evaluation import Evaluation
 from ..models.friction import HUANG_TABLE_2
 from ..rendering import text
-from ..rendering.blocks import ExtraTable, figure
+from ..rendering.blocks import Drawing, ExtraTable
 from . import (
     huang_claims,
     huang_equations,
@@ -48,7 +48,7 @@ def plunger_table(design: Design, found: HuangStudy) -> ExtraTable:
         ours = mapped.damping[mapped.at(pressure, 0.0)[0], columns]
         rows.append((pressure_text(pressure), text.DASH, megas(ours), text.DASH))
     at = ", ".join(text.trimmed(1e3 * v) for v in SHOWN)
-    drawn = figure(
+    drawn = Drawing(
         "Huang 2017: plunger over speed and pressure, as its figure 6",
         huang_figures.plunger_figure(found),
         "Above: eq. 31 with the paper's table 2. Below: step ring and Yx seal on their films, "
@@ -91,7 +91,7 @@ def fits_table(_: Design, found: HuangStudy) -> ExtraTable:
         (name, _power(one.power), _quality(one.power), _double(one.double), _quality(one.double))
         for name, one in curves
     ]
-    drawn = figure(
+    drawn = Drawing(
         "Huang 2017: damping over speed and over pressure, as its figures 7 and 8",
         huang_figures.speed_figure(found),
         "Left the paper's table 2, right our films.",
@@ -125,7 +125,7 @@ def parts_table(_: Design, found: HuangStudy) -> ExtraTable:
                 percent(one.beside_share),
             )
         )
-    drawn = figure(
+    drawn = Drawing(
         "Huang 2017: back-up ring, as its figures 19 and 20",
         huang_figures.back_up_figure(found),
         "PTFE of the step ring, 15 mm wide, edges rounded by 5 µm, 0.1 MPa of mean contact "
@@ -183,7 +183,7 @@ def relief_table(_: Design, found: HuangStudy) -> ExtraTable:
     ]
     ink, drawn = huang_figures.relief_figure(found), None
     if ink is not None:
-        drawn = figure(
+        drawn = Drawing(
             "Huang 2017: relief of the step ring and the trend over pressure",
             ink,
             "The land is the design's while the ring has room for it, then what the relief "

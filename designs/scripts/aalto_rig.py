@@ -32,7 +32,7 @@ from actuator_opt.pages.simulation_axes import names as named_above
 from actuator_opt.pages.simulation_comparison import comparison
 from actuator_opt.pages.simulation_comparison_figures import comparison_figure
 from actuator_opt.rendering.axes import Axes
-from actuator_opt.rendering.blocks import column, figure, notes, table
+from actuator_opt.rendering.blocks import Column, Drawing, Notes, Table
 from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink, text_width
 from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
 from actuator_opt.rendering.text import NARROW, fixed, number
@@ -1012,15 +1012,15 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
     for name, (heads, *rows) in grids(study).items():
         words = {"middle": 3, "peak": 1}.get(name, 0)
         columns = [
-            column(head, "left" if k < words else "right", "auto" if k < words else 1)
+            Column(head, "left" if k < words else "right", "auto" if k < words else 1)
             for k, head in enumerate(heads)
         ]
         if name == "middle":
             for k, _ in enumerate(heads[3:-5], 3):
                 columns[k]["width"] = 1.7
-        tables[name] = table(TITLES[name], columns, rows, note=said[name])
+        tables[name] = Table(TITLES[name], columns, rows, note=said[name])
     heads, *rows = statements(study)
-    columns = [column(heads[0], "left", 0.75), column(heads[1], "left", 1.15), column(heads[2])]
+    columns = [Column(heads[0], "left", 0.75), Column(heads[1], "left", 1.15), Column(heads[2])]
     overlay = {
         "kind": "figure",
         "ink": study["drawing"],
@@ -1032,22 +1032,22 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
     )
     sides = [[tables["peak"]], [tables["slip"]]]
     blocks = [
-        table("What the thesis says, and what ours does", columns, rows),
-        notes("What stays open", OPEN),
-        figure("Full throttle: pressure of the rod chamber", ratchet_drawing(study)),
+        Table("What the thesis says, and what ours does", columns, rows),
+        Notes("What stays open", OPEN),
+        Drawing("Full throttle: pressure of the rod chamber", ratchet_drawing(study)),
         tables["ratchet"],
-        figure("Closed ports along the stroke", closed_drawing(study)),
+        Drawing("Closed ports along the stroke", closed_drawing(study)),
         tables["closed"],
-        figure(
+        Drawing(
             "Moving, throttle 0 %, our reducing valve; thin: retracting; grey: constant pressure",
             stroke_drawing(study),
         ),
-        figure(
+        Drawing(
             "Mid-stroke, extending, throttle 0 %; thin: 75 %, needle read back", tone_drawing(study)
         ),
         overlay,
         tables["middle"],
-        figure("Slip of the seals: velocity behind the load cell", slip_drawing(study)),
+        Drawing("Slip of the seals: velocity behind the load cell", slip_drawing(study)),
         {"kind": "pair", "title": "", "sides": sides, "note": ""},
     ]
     shown = {

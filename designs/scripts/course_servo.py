@@ -26,7 +26,7 @@ from actuator_opt.base.tables import aligned
 from actuator_opt.models.tuning import ziegler_nichols
 from actuator_opt.pages.simulation_comparison import comparison
 from actuator_opt.pages.simulation_comparison_figures import LEAST, comparison_figure
-from actuator_opt.rendering.blocks import Block, column, figure, notes, table
+from actuator_opt.rendering.blocks import Block, Column, Drawing, Notes, Table
 from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
 from actuator_opt.rendering.text import fixed, number
 from actuator_opt.simulation import Simulation
@@ -485,7 +485,7 @@ def page(study: Study) -> tuple[bytes, list[bytes]]:
     blocks: list[Block] = []
     for key, loop in LOOPS.items():
         runs = [(name, study.runs[key][name]) for name in SHOWN]
-        blocks.append(figure(loop.title, comparison_figure(comparison(runs, loop.title), LEAST)))
+        blocks.append(Drawing(loop.title, comparison_figure(comparison(runs, loop.title), LEAST)))
         grid = loop_rows(loop, all_rows(data["loops"][key]), data["loops"][key]["linear"])
         blocks.append(_table("", grid, note=_NOTE if key == "position" else ""))
         if key == "position":  # what of the other tables has room on its sheet
@@ -495,7 +495,7 @@ def page(study: Study) -> tuple[bytes, list[bytes]]:
         blocks.append(
             _table(f"What matters most to {SENSITIVE[name][0]}", sensitive_rows(name, rows))
         )
-    blocks.append(notes("Hard to specify", HARD))
+    blocks.append(Notes("Hard to specify", HARD))
     shown = {
         "version": data["version"],
         "lead": sentences(data),
@@ -526,8 +526,8 @@ HARD = (
 
 def _table(title: str, grid: list[list[str]], note: str = "") -> Block:
     heads, *rows = grid
-    columns = [column(heads[0], "left", 1.0), *(column(head, "right") for head in heads[1:])]
-    return table(title, columns, rows, note=note)
+    columns = [Column(heads[0], "left", 1.0), *(Column(head, "right") for head in heads[1:])]
+    return Table(title, columns, rows, note=note)
 
 
 def write(study: Study, folder: Path) -> int:

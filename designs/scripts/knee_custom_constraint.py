@@ -25,7 +25,7 @@ import actuator_opt as ao
 from actuator_opt.base.numeric import sqrt
 from actuator_opt.base.tables import aligned
 from actuator_opt.rendering.axes import Axes
-from actuator_opt.rendering.blocks import column, figure, table
+from actuator_opt.rendering.blocks import Column, Drawing, Table
 from actuator_opt.rendering.ink import BLUE, RED, WHITE, Ink
 from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
 from actuator_opt.rendering.text import fixed, number
@@ -270,15 +270,15 @@ def drawing(study: Data) -> Ink:
 
 def page(study: Data) -> tuple[bytes, list[bytes]]:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
-    blocks = [figure("What the width costs", drawing(study))]
+    blocks = [Drawing("What the width costs", drawing(study))]
     for title, (heads, *rows), note in (
         ("Over the width", width_rows(study), "g per mm: mean slope from the row above."),
         ("Before and after", change_rows(study), binds(study)),
     ):
-        columns = [column(head, "right", "auto") for head in heads]
+        columns = [Column(head, "right", "auto") for head in heads]
         if title == "Before and after":
             columns[0] |= {"align": "left", "width": 1}
-        blocks.append(table(title, columns, rows, note=note))
+        blocks.append(Table(title, columns, rows, note=note))
     shown = {"version": study["version"], "lead": lead(study), "blocks": blocks}
     return study_sheets(Path(__file__), study, shown)
 

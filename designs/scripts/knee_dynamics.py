@@ -25,7 +25,7 @@ import actuator_opt as ao
 from actuator_opt.base.tables import aligned
 from actuator_opt.metrics import METRICS
 from actuator_opt.rendering.axes import Axes
-from actuator_opt.rendering.blocks import column, figure, table
+from actuator_opt.rendering.blocks import Column, Drawing, Table
 from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink
 from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
 from actuator_opt.rendering.text import fixed, number
@@ -419,15 +419,15 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
     grids = {name: series_rows(name, found[name]) for name in ASKED} | {
         "changes": change_rows(study)
     }
-    blocks = [figure("What it weighs", drawing(study))]
+    blocks = [Drawing("What it weighs", drawing(study))]
     for name, (heads, *rows) in grids.items():
-        columns = [column(head, "right", "12.6mm") for head in heads]
+        columns = [Column(head, "right", "12.6mm") for head in heads]
         columns[-1] |= {"align": "left", "width": 1}
         if name == "changes":
             columns[0] |= {"align": "left", "width": "auto"}
         else:
             columns[0]["width"], columns[6]["width"] = "16mm", "14.4mm"
-        blocks.append(table(TITLES[name], columns, rows, note=said[name]))
+        blocks.append(Table(TITLES[name], columns, rows, note=said[name]))
     shown = {
         "version": study["version"],
         "lead": [sentence(name, found[name]) for name in ASKED],

@@ -31,7 +31,7 @@ from actuator_opt.models.extrusion import gap_limit
 from actuator_opt.models.lines import line_pressure_drop, line_volume
 from actuator_opt.models.mass import oil_mass, tube_mass
 from actuator_opt.rendering.axes import AREAS, Axes
-from actuator_opt.rendering.blocks import column, figure, table
+from actuator_opt.rendering.blocks import Column, Drawing, Table
 from actuator_opt.rendering.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, spread_within
 from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
 from actuator_opt.rendering.text import fixed, number
@@ -708,23 +708,23 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
     """The report as PDF and as images of its sheets: the same numbers give the same bytes."""
     said = remarks(study)
     strips = "Under the curves: where a limit binds (filled). Those alike at all: under the tables."
-    blocks = [figure("What the robot carries for its knee", drawing(study), strips)]
+    blocks = [Drawing("What the robot carries for its knee", drawing(study), strips)]
     grids = (
         ("Pressure by pressure", mass_rows(study), said["mass"]),
         ("How the requirements stand", need_rows(study), said["need"]),
         ("Taken for granted", assumed_rows(), ""),
     )
     for title, (heads, *rows), note in grids:
-        columns = [column(head, "right", "auto") for head in heads]
+        columns = [Column(head, "right", "auto") for head in heads]
         if title != "Pressure by pressure":
             columns[-1] |= {"align": "left", "width": 1}
         else:
             columns = [
-                column(head, "right", f"{wide}mm") for head, wide in zip(heads, WIDTHS, strict=True)
+                Column(head, "right", f"{wide}mm") for head, wide in zip(heads, WIDTHS, strict=True)
             ]
         if title == "Taken for granted":
             columns[0]["align"] = "left"
-        blocks.append(table(title, columns, rows, note=note))
+        blocks.append(Table(title, columns, rows, note=note))
     shown = {"version": study["version"], "lead": lead(study), "blocks": blocks}
     return study_sheets(Path(__file__), study, shown)
 

@@ -26,7 +26,7 @@ from actuator_opt.models.contact_profile import o_ring_mean
 from actuator_opt.models.elastomer import modulus_gent
 from actuator_opt.models.seals import LAWS
 from actuator_opt.rendering.axes import Axes
-from actuator_opt.rendering.blocks import column, figure, table
+from actuator_opt.rendering.blocks import Column, Drawing, Table
 from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink
 from actuator_opt.rendering.script_pages import rounded, study_sheets, write_study
 from actuator_opt.rendering.text import fixed, number
@@ -599,19 +599,19 @@ def page(study: Data) -> tuple[bytes, list[bytes]]:
         "choices": choice_rows(study),
         "prices": price_rows(study),
     }
-    blocks = [figure("What it weighs", drawing(study))]
+    blocks = [Drawing("What it weighs", drawing(study))]
     for name, (heads, *rows) in grids.items():
         if name == "series":
-            columns = [column(head, "right", "12.2mm") for head in heads]
+            columns = [Column(head, "right", "12.2mm") for head in heads]
             columns[0] |= {"align": "left", "width": 1}
             for k, wide in ((1, "13mm"), (7, "16mm"), (8, "16mm"), (9, "15.5mm"), (11, "14mm")):
                 columns[k]["width"] = wide
         else:
-            columns = [column(head, "right", "auto") for head in heads]
+            columns = [Column(head, "right", "auto") for head in heads]
             columns[0]["align"] = columns[1]["align"] = "left"
             if name == "choices":
                 columns[-1] |= {"align": "left", "width": 1}
-        blocks.append(table(TITLES[name], columns, rows, note=said[name]))
+        blocks.append(Table(TITLES[name], columns, rows, note=said[name]))
     shown = {
         "version": study["version"],
         "lead": lead(study),

@@ -1,13 +1,17 @@
-"""Attach files to a finished PDF by an incremental update, and read them back."""
+"""What a PDF carries inside: files attached by an incremental update, and read back."""
 
 from __future__ import annotations
 
 import re
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
 
 from ..base.errors import Diagnostic, InputError
+from ..base.files import read_bytes, read_json
 
 MOST_BYTES = 50_000_000
 """Of an attachment: a choice far above any input."""
@@ -20,6 +24,17 @@ _STREAM = re.compile(rb">>\s{0,16}stream\r?\n")
 _STEP = 1_000_000
 """Bytes unpacked at once."""
 _DAMAGED = Diagnostic("its attachment is damaged", "take the original file")
+
+_MOST_BYTES = 200_000_000
+_OURS = "give a PDF that actuator-opt wrote"
+
+
+@dataclass(frozen=True, slots=True)
+class Attachment:
+    """What a report carries inside: the design's text and how the report was made."""
+
+    source: str
+    run: Mapping[str, Any]
 
 
 def embed(pdf: bytes, files: Sequence[tuple[str, str, bytes]], timestamp: int = 0) -> bytes:
@@ -153,3 +168,36 @@ def _unpacked(pdf: bytes, begin: int) -> tuple[bytes, bool]:
 
 def _too_large() -> InputError:
     return InputError(f"its attachment is larger than {MOST_BYTES // 1_000_000} MB")
+
+
+def read_attachment(path: Path) -> Attachment:
+    """The input and the command that a report of ours carries.
+
+    Raises
+    ------
+    InputError : no such file, no PDF, encrypted, damaged, or not written by this program
+    """
+    content = read_bytes(path, most=_MOST_BYTES, kinds=(".pdf",), what="PDF")
+    try:
+        if b"%PDF-" not in content[:1024]:
+            raise InputError(Diagnostic("is no PDF", _OURS))
+        if re.search(rb"/Encrypt\s+\d+\s+\d+\s+R", content):
+            raise InputError(Diagnostic("is encrypted", "save it without a password"))
+        found = extract(content, ("application/yaml", "application/json"))
+        source, run = found["application/yaml"].decode(), read_json(found["application/json"])
+        if not isinstance(run, dict) or "actuator_opt" not in run:
+            raise KeyError("actuator_opt")
+    except KeyError:
+        raise InputError(Diagnostic(_carries(content), _OURS, str(path))) from None
+    except ValueError:
+        fault = Diagnostic("its attachment is damaged", "take the original file", str(path))
+        raise InputError(fault) from None
+    except InputError as error:
+        raise InputError([replace(x, file=str(path)) for x in error.diagnostics]) from None
+    return Attachment(source, run)
+
+
+def _carries(content: bytes) -> str:
+    """Why there is no input in a PDF: it never was, or the end of the file is lost."""
+    ended = b"%%EOF" in content[-2048:]
+    return "carries no input to run again" if ended else "is cut off and carries no input"

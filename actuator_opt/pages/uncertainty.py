@@ -1,0 +1,426 @@
+"""The page of an uncertainty study: yield, requirements over the draws, causes, inputs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from ..evaluation.reserve import count_words, without_reserve
+from ..rendering import text
+from ..rendering.axes import Axes, fitted, ticks
+from ..rendering.blocks import (
+    Block,
+    Column,
+    Drawing,
+    Notes,
+    Page,
+    Row,
+    State,
+    Table,
+    Tile,
+    Verdict,
+    short,
+    tile,
+)
+from ..rendering.ink import BLACK, BLUE, GREY, RED, Ink
+from ..rendering.series import Series
+from ..uncertainties.estimate import Rate
+from ..uncertainties.inputs import Input
+from ..uncertainties.model import TOLERANCE
+from ..uncertainties.result import LimitYield, Swing, Uncertainty
+from .optimum import sentence
+from .tornado import LIGHT, MOST, Bar, bars
+
+SHOWN = 8
+"""Most inputs shown for one output."""
+LEAST_SHARE = 0.005
+"""Share of the variance below which an input is not worth a row."""
+
+ROW, NAMES, HOLDS = 5.4, 46.0, 22.0
+"""Height of a row, room for names at the left and for probabilities at the right (mm)."""
+LOWEST, HIGHEST = -0.6, 1.0
+"""Margins drawn at most; what lies beyond ends at the frame with an arrow."""
+
+
+def page(study: Uncertainty) -> Page:
+    """The page of an uncertainty study."""
+    return Page(
+        name=study.name,
+        kind="Yield from uncertain inputs",
+        verdict=verdict(study),
+        sentence=text.pretty(_sentence(study)),
+        tiles=_tiles(study),
+        hero=lambda room: margins_figure(study),
+        blocks=list(_blocks(study)),
+    )
+
+
+def series(study: Uncertainty) -> list[Series]:
+    """The draws as columns: inputs, margins of all limits, whether all requirements are met."""
+    inputs = [
+        Series(
+            f"{x.path} [{x.quantity.unit}]" if x.quantity.unit else x.path,
+            [x.quantity.to_display(v) for v in values.tolist()],
+        )
+        for x, values in zip(study.inputs, study.kept.values, strict=True)
+    ]
+    margins = [
+        Series(f"margin of {limit.name}", np.where(np.isfinite(values), values, np.nan).tolist(), 5)
+        for limit, values in zip(study.limits, study.kept.margins, strict=True)
+    ]
+    required = np.array([limit.required for limit in study.limits], dtype=bool)
+    met = (study.kept.margins[required] >= -TOLERANCE).all(axis=0)
+    return [*inputs, *margins, Series("requirements met", [int(x) for x in met])]
+
+
+def verdict(study: Uncertainty) -> Verdict:
+    """Whether the nominal design meets its requirements, and the yield."""
+    known = [limit for limit in study.required if limit.margin is not None]
+    met = sum(limit.margin >= -TOLERANCE for limit in known if limit.margin is not None)
+    tight = sum(without_reserve(limit.margin, limit.limit) for limit in known)
+    lines = [
+        f"nominal design: {met} of {len(study.required)} requirements met",
+        f"yield {percent(study.rate.value)}",
+    ]
+    if not study.met:
+        return Verdict("missed", "NOMINAL DESIGN MISSES REQUIREMENTS", lines)
+    if tight:
+        return Verdict("checks", f"NOMINAL DESIGN MEETS ALL, {count_words(tight).upper()}", lines)
+    return Verdict("met", "NOMINAL DESIGN MEETS ALL", lines)
+
+
+# ---- words ----
+
+
+def percent(share: float, digits: int = 2) -> str:
+    """A probability in per cent; 0 and 100 only where they are exact.
+
+    >>> percent(0.9953), percent(1.0), percent(0.99999999)
+    ('99.53 %', '100 %', '> 99.99 %')
+    """
+    if share in (0.0, 1.0):
+        return f"{100 * share:.0f} %"
+    step = 10.0**-digits
+    if 100 * share > 100 - step:
+        return f"> {100 - step:.{digits}f} %"
+    if 100 * share < step:
+        return f"< {step:.{digits}f} %"
+    return f"{100 * share:.{digits}f} %"
+
+
+def between(rate: Rate) -> str:
+    """The 95 % bounds of a probability."""
+    return f"{percent(rate.lower)} to {percent(rate.upper)}"
+
+
+def _sentence(study: Uncertainty) -> str:
+    count = text.trimmed(float(study.count), 8)
+    return (
+        f"{percent(study.rate.value)} of the actuators meet every requirement (95 % bounds "
+        f"{between(study.rate)}; {count} {study.method}, {len(study.inputs)} inputs). "
+        f"{weakest(study)}"
+    )
+
+
+def weakest(study: Uncertainty) -> str:
+    """The requirement with the lowest yield."""
+    if not study.required:
+        return "The design states no requirement."
+    worst = study.required[0]
+    failing = [limit for limit in study.required if limit.rate.value < 1]
+    if not failing:
+        low = worst.margins[0]
+        said = "" if low is None else f": {_margin(worst, low)} at the 1 % point"
+        return f"No draw missed a requirement; {worst.name} has the smallest margin{said}."
+    words = f"{worst.name} is missed most often: by {percent(1 - worst.rate.value)} of the draws"
+    if len(failing) > 1:
+        others = ", ".join(f"{x.name} {percent(1 - x.rate.value)}" for x in failing[1:4])
+        words += f"; then {others}"
+    return f"{words}."
+
+
+def _with_checks(study: Uncertainty) -> str:
+    """The yield with the check list; empty where no draw misses a check."""
+    failing = [limit for limit in study.checks if limit.rate.value < 1]
+    if not failing:
+        return ""
+    named = ", ".join(f"{x.name} {percent(1 - x.rate.value)}" for x in failing[:4])
+    rest = f" and {len(failing) - 4} more" if len(failing) > 4 else ""
+    return (
+        f"{percent(study.rate_checks.value)} meet the requirements and the check list "
+        f"({between(study.rate_checks)}); missed checks: {named}{rest}."
+    )
+
+
+def _margin(limit: LimitYield, margin: float | None) -> str:
+    return text.margin_of(text.metric(limit.metric), limit.limit, margin)
+
+
+def value_words(study: Uncertainty, output: str, number: float | None) -> str:
+    """An output as people read it: a metric in its unit, a margin in per cent."""
+    if output in study.units:
+        return text.value_text(text.metric(output), number)
+    limit = next((x for x in study.limits if x.name == output), None)
+    return text.margin_text(number) if limit is None else _margin(limit, number)
+
+
+def followed(study: Uncertainty) -> list[str]:
+    """Outputs with a table: up to three missed requirements, else the nearest; then metrics."""
+    failing = [limit.name for limit in study.required if limit.rate.value < 1][:3]
+    nearest = [limit.name for limit in study.required[:1]]
+    return [*(failing or nearest), *study.units]
+
+
+# ---- key figures and blocks ----
+
+
+def _tiles(study: Uncertainty) -> list[Tile]:
+    """Yield, yield with the check list, inputs, the weakest requirement and its main cause."""
+    checked = study.rate_checks
+    tiles = [
+        tile("yield", percent(study.rate.value), f"95 %: {between(study.rate)}"),
+        tile("yield with the check list", percent(checked.value), f"95 %: {between(checked)}"),
+        tile("uncertain inputs", str(len(study.inputs)), "listed below"),
+    ]
+    if study.required:
+        worst = study.required[0]
+        margin = _margin(worst, worst.margin)
+        label = short(worst.name.replace("_", " "), 28)
+        tiles.append(tile(label, margin, f"met by {percent(worst.rate.value)}"))
+        ranked = study.of_output(worst.name)[0]
+        if ranked and ranked[0].total is not None:
+            share = f"{100 * ranked[0].total:.0f} % of its variance"
+            name = short(ranked[0].path.rpartition(".")[2].replace("_", " "), 28)
+            tiles.append(tile("its main cause", share, name))
+    return tiles
+
+
+def _blocks(study: Uncertainty) -> Iterator[Block]:
+    checks = [limit for limit in study.checks if limit.rate.value < 1]
+    if study.required:
+        yield _limits("Requirements over the draws", study.required)
+    if checks:
+        yield _limits("Checks missed by some draws", checks)
+    for output in followed(study):
+        yield from _causes(study, output)
+    yield _inputs(study)
+    said = [_with_checks(study), *study.notes]
+    if study.dropped > 0:
+        share = percent(study.dropped)
+        said.append(f"{share} of the rows of the sensitivity indices are not computable: left out")
+    remarks = [sentence(text.pretty(words)) for words in said if words]
+    yield Notes("What the yield means", remarks, style="dim", headless=True)
+
+
+def _limits(title: str, limits: Iterable[LimitYield]) -> Table:
+    columns = [
+        Column("limit", "left", 1.0, breaks=60, mono=True, least=16),
+        Column("", "right"),
+        Column("nominal margin", "right", drop=3),
+        Column("5 % of draws", "right"),
+        Column("median", "right", drop=1),
+        Column("met by", "right", strong=True, drop=0, style="state"),
+        Column("95 % bounds", "right", drop=2),
+    ]
+    rows = []
+    for limit in limits:
+        words = text.limit_text(text.metric(limit.metric), limit.sense, limit.limit)
+        spots = (limit.margin, limit.margins[1], limit.margins[2])
+        rate = limit.rate.value
+        cells = (limit.name, words, *(_margin(limit, x) for x in spots))
+        state: State = "met" if rate == 1 else "missed" if rate < 0.5 else "no_reserve"
+        rows.append(Row((*cells, percent(rate), between(limit.rate)), state))
+    return Table(title, columns, rows)
+
+
+def _causes(study: Uncertainty, output: str) -> Iterator[Block]:
+    """Inputs behind the variance of an output: bars on paper, a table on the terminal."""
+    if output in study.units:
+        title = f"Causes of the variation of {text.metric(output).label}"
+    else:
+        title = f"Causes of the variation of the margin of {output}"
+    rows = _indices(study, output)
+    columns = [
+        Column("input", "left", 1.0, least=34),
+        Column("alone", "right"),
+        Column("with others", "right"),
+        Column("at 5 %", "right", drop=1),
+        Column("at 95 %", "right", drop=1),
+    ]
+    note = (
+        "Bars: this input alone at its 95 % and 5 % point. Alone: share of the variance from "
+        "this input; with others: including its interactions."
+    )
+    table = Table(title, columns, rows, on="terminal") if rows else None
+    ink = tornado(study, output)
+    if ink is not None:
+        yield Drawing(title, ink, note, instead=table)
+    elif table is not None:
+        yield table
+
+
+def _indices(study: Uncertainty, output: str) -> list[tuple[str, ...]]:
+    """Sensitivity indices of the inputs that matter, and the output at both ends of each."""
+    ranked, swings = study.of_output(output)
+    ends = {swing.path: swing for swing in swings}
+    rows = []
+    for index in ranked[:SHOWN]:
+        if index.total is None or index.total < LEAST_SHARE:
+            continue
+        swing = ends[index.path]
+        shares = (_share(index.first, index.first_half), _share(index.total, index.total_half))
+        spots = (value_words(study, output, x) for x in (swing.at_5, swing.at_95))
+        rows.append((index.path, *shares, *spots))
+    return rows
+
+
+def _share(index: float | None, half: float | None) -> str:
+    """An index with half its interval, in per cent."""
+    if index is None or half is None:
+        return text.DASH
+    return f"{100 * index:.0f} ± {max(100 * half, 0.5):.0f} %".replace("-", text.MINUS)
+
+
+def _inputs(study: Uncertainty) -> Table:
+    """All uncertain inputs."""
+    columns = [
+        Column("input", "left", 1.3, breaks=30, mono=True, least=34),
+        *(Column(head, "right") for head in ("value", "5 %", "95 %")),
+        Column("distribution", drop=2),
+        Column("from", "left", 1.2, breaks=30, drop=1, least=16),
+    ]
+    return Table("Uncertain inputs", columns, [_input(x) for x in study.inputs])
+
+
+def _input(given: Input) -> tuple[str, ...]:
+    ends = given.distribution.at(np.array([0.05, 0.95])).tolist()
+    numbers = [text.value_text(given.quantity, x) for x in (given.value, *ends)]
+    doubt = " (unverified)" if given.confidence == "unverified" else ""
+    origin = text.pretty(given.why.replace("+-", "±")) + doubt
+    return given.path, *numbers, given.distribution.shape, origin
+
+
+# ---- figures ----
+
+
+def shown(found: Uncertainty) -> list[LimitYield]:
+    """Requirements and failing checks, the most endangered first."""
+    failing = [one for one in found.checks if one.rate.value < 1]
+    return [*found.required, *failing][:MOST]
+
+
+def margins_figure(found: Uncertainty, *, width: float = 180.0) -> Ink:
+    """A strip per requirement: 1 to 99 % as a line, 5 to 95 % as a box, median, design."""
+    lines = shown(found)
+    top = 9.0
+    ink = Ink(width, top + ROW * max(len(lines), 1) + 10.0)
+    known = [x for one in lines for x in (*one.margins, one.margin) if x is not None]
+    low = max(min([*known, 0.0]), LOWEST)
+    high = min(max([*known, 0.02]), HIGHEST)
+    room = 0.04 * (high - low)
+    box = (NAMES, top, width - NAMES - HOLDS, ROW * max(len(lines), 1))
+    axes = Axes(ink, box, (100 * (low - room), 100 * (high + room)), (0.0, 1.0))
+    places = [(x, text.trimmed(x)) for x in ticks(*axes.x_range, 8)]
+    axes.frame_at("", "margin, % of the limit", places, [], upright=True)
+    zero = axes.x(0.0)
+    ink.line((zero, top - 1.0), (zero, top + box[3]), pen=0.35, stroke=RED)
+    ink.text(zero, top - 2.6, "limit", size=6.5, anchor="center", color=RED, bold=True)
+    _key(ink, top)
+    ink.text(width, top - 2.6, "holds", size=6.5, anchor="right", color=GREY)
+    for index, one in enumerate(lines):
+        _strip(ink, axes, top + ROW * (index + 0.5), one, width)
+    return ink
+
+
+def _key(ink: Ink, top: float) -> None:
+    """What box, line and circle mean."""
+    y = top - 6.4
+    ink.line((0.0, y), (8.0, y), pen=0.3)
+    ink.box(2.0, y - 1.1, 4.0, 2.2, fill=LIGHT, pen=0.15)
+    ink.line((4.0, y - 1.1), (4.0, y + 1.1), pen=0.5, stroke=BLUE)
+    ink.text(9.5, y, "1, 5, 50, 95 and 99 % of the draws", size=6.5)
+    ink.circle(62.0, y, 0.8, fill=BLACK, pen=0.1)
+    ink.text(64.0, y, "nominal", size=6.5)
+
+
+def _strip(ink: Ink, axes: Axes, y: float, one: LimitYield, width: float) -> None:
+    name = fitted(one.name, NAMES - 2.0, 6.5)
+    ink.text(NAMES - 1.6, y, name, size=6.5, anchor="right", bold=one.required)
+    left, right = axes.left, axes.left + axes.width
+
+    def place(margin: float | None) -> float:
+        if margin is None:
+            return left
+        return min(max(axes.x(100 * max(min(margin, 1e3), -1e3)), left), right)
+
+    p1, p5, p50, p95, p99 = (place(x) for x in one.margins)
+    ink.line((p1, y), (p99, y), pen=0.3)
+    ink.box(p5, y - 1.4, max(p95 - p5, 0.1), 2.8, fill=LIGHT, pen=0.15)
+    ink.line((p50, y - 1.4), (p50, y + 1.4), pen=0.5, stroke=BLUE)
+    for edge, inner, beyond in (
+        (left, left + 2.0, _below(one.margins[0], axes)),
+        (right, right - 2.0, _above(one.margins[-1], axes)),
+    ):
+        if beyond:
+            ink.arrow((edge, y), (inner, y), length=1.6, color=GREY)
+    if one.margin is not None and axes.x_range[0] <= 100 * one.margin <= axes.x_range[1]:
+        ink.circle(place(one.margin), y, 0.8, fill=BLACK, pen=0.1)
+    colour = BLACK if one.rate.value > 0.5 else RED
+    ink.text(width, y, percent(one.rate.value), size=6.5, anchor="right", color=colour)
+
+
+def _below(margin: float | None, axes: Axes) -> bool:
+    return margin is None or 100 * margin < axes.x_range[0]
+
+
+def _above(margin: float | None, axes: Axes) -> bool:
+    return margin is not None and 100 * margin > axes.x_range[1]
+
+
+def tornado(found: Uncertainty, output: str, *, width: float = 180.0) -> Ink | None:
+    """Bars of one output at the 95 % (dark) and 5 % (light) points of every input that matters."""
+    ranked, _ = found.of_output(output)
+    ends = {one.path: one for one in found.of_output(output)[1]}
+    centre = found.nominal[output]
+    if centre is None:
+        return None
+    metric = output in found.units
+    quantity = text.metric(output) if metric else None
+    factor = 100.0 if quantity is None else quantity.to_display(1.0) - quantity.to_display(0.0)
+    matter = [x for x in ranked if (x.total or 0.0) >= LEAST_SHARE][:SHOWN]
+    lines = []
+    for one in matter:
+        shares = (_percent(one.first), _percent(one.total))
+        changes = _changes(ends[one.path], centre, factor)
+        lines.append(Bar(one.path, changes, shares))
+    if not lines or all(change is None for line in lines for change in line.changes):
+        return None
+    unit = "% of the limit" if quantity is None else text.unit_text(quantity.unit)
+    label = f"change of the margin of {output}" if quantity is None else quantity.label
+    return bars(
+        lines,
+        axis=f"{label}, {unit}" if quantity is None else f"change of {label}, {unit}",
+        centre=f"nominal {value_words(found, output, centre)}",
+        ends=("95 %", "5 %"),
+        columns=("alone", "with others"),
+        width=width,
+    )
+
+
+def _changes(one: Swing, centre: float, factor: float) -> tuple[float | None, float | None]:
+    """Changes at the upper and the lower end, in display units."""
+
+    def change(value: float | None) -> float | None:
+        if value is None or not math.isfinite(value):
+            return None
+        return factor * (value - centre)
+
+    return change(one.at_95), change(one.at_5)
+
+
+def _percent(index: float | None) -> str:
+    if index is None:
+        return text.DASH
+    return f"{max(100 * index, 0.0):.0f} %"

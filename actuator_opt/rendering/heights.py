@@ -1,0 +1,122 @@
+"""Heights of blocks on a sheet of paper, estimated from the widths of their words.
+
+`room` says how much of the first sheet is left for the large figure. The estimate is a little
+too high rather than too low: a figure that is a few millimetres smaller does no harm, a block
+that moves to the next sheet does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from .blocks import Block, Cell, Drawing, Flag, Listing, Notes, Page, Pair, Row, Status, Table, soft
+from .ink import text_width
+
+SHEET, TILES, FOOT, HEAD = 265.0, 23.0, 24.5, 8.2
+"""Heights inside the margins of the sheet, of the key figures, of the title block, and of the
+title of a block [mm]."""
+HALF, FULL = 86.0, 172.0
+"""Width of words in half a sheet and in a whole one [mm]."""
+LINE, NOTE_LINE = 3.6, 2.75
+"""Height of a line of a table and of the note below it [mm]."""
+
+
+def joined(cell: Cell) -> str:
+    """A cell as one text; marks without words are empty.
+
+    >>> joined(["barrel.", "wall"]), joined(Status("met"))
+    ('barrel.wall', 'met')
+    """
+    if isinstance(cell, str):
+        return cell
+    if isinstance(cell, list):
+        return "".join(cell)
+    if isinstance(cell, Status):
+        return cell.words
+    return cell.text if isinstance(cell, Flag) else ""
+
+
+def wrap(text: str, width: float, size: float) -> list[str]:
+    """Lines of a text no wider than `width` mm; words that are too long are cut.
+
+    >>> wrap("one two three", 12.0, 7.0)
+    ['one two', 'three']
+    """
+    lines = [""]
+    for word in text.replace("\n", " ").split(" "):
+        trial = f"{lines[-1]} {word}" if lines[-1] else word
+        if text_width(trial, size) <= width:
+            lines[-1] = trial
+            continue
+        if lines[-1]:
+            lines.append("")
+        while word and text_width(word, size) > width:
+            cut = max(1, int(len(word) * width / text_width(word, size)) - 1)
+            lines[-1] = word[:cut]
+            lines.append("")
+            word = word[cut:]
+        lines[-1] = word
+    return lines
+
+
+def cells_of(row: Row | Sequence[Cell]) -> Sequence[Cell]:
+    """The cells of a row, with or without a state."""
+    return row.cells if isinstance(row, Row) else row
+
+
+def height(block: Block, width: float = FULL) -> float:
+    """Height of a block on paper [mm]; 0 of what paper does not show."""
+    if isinstance(block, Pair):
+        return max(sum(height(one, HALF) for one in side) for side in block.sides)
+    if isinstance(block, Table):
+        shown = block.on != "terminal"
+        return shown * (HEAD + _note(block.note, width) + LINE * sum(_lines(block, width)))
+    if isinstance(block, Drawing):
+        return HEAD + _note(block.note, width) + block.ink.height + 3.0
+    if isinstance(block, Notes):
+        if block.on == "terminal":
+            return 0.0
+        lines = [len(wrap(joined(soft(one)), width, 7.0)) for one in block.items]
+        return HEAD + 1.5 + _note(block.note, width) + sum(3.2 * n + 0.5 for n in lines)
+    if isinstance(block, Listing):
+        return HEAD + 2.5 * len(block.text.splitlines())
+    return 0.0
+
+
+def room(page: Page) -> float:
+    """Height left for the large figure on the first sheet [mm].
+
+    Blocks at the end go on to the next sheet where the figure would be lower than `Page.least`.
+    """
+    head = 6.0 + (8.0 if len(page.name) <= 28 else 6.0 * math.ceil(len(page.name) / 45))
+    head += 3.1 * len(wrap(page.sentence, 112.0, 7.5))
+    left = SHEET - max(head, 17.0) - TILES - FOOT
+    heights = [height(block) for block in page.blocks]
+    while heights and left - sum(heights) < page.least:
+        heights.pop()
+    return left - sum(heights)
+
+
+def _note(words: str, width: float) -> float:
+    return NOTE_LINE * len(wrap(words, width, 6.2)) + 1.2 if words else 0.0
+
+
+def _lines(table: Table, width: float) -> list[float]:
+    """Lines of the heads and of every row: the flexible columns share what the others leave."""
+    columns = [k for k, one in enumerate(table.columns) if one.on != "terminal"]
+    body = [cells_of(row) for row in table.rows]
+    wides = {}
+    for k in columns:
+        one = table.columns[k]
+        words = [*one.head.split("\n"), *(joined(row[k]) for row in body)]
+        wides[k] = max(text_width(word, 6.8, bold=one.strong) for word in words) + 2.2
+    spare = width - sum(wides.values())
+    flexible = [k for k in columns if table.columns[k].flexible] or columns[:1]
+    for k in flexible:
+        wides[k] = max(wides[k] + min(spare, 0.0) / len(flexible), 10.0)
+    found = [float(max(table.columns[k].head.count("\n") + 1 for k in columns))]
+    for row in body:
+        most = max(len(wrap(joined(row[k]), wides[k] - 2.0, 6.8)) for k in columns)
+        found.append(1.0 + 0.72 * (most - 1))
+    return found

@@ -1,0 +1,169 @@
+"""A page on the terminal: verdict, sentence, and its blocks one below the other.
+
+Pure functions: they return text and print nothing. Without Unicode the text is plain ASCII.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Unpack
+
+from .blocks import (
+    Bar,
+    Block,
+    Cell,
+    Column,
+    Drawing,
+    Flag,
+    Notes,
+    Page,
+    Pair,
+    Row,
+    Share,
+    Slot,
+    State,
+    Status,
+    Table,
+    TerminalFigure,
+    Verdict,
+)
+from .console import Console, Style
+from .heights import joined
+from .terminal_curve import curve
+
+PAINTS: dict[str, str] = {
+    "": "",
+    "met": "green",
+    "no_reserve": "yellow",
+    "missed": "red bold",
+    "checks": "yellow bold",
+    "not_checked": "dim",
+    "infeasible": "red bold",
+}
+"""Colours of states."""
+MARKS: dict[str, tuple[str, str]] = {
+    "": ("", ""),
+    "met": ("✔", "ok"),
+    "no_reserve": ("!", "!"),
+    "checks": ("!", "!"),
+    "missed": ("✘", "MISSED"),
+    "not_checked": ("○", "-"),
+    "infeasible": ("✘", "INFEASIBLE"),
+}
+"""Marks of states, in Unicode and in ASCII."""
+WIDE = 110
+"""Columns from which margin bars are long."""
+
+
+def text(page: Page, **style: Unpack[Style]) -> str:
+    """A page as text that ends in a line break.
+
+    Parameters
+    ----------
+    page : to show
+    style : colour codes, Unicode signs, columns
+    """
+    console = Console(**style)
+    parts = ["\n".join(heading(page.name, page.verdict, page.sentence, console))]
+    parts += [block_text(block, console) for block in page.blocks]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def heading(name: str, verdict: Verdict, sentence: str, console: Console) -> list[str]:
+    """Name and verdict, what stands behind it, cautions, and the sentence."""
+    mark = f"{MARKS[verdict.state][0]} " if console.unicode and verdict.state else ""
+    state = console.paint(console.say(mark + verdict.text.lower()), *PAINTS[verdict.state].split())
+    said = [f"{console.paint(console.say(name), 'bold')}  {state}"]
+    if verdict.lines:
+        said.append(console.wrap("; ".join(verdict.lines), "dim"))
+    if verdict.cautions:
+        said.append(console.wrap("; ".join(verdict.cautions), "yellow"))
+    return [*said, console.wrap(sentence)] if sentence else said
+
+
+def block_text(block: Block, console: Console) -> str:
+    """A block as text; empty for what the terminal does not show."""
+    if isinstance(block, Pair):
+        parts = [block_text(one, console) for side in block.sides for one in side]
+        return "\n\n".join(part for part in parts if part)
+    if isinstance(block, Drawing):
+        return "" if block.instead is None else block_text(block.instead, console)
+    if isinstance(block, TerminalFigure):
+        return _figure(block, console)
+    if isinstance(block, Table):
+        return "" if block.on == "paper" else _table(block, console)
+    if isinstance(block, Notes):
+        return "" if block.on == "paper" else _notes(block, console)
+    return ""
+
+
+def _notes(block: Notes, console: Console) -> str:
+    said = [] if block.headless else [console.heading(block.title)]
+    said += [console.wrap(item, *block.style.split()) for item in block.items]
+    return "\n".join([*said, *([console.wrap(block.note, "dim")] if block.note else [])])
+
+
+def _figure(figure: TerminalFigure, console: Console) -> str:
+    width = min(console.width, 76)
+    drawn = curve(figure.points, figure.level, console, width, figure.height, ends=figure.ends)
+    if not drawn:
+        return ""
+    below = [console.wrap(figure.note, "dim")] if figure.note else []
+    return "\n".join([console.heading(figure.title), *drawn, *below])
+
+
+def _table(table: Table, console: Console) -> str:
+    shown = [k for k, column in enumerate(table.columns) if column.on != "paper"]
+    columns = [table.columns[k] for k in shown]
+    body, styles = [], []
+    last = len(table.rows) - table.total
+    for index, given in enumerate(table.rows):
+        row = given if isinstance(given, Row) else Row(given)
+        body.append([_cell(row.cells[k], console) for k in shown])
+        total = "bold" if index >= last else ""
+        styles.append([_paint(table.columns[k], row.cells[k], row.state) or total for k in shown])
+    said = [] if table.headless else [console.heading(table.title)]
+    said += console.table(columns, body, styles)
+    return "\n".join([*said, *([console.wrap(table.note, "dim")] if table.note else [])])
+
+
+def _paint(column: Column, cell: Cell, state: State) -> str:
+    """Colour and weight of a cell."""
+    if isinstance(cell, Status):
+        return PAINTS[cell.state]
+    if isinstance(cell, Bar):
+        return PAINTS[state or ("met" if cell.met else "missed")]
+    if isinstance(cell, Flag):
+        return "red bold" if cell.raised else "dim"
+    if isinstance(cell, (Slot, Share)):
+        return "cyan"
+    if column.style == "state":
+        return PAINTS[state]
+    return column.style or ("bold" if column.strong else "")
+
+
+def _cell(cell: Cell, console: Console) -> str:
+    if isinstance(cell, Status):
+        mark = MARKS[cell.state][0 if console.unicode else 1]
+        if not console.unicode and mark.lower() in cell.words.lower():
+            return cell.words
+        return f"{mark} {cell.words}".strip()
+    if isinstance(cell, Bar):
+        return console.margin_bar(cell.margin, 5 if console.width >= WIDE else 3)
+    if isinstance(cell, Slot):
+        return slot(console, cell.place)
+    if isinstance(cell, Share):
+        return ("█" if console.unicode else "#") * round(12 * min(max(cell.value, 0.0), 1.0))
+    return joined(cell)
+
+
+def slot(console: Console, share: float, size: int = 13) -> str:
+    """A place between two ends as a dot on a line."""
+    place = round(min(max(share, 0.0), 1.0) * (size - 1))
+    line, dot = ("─", "●") if console.unicode else ("-", "o")
+    return line * place + dot + line * (size - 1 - place)
+
+
+def words(sentences: Sequence[str], console: Console, *styles: str) -> str:
+    """Paragraphs, broken at the width of the terminal."""
+    return "\n".join(console.wrap(one, *styles) for one in sentences if one)
