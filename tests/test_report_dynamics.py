@@ -15,16 +15,14 @@ from test_through_wall import text_of
 
 import actuator_opt as ao
 from actuator_opt.pages import (
-    bode,
-    bode_loop,
-    dynamics_page,
-    places,
-    stiffness_page,
+    dynamics as dynamics_page,
+    dynamics_figures as bode,
+    stiffness as stiffness_page,
     terminal,
     write_report,
 )
-from actuator_opt.pages.page import page
-from actuator_opt.pages.stiffness_figure import PARTS, fills
+from actuator_opt.pages.report import page
+from actuator_opt.pages.stiffness import PARTS, fills
 from actuator_opt.rendering import paper_plain as fallback
 from actuator_opt.rendering.axes import AREAS, Axes
 from actuator_opt.rendering.ink import BLACK, RED, Ink
@@ -504,13 +502,13 @@ def test_open_loop_of_an_integrator_and_its_drawing():
         open_phase=np.full(len(s), -math.pi / 2),
         closed_magnitude=np.abs(1 / (1 + s)),
     )
-    ink = bode_loop.open_figure(study, [one], bode_loop.LoopLimits())
+    ink = bode.open_figure(study, [one], bode.LoopLimits())
     assert "no gain makes it swing" in texts(ink)
     curve = next(m["path"][0] for m in ink.marks if m.get("stroke") == bode.STYLES[0]["stroke"])
     zero = level_y(ink, 0.0, (("0", 0.0), ("−40", -40.0)))
     at = float(np.interp(-zero, [-p[1] for p in curve[::-1]], [p[0] for p in curve[::-1]]))
     assert at == pytest.approx(log_x(ink, 10.0), abs=0.05)
-    closed = bode_loop.closed_figure(study, [one], bode_loop.LoopLimits())
+    closed = bode.closed_figure(study, [one], bode.LoopLimits())
     marks = circles(closed, bode.STYLES[0]["stroke"])
     assert marks[0][0] == pytest.approx(log_x(closed, 10.0), abs=0.03)
 

@@ -13,7 +13,7 @@ from report_fixture import overlaps
 
 from actuator_opt import api as verbs
 from actuator_opt.models import barrel, stiffness, stiffness_published
-from actuator_opt.pages.page import page
+from actuator_opt.pages.report import page
 from actuator_opt.replicas import elasswad_record, elasswad_tables, published_tables
 from actuator_opt.replicas.elasswad_figures import record_figure
 

@@ -15,7 +15,7 @@ from report_fixture import overlaps
 
 from actuator_opt import api as verbs
 from actuator_opt.evaluation import film
-from actuator_opt.pages.page import page
+from actuator_opt.pages.report import page
 from actuator_opt.replicas import (
     TABLES,
     huang_equations,

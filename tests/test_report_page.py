@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 import report_fixture as fixture
 
-from actuator_opt.pages import ExtraTable, infeasibility_card
-from actuator_opt.pages.page import key_figures, page, verdict
+from actuator_opt.pages import ExtraTable
+from actuator_opt.pages.report import key_figures, page, verdict
 
 SOURCE = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
 

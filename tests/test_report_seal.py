@@ -26,7 +26,7 @@ from actuator_opt.pages import (
     seal_text,
     write_report,
 )
-from actuator_opt.pages.page import page
+from actuator_opt.pages.report import page
 from actuator_opt.rendering import paper_plain as fallback
 from actuator_opt.rendering.ink import Ink
 from actuator_opt.rendering.origin import Origin

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from actuator_opt.base import units
-from actuator_opt.pages import drawing, optimum
+from actuator_opt.pages import optimum, section as drawing
 from actuator_opt.rendering import axes as figures, blocks, console, ink, text
 
 

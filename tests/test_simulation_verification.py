@@ -16,9 +16,9 @@ from actuator_opt.design.model import Limit
 from actuator_opt.design.scenario.model import Load, Scenario
 from actuator_opt.evaluation.build import prepare
 from actuator_opt.evaluation.springs import Give
-from actuator_opt.pages.tables import extra
 from actuator_opt.pages.verification_rows import sensitivity_rows, verification_rows
 from actuator_opt.pages.verification_text import sensitivity_text, verification_text
+from actuator_opt.rendering.blocks import extra
 from actuator_opt.simulation import sensitivity
 from actuator_opt.simulation.sensitivity import sensitivities
 from actuator_opt.simulation.verification import DYNAMIC, experiments, verify

@@ -146,7 +146,7 @@ class Prices:
 
     def text(self, **style: Unpack[Style]) -> str:
         """Prices in the terminal, or why there is no optimum."""
-        from ..pages import infeasibility_card, prices
+        from ..pages import prices
 
         best = self.optimisation
         shown = prices.terminal(best, moving=True, **style)

@@ -97,7 +97,7 @@ def report_design(
 ) -> list[ReportFile]:
     """Write the report of an evaluation or an optimisation; parameters as `report`."""
     from ..pages import write_report
-    from ..pages.robust_rows import robust_tables
+    from ..pages.optimum import robust_tables
     from ..replicas import published_tables
 
     design = subject.design if isinstance(subject, Evaluation) else subject.best

@@ -350,8 +350,8 @@ def write_simulation(
     from ..pages.measured_figures import drawn
     from ..pages.measured_rows import measured_blocks
     from ..pages.simulation_document import write_simulation_sheet
-    from ..pages.tables import extra
     from ..pages.verification_rows import sensitivity_rows
+    from ..rendering.blocks import extra
 
     if scenario is None:
         message = "the page of a simulation needs its scenario"

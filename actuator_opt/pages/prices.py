@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from ..base.quantities import Quantity
 from ..evaluation.result import Requirement
-from ..optimisation.price_words import PER_CENT, display_of
+from ..optimisation.price_words import PER_CENT, display_of, short_name
 from ..optimisation.result import Optimisation
 from ..optimisation.sensitivity import STRAIGHT, Sensitivity
 from ..rendering import text
-from ..rendering.blocks import Block, Cell, Column, Notes, Table, soft
+from ..rendering.blocks import Block, Cell, Column, Drawing, Notes, Table, soft
 from ..rendering.console import Console
 from ..rendering.heights import cells_of, joined
+from ..rendering.ink import Ink
 from ..rendering.terminal import block_text
 from ..rendering.text import DASH
-from . import tornado
+from ..rendering.tornado import MOST, TornadoBar, bars
+
+pass
 
 MOVING = 3
 """Most dimensions named per row of the table of movements."""
@@ -25,14 +28,14 @@ LEAST_MOVE = 1e-4
 """Relative movement per +1 % below which a dimension stands still."""
 
 
-def blocks(optimisation: Optimisation) -> list[Block]:
+def price_blocks(optimisation: Optimisation) -> list[Block]:
     """Prices, the tornado of their re-solved ends, and which dimensions move."""
     if not optimisation.sensitivities:
         return []
     found: list[Block | None] = [
         sensitivities(optimisation),
         Notes("What would buy the most", buys_most(optimisation)),
-        tornado.block(optimisation),
+        tornado_drawing(optimisation),
         moves(optimisation),
     ]
     return [one for one in found if one is not None]
@@ -246,3 +249,84 @@ def moves(optimisation: Optimisation) -> Block | None:
         " that move any; ~ only as far as the price holds."
     )
     return Table("Which dimension moves", columns, rows, note=note)
+
+
+LEAST_EFFECT = 1e-5
+"""Share of the objective below which a row changes nothing worth drawing."""
+
+
+NO_DESIGN = "no design"
+"""What stands where an end has none."""
+
+
+def drawn(optimisation: Optimisation) -> list[Sensitivity]:
+    """The rows worth drawing: ranked as in the table, those without any effect left out."""
+    objective = optimisation.objective_value
+    least = LEAST_EFFECT * abs(objective)
+    rows = [
+        row
+        for row in optimisation.sensitivities
+        if row.effect(objective) > least or any(solved is None for _, _, solved in row.ends)
+    ]
+    return rows[:MOST]
+
+
+def tornado_drawing(optimisation: Optimisation) -> Block | None:
+    """The tornado with its title, or None where nothing changes anything."""
+    rows = drawn(optimisation)
+    if not rows:
+        return None
+    left = len(optimisation.sensitivities) - len(rows)
+    rest = f" {left} more change less or nothing." if left else ""
+    note = (
+        "Bars are solved again, each an optimum of its own; strokes are what the price predicts."
+        f" Ranked by the larger bar.{rest}"
+    )
+    return Drawing(f"What ±{PER_CENT} % of each changes", tornado(optimisation), note)
+
+
+def tornado(optimisation: Optimisation, *, width: float = 180.0) -> Ink:
+    """Bars of the re-solved objective at +10 % (dark) and -10 % (light) of every row.
+
+    A row without a design at an end says so at the right; predictions beyond the frame end at
+    it with an arrow.
+    """
+    objective = optimisation.objective_value
+    quantity = text.metric(optimisation.objective_metric)
+    factor = quantity.to_display(1.0) - quantity.to_display(0.0)
+    rows = [_bar(row, objective, factor) for row in drawn(optimisation)]
+    unit = text.unit_text(quantity.unit)
+    return bars(
+        rows,
+        axis=f"change of {quantity.label}" + (f", {unit}" if unit else ""),
+        centre=f"optimum {text.value_text(quantity, objective)}",
+        ends=(f"+{PER_CENT} %", f"{text.MINUS}{PER_CENT} %"),
+        predicted=True,
+        width=width,
+    )
+
+
+def _bar(row: Sensitivity, objective: float, factor: float) -> TornadoBar:
+    """A price row as a bar."""
+    limit = text.with_unit(text.trimmed(display_of(row, row.limit)), text.unit_text(row.unit))
+    changes: dict[bool, float | None] = {}
+    told: dict[bool, float | None] = {}
+    words: dict[bool, str] = {}
+    for sign, predicted, solved in row.ends:
+        changes[sign > 0] = None if solved is None else factor * (solved - objective)
+        seen = predicted is not None and abs(predicted - objective) > LEAST_EFFECT * abs(objective)
+        told[sign > 0] = (
+            factor * (predicted - objective) if seen and predicted is not None else None
+        )
+        if solved is None:
+            words[sign > 0] = NO_DESIGN
+            continue
+        share = 100 * (solved - objective) / abs(objective) if objective else None
+        said = "" if share is None else f"{text.number(share, 2, signed=True)} %"
+        words[sign > 0] = "0" if share is not None and abs(share) < 100 * LEAST_EFFECT else said
+    return TornadoBar(
+        f"{short_name(row)}  {limit}",
+        (changes.get(True), changes.get(False)),
+        (words.get(True, ""), words.get(False, "")),
+        (told.get(True), told.get(False)),
+    )

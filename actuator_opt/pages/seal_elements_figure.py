@@ -21,10 +21,10 @@ from ..rendering.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, Point, Polygon, 
 from ..rendering.text import number, trimmed
 from ..studies.seal import SealStudy
 from . import stress_bands
-from .bode import STYLES
-from .drawing import OUTLINE, choose_scale
+from .dynamics_figures import STYLES
 from .seal_figures import bars
 from .seal_map_figure import shades
+from .section import OUTLINE, choose_scale
 
 WIDTH = 180.0
 _METAL, _LINES = "#eef1f3", "#9aa3ab"

@@ -27,7 +27,7 @@ from ..rendering.ink import (
 )
 from ..rendering.text import AT_LEAST, AT_MOST, MINUS, number, trimmed
 from ..studies.seal import FilmMap, RingPoint, SealStudy, SqueezeRow
-from .bode import STYLES, dot, inside, level_ticks, logs
+from .dynamics_figures import STYLES, dot, inside, level_ticks, logs
 from .wall_figures import GREEN, OCHRE
 
 STATIC: dict[str, Any] = {"stroke": GREY, "pen": 0.4, "dash": (0.5, 0.6)}

@@ -33,9 +33,9 @@ from ..rendering.ink import (
 from ..rendering.text import number, trimmed
 from ..seals.outline import Shape
 from ..studies.seal import SealStudy
-from .drawing import OUTLINE, THIN, choose_scale, scale_bar
 from .seal_figures import stroke_names
 from .seal_shapes import element_shapes, guide_shapes, wiper_shapes
+from .section import OUTLINE, THIN, choose_scale, scale_bar
 
 _METAL, _OIL, _LINES = "#eef1f3", "#dcecf7", "#9aa3ab"
 _FILLS = {

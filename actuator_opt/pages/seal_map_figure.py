@@ -16,7 +16,7 @@ from ..rendering.axes import Axes, ticks
 from ..rendering.ink import BLACK, GREY, PALE, WHITE, Ink, hatch
 from ..rendering.text import number, trimmed
 from ..studies.seal import FilmMap, SealStudy
-from .bode import dot, inside, level_ticks, logs
+from .dynamics_figures import dot, inside, level_ticks, logs
 from .seal_figures import stroke_names
 
 _LIGHT, _DARK = (0xF1, 0xF6, 0xF9), (0x0B, 0x3C, 0x5D)

@@ -13,19 +13,8 @@ from ..optimisation.result import Optimisation
 from ..rendering import terminal_curve as plot, text
 from ..rendering.blocks import Column
 from ..rendering.console import Console, Style
-from ..rendering.text import DASH
-from . import (
-    choices_table,
-    infeasibility_card,
-    optimum,
-    page,
-    prices,
-    stiffness_page,
-    tables,
-    trust,
-    whole_plies,
-)
-from .places import brief
+from ..rendering.text import DASH, brief
+from . import optimum, prices, report as page, stiffness as stiffness_page, trust
 
 _STATE_STYLE = {
     "met": "green",
@@ -122,7 +111,7 @@ def evaluation_table(
         entries: Sequence[Requirement | None] = limits.get(metric.name) or [None]
         for index, row in enumerate(entries):
             case = brief(metric.case, metric.place)
-            flag = "" if metric.in_range else tables.FLAG
+            flag = "" if metric.in_range else page.FLAG
             limit = "" if row is None else text.limit_text(quantity, row.sense, row.limit)
             margin = None if row is None else row.margin
             met = row is None or row.met
@@ -143,7 +132,7 @@ def evaluation_table(
             styles.append(["", "bold", "dim", "", paint, paint, "dim", "dim"])
     lines = console.table(columns, rows, styles)
     if any(not metric.in_range for metric in evaluation.metrics.values()):
-        lines.append(console.paint(tables.FLAGGED, "yellow"))
+        lines.append(console.paint(page.FLAGGED, "yellow"))
     if missing:
         lines += ["", console.paint("not computed", "dim")]
         for why, names in missing.items():
@@ -176,7 +165,7 @@ def requirements_table(
         rows.append(
             [
                 _mark(console, row.state),
-                row.name + tables.flag(evaluation, row.metric),
+                row.name + page.flag(evaluation, row.metric),
                 text.limit_text(quantity, row.sense, row.limit),
                 why or text.value_text(quantity, row.value),
                 text.margin_of(quantity, row.limit, row.margin, met=row.met),
@@ -187,7 +176,7 @@ def requirements_table(
         paint = _STATE_STYLE[row.state]
         styles.append([paint, "" if row.met else "bold", "", "bold", paint, paint, "dim"])
     lines = console.table(columns, rows, styles)
-    lines += [console.paint(line, "yellow") for line in tables.row_notes(evaluation)]
+    lines += [console.paint(line, "yellow") for line in page.row_notes(evaluation)]
     return "\n".join(lines)
 
 
@@ -222,7 +211,7 @@ def checks_table(
         rows.append(
             [
                 _mark(console, row.state),
-                row.name + tables.flag(evaluation, row.metric),
+                row.name + page.flag(evaluation, row.metric),
                 text.limit_text(quantity, row.sense, row.limit),
                 DASH if row.value is None else text.value_text(quantity, row.value),
                 why,
@@ -348,15 +337,15 @@ def optimisation_text(
     console = Console(**style)
     parts: Sequence[str] = [
         verdict(optimisation, **style),
-        infeasibility_card.terminal(optimisation, **style),
+        optimum.infeasibility_terminal(optimisation, **style),
         requirements_table(optimisation.best_evaluation, **style),
         variables_table(optimisation, **style) if optimisation.variables else "",
         prices.terminal(optimisation, **style),
         checks_table(optimisation.best_evaluation, **style),
         notes(optimisation, **style),
-        choices_table.terminal(optimisation, **style),
-        whole_plies.terminal(optimisation, **style),
+        optimum.choices_terminal(optimisation, **style),
+        optimum.rounding_terminal(optimisation, **style),
         "\n".join(console.wrap(line) for line in trust.proof(optimisation, brief=True)),
-        "\n".join(console.wrap(s, "dim") for s in optimum.convergence(optimisation)),
+        "\n".join(console.wrap(s, "dim") for s in trust.convergence(optimisation)),
     ]
     return "\n\n".join(part for part in parts if part) + "\n"

@@ -13,8 +13,7 @@ from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Drawing, Table, clean, short, soft
 from ..rendering.ink import WHITE
 from ..rendering.text import DASH
-from .stiffness_figure import wall_figure
-from .wall_figures import STEEL, Rung, ladder_figure, strength_figure, stress_figure
+from .wall_figures import STEEL, Rung, ladder_figure, strength_figure, stress_figure, wall_figure
 
 MOST_STEPS = 10
 """Steps of a ladder drawn; of a longer one the first and the last."""
@@ -37,7 +36,7 @@ _DIFFERENCES = {
 }
 
 
-def blocks(evaluation: Evaluation) -> list[Block]:
+def wall_blocks(evaluation: Evaluation) -> list[Block]:
     """Every block of the wall; the drawing alone where there is no study."""
     study = evaluation.wall
     found = [_drawing(evaluation)]

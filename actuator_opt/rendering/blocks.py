@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from ..base.suggest import CONTROLS
+from . import text
 from .ink import Ink
 from .text import STATUS_WORDS
 
@@ -300,3 +301,24 @@ def tile(label: str, words: str, note: str, state: State = "") -> Tile:
     """A key figure whose number and unit are in words ("12.3 N")."""
     value, _, unit = words.partition(" ")
     return Tile(label, value, unit, note, state)
+
+
+def extra(given: ExtraTable) -> Block:
+    """A table of the caller's."""
+    rows: list[list[Cell]] = []
+    for row in given.rows:
+        cells: list[Cell] = []
+        for value in row:
+            plain = isinstance(value, (int, float)) and not isinstance(value, bool)
+            cells.append(text.number(float(value)) if plain else soft(str(value)))  # type: ignore[arg-type]
+        rows.append(cells)
+    numeric = [
+        bool(given.rows) and all(isinstance(row[k], (int, float)) for row in given.rows)
+        for k in range(len(given.columns))
+    ]
+    widths = given.widths or [1.0] * len(given.columns)
+    columns = [
+        Column(clean(head), "right" if right else "left", width)
+        for head, right, width in zip(given.columns, numeric, widths, strict=True)
+    ]
+    return Table(given.title, columns, rows, note=given.note)

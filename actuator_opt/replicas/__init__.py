@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from ..evaluation import Evaluation
 from ..optimisation.result import Optimisation
-from ..pages.page import parts_of
+from ..pages.report import parts_of
 from ..rendering.blocks import ExtraTable
 from . import aalto_tables, elasswad_tables, huang_tables
 
