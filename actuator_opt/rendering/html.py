@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from html import escape
 from pathlib import Path
 
@@ -35,7 +35,7 @@ from .blocks import (
     clean,
 )
 from .heights import cells_of, joined
-from .ink import POINT, Ink
+from .ink import POINT, Ink, PathMark, TextMark
 from .origin import Origin
 from .paper import ReportFile, with_input
 
@@ -81,7 +81,8 @@ margin:1rem 0}
 .ao td{border-bottom:1px solid var(--pale);padding:.2rem .4rem;font-variant-numeric:tabular-nums}
 .ao th.mono{min-width:9.5rem}
 .ao .right{text-align:right;white-space:nowrap}.ao .center{text-align:center}
-.ao td.mono,.ao span.mono,.ao pre{font-family:"DejaVu Sans Mono",ui-monospace,Menlo,Consolas,monospace}
+.ao td.mono,.ao span.mono,.ao pre{font-family:"DejaVu Sans Mono",ui-monospace,Menlo,monospace}
+.ao th.flexible{min-width:8rem}
 .ao tr.total td{font-weight:700}.ao tr.rule td{border-top:2px solid var(--ink)}
 .ao .met{color:var(--good)}.ao .missed,.ao .infeasible{color:var(--bad)}
 .ao .no_reserve,.ao .checks{color:var(--amber)}.ao .not_checked{color:var(--grey)}
@@ -225,11 +226,12 @@ def _table(table: Table) -> list[str]:
 
 
 def _names(column: Column) -> str:
-    return f"{column.align} mono" if column.mono else column.align
+    names = ("mono" if column.mono else "", "flexible" if column.flexible else "")
+    return " ".join([column.align, *filter(None, names)])
 
 
 def _td(cell: Cell, column: Column, state: str) -> str:
-    names = [column.align] if column.align != "left" else []
+    names: list[str] = [column.align] if column.align != "left" else []
     names += ["mono"] if column.mono else []
     names += [state] if column.style == "state" and state else []
     kind = f' class="{" ".join(names)}"' if names else ""
@@ -290,11 +292,11 @@ def svg(ink: Ink, title: str = "") -> str:
     return "".join([*parts, "</svg>"])
 
 
-def _path(mark: dict[str, object]) -> str:
-    lines: Sequence[Sequence[Sequence[float]]] = mark["path"]  # type: ignore[assignment]
+def _path(mark: PathMark) -> str:
+    lines = mark["path"]
     end = "Z" if mark["closed"] else ""
     data = "".join("M" + "L".join(f"{x:g} {y:g}" for x, y in line) + end for line in lines)
-    dash: Sequence[float] = mark["dash"]  # type: ignore[assignment]
+    dash = mark["dash"]
     dashed = f' stroke-dasharray="{" ".join(f"{d:g}" for d in dash)}"' if dash else ""
     return (
         f'<path d="{data}" fill="{mark["fill"] or "none"}" fill-rule="evenodd"'
@@ -303,15 +305,15 @@ def _path(mark: dict[str, object]) -> str:
     )
 
 
-def _text(mark: dict[str, object]) -> str:
-    x, y = mark["at"]  # type: ignore[misc]
-    anchor = {"left": "start", "center": "middle", "right": "end"}[str(mark["anchor"])]
-    size: float = mark["size"]  # type: ignore[assignment]
+def _text(mark: TextMark) -> str:
+    x, y = mark["at"]
+    anchor = {"left": "start", "center": "middle", "right": "end"}[mark["anchor"]]
+    size = mark["size"]
     turn = f' transform="rotate({mark["angle"]:g} {x:g} {y:g})"' if mark["angle"] else ""
     bold = ' font-weight="bold"' if mark["bold"] else ""
     halo = ' stroke="#fff" stroke-width="0.8" paint-order="stroke"' if mark["halo"] else ""
     return (
         f'<text x="{x:g}" y="{y + 0.36 * size * POINT:.3f}" font-size="{size * POINT:.3f}"'
         f' text-anchor="{anchor}" fill="{mark["color"]}" font-family="inherit"{bold}{halo}{turn}>'
-        f"{_say(str(mark['text']))}</text>"
+        f"{_say(mark['text'])}</text>"
     )
