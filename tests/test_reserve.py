@@ -372,7 +372,7 @@ def test_the_estimate_loads_no_scipy():
     code = (
         "import sys\n"
         "import actuator_opt as ao\n"
-        "from actuator_opt import verbs\n"
+        "from actuator_opt import api as verbs\n"
         f"found = verbs.with_yield(ao.evaluate({str(DESIGNS / 'aalto_40_25_220.yaml')!r}))\n"
         "assert found.yield_estimate.draws == 500\n"
         "assert 'scipy' not in sys.modules, 'scipy was imported'\n"
