@@ -9,10 +9,10 @@ import re
 from pathlib import Path
 
 import pytest
+import report_fixture as fixture
 from report_fixture import overlaps
 
 from actuator_opt import api as verbs
-from actuator_opt.pages.report import page
 from actuator_opt.replicas import (
     aalto,
     aalto_dynamic,
@@ -269,7 +269,9 @@ def test_curves_stay_in_their_frames(evaluation):
 
 def test_figures_stand_after_their_tables(evaluation):
     """On the page each drawing follows its table; the equations stand last, before the input."""
-    blocks = page(evaluation, **SOURCE, extra_tables=published_tables(evaluation))["blocks"]
+    blocks = fixture.page_data(evaluation, **SOURCE, extra_tables=published_tables(evaluation))[
+        "blocks"
+    ]
     titles = [b.get("title", "") for b in blocks]
     for name in ("stiffness along the stroke", "static test", "dynamic tests"):
         at = titles.index(f"Aalto thesis: {name}")

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import report_fixture as fixture
 from report_fixture import overlaps
 
 from actuator_opt import api as verbs
 from actuator_opt.models import barrel, stiffness, stiffness_published
-from actuator_opt.pages.report import page
 from actuator_opt.replicas import elasswad_record, elasswad_tables, published_tables
 from actuator_opt.replicas.elasswad_figures import record_figure
 
@@ -253,7 +253,9 @@ def test_tables_and_figure_bear_any_design(changes):
 
 def test_the_figure_stands_after_its_table(evaluation):
     """On the page the drawing follows the table of the record, and says whose record it is."""
-    blocks = page(evaluation, **SOURCE, extra_tables=published_tables(evaluation))["blocks"]
+    blocks = fixture.page_data(evaluation, **SOURCE, extra_tables=published_tables(evaluation))[
+        "blocks"
+    ]
     at = next(i for i, b in enumerate(blocks) if b.get("title", "").endswith("pressure record"))
     assert blocks[at]["kind"] == "table"
     assert blocks[at + 1]["kind"] == "figure"

@@ -11,11 +11,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import report_fixture as fixture
 from report_fixture import overlaps
 
 from actuator_opt import api as verbs
 from actuator_opt.evaluation import film
-from actuator_opt.pages.report import page
 from actuator_opt.replicas import (
     TABLES,
     huang_equations,
@@ -255,7 +255,9 @@ def test_words_of_a_verdict(share, words):
 
 def test_figures_stand_after_their_tables(shipped, tables):
     """On the page each drawing follows its table; the equations stand last, before the input."""
-    blocks = page(shipped.subject, **SOURCE, extra_tables=list(tables.values()))["blocks"]
+    blocks = fixture.page_data(shipped.subject, **SOURCE, extra_tables=list(tables.values()))[
+        "blocks"
+    ]
     titles = [b.get("title", "") for b in blocks]
     for name, table in tables.items():
         at = titles.index(f"Huang 2017: {name}")

@@ -11,6 +11,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+import report_fixture as fixture
 from test_through_wall import text_of
 
 import actuator_opt as ao
@@ -24,9 +25,7 @@ from actuator_opt.pages import (
     seal_shapes,
     seal_sheet,
     seal_text,
-    write_report,
 )
-from actuator_opt.pages.report import page
 from actuator_opt.rendering import paper_plain as fallback
 from actuator_opt.rendering.ink import Ink
 from actuator_opt.rendering.origin import Origin
@@ -542,12 +541,12 @@ def test_the_report_carries_the_sheets(tmp_path):
     """Given studies, the design's report holds their blocks; without, it has none."""
     evaluation = ao.evaluate(ao.read(TEXTS["rings"]))
     source = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
-    titles = [b["title"] for b in page(evaluation, **source)["blocks"]]
+    titles = [b["title"] for b in fixture.page_data(evaluation, **source)["blocks"]]
     assert not any("Rod seals" in title for title in titles)
     both = [studied("rings", place) for place in ("piston", "rod")]
-    titles = [b["title"] for b in page(evaluation, **source, seals=both)["blocks"]]
+    titles = [b["title"] for b in fixture.page_data(evaluation, **source, seals=both)["blocks"]]
     assert {"Piston seals: gland", "Rod seals: gland"} <= set(titles)
-    files = write_report(evaluation, folder=tmp_path, stem="r", seals=both, **source)
+    files = fixture.write_report(evaluation, folder=tmp_path, stem="r", seals=both, **source)
     assert files[0].pages > 3
 
 

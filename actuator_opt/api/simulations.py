@@ -351,14 +351,14 @@ def write_simulation(
     from ..pages.measured_rows import measured_blocks
     from ..pages.simulation_document import write_simulation_sheet
     from ..pages.verification_rows import sensitivity_rows
-    from ..rendering.blocks import extra
+    from ..rendering.blocks import extra_table
 
     if scenario is None:
         message = "the page of a simulation needs its scenario"
         raise UsageError(Diagnostic(message, "give scenario=read_scenario(...)"))
     origin, place = _page(scenario, simulation, "", paper)
     blocks = [] if measured is None else measured_blocks(measured.overlay, measured.fit)
-    blocks += [] if sensitivities is None else map(extra, sensitivity_rows(sensitivities))
+    blocks += [] if sensitivities is None else map(extra_table, sensitivity_rows(sensitivities))
     return write_simulation_sheet(
         simulation,
         origin,

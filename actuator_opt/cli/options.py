@@ -118,6 +118,10 @@ NoRecord = Annotated[
     bool, typer.Option("--no-record", help="Keep no record of the run (see: runs list).")
 ]
 Report = Annotated[bool, typer.Option("--report", help="Write the report (PDF and PNG) too.")]
+AllPages = Annotated[
+    bool,
+    typer.Option("--all-pages", help="An image (PNG) of every sheet of the report, not of one."),
+]
 REPORTS = Path("reports")
 
 

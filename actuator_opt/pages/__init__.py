@@ -5,6 +5,5 @@ from __future__ import annotations
 from ..rendering.attachments import Attachment, read_attachment
 from ..rendering.blocks import ExtraTable
 from ..rendering.paper import ReportFile
-from .report import write_report
 
-__all__ = ["Attachment", "ExtraTable", "ReportFile", "read_attachment", "write_report"]
+__all__ = ["Attachment", "ExtraTable", "ReportFile", "read_attachment"]

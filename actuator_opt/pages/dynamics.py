@@ -175,7 +175,7 @@ def _poles(study: DynamicsStudy) -> Block:
     if fast:
         plural = "poles lie" if fast > 1 else "pole lies"
         note += f" {fast} {plural} above 10 kHz, where the model describes nothing."
-    return Table("Dynamics: poles", columns, rows, note=note)
+    return Table("Dynamics: poles", columns, rows, note=note, on="paper")
 
 
 # ---- the loop ----
@@ -255,7 +255,7 @@ def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:
         " least over load cases, places and directions."
     )
     rows = [row(name) for name in names if name in evaluation.metrics]
-    return Table("Position loop: gain, margins, bandwidth", columns, rows, note=note)
+    return Table("Position loop: gain, margins, bandwidth", columns, rows, note=note, on="paper")
 
 
 def _remark(name: str, one: LoopStudy, tuned: str) -> str:

@@ -367,17 +367,12 @@ def compact_figure(
     return ink
 
 
+# ---- the position loop ----
+
 HALF_POWER = -10 * math.log10(2.0)
 """-3 dB, where a closed loop's bandwidth ends."""
-
-
-_ROW = 3.5
-
-
 _LEFT, _BESIDE = 12.0, 55.0
 """Room (mm) for the levels left of a frame and for the words right of it."""
-
-
 _ARROW: dict[str, Any] = {"stroke": BLACK, "pen": 0.25}
 
 
@@ -422,8 +417,8 @@ def open_figure(
     span = width - _LEFT - _BESIDE
     first, second = ((_LEFT, 8.0 + k * (tall + gap), span, tall) for k in range(2))
     xs, across = frequency_axis(study)
-    _magnitude_panel(ink, first, xs, across, loops, limits.gain_margin)
-    _phase_panel(ink, second, xs, across, loops, limits.phase_margin)
+    _loop_magnitude_panel(ink, first, xs, across, loops, limits.gain_margin)
+    _loop_phase_panel(ink, second, xs, across, loops, limits.phase_margin)
     x = _LEFT + span + 4.0
     top = _names(ink, x, first[1] + 1.0, loops)
     top = _words(ink, x, top, first[1] + tall, _gain_words(loops, limits.gain_margin))
@@ -479,7 +474,7 @@ def _span(axes: Axes, x: float, start: float, end: float) -> None:
     axes.ink.circle(at, high, 0.6, fill=WHITE, stroke=BLACK, pen=0.25)
 
 
-def _magnitude_panel(
+def _loop_magnitude_panel(
     ink: Ink,
     box: tuple[float, float, float, float],
     xs: Sequence[float],
@@ -508,7 +503,7 @@ def _magnitude_panel(
         _span(axes, x, 0.0, -margin)
 
 
-def _phase_panel(
+def _loop_phase_panel(
     ink: Ink,
     box: tuple[float, float, float, float],
     xs: Sequence[float],

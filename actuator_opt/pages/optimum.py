@@ -1,59 +1,105 @@
-"""The tables of an optimisation: variables, prices with their quality, how it went, why not."""
+"""An optimum: its variables, choices and sizes, why nothing fits, the way to a yield."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ..base.quantities import Quantity
 from ..design import choice_list, quantity_of
-from ..evaluation.result import Evaluation
-from ..optimisation.infeasibility_card import percent
-from ..optimisation.result import Choices, Combination, Infeasibility, Optimisation, Rounding
-from ..rendering import text
-from ..rendering.blocks import Block, Cell, Column, ExtraTable, Notes, Slot, Table, clean, soft
-from ..rendering.console import Console
-from ..rendering.terminal import block_text
+from ..optimisation.infeasibility_card import percent as change_percent
+from ..optimisation.result import (
+    Choices,
+    Combination,
+    Infeasibility,
+    Optimisation,
+    Rounding,
+    VariableResult,
+)
+from ..rendering import heights, text
+from ..rendering.blocks import Block, Cell, Column, Notes, Pair, Slot, Table, soft
 from ..rendering.text import DASH, sentence
 from .uncertainty import percent
 
+MOST_ROWS = 20
+"""Combinations shown; JSON has them all."""
+MOST_COLUMNS = 4
+"""PATHs that get a column each; of more, the values share a column."""
+WORTH = 10.0
+"""Reserves beyond this many times the limit say only that the limit is far away."""
+_STANDS_FOR = {"dimension": "fixed dimension", "safety factor": "safety: not advised"}
+"""Words of a kind of cure, where they say more."""
 
-def variables(optimisation: Optimisation) -> Block:
+
+# ---- variables ----
+
+
+def variables(optimisation: Optimisation) -> Table:
     """Bounds, start and best value of every free dimension."""
     rows: list[list[Cell]] = []
     for row in optimisation.best_variables:
         quantity = text.input_quantity(row.quantity)
         lower, upper, value = (quantity.to_display(v) for v in (row.lower, row.upper, row.value))
         start = None if row.start is None else quantity.to_display(row.start)
-        place = (value - lower) / (upper - lower) if upper > lower else 0.0
-        bound = "" if row.at_bound is None else f"at {row.at_bound} bound"
         rows.append(
             [
-                soft(row.path),
-                clean(quantity.label),
+                row.path,
+                soft(quantity.label),
                 text.trimmed(lower),
                 text.number(start),
                 text.number(value),
                 text.trimmed(upper),
                 text.unit_text(quantity.unit),
-                Slot(place, row.at_bound or ""),
-                bound,
+                Slot(_place(row), row.at_bound or ""),
+                "" if row.at_bound is None else f"at {row.at_bound} bound",
             ]
         )
     columns = [
-        Column("variable", "left", 1.3, mono=True),
-        Column("dimension", "left", 1.1),
-        Column("lower", "right"),
-        Column("start", "right"),
-        Column(heading(optimisation).replace(" ", "\n"), "right", strong=True),
-        Column("upper", "right"),
+        Column("variable", "left", 1.2, breaks=30, mono=True, least=16),
+        Column("dimension", "left", 1.0, on="paper"),
+        Column("lower", "right", style="dim"),
+        Column("start", "right", drop=2, style="dim"),
+        Column(heading(optimisation), "right", strong=True),
+        Column("upper", "right", style="dim"),
+        Column("unit", style="dim"),
+        Column("between bounds", "left", "26mm", drop=1),
+        Column("", style="yellow", on="terminal"),
+    ]
+    at_bounds = sum(row.at_bound is not None for row in optimisation.best_variables)
+    note = f"{at_bounds} of {len(rows)} variables are at a bound." if at_bounds else ""
+    return Table("Design variables", columns, rows, note=note)
+
+
+def _place(row: VariableResult) -> float:
+    """Where a value lies between its bounds, from zero to one."""
+    return (row.value - row.lower) / (row.upper - row.lower) if row.upper > row.lower else 0.0
+
+
+def best_values(optimisation: Optimisation, room: float) -> list[Block]:
+    """Values of the variables side by side, as many as this height holds, with a pointer [mm]."""
+    best = optimisation.best_variables
+    lines = (len(best) + 1) // 2
+    most = (room - heights.HEAD - 2 * heights.LINE) / (heights.MARKED * heights.LINE)
+    fit = min(lines, math.floor(most))
+    if fit < 1:
+        return []
+    columns = [
+        Column("variable", "left", 1.0, breaks=26, mono=True),
+        Column(heading(optimisation), "right", strong=True),
         Column("unit"),
         Column("between bounds", "left", "26mm"),
-        Column(""),
     ]
-    held = [row.path for row in optimisation.best_variables if row.at_bound]
-    note = f"{len(held)} of {len(rows)} variables are at a bound." if held else ""
-    return Table("Design variables", columns, rows, note=note)
+    rows: list[list[Cell]] = []
+    for row in best:
+        quantity = text.input_quantity(row.quantity)
+        value, unit = text.number(quantity.to_display(row.value)), text.unit_text(quantity.unit)
+        rows.append([row.path, value, unit, Slot(_place(row), row.at_bound or "")])
+    rest = len(best) - 2 * fit
+    note = f"{rest} more, starts and bounds" if rest > 0 else "Starts and bounds"
+    left = Table("Best values", columns, rows[:fit], note=f"{note}: Design variables.", on="paper")
+    right = Table("Best values, continued", columns, rows[fit : 2 * fit], on="paper")
+    return [Pair([[left], [right]] if right.rows else [[left]])]
 
 
 def heading(optimisation: Optimisation) -> str:
@@ -63,28 +109,81 @@ def heading(optimisation: Optimisation) -> str:
     return "continuous" if optimisation.made is None else optimisation.made.name
 
 
-MOST_ROWS = {"report": 40, "terminal": 12}
-"""Combinations shown; JSON has them all."""
+def sizes_and_choices(optimisation: Optimisation) -> Iterator[Block]:
+    """What was rounded and what was chosen, where either was asked for."""
+    if optimisation.rounding is not None:
+        yield _rounding_table(optimisation, optimisation.rounding)
+    if optimisation.choices is not None:
+        yield _choices_table(optimisation, optimisation.choices)
 
 
-MOST_COLUMNS = 4
-"""PATHs that get a column each; of more, the values share one."""
+# ---- choices ----
 
 
 def heads(paths: Sequence[str]) -> list[str]:
-    """The shortest endings of PATHs, of two words at least, that tell them apart.
+    """The shortest endings of PATHs, of two words at least, that set them apart.
 
     >>> heads(["seals.rod.compound", "seals.piston.compound", "fluid.material"])
     ['rod.compound', 'piston.compound', 'fluid.material']
     """
-    found = []
+    endings = []
     for path in paths:
         words = path.split(".")
         tails = (".".join(words[-size:]) for size in range(2, len(words) + 1))
         others = [f".{other}" for other in paths if other != path]
         unique = (tail for tail in tails if not any(o.endswith(f".{tail}") for o in others))
-        found.append(next(unique, path))
-    return found
+        endings.append(next(unique, path))
+    return endings
+
+
+def choice_notes(optimisation: Optimisation) -> list[str]:
+    """How the combinations were compared, and what the table leaves out, in sentences."""
+    choices = optimisation.choices
+    if choices is None:
+        return []
+    lines = [sentence(choices.sentence)]
+    if len(choices.combinations) > MOST_ROWS:
+        lines.append(f"The best {MOST_ROWS} are shown; JSON has all.")
+    if any(tried.cost is not None and tried.cost < 0 for tried in choices.combinations):
+        lines.append("A better objective with a check missed that other choices meet ranks lower.")
+    return [*lines, *map(sentence, choices.notes)]
+
+
+def _choices_table(optimisation: Optimisation, choices: Choices) -> Block:
+    """Every combination tried, the best first, and what the others cost."""
+    paths, objective = _varied(choices), text.metric(optimisation.objective_metric)
+    names = heads(paths)
+    sized = any(tried.rounded is not None for tried in choices.combinations)
+
+    def cells(tried: Combination) -> list[Cell]:
+        values = [
+            text.pretty(choice_list.shown(path, tried.values[path], optimisation.design))
+            for path in paths
+        ]
+        if len(paths) > MOST_COLUMNS:
+            values = [", ".join(f"{n} {v}" for n, v in zip(names, values, strict=True))]
+        share = DASH if tried.percent is None else f"{text.number(tried.percent, 3, signed=True)} %"
+        numbers = [tried.objective, tried.rounded] if sized else [tried.objective]
+        known = [DASH if x is None else text.value_text(objective, x) for x in numbers]
+        return [*map(soft, values), *known, share, soft(sentence(tried.status))]
+
+    columns = [
+        *(
+            Column(head, mono=True)
+            for head in (names if len(paths) <= MOST_COLUMNS else ["choices"])
+        ),
+        Column(objective.label, "right", strong=not sized),
+        *([Column("with sizes", "right", strong=True)] if sized else []),
+        Column("cost", "right"),
+        Column("result", "left", 2.0, least=30),
+    ]
+    chosen = ", ".join(
+        f"{name} {text.pretty(choice_list.shown(path, value, optimisation.design))}"
+        for name, (path, value) in zip(heads(list(choices.best)), choices.best.items(), strict=True)
+    )
+    rows = [cells(tried) for tried in choices.combinations[:MOST_ROWS]]
+    note = " ".join(choice_notes(optimisation))
+    return Table(f"Choices: {chosen}", columns, rows, note=note)
 
 
 def _varied(choices: Choices) -> list[str]:
@@ -93,113 +192,15 @@ def _varied(choices: Choices) -> list[str]:
     return [
         path
         for path, value in first.items()
-        if any(not choice_list.same(one.values[path], value) for one in choices.combinations)
+        if any(not choice_list.same(tried.values[path], value) for tried in choices.combinations)
     ]
 
 
-def _choice_rows(optimisation: Optimisation, choices: Choices, most: int) -> list[list[str]]:
-    """Values, objective, what it costs, and what became of it, of each combination."""
-    paths, objective = _varied(choices), text.metric(optimisation.objective_metric)
-    names = heads(paths)
-
-    def cells(one: Combination) -> list[str]:
-        values = [
-            text.pretty(choice_list.shown(path, one.values[path], optimisation.design))
-            for path in paths
-        ]
-        if len(paths) > MOST_COLUMNS:
-            values = [", ".join(f"{n} {v}" for n, v in zip(names, values, strict=True))]
-        share = DASH if one.percent is None else f"{text.number(one.percent, 3, signed=True)} %"
-        numbers = [one.objective, one.rounded] if sized(choices) else [one.objective]
-        known = [DASH if x is None else text.value_text(objective, x) for x in numbers]
-        return [*values, *known, share, sentence(one.status)]
-
-    return [cells(one) for one in choices.combinations[:most]]
+# ---- whole plies and sizes ----
 
 
-def sized(choices: Choices) -> bool:
-    """Whether variables keep to listed sizes in some combination."""
-    return any(one.rounded is not None for one in choices.combinations)
-
-
-def _value_heads(choices: Choices) -> list[str]:
-    paths = _varied(choices)
-    return heads(paths) if len(paths) <= MOST_COLUMNS else ["choices"]
-
-
-def _choices_title(optimisation: Optimisation, choices: Choices) -> str:
-    names, values = heads(list(choices.best)), choices.best.items()
-    chosen = ", ".join(
-        f"{name} {text.pretty(choice_list.shown(path, value, optimisation.design))}"
-        for name, (path, value) in zip(names, values, strict=True)
-    )
-    return f"Choices: {chosen}"
-
-
-def choice_notes(optimisation: Optimisation, most: int) -> list[str]:
-    """How the combinations were looked into, and what is not in the table, in sentences."""
-    choices = optimisation.choices
-    if choices is None:
-        return []
-    lines = [sentence(choices.sentence)]
-    if len(choices.combinations) > most:
-        lines.append(f"The best {most} are shown; JSON has all.")
-    if any(one.cost is not None and one.cost < 0 for one in choices.combinations):
-        lines.append("A better objective with a check missed that other choices meet ranks lower.")
-    return [*lines, *map(sentence, choices.notes)]
-
-
-def choices(optimisation: Optimisation) -> Block | None:
-    """The combinations with objective and cost; None where there is nothing to choose."""
-    choices, most = optimisation.choices, MOST_ROWS["report"]
-    if choices is None:
-        return None
-    named = len(_value_heads(choices))
-    rows: list[list[Cell]] = [
-        [*map(soft, row[:named]), *row[named:-1], soft(row[-1])]
-        for row in _choice_rows(optimisation, choices, most)
-    ]
-    label = text.metric(optimisation.objective_metric).label
-    columns = [
-        *(Column(head, "left", mono=True) for head in _value_heads(choices)),
-        Column(label, "right", strong=not sized(choices)),
-        *([Column("with sizes", "right", strong=True)] if sized(choices) else []),
-        Column("cost", "right"),
-        Column("what became of it", "left", 2.0),
-    ]
-    note = " ".join(choice_notes(optimisation, most))
-    return Table(_choices_title(optimisation, choices), columns, rows, note=note)
-
-
-def choices_terminal(
-    optimisation: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
-) -> str:
-    """The same for the terminal; empty where there is nothing to choose."""
-    choices, most = optimisation.choices, MOST_ROWS["terminal"]
-    if choices is None:
-        return ""
-    console = Console(colour, unicode, width)
-    columns = [
-        *(Column(head, width=1.0) for head in _value_heads(choices)),
-        Column(optimisation.objective_metric, "right"),
-        *([Column("with sizes", "right")] if sized(choices) else []),
-        Column("cost", "right"),
-        Column("what became of it", width=1.0, least=30),
-    ]
-    rows = _choice_rows(optimisation, choices, most)
-    styles = [["bold" if index == 0 else ""] * len(columns) for index in range(len(rows))]
-    lines = [console.wrap(_choices_title(optimisation, choices), "bold")]
-    lines += console.table(columns, rows, styles)
-    return "\n".join(
-        [*lines, *(console.wrap(line, "dim") for line in choice_notes(optimisation, most))]
-    )
-
-
-def rounding(optimisation: Optimisation) -> Block | None:
-    """Every variable before and after rounding, its plies, the cost; None where none was asked."""
-    rounding = optimisation.rounding
-    if rounding is None:
-        return None
+def _rounding_table(optimisation: Optimisation, rounding: Rounding) -> Block:
+    """Every variable before and after rounding, its plies, the cost."""
     counted = any(row.plies is not None for row in rounding.variables)
     rows: list[list[Cell]] = []
     for row in rounding.variables:
@@ -208,7 +209,7 @@ def rounding(optimisation: Optimisation) -> Block | None:
         still = abs(row.value - row.continuous) <= 1e-9 * abs(row.value)
         rows.append(
             [
-                soft(row.path),
+                row.path,
                 text.number(quantity.to_display(row.continuous)),
                 text.number(quantity.to_display(row.value)),
                 DASH if still else text.number(change, 3, signed=True),
@@ -218,30 +219,16 @@ def rounding(optimisation: Optimisation) -> Block | None:
             ]
         )
     columns = [
-        Column("variable", "left", 1.3, mono=True),
+        Column("variable", "left", 1.3, breaks=30, mono=True),
         Column("continuous", "right"),
         Column(rounding.name, "right", strong=True),
         Column("change", "right"),
         Column("unit"),
         *([Column("plies", "right")] if counted else []),
-        Column("sizes", "left"),
+        Column("sizes"),
     ]
     note = " ".join(rounding_notes(optimisation))
     return Table(_rounding_title(optimisation, rounding), columns, rows, note=note)
-
-
-def rounding_terminal(
-    optimisation: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
-) -> str:
-    """The same for the terminal; empty where no rounding was asked for."""
-    made = _ROUND(optimisation)
-    if made is None:
-        return ""
-    console = Console(colour, unicode, width)
-    lines = [block_text(made, console)]
-    return "\n".join(
-        [*lines, *(console.wrap(line, "dim") for line in rounding_notes(optimisation))]
-    )
 
 
 def _rounding_title(optimisation: Optimisation, rounding: Rounding) -> str:
@@ -278,9 +265,9 @@ def rounding_notes(optimisation: Optimisation) -> list[str]:
     )
     for row in rounding.runners_up:
         share = text.number(row.percent, 3, signed=True)
-        percent = "" if row.percent is None else f" ({share} %)"
+        cost = "" if row.percent is None else f" ({share} %)"
         sizes = _sizes(optimisation, row.values)
-        lines.append(f"Next: {text.value_text(objective, row.objective)}{percent} with {sizes}.")
+        lines.append(f"Next: {text.value_text(objective, row.objective)}{cost} with {sizes}.")
     for remedy in rounding.remedies:
         change = text.pretty(remedy.sentence).replace("->", "→")
         reached = text.value_text(objective, remedy.objective)
@@ -289,122 +276,92 @@ def rounding_notes(optimisation: Optimisation) -> list[str]:
 
 
 def _sizes(optimisation: Optimisation, sizes: Mapping[str, float]) -> str:
-    """Sizes by PATH in words."""
+    """Sizes by PATH in words; a PATH without the ending that its value implies."""
     words = []
     for path, value in sizes.items():
         quantity = quantity_of(path, optimisation.design)
         shown = text.trimmed(quantity.to_display(value))
-        words.append(f"{_short(path)} {text.with_unit(shown, text.unit_text(quantity.unit))}")
+        name = path.removesuffix(".thickness").removesuffix(".angle")
+        words.append(f"{name} {text.with_unit(shown, text.unit_text(quantity.unit))}")
     return ", ".join(words)
 
 
-def _short(path: str) -> str:
-    """A PATH without what its value tells."""
-    return path.removesuffix(".thickness").removesuffix(".angle")
-
-
-def infeasibility_terminal(
-    subject: Optimisation, *, colour: bool = False, unicode: bool = True, width: int = 100
-) -> str:
-    """Why nothing fits; empty where something does."""
-    console = Console(colour, unicode, width)
-    if subject.infeasibility is None:
-        return ""
-    return "\n\n".join(
-        block_text(block, console) for block in infeasibility_blocks(subject.infeasibility)
-    )
+# ---- why nothing fits ----
 
 
 def infeasibility_blocks(card: Infeasibility) -> list[Block]:
     """The card of an infeasible design: what conflicts, by how much, what would repair it."""
-    found: list[Block] = [Notes("Why nothing fits", [_arrows(card.sentence)])]
+    conflict = text.pretty(sentence(card.sentence)).replace("->", "→")
+    blocks: list[Block] = [Notes("Why nothing fits", [conflict])]
     if card.joint:
         these = "this" if len(card.joint) == 1 else "all of these together"
         note = f"With {these} a design exists: the one shown here. No smaller sum was found."
         if any(entry["safety_factor"] for entry in card.joint):
             note += " It weakens a safety factor, which is not advised."
-        found.append(Table("Smallest joint relaxation", *_limits(card.joint), note=note))
+        rows = [_limit(entry) for entry in card.joint]
+        blocks.append(Table("Smallest joint relaxation", _columns("limit"), rows, note=note))
     others = [str(e["parameter"] or e["requirement"]) for e in card.sole if e["needed"] is None]
     words = ""
     if card.cures:
-        words = "Any one line alone is enough, the most advisable first; less of it was not. "
+        words = "Any single line is enough, the most advisable first; less of it was not. "
     if others:
         words += f"Not enough alone, however far it is relaxed: {', '.join(others)}. "
     if card.untried:
         words += f"Not tried, for the time it takes: {', '.join(card.untried)}."
     if card.cures:
-        found.append(Table("What is enough alone", *_cures(card.cures), note=words.strip()))
+        rows = [_cure(entry) for entry in card.cures]
+        title = "What is enough alone"
+        blocks.append(Table(title, _columns("what"), rows, note=words.strip()))
     elif words:
-        found.append(Notes("What is enough alone", [words.strip()]))
+        blocks.append(Notes("What is enough alone", [words.strip()]))
     if card.bounds:
-        found.append(_bounds(card))
+        blocks.append(_bounds(card))
     if card.evidence:
-        found.append(Notes("What is proven", [sentence(card.evidence)]))
-    return found
-
-
-def _arrows(words: str) -> str:
-    return text.pretty(sentence(words)).replace("->", "→")
+        blocks.append(Notes("What is proven", [sentence(card.evidence)]))
+    return blocks
 
 
 def _columns(first: str) -> list[Column]:
     return [
-        Column(first, "left", 1.3, mono=True),
-        Column("stands for", "left", 1.3, drop=2),
+        Column(first, "left", 1.3, breaks=24, mono=True),
+        Column("kind", "left", 1.3, drop=2),
         Column("now", "right"),
         Column("needed", "right", strong=True),
         Column("change", "right", drop=1),
     ]
 
 
-def _limits(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Column], list[list[Cell]]]:
-    """Columns and rows of limits that give way."""
-    rows: list[list[Cell]] = [
-        [
-            soft(entry["parameter"] or entry["requirement"]),
-            soft(_origin(entry)),
-            text.pretty(entry["limit_text"]),
-            text.pretty(entry["needed_text"]) or DASH,
-            _change(entry["change"]),
-        ]
-        for entry in entries
-    ]
-    return _columns("limit"), rows
-
-
-def _cures(entries: Sequence[Mapping[str, Any]]) -> tuple[list[Column], list[list[Cell]]]:
-    """Columns and rows of what is enough alone."""
-    rows: list[list[Cell]] = [
-        [
-            soft(entry["parameter"]),
-            soft(_STANDS_FOR.get(entry["kind"], entry["kind"])),
-            text.pretty(entry["limit_text"]),
-            text.pretty(entry["needed_text"]),
-            _change(entry["change"]),
-        ]
-        for entry in entries
-    ]
-    return _columns("what"), rows
-
-
-_STANDS_FOR = {"dimension": "fixed dimension", "safety factor": "safety: not advised"}
-"""Words of a kind of cure, where they say more."""
-
-
-def _origin(entry: Mapping[str, Any]) -> str:
-    """Who asks for a limit; a line of the check list by its name."""
+def _limit(entry: Mapping[str, Any]) -> list[Cell]:
+    """A limit that gives way; a line of the check list by its name."""
     origin = str(entry["origin"])
-    return f"{origin}: {entry['requirement']}" if origin == "check list" else origin
+    return [
+        str(entry["parameter"] or entry["requirement"]),
+        soft(f"{origin}: {entry['requirement']}" if origin == "check list" else origin),
+        text.pretty(entry["limit_text"]),
+        text.pretty(entry["needed_text"]) or DASH,
+        _change(entry["change"]),
+    ]
+
+
+def _cure(entry: Mapping[str, Any]) -> list[Cell]:
+    """What is enough alone."""
+    return [
+        str(entry["parameter"]),
+        soft(_STANDS_FOR.get(entry["kind"], entry["kind"])),
+        text.pretty(entry["limit_text"]),
+        text.pretty(entry["needed_text"]),
+        _change(entry["change"]),
+    ]
 
 
 def _change(share: float | None) -> str:
-    return DASH if share is None else text.pretty(percent(share))
+    return DASH if share is None else text.pretty(change_percent(share))
 
 
 def _bounds(card: Infeasibility) -> Block:
-    """Bounds that the relaxed design stands at: what opening them helps."""
+    """Bounds that the relaxed design lies at: what opening them helps."""
     columns = [
-        Column("bound", "left", 1.3, mono=True),
+        Column("bound", "left", 1.3, breaks=24, mono=True),
         Column("now", "right"),
         Column("gap closed by 1 %", "right"),
         Column("enough at", "right", strong=True),
@@ -412,7 +369,7 @@ def _bounds(card: Infeasibility) -> Block:
     ]
     rows: list[list[Cell]] = [
         [
-            soft(bound["parameter"]),
+            str(bound["parameter"]),
             text.pretty(bound["limit_text"]),
             _closes(bound["gain"], card.total),
             text.pretty(bound["needed_text"]) or DASH,
@@ -433,38 +390,35 @@ def _closes(gain: float, total: float | None) -> str:
     return f"{text.number(min(gain / total, 100.0), 2)} %" if total else DASH
 
 
-WORTH = 10.0
-"""Reserves beyond this many times the limit say only that the limit is far away."""
+# ---- the way to a yield ----
 
 
-def robust_tables(subject: Evaluation | Optimisation) -> list[ExtraTable]:
-    """Optima on the way and reserves; none of a plain optimum."""
-    found = subject.robust if isinstance(subject, Optimisation) else None
-    if found is None or not isinstance(subject, Optimisation):
-        return []
-    quantity = text.metric(subject.objective_metric)
-    way = [
-        [str(number), text.value_text(quantity, one.objective, 5), percent(one.rate)]
-        for number, one in enumerate(found.rounds)
+def robust_tables(optimisation: Optimisation) -> Iterator[Table]:
+    """Optima on the way to the yield, and reserves kept; nothing of a plain optimum."""
+    robust = optimisation.robust
+    if robust is None:
+        return
+    quantity = text.metric(optimisation.objective_metric)
+    rounds: list[list[Cell]] = [
+        [str(number), text.value_text(quantity, step.objective, 5), percent(step.rate)]
+        for number, step in enumerate(robust.rounds)
     ]
-    kept = [
-        [name, f"{100 * reserve:.1f} %"]
-        for name, reserve in sorted(found.reserves.items(), key=lambda pair: -pair[1])
-        if 1e-3 <= reserve <= WORTH
+    note = (
+        f"Round 0 has no reserves. An independent sample of {robust.samples} draws at the design"
+        f" shown: {percent(robust.rate)} ({percent(robust.lower)} to {percent(robust.upper)})."
+    )
+    columns = [Column(head, width=1.0) for head in ("round", quantity.label, "all limits hold")]
+    title = f"Towards a yield of {percent(robust.target)}"
+    yield Table(title, columns, rounds, note=note, on="paper")
+    kept: list[list[Cell]] = [
+        [soft(name), f"{100 * share:.1f} %"]
+        for name, share in sorted(robust.reserves.items(), key=lambda pair: -pair[1])
+        if 1e-3 <= share <= WORTH
     ]
-    asked = percent(found.target)
-    rounds = ExtraTable(
-        f"Towards a yield of {asked}",
-        ("round", quantity.label, "all limits hold"),
-        way,
-        f"Round 0 has no reserves. An independent sample of {found.samples} draws at the design "
-        f"shown: {percent(found.rate)} ({percent(found.lower)} to {percent(found.upper)}).",
-    )
-    reserves = ExtraTable(
-        "Reserves kept beyond limits",
-        ("limit", "reserve, of the limit"),
-        kept,
-        "The distance from the margin of the design to the margin that a draw falls below with "
-        "the probability allowed to a single limit.",
-    )
-    return [rounds, reserves] if kept else [rounds]
+    if kept:
+        columns = [Column(head, width=1.0) for head in ("limit", "reserve, of the limit")]
+        note = (
+            "The distance from the margin of the design to the margin that a draw falls below with"
+            " the probability allowed to a single limit."
+        )
+        yield Table("Reserves kept beyond limits", columns, kept, note=note, on="paper")

@@ -1,4 +1,4 @@
-"""The stiffness budget on paper: the U-curve, what it is made of, and what would buy most."""
+"""The stiffness over the stroke: the curve, its parts, and which part would buy most."""
 
 from __future__ import annotations
 
@@ -10,11 +10,9 @@ import numpy as np
 from ..evaluation.result import Evaluation, Requirement, StrokeCurve
 from ..rendering import text
 from ..rendering.axes import AREAS, Axes, lowest, per_cent, required
-from ..rendering.blocks import Block, Cell, Column, Drawing, Table
+from ..rendering.blocks import Block, Cell, Column, Drawing, Table, TerminalFigure
 from ..rendering.ink import BLACK, BLUE, GREY, Ink, spread_within
 from ..rendering.text import trimmed
-
-pass
 
 SHARES = ((0.0, "cap end"), (0.25, "25 %"), (0.5, "50 %"), (0.75, "75 %"), (1.0, "rod end"))
 """Places of the table, as shares of the stroke."""
@@ -32,18 +30,39 @@ _TOPOLOGY = {
 }
 
 
-def stiffness_blocks(evaluation: Evaluation) -> list[Block]:
-    """Figure and table; the figure alone where there is nothing to divide."""
+def stiffness_blocks(evaluation: Evaluation, *, curve_shown: bool = True) -> list[Block]:
+    """Figure and table; the figure alone where there is nothing to divide.
+
+    `curve_shown`: the terminal shows a small curve.
+    """
     rows = evaluation.requirements
     required = next((r for r in rows if r.metric == "stiffness_min" and r.sense == "min"), None)
     curve = evaluation.curve
     note = f"Case {curve.case}, ports closed. {_topology(evaluation)}."
-    found: list[Block] = [
-        Drawing("Stiffness over the stroke", stiffness_figure(curve, required), note)
-    ]
+    ink, small = stiffness_figure(curve, required), None
+    if curve_shown and _usable(curve):
+        small = _terminal_curve(curve, required)
+    blocks: list[Block] = [Drawing("Stiffness over the stroke", ink, note, instead=small)]
     if len(parts(curve)) > 1 and _usable(curve):
-        found.append(_budget(curve))
-    return found
+        blocks.append(_budget(curve))
+    return blocks
+
+
+def _terminal_curve(curve: StrokeCurve, required: Requirement | None) -> TerminalFigure:
+    """A small curve with the required value, the minimum, and the shares there."""
+    points = [
+        (1000.0 * float(x), float(k) / 1e6)
+        for x, k in zip(curve.position, curve.stiffness, strict=True)
+    ]
+    limit = None if required is None else required.limit / 1e6
+    place, least = min(points, key=lambda point: point[1])
+    note = f"minimum {text.number(least)} at {trimmed(place, 3)} mm"
+    if limit is not None:
+        note += f", required {trimmed(limit)}"
+    if shares := summary(curve):
+        note += f"; compliance there: {shares}"
+    title = f"Stiffness over the stroke, kN/mm (case {curve.case})"
+    return TerminalFigure(title, points, limit, note=note)
 
 
 def _topology(evaluation: Evaluation) -> str:
@@ -131,7 +150,7 @@ def _budget(curve: StrokeCurve) -> Block:
         Column(f"weakest, {text.trimmed(1e3 * places[-1], 3)} mm", "right", 1.2, strong=True),
         Column("alone there, kN/mm", "right", 1.2),
     ]
-    return Table("Stiffness budget", columns, rows, note=gain_sentence(curve), total=1)
+    return Table("Stiffness budget", columns, rows, note=gain_sentence(curve), total=1, on="paper")
 
 
 PARTS = (

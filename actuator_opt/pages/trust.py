@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from ..base.quantities import Quantity
@@ -14,10 +14,7 @@ from ..rendering import text
 from ..rendering.axes import Axes, Ticks, fitted, ticks
 from ..rendering.blocks import Block, Drawing, Notes
 from ..rendering.ink import BLACK, BLUE, GREY, PALE, RED, Ink, spread_within, text_width
-from ..rendering.text import number, trimmed, unit_text
-
-pass
-from ..rendering.text import sentence
+from ..rendering.text import number, sentence, trimmed, unit_text
 
 LEAST_ABOVE = 1e-4
 """Per cent above the optimum that count as none."""
@@ -31,32 +28,43 @@ WIDTH = 180.0
 
 def trust_blocks(optimisation: Optimisation) -> list[Block]:
     """The statement, the scale of what is proven and found, and the course of the search."""
-    found: list[Block] = [Notes("How good is this?", lines(optimisation))]
+    said = [*proof(optimisation), *convergence(optimisation)]
+    blocks: list[Block] = [Notes("How good is this?", said, on="paper")]
     if optimisation.infeasibility is None:
-        found += _scale_block(optimisation)
-        found += _course_block(optimisation)
-    return found
+        blocks += _scale_block(optimisation)
+        blocks += _course_block(optimisation)
+    return blocks
 
 
-def lines(optimisation: Optimisation) -> list[str]:
-    """What is proven, what is only likely, and how it was found."""
-    return [*proof(optimisation), *convergence(optimisation)]
+def brief(optimisation: Optimisation) -> Iterator[Block]:
+    """The same for the terminal, without the limits that the proof covers."""
+    for said, style in (
+        (proof(optimisation, shortened=True), ""),
+        (convergence(optimisation), "dim"),
+    ):
+        if said:
+            yield Notes("Trust", said, headless=True, style=style, on="terminal")
 
 
-def proof(optimisation: Optimisation, *, brief: bool = False) -> list[str]:
-    """What the certificate says; without one, how to get it. `brief` leaves the covered limits."""
+def proof(optimisation: Optimisation, *, shortened: bool = False) -> list[str]:
+    """What the certificate says; without a certificate, how to get it.
+
+    `shortened`: the limits that it covers are counted, not named.
+    """
     certificate = optimisation.certificate
     if certificate is None:
         if optimisation.infeasibility is not None or not optimisation.variables:
             return []
         return ["Not proven: optimise --certify tells how far this is from the best possible."]
     said = [sentence(certificate.sentence), *_of_sizes(optimisation)]
-    if certificate.covers and not brief:
+    if certificate.covers and not shortened:
         names = ", ".join(certificate.covers)
         said.append(f"The proof covers, by the models or by what none of them can beat: {names}.")
     if certificate.dropped:
-        shown = [name if brief else f"{name} ({why})" for name, why in certificate.dropped.items()]
-        covered = f"It covers {len(certificate.covers)} limits and does" if brief else "It does"
+        shown = [
+            name if shortened else f"{name} ({why})" for name, why in certificate.dropped.items()
+        ]
+        covered = f"It covers {len(certificate.covers)} limits and does" if shortened else "It does"
         said.append(f"{covered} without these, which can only lower the bound: {'; '.join(shown)}.")
     if certificate.evidence:
         said.append(sentence(certificate.evidence))
@@ -247,10 +255,6 @@ def convergence(optimisation: Optimisation) -> list[str]:
 def _missed(violation: float) -> str:
     """How far a design misses its limits, in words."""
     return "all met" if violation <= 1e-6 else f"missed by {text.number(100 * violation, 2)} %"
-
-
-MET = 1e-6
-"""Largest miss of a limit that counts as met (contract)."""
 
 
 _WIDTH, _HEIGHT, _PANEL, _TALL = 180.0, 70.0, 66.0, 44.0
