@@ -104,7 +104,10 @@ def page(
     if optimisation is not None and optimisation.variables:
         blocks, later = _with_variables(first, drawing.ink.height, optimisation)
     else:
-        blocks = [*_opening(evaluation, optimisation), masses(evaluation)]
+        blocks = list(_opening(evaluation, optimisation))
+        if optimisation is not None:
+            blocks += optimum.sizes_and_choices(optimisation)
+        blocks.append(masses(evaluation))
     blocks += stiffness.stiffness_blocks(evaluation, curve_shown=optimisation is None)
     blocks += [*dynamics.dynamics_blocks(evaluation), *later]
     if optimisation is not None:
