@@ -202,10 +202,10 @@ def _front(head: Mapping[str, Any], body: Mapping[str, Any]) -> Table:
     """Range and knee of every objective of a front."""
     points = body["result"]["points"]
     columns = [
-        Column("objective", width=1.0),
+        Column("objective", width=1.0, breaks=14, wraps=True),
         Column("least", "right"),
         Column("most", "right"),
-        Column("knee", "right"),
+        Column("knee", "right", drop=1),
     ]
     rows = []
     for goal in head["objectives"]:
