@@ -42,9 +42,10 @@ def list_runs(
     told = [{"id": name} | head for name, head in rows]
 
     def text() -> str:
-        from ..pages.runs_text import runs_table
+        from ..pages.runs import listing
+        from ..rendering.terminal import blocks_text
 
-        return runs_table(rows, **streams.style())
+        return blocks_text([listing(rows)], **streams.style())
 
     job = Job(as_json=as_json, quiet=quiet)
     if not as_json:

@@ -18,7 +18,7 @@ from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
 from ..rendering.axes import Axes, legend
 from ..rendering.ink import BLUE, GREY, Ink, spread_within
-from ..rendering.text import number, unit_text
+from ..rendering.text import bars, number, unit_text
 from .bode import dot
 from .identification_axes import (
     IN,
@@ -41,7 +41,6 @@ from .identification_map import map_panel, pressure_levels
 from .identification_rows import FORCE, SPEED
 from .identification_series import LINE, loop, strips
 from .optimum import sentence
-from .seal_figures import bars
 from .wall_figures import GREEN, OCHRE
 
 WIDTH = 180.0

@@ -31,7 +31,7 @@ from . import (
     infeasibility_card,
     optimum,
     prices,
-    seal_sheet,
+    seal,
     stiffness_page,
     tables,
     trust,
@@ -263,7 +263,8 @@ def page(
         blocks += trust.blocks(optimisation) + prices.blocks(optimisation)
     if optimisation is not None and optimisation.variables:
         blocks.append(tables.masses(evaluation))
-    blocks += seal_sheet.sheets(seals) + wall.blocks(evaluation)
+    blocks += [block for study in seals for block in seal.blocks(study)]
+    blocks += wall.blocks(evaluation)
     blocks += [tables.checks(evaluation), tables.models(evaluation)]
     blocks += _remarks(evaluation, optimisation)
     for given in extra_tables:

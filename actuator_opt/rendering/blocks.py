@@ -123,6 +123,7 @@ class Column:
     width : "auto", a part of the room that is left (number), or ``"12mm"``; a column of the second
         kind shrinks on a narrow terminal
     breaks : letters of a word beyond which it may break; 0 never
+    wraps : a cell too wide for the terminal goes on in further lines; otherwise it is cut
     mono, strong : type on paper; on the terminal strong is bold
     least : letters that a shrinking column keeps on the terminal
     drop : on a narrow terminal the columns of the highest number go first; 0 never
@@ -134,6 +135,7 @@ class Column:
     align: Align = "left"
     width: float | str = "auto"
     breaks: int = 0
+    wraps: bool = False
     mono: bool = False
     strong: bool = False
     least: int = 14
@@ -159,7 +161,8 @@ class Row:
 class Table:
     """Rows under their heads, plain cells or with a state; a rule parts the last `total` of them.
 
-    `headless` leaves the title out on the terminal.
+    `headless` leaves the title out on the terminal, and so does an empty title. Where every head
+    is empty, the terminal shows no line of heads.
     """
 
     title: str
