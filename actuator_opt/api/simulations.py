@@ -350,7 +350,6 @@ def write_simulation(
     from ..pages.measured_figures import drawn
     from ..pages.measured_rows import measured_blocks
     from ..pages.simulation_document import write_simulation_sheet
-    from ..pages.tables import extra
     from ..pages.verification_rows import sensitivity_rows
 
     if scenario is None:
@@ -358,7 +357,7 @@ def write_simulation(
         raise UsageError(Diagnostic(message, "give scenario=read_scenario(...)"))
     origin, place = _page(scenario, simulation, "", paper)
     blocks = [] if measured is None else measured_blocks(measured.overlay, measured.fit)
-    blocks += [] if sensitivities is None else map(extra, sensitivity_rows(sensitivities))
+    blocks += [] if sensitivities is None else sensitivity_rows(sensitivities)
     return write_simulation_sheet(
         simulation,
         origin,

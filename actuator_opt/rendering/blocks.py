@@ -283,20 +283,19 @@ class Page:
     lists_input: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ExtraTable:
-    """A table that a caller adds to a report.
-
-    A cell may be text or a number; `note` stands under the table, a `drawing` after it.
-    """
-
-    title: str
-    columns: Sequence[str]
-    rows: Sequence[Sequence[object]]
-    note: str = ""
-    drawing: Drawing | None = None
-    widths: Sequence[float] = ()
-    """Of the columns, over one another; default: all alike."""
+def text_table(
+    title: str,
+    heads: Sequence[str],
+    rows: Sequence[Sequence[Cell]],
+    note: str = "",
+    widths: Sequence[float | str] = (),
+) -> Table:
+    """A table of texts: its columns share the room alike or by `widths`, and long words break."""
+    columns = [
+        Column(head, "left", width, breaks=14)
+        for head, width in zip(heads, widths or [1.0] * len(heads), strict=True)
+    ]
+    return Table(title, columns, rows, note)
 
 
 def tile(label: str, words: str, note: str, state: State = "") -> Tile:
