@@ -1,4 +1,4 @@
-"""Libraries as plain text: what there is, all of one material, several side by side."""
+"""Material libraries as plain text: a list, details of a material, or a comparison."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def list_lines(library: Library, *, kind: str | None = None, ascii: bool = False
         if not materials:
             continue
         keys = _KEY_PROPERTIES[group]
-        rows = [[group, *(key.replace("_", " ") for key in keys), "unverified", "what it is"]]
+        rows = [[group, *(key.replace("_", " ") for key in keys), "unverified", "description"]]
         for material in materials:
             values = [_text(material, key) for key in keys]
             share = f"{len(material.unverified)} of {len(material.properties)}"
@@ -41,7 +41,7 @@ def list_lines(library: Library, *, kind: str | None = None, ascii: bool = False
 
 
 def show_lines(material: Material, *, ascii: bool = False) -> list[str]:
-    """Everything known of one material, its sources numbered below the table."""
+    """All properties of a material, its sources numbered below the table."""
     lines = [f"{material.name}  ({material.kind})  {material.label}"]
     for head, text in (("", material.notes), ("WARNING: ", material.warning)):
         lines += textwrap.wrap(head + text, 98, subsequent_indent="  ") if text else []
@@ -66,7 +66,7 @@ def show_lines(material: Material, *, ascii: bool = False) -> list[str]:
 
 
 def compare_lines(materials: Sequence[Material], *, ascii: bool = False) -> list[str]:
-    """Properties side by side; from the second material on with the ratio to the first."""
+    """Properties side by side; from the second material on, with the ratio to the first."""
     completed = [material.completed() for material in materials]
     known = {name for properties in completed for name in properties}
     names = [name for name in MATERIAL_PROPERTIES if name in known]
@@ -101,7 +101,7 @@ _STRENGTH = ("strength_1_tension", "yield_strength", "ultimate_strength")
 
 
 def _specific(properties: Mapping[str, Property], names: Sequence[str]) -> float | None:
-    """First of the named properties there is, per density."""
+    """First available of the named properties, per density."""
     for name in names:
         if name in properties and "density" in properties:
             return properties[name].value / properties["density"].value
@@ -114,7 +114,7 @@ def _text(material: Material, name: str) -> str:
 
 
 def _values(entry: Property) -> list[str]:
-    """Value, or each point of a table with its argument."""
+    """Value, or each table point with its argument."""
     if not entry.points:
         return [entry.text]
     return [f"{entry.quantity.text(y)} at {_argument(entry, x)}" for x, y in entry.points]
@@ -135,7 +135,7 @@ def _cell(entry: Property | None, first: Property | None) -> str:
 
 
 def _table(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Columns padded to their widest cell, a rule below the head."""
+    """Columns padded to their widest cell, with a rule below the head."""
     lines = aligned(rows).split("\n")
     rule = "─" * min(max(len(line) for line in lines), 120)
     return [lines[0], rule, *lines[1:]]
