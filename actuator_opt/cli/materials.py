@@ -1,4 +1,4 @@
-"""The commands below `actuator-opt materials`: what the library knows, with its sources."""
+"""The commands of `actuator-opt materials`: library data with their sources."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def list_materials(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Every entry with its main numbers."""
+    """List all entries with their main properties."""
     from ..design.material import KINDS
     from ..design.materials import load_library
 
@@ -54,14 +54,16 @@ def show_material(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", metavar="DIR", help="Draw a fluid into this folder (NAME.png, NAME.svg)."
+            "--out",
+            metavar="DIR",
+            help="Write a figure of a fluid to this folder (NAME.png, NAME.svg).",
         ),
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Every property of one entry, with scatter and source.
+    """Show all properties of an entry, with scatter and source.
 
-    A fluid is also shown over temperature and pressure.
+    For a fluid, also over temperature and pressure.
     """
     from ..design.materials import load_library
 
@@ -69,7 +71,7 @@ def show_material(
     if out is not None:
         if material.kind != "fluid":
             message = f"--out: {name} is a {material.kind}, only fluids have a figure"
-            raise UsageError(Diagnostic(message, "leave --out away, or name a fluid"))
+            raise UsageError(Diagnostic(message, "remove --out, or name a fluid"))
         store.require_folder(out)
     if as_json:
         streams.out_json(_data([material]))
@@ -90,11 +92,11 @@ def compare_materials(
     names: Annotated[list[str], typer.Argument(metavar="NAME", help="Two or more entries.")],
     as_json: Json = False,
 ) -> None:
-    """Properties side by side, with ratios to the first."""
+    """Compare properties side by side, with ratios to the first material."""
     from ..design.materials import load_library
 
     if len(names) < 2:
-        raise UsageError(Diagnostic("one material cannot be compared", "name two or more"))
+        raise UsageError(Diagnostic("a comparison needs two materials", "name two or more"))
 
     library = load_library()
     materials = [library.get(name) for name in names]

@@ -50,7 +50,7 @@ def listing(library: Library, *, kind: str | None = None) -> list[Block]:
             Column(group),
             *(Column(key.replace("_", " "), drop=k) for k, key in enumerate(SHOWN[group], 1)),
             Column("unverified", drop=4),
-            Column("what it is", width=1.0, wraps=True, least=18),
+            Column("description", width=1.0, wraps=True, least=18),
         ]
         rows = []
         for material in materials:
