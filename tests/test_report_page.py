@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 import report_fixture as fixture
 
-from actuator_opt.pages import ExtraTable, infeasibility_card
+from actuator_opt.pages import infeasibility_card
 from actuator_opt.pages.page import key_figures, page, verdict
+from actuator_opt.rendering.blocks import text_table
 
 SOURCE = {"source_text": "a: 1\n", "source_name": "a.yaml", "command": "x", "date": None}
 
@@ -150,13 +151,12 @@ def test_nothing_to_say_is_said():
 
 
 def test_extra_tables_stand_before_the_input():
-    """A caller's table is printed, numbers aligned right, before the listing."""
-    extra = ExtraTable(
-        "Published beside ours", ["what", "paper", "ours"], [["gap", 1.5, 1.6]], "they differ"
+    """A caller's table is printed before the listing."""
+    extra = text_table(
+        "Published beside ours", ["what", "paper", "ours"], [["gap", "1.5", "1.6"]], "they differ"
     )
     data = page(fixture.build_evaluation(), **SOURCE, extra_tables=[extra])
     assert data["blocks"][-2]["title"] == "Published beside ours"
-    assert [c["align"] for c in data["blocks"][-2]["columns"]] == ["left", "right", "right"]
     assert data["blocks"][-1]["kind"] == "listing"
 
 
