@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import cli_runner
 import pytest
+from actuator_opt.pages.choices_table import block, terminal
 from cli_runner import DESIGNS, evaluated, refused, run
 from hypothesis import given, settings, strategies as st
 
@@ -19,8 +20,8 @@ from actuator_opt.base.errors import InputError
 from actuator_opt.design import choice_list, read_design
 from actuator_opt.design.schema import json_schema
 from actuator_opt.design.writer import to_yaml
-from actuator_opt.pages.choices_table import block, heads, terminal
-from actuator_opt.pages.page import page
+from actuator_opt.pages.optimum import heads
+from actuator_opt.pages.report import page
 
 BENCH = cli_runner.BENCH.replace("12.2 %", "16 %")
 """The bench design with rings squeezed enough for every check of the seals."""

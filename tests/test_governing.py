@@ -25,7 +25,7 @@ from actuator_opt.optimisation.actuator import build, goal_of
 from actuator_opt.optimisation.pareto_result import ParetoFront
 from actuator_opt.optimisation.recorded import from_plain, to_plain
 from actuator_opt.optimisation.rounding import design_at
-from actuator_opt.pages import page, tables, terminal
+from actuator_opt.pages import report as page, terminal
 from actuator_opt.rendering import text
 
 DESIGNS = ("knee", "servo_knee", "aerospace", "aalto_40_25_220", "linkage")
@@ -104,7 +104,7 @@ def test_a_limited_metric_is_governed_by_its_limit(name, sense):
     rows = {row["name"]: row for row in as_json["requirements"]}
     shown, printed = table_rows(evaluation), str(evaluation).splitlines()
     names = ((row, row[0] if isinstance(row[0], str) else "".join(row[0]))
-             for row in tables.requirements(evaluation)["rows"])  # fmt: skip
+             for row in page.requirements(evaluation)["rows"])  # fmt: skip
     block = {name.removesuffix(" (!)"): row[3] for row, name in names}  # outside its range or not
     tiles = page.key_figures(evaluation)
     swept = evaluate_many(one, {"supply.pressure": np.full(2, one.numbers["supply.pressure"])}, 2)

@@ -13,7 +13,7 @@ from actuator_opt.design.materials import load_library
 from actuator_opt.optimisation.cures import SUBSTITUTES
 from actuator_opt.optimisation.infeasibility_card import KINDS
 from actuator_opt.optimisation.run import optimise
-from actuator_opt.pages.page import verdict
+from actuator_opt.pages.report import verdict
 
 STEEL = DESIGNS / "steel_baseline.yaml"
 

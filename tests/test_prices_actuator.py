@@ -20,7 +20,7 @@ from actuator_opt.optimisation.problem import BoxProblem, ParametricProblem, Val
 from actuator_opt.optimisation.sensitivity import ranked
 from actuator_opt.optimisation.solver import solve
 from actuator_opt.pages import prices as told
-from actuator_opt.pages.tornado import tornado
+from actuator_opt.pages.prices import tornado
 from actuator_opt.rendering import text
 
 DESIGNS = Path(__file__).parents[1] / "designs"

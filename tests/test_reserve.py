@@ -28,10 +28,9 @@ from actuator_opt.optimisation.robustness import Robust
 from actuator_opt.pages import (
     calibration_document,
     compare_text,
-    page,
     pareto_document,
+    report as page,
     runs,
-    tables,
     terminal,
 )
 from actuator_opt.pages.sweep_text import sweep_text
@@ -233,7 +232,7 @@ def test_the_verdict_is_amber_where_a_limit_has_no_reserve(optimum):
 def test_rows_without_reserve_are_marked_on_paper_and_in_the_terminal(optimum):
     """The state of a row is a word: it reads in grey and without colour."""
     evaluation = optimum.best_evaluation
-    rows = tables.requirements(evaluation)["rows"]
+    rows = page.requirements(evaluation)["rows"]
     states = {"".join(row[0]): row[6]["text"] for row in rows}
     assert states["buckling_factor"] == "no reserve"
     assert states["burst_factor"] == "met"
@@ -291,7 +290,7 @@ def test_counts_of_unverified_and_extrapolated_stand_on_page_one(wide):
     shown = terminal.verdict(evaluation, colour=True)
     assert f"\x1b[33mvalues not verified: {len(evaluation.unverified)}; EXTRAPOLATED" in shown
     assert "(cycle_life)" in shown
-    table = tables.requirements(evaluation)
+    table = page.requirements(evaluation)
     names = ["".join(row[0]) for row in table["rows"]]
     assert "cycle_life (!)" in names
     assert "(!) EXTRAPOLATED" in table["note"]

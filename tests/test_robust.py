@@ -213,7 +213,7 @@ def test_impossible_targets_are_one_line(target, tmp_path):
 
 def test_the_report_tells_of_it(tmp_path):
     """Sentence on page 1, rounds and reserves as tables."""
-    from actuator_opt.pages.robust_rows import robust_tables
+    from actuator_opt.pages.optimum import robust_tables
 
     found = optimum(0.9)
     way, reserves = robust_tables(found)

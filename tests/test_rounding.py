@@ -22,8 +22,8 @@ from actuator_opt.optimisation.listed import Listed
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.rounding import Wanted, misfits, plies, rounded, sizes_of
 from actuator_opt.optimisation.solver import solve
-from actuator_opt.pages.page import page
 from actuator_opt.pages.prices import quality
+from actuator_opt.pages.report import page
 from actuator_opt.rendering import text
 
 PLIES = Wanted(whole_plies=True)

@@ -9,6 +9,8 @@ from dataclasses import replace
 import cli_runner
 import numpy as np
 import pytest
+from actuator_opt.pages.choices_table import terminal
+from actuator_opt.pages.whole_plies import notes as rounding_notes
 from cli_runner import PLIES, bench, refused, run
 from hypothesis import given, settings, strategies as st
 from problems import pressure_vessel
@@ -25,8 +27,6 @@ from actuator_opt.optimisation.branch_and_bound import search
 from actuator_opt.optimisation.listed import Listed
 from actuator_opt.optimisation.problem import BoxProblem, Values
 from actuator_opt.optimisation.solver import solve
-from actuator_opt.pages.choices_table import terminal
-from actuator_opt.pages.whole_plies import notes as rounding_notes
 
 BORE = "  cylinder.bore:\n    lower: 20 mm\n    upper: 30 mm\n"
 THICKNESS = "  barrel.layup[1].thickness:\n    lower: 0.5 mm\n    upper: 4 mm\n"

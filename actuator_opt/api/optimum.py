@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any
 
 from ..design import Design
 from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..optimisation.result import Optimisation
     from ..optimisation.sensitivity import Sensitivity
     from ..pages import ReportFile
-    from ..rendering.console import Style
+    from ..rendering.blocks import Page
 
 
 def evaluate(
@@ -144,13 +144,11 @@ class Prices:
         keys += ["what_buys_most", "kkt", "infeasibility"]
         return {key: data[key] for key in keys if key in data}
 
-    def text(self, **style: Unpack[Style]) -> str:
-        """Prices in the terminal, or why there is no optimum."""
-        from ..pages import infeasibility_card, prices
+    def page(self) -> Page:
+        """Prices and movements, or why there is no optimum."""
+        from ..pages.report import prices_page
 
-        best = self.optimisation
-        shown = prices.terminal(best, moving=True, **style)
-        return f"{shown or infeasibility_card.terminal(best, **style) or best.sentence}\n"
+        return prices_page(self.optimisation)
 
     def report(self, **paper: Any) -> list[ReportFile]:
         """Write the report of the optimum."""

@@ -274,8 +274,8 @@ def _differences(
 ) -> dict[str, tuple[Any, Any]]:
     """What is not the same now: status, variables by PATH, metrics by name."""
     from ..optimisation.pareto_result import ParetoFront
-    from ..pages.page import outcome
     from ..pages.pareto_rows import front_outcome
+    from ..pages.report import outcome
 
     now = front_outcome(subject) if isinstance(subject, ParetoFront) else outcome(subject)
     found: dict[str, tuple[Any, Any]] = {}
@@ -291,7 +291,7 @@ def _differences(
 def _hash(subject: Evaluation | Optimisation | ParetoFront) -> str | None:
     """The hash that a report of it carries; None where that is of the input alone."""
     from ..optimisation.pareto_result import ParetoFront
-    from ..pages.page import parts_of
+    from ..pages.report import parts_of
 
     return None if isinstance(subject, ParetoFront) else parts_of(subject)[0].spec_hash
 

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict, Unpack
+from typing import TYPE_CHECKING, Required, TypedDict, Unpack
 
 from ..base.errors import Diagnostic, UsageError
 from ..design import Design, Source
@@ -55,13 +55,15 @@ class Paper(TypedDict, total=False):
     actuator: Actuator | None
     command: str
     date: str | None
+    all_pages: bool
 
 
-class Target(TypedDict):
-    """Folder and name of the files of a page, without suffix."""
+class Target(TypedDict, total=False):
+    """Folder and name of the files of a page, without suffix; which sheets are images."""
 
-    folder: Path
-    stem: str
+    folder: Required[Path]
+    stem: Required[str]
+    all_pages: bool
 
 
 def page_of(
@@ -74,6 +76,7 @@ def page_of(
     actuator: Actuator | None = None,
     command: str = "",
     date: str | None = None,
+    all_pages: bool = False,
 ) -> tuple[Origin, Target]:
     """What the title block of a page says, and where the page is written.
 
@@ -82,7 +85,7 @@ def page_of(
     design : the page is about
     tail : of the file names, behind the name of the design's file
     beside : another file that gives the name
-    folder, stem, actuator, command, date : as `report`
+    folder, stem, actuator, command, date, all_pages : as `report`
 
     Raises
     ------
@@ -93,7 +96,10 @@ def page_of(
     source = None if actuator is None else actuator.source
     named = f"{Path(beside or file_name(design, source)).stem}{tail}"
     page = origin(design, source, command=command, date=date)
-    return page, {"folder": Path(folder), "stem": stem or named}
+    place: Target = {"folder": Path(folder), "stem": stem or named}
+    if all_pages:
+        place["all_pages"] = True
+    return page, place
 
 
 def report_design(
@@ -104,23 +110,16 @@ def report_design(
     **paper: Unpack[Paper],
 ) -> list[ReportFile]:
     """Write the report of an evaluation or an optimisation; parameters as `report`."""
-    from ..pages import write_report
-    from ..pages.robust_rows import robust_tables
+    from ..pages.report import outcome, page
+    from ..rendering.paper import write
 
+    evaluation = subject if isinstance(subject, Evaluation) else subject.best_evaluation
     design = subject.design if isinstance(subject, Evaluation) else subject.best
     origin, place = page_of(design, **paper)
-    evaluation = subject if isinstance(subject, Evaluation) else subject.best_evaluation
-    tables = [*published(evaluation), *robust_tables(subject), *extra_tables]
-    return write_report(
-        subject,
-        source_text=origin.source_text,
-        source_name=origin.source_name,
-        command=origin.command,
-        date=origin.date,
-        extra_tables=[*tables, *verification_tables(dynamics_verified)],
-        seals=_seal_studies(prepare(design)),
-        **place,
-    )
+    tables = [*published(evaluation), *extra_tables, *verification_tables(dynamics_verified)]
+    shown = page(subject, extra_tables=tables, seals=_seal_studies(prepare(design)))
+    how = {"actuator_opt": evaluation.version, "result": outcome(subject)}
+    return write(shown, origin, **place, **how)
 
 
 def published(evaluation: Evaluation) -> list[Block]:

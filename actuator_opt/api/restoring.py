@@ -186,7 +186,7 @@ def draw_run(of: Run, folder: str | Path) -> list[Path]:
     ------
     InputError : a run of another command than optimise
     """
-    from ..pages.convergence_figure import convergence_figure
+    from ..pages.trust import convergence_figure
     from ..rendering.image import write_ink
 
     if of.head.get("kind") != "optimise":

@@ -117,16 +117,16 @@ def kinds(*declared: ResultKind) -> dict[str, ResultKind]:
 # fmt: off
 KINDS = kinds(
     ResultKind(
-        "evaluation.result:Evaluation", _met, text="pages.terminal:evaluation_text",
+        "evaluation.result:Evaluation", _met, page="pages.report:page",
         report="api.reports:report_design", csv=None, record=None,
     ),
     ResultKind(
-        "optimisation.result:Optimisation", _optimised, text="pages.terminal:optimisation_text",
+        "optimisation.result:Optimisation", _optimised, page="pages.report:page",
         report="api.reports:report_design", csv=None, record="api:record",
         remarks=_unrounded, writes=lambda result: not result.status.startswith("interrupted"),
     ),
     ResultKind(
-        "api.optimum:Prices", lambda prices: _optimised(prices.optimisation), text="text",
+        "api.optimum:Prices", lambda prices: _optimised(prices.optimisation), page="page",
         report="report", csv=None, record=None,
     ),
     ResultKind(
@@ -280,6 +280,7 @@ def report(
     actuator: Actuator | None = None,
     command: str = "",
     date: str | None = None,
+    all_pages: bool = False,
     seed: int = 0,
     plugins: Plugins = (),
     **more: Any,
@@ -298,6 +299,7 @@ def report(
     actuator : the design as read, for its listing and attachment
     command : what made the report, printed on it
     date : ISO date; default: SOURCE_DATE_EPOCH, else none
+    all_pages : an image of every sheet, not of the first alone
     seed : of the draws of the estimate
     plugins : the user's metrics and constraints, of a design that is no `Actuator` yet, or a run
     more : `dynamics_verified` (of `verify_dynamics`) and `extra_tables` of an evaluation or an
@@ -314,6 +316,7 @@ def report(
     InputError : the folder cannot be written; no partial file is left
     """
     paper: dict[str, Any] = {"folder": folder, "stem": stem, "command": command, "date": date}
+    paper |= {"all_pages": True} if all_pages else {}
     if isinstance(subject, Run) or (
         isinstance(subject, str | Path) and run_store.is_name(str(subject))
     ):

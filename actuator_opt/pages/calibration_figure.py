@@ -14,7 +14,7 @@ from ..rendering.axes import Axes, fitted, legend, ticks
 from ..rendering.ink import BLACK, BLUE, GREY, WHITE, Ink, spread_within
 from ..rendering.text import trimmed, unit_text
 from ..studies.bench import Bench
-from .bode import dot, level_ticks
+from .dynamics_figures import dot, level_ticks
 from .identification_axes import (
     IN,
     OUT,

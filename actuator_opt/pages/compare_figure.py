@@ -9,7 +9,7 @@ from ..rendering.heights import wrap
 from ..rendering.ink import BLACK, GREY, Ink, text_width
 from ..rendering.text import limit_text, number, pretty
 from .compare_text import PART_TITLES, PART_UNITS, answer, duties, named, optimality, part_name
-from .stiffness_figure import fills
+from .stiffness import fills
 from .ucurves import MOST, STYLES, Required, curves_drawn, has_points
 
 _WIDTH, _RIGHT = 180.0, 20.0

@@ -15,7 +15,7 @@ from ..rendering.axes import Axes, Ticks, ticks
 from ..rendering.heights import wrap
 from ..rendering.ink import BLACK, BLUE, GREY, PALE, WHITE, Ink, text_width
 from ..rendering.text import fixed, trimmed
-from .bode import level_ticks
+from .dynamics_figures import level_ticks
 
 Box = tuple[float, float, float, float]
 """Left, top, width and height on the paper [mm]."""

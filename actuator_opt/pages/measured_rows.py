@@ -8,11 +8,20 @@ from pathlib import Path
 from ..base.quantities import Quantity
 from ..rendering.blocks import Block, Cell, Column, Drawing, Notes, Table, short, soft
 from ..rendering.console import Console
-from ..rendering.text import DASH, decimals, fixed, number, pretty, trimmed, unit_text, with_unit
+from ..rendering.text import (
+    DASH,
+    decimals,
+    fixed,
+    number,
+    pretty,
+    sentence,
+    trimmed,
+    unit_text,
+    with_unit,
+)
 from ..simulation.measured import Overlay
 from ..simulation.measured.fit import Fit, Fitted
 from .measured_figures import channel_words, measured_figures
-from .optimum import sentence
 from .simulation_words import tied
 
 RESIDUALS = ("channel", "unit", "rms", "noise", "largest", "at", "bias", "rms/span", "rms before")

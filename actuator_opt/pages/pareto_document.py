@@ -9,23 +9,12 @@ from ..base.files import write_all
 from ..evaluation.reserve import count_words
 from ..optimisation.pareto_result import ParetoFront
 from ..rendering import paper as writer, text
-from ..rendering.blocks import (
-    Block,
-    Cell,
-    Column,
-    Notes,
-    Page,
-    Table,
-    Tile,
-    Verdict,
-    short,
-    tile,
-)
+from ..rendering.blocks import Block, Cell, Column, Notes, Page, Table, Tile, Verdict, short, tile
 from ..rendering.image import images
 from ..rendering.origin import Origin
 from . import pareto_rows as rows
-from .page import doubts
 from .pareto_figure import front_figure
+from .report import doubts
 
 FEWER = 17
 """Designs on the page of three or more objectives, whose heads and roles take more lines."""

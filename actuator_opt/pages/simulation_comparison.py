@@ -11,11 +11,10 @@ from ..base.errors import Diagnostic, InputError
 from ..base.quantities import RESULTS
 from ..base.suggest import remedy
 from ..rendering.blocks import Block, Cell, Column, State, Status, Table, Tile, Verdict, soft, tile
-from ..rendering.text import DASH, number, pretty, unit_text, with_unit
+from ..rendering.text import DASH, number, pretty, sentence, unit_text, with_unit
 from ..simulation.gains import Tuned
 from ..simulation.result import Simulation
 from . import simulation_rows as rows
-from .optimum import sentence
 from .simulation_axes import COLOURS, DASHES
 from .simulation_words import what as whole
 

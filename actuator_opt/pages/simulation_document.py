@@ -6,18 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..rendering import paper as writer
-from ..rendering.blocks import (
-    Block,
-    Cell,
-    Column,
-    Notes,
-    Page,
-    Pair,
-    Status,
-    Table,
-    clean,
-    soft,
-)
+from ..rendering.blocks import Block, Cell, Column, Notes, Page, Pair, Status, Table, clean, soft
 from ..rendering.origin import Origin
 from ..simulation.result import Simulation
 from . import simulation_rows as rows

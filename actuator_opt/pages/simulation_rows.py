@@ -12,10 +12,18 @@ from ..base.quantities import RESULTS, SCENARIOS, Quantity
 from ..evaluation.reserve import count_words
 from ..rendering import text
 from ..rendering.blocks import State, Tile, Verdict, tile
-from ..rendering.text import DASH, number, pretty, trimmed, unit_text, value_text, with_unit
+from ..rendering.text import (
+    DASH,
+    number,
+    pretty,
+    sentence,
+    trimmed,
+    unit_text,
+    value_text,
+    with_unit,
+)
 from ..simulation.loops import LOOPS, loop_of
 from ..simulation.result import RequirementResult, Simulation
-from .optimum import sentence
 from .simulation_energy import doubts
 from .simulation_words import PRESSURE
 

@@ -10,11 +10,10 @@ from ..base.quantities import INPUTS, SCENARIOS, Quantity
 from ..design.scenario.components import ENDS, FRICTIONS, SUPPLIES
 from ..design.scenario.model import Scenario
 from ..design.scenario.shapes import SHAPES, height
-from ..rendering.text import trimmed, unit_text, with_unit
+from ..rendering.text import sentence, trimmed, unit_text, with_unit
 from ..simulation.assemble import ends_of
 from ..simulation.loops import LOOPS
 from ..simulation.result import Simulation
-from .optimum import sentence
 
 MOST_PARTS = 3
 """Parts of a signal that are told."""

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from ..rendering.blocks import Column
 from ..rendering.console import Console
-from ..rendering.text import pretty
+from ..rendering.text import pretty, sentence
 from ..simulation.sensitivity import Sensitivities
 from ..simulation.verification import Verification
 from . import verification_rows as rows
-from .optimum import sentence
 from .simulation_words import tied
 
 _SIGNS = {

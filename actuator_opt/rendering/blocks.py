@@ -7,7 +7,7 @@ Subjects build a `Page`; `paper`, `terminal` and `html` render it. A block says 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
@@ -20,7 +20,10 @@ State: TypeAlias = Literal["", "met", "no_reserve", "missed", "not_checked", "ch
 Medium: TypeAlias = Literal["both", "paper", "terminal"]
 Align: TypeAlias = Literal["left", "center", "right"]
 
-_PIECES = re.compile(r"[^._/=)\]]{0,17}(?:[._/=)\]]+(?![0-9])|$)|.{1,18}", re.DOTALL)
+_PIECES = re.compile(r"(?:[^./=\[]|[./=\[]+(?=[0-9]))*(?:[./=\[]+|$)", re.DOTALL)
+_NAMES = re.compile(r"[^_]*(?:_+|$)")
+_NAME = 18
+"""Letters of a single name that any column has room for."""
 _WORDS = re.compile(r"\s*\S+\s*|\s+")
 _CONTROL = re.compile(rf"[{CONTROLS}]")
 
@@ -45,17 +48,33 @@ def printable(text: str) -> str:
 
 
 def soft(text: str, longest: int = 14) -> str | list[str]:
-    """A text that may break inside words beyond `longest` letters (paths, absurd names)."""
+    """A text that may break inside words beyond `longest` letters: behind ``. / = [``.
+
+    A single name beyond what the column holds may break behind ``_`` too, then anywhere.
+
+    >>> soft("materials.steel_42crmo4.density", 22)
+    ['materials.', 'steel_42crmo4.', 'density']
+    """
     text = clean(text)
     pieces: list[str] = [""]
     for word in _WORDS.findall(text):
         if len(word.rstrip()) <= longest:
             pieces[-1] += word
             continue
-        first, *rest = (piece for piece in _PIECES.findall(word) if piece)
+        first, *rest = _pieces(word, max(longest, _NAME))
         pieces[-1] += first
         pieces += rest
     return text if len(pieces) == 1 else pieces
+
+
+def _pieces(word: str, most: int) -> Iterator[str]:
+    """Parts of a word between which a line may break, none beyond `most` letters."""
+    for part in filter(None, _PIECES.findall(word)):
+        if len(part.rstrip()) <= most:
+            yield part
+            continue
+        for name in filter(None, _NAMES.findall(part)):
+            yield from (name[k : k + most] for k in range(0, len(name), most))
 
 
 def short(text: str, length: int) -> str:
@@ -100,6 +119,21 @@ class Slot:
     at: str = ""
 
 
+FARTHEST = 0.3
+"""Relative change at which the bar of a `Reach` ends; it has ticks at a third of that."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """How far a value may change, as a bar from its present place; None: as far as it was tried.
+
+    `met`: whether the whole reach counts.
+    """
+
+    change: float | None
+    met: bool = True
+
+
 @dataclass(frozen=True, slots=True)
 class Flag:
     """Words that stand out where `raised`."""
@@ -108,7 +142,7 @@ class Flag:
     raised: bool
 
 
-Cell: TypeAlias = str | list[str] | Status | Bar | Share | Slot | Flag
+Cell: TypeAlias = str | list[str] | Status | Bar | Share | Slot | Reach | Flag
 """Text (in pieces: a line may break between them), or a mark."""
 
 

@@ -10,7 +10,24 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from .blocks import Block, Cell, Drawing, Flag, Listing, Notes, Page, Pair, Row, Status, Table, soft
+from .blocks import (
+    Bar,
+    Block,
+    Cell,
+    Drawing,
+    Flag,
+    Listing,
+    Notes,
+    Page,
+    Pair,
+    Reach,
+    Row,
+    Share,
+    Slot,
+    Status,
+    Table,
+    soft,
+)
 from .ink import text_width
 
 SHEET, TILES, FOOT, HEAD = 265.0, 23.0, 24.5, 8.2
@@ -20,6 +37,11 @@ HALF, FULL = 86.0, 172.0
 """Width of words in half a sheet and in a whole one [mm]."""
 LINE, NOTE_LINE = 3.6, 2.75
 """Height of a line of a table and of the note below it [mm]."""
+MARKED = 1.06
+"""Lines that a row with a bar takes."""
+FRAME, SPARE = 3.0, 9.0
+"""Height around the large figure, and by how much the heights above exceed those measured on a
+sheet with a large figure and two tables [mm]."""
 
 
 def joined(cell: Cell) -> str:
@@ -98,6 +120,15 @@ def room(page: Page) -> float:
     return left - sum(heights)
 
 
+def rest(page: Page, hero: float) -> float:
+    """Height left on the first sheet below a large figure of this height and the blocks [mm]."""
+    named = sum(
+        text_width(f"{n} {part}, {material}", 5.8) + 4.0 for n, part, material in page.items
+    )
+    below = 1.8 + 1.9 * math.ceil(named / FULL) if page.items else 0.0
+    return room(page) + SPARE - hero - below - FRAME
+
+
 def _note(words: str, width: float) -> float:
     return NOTE_LINE * len(wrap(words, width, 6.2)) + 1.2 if words else 0.0
 
@@ -109,6 +140,9 @@ def _lines(table: Table, width: float) -> list[float]:
     wides = {}
     for k in columns:
         one = table.columns[k]
+        if isinstance(one.width, str) and one.width.endswith("mm"):
+            wides[k] = float(one.width[:-2])
+            continue
         words = [*one.head.split("\n"), *(joined(row[k]) for row in body)]
         wides[k] = max(text_width(word, 6.8, bold=one.strong) for word in words) + 2.2
     spare = width - sum(wides.values())
@@ -118,5 +152,6 @@ def _lines(table: Table, width: float) -> list[float]:
     found = [float(max(table.columns[k].head.count("\n") + 1 for k in columns))]
     for row in body:
         most = max(len(wrap(joined(row[k]), wides[k] - 2.0, 6.8)) for k in columns)
-        found.append(1.0 + 0.72 * (most - 1))
+        marked = any(isinstance(row[k], (Bar, Slot, Share, Reach)) for k in columns)
+        found.append((MARKED if marked else 1.0) + 0.72 * (most - 1))
     return found
