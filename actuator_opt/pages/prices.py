@@ -75,13 +75,13 @@ def sensitivities(optimisation: Optimisation) -> Table:
         Column("value", "right", drop=4, style="dim"),
         Column("margin", "right", drop=3, style="dim"),
         Column("act.", "center", style="yellow"),
-        Column(f"{unit} per\nunit", "right"),
-        Column("% per\n1 %", "right"),
+        Column(f"{unit}/unit", "right"),
+        Column("%/%", "right"),
         Column(f"at\n{high}", "right", drop=1, style="dim"),
-        Column(f"{high}\nsolved", "right", strong=True),
+        Column("+\nsolved", "right", strong=True),
         Column(f"at\n{low}", "right", drop=1, style="dim"),
-        Column(f"{low}\nsolved", "right", strong=True),
-        Column("holds until", "left", "24mm", on="paper"),
+        Column(f"{text.MINUS}\nsolved", "right", strong=True),
+        Column(f"holds until\n(ticks: ±{PER_CENT} %)", "left", "24mm", on="paper"),
         Column("holds until, then active", "left", 1.0, drop=2, style="dim", on="terminal"),
     ]
     title = f"What each requirement costs ({objective.label}, {unit})"
@@ -147,8 +147,7 @@ def quality(optimisation: Optimisation) -> str:
     parts.append(
         f"Prices are per unit shown in the limit column; at ±{PER_CENT} %: predicted by the price,"
         f" then solved again; rows are ranked by what that changes; {DASH}: no design found."
-        " Holds until: as far as the same limits stay active; ticks at"
-        f" ±{PER_CENT} %."
+        " Holds until: as far as the same limits stay active."
     )
     if not all(row.straight(optimisation.objective_value) for row in optimisation.sensitivities):
         parts.append(
