@@ -29,7 +29,7 @@ from actuator_opt.pages import (
     calibration_document,
     compare_text,
     page,
-    pareto_document,
+    pareto,
     runs_text,
     tables,
     terminal,
@@ -326,10 +326,10 @@ def test_other_places_that_say_met_say_it_without_reserve_too(optimum):
         points, knee = (1, 2), None
 
     Front.evaluation = evaluation
-    badge = pareto_document._verdict(Front())
-    assert badge["state"] == "checks"
-    assert badge["cautions"][0] == f"first design: {count} limits without reserve"
-    assert badge["cautions"][1:] == page.doubts(evaluation)[1]
+    badge = pareto.verdict(Front())
+    assert badge.state == "checks"
+    assert badge.cautions[0] == f"first design: {count} limits without reserve"
+    assert badge.cautions[1:] == page.doubts(evaluation)[1]
 
     class Changes:
         best_after = optimum

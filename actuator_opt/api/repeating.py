@@ -275,7 +275,7 @@ def _differences(
     """What is not the same now: status, variables by PATH, metrics by name."""
     from ..optimisation.pareto_result import ParetoFront
     from ..pages.page import outcome
-    from ..pages.pareto_rows import front_outcome
+    from ..pages.pareto import front_outcome
 
     now = front_outcome(subject) if isinstance(subject, ParetoFront) else outcome(subject)
     found: dict[str, tuple[Any, Any]] = {}

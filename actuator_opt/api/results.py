@@ -130,7 +130,7 @@ KINDS = kinds(
         report="report", csv=None, record=None,
     ),
     ResultKind(
-        "optimisation.pareto_result:ParetoFront", _solved, text="pages.pareto_rows:front_text",
+        "optimisation.pareto_result:ParetoFront", _solved, page="pages.pareto:page",
         report="api:write_front", csv="api:write_front_csv",
         record="api:record_front", writes=lambda front: bool(front.points),
     ),
