@@ -27,7 +27,7 @@ from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.optimisation.robustness import Robust
 from actuator_opt.pages import (
     calibration_document,
-    compare_text,
+    comparison,
     page,
     pareto,
     runs_text,
@@ -316,7 +316,7 @@ def test_other_places_that_say_met_say_it_without_reserve_too(optimum):
     evaluation = optimum.best_evaluation
     count = len(evaluation.tight)
     beside = verbs.compare(optimum, KNEE)
-    assert compare_text.named(beside, 0).endswith(f"met, {count} limits without reserve")
+    assert comparison.named(beside, 0).endswith(f"met, {count} limits without reserve")
     assert beside.to_dict()["designs"][0]["without_reserve"] == list(evaluation.tight)
     head = {"kind": "optimise", "status": "optimal", "met": True, "without_reserve": count}
     assert runs_text.outcome(head) == f"met, {count} without reserve"

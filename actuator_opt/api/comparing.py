@@ -123,7 +123,7 @@ def _file(one: str | Path, set: Any, plugins: Plugins) -> tuple[Actuator, str]:
 
 def comparison_json(found: Comparison) -> dict[str, Any]:
     """The `compare --json` object (SI)."""
-    from ..pages.compare_text import sentences
+    from ..pages.comparison import sentences
 
     said = sentences(found)
     answers = {
@@ -151,7 +151,7 @@ def draw_comparison(found: Comparison, folder: str | Path = "reports") -> list[P
     ``comparison``: mass, compliance and friction part by part; ``comparison-stiffness``: the
     stiffness over the stroke of the first six designs, where any has it.
     """
-    from ..pages.compare_figure import comparison_figure, comparison_ucurves
+    from ..pages.comparison import comparison_figure, comparison_ucurves
     from ..rendering.image import write_ink
 
     paths = write_ink(comparison_figure(found), Path(folder), "comparison")

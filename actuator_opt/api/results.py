@@ -139,7 +139,7 @@ KINDS = kinds(
         report="api:write_uncertainty", csv="api:write_draws", record=None,
     ),
     ResultKind(
-        "evaluation.comparison:Comparison", _always, text="pages.compare_text:comparison_text",
+        "evaluation.comparison:Comparison", _always, page="pages.comparison:page",
         report="api.comparing:report_comparison", csv=None, record=None,
         data="api:comparison_json",
     ),
