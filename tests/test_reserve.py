@@ -31,11 +31,11 @@ from actuator_opt.pages import (
     page,
     pareto,
     runs_text,
+    sweep,
     tables,
     terminal,
 )
-from actuator_opt.pages.sweep_text import sweep_text
-from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.rendering import paper_plain as fallback, terminal as renderer
 from actuator_opt.uncertainties.draw import normal_quantile
 from actuator_opt.uncertainties.estimate import exact
 from actuator_opt.uncertainties.quick import DRAWS, quick_yield
@@ -345,11 +345,11 @@ def test_the_best_of_a_sweep_say_that_they_have_no_reserve(optimum):
     """Around an optimum the least margin is 0; with limits relaxed by far there is no remark."""
     swept = ao.sweep(optimum.best, ["fluid.air_content=0.5 %,0.6 %"], workers=1)
     assert len(swept.best) == 1  # more air is less stiff
-    shown = sweep_text(swept, colour=True)
-    assert "\x1b[33m1 of these without reserve: least margin below 0.1 %" in shown
+    shown = renderer.text(sweep.page(swept), colour=True)
+    assert "\x1b[33m1 of the best without reserve: least margin below 0.1 %" in shown
     with_room = replace(swept.best[0], row=(*swept.best[0].row[:-3], 0.02, *swept.best[0].row[-2:]))
     swept.best[:] = [with_room]
-    assert "without reserve" not in sweep_text(swept)
+    assert "without reserve" not in renderer.text(sweep.page(swept))
 
 
 # ---- light ----

@@ -145,7 +145,7 @@ KINDS = kinds(
     ),
     ResultKind(
         "sweeps.swept:Swept", lambda swept: _missed(not swept.best),
-        text="pages.sweep_text:sweep_text",
+        page="pages.sweep:page",
         report=None, csv=None, record="api:record_sweep",
         writes=lambda swept: False,  # rows are written as they come, figures by draw_sweep
     ),

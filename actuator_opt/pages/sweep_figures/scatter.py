@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from ..base.errors import Diagnostic, UsageError
-from ..base.numeric import Array
-from ..rendering.axes import Axes, fitted
-from ..rendering.ink import BLACK, GREY, PALE, RED, WHITE, Ink, text_width
-from ..sweeps.sample import better
-from .identification_axes import even_range, even_ticks, spaced
-from .sweep_figure import SweepFigure
-from .sweep_marks import BETTER, INFEASIBLE, SweepFigureData, heading
+from ...base.errors import Diagnostic, UsageError
+from ...base.numeric import Array
+from ...rendering.axes import Axes, fitted
+from ...rendering.ink import BLACK, GREY, PALE, RED, WHITE, Ink, text_width
+from ...sweeps.sample import better
+from ..identification_axes import even_range, even_ticks, spaced
+from .shared import BETTER, INFEASIBLE, SweepFigure, SweepFigureData, heading
 
 MOST = 2000
 """Designs drawn of the feasible, and of the others, in a panel (a choice)."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from ..base.errors import Diagnostic, InputError
-from ..evaluation import evaluate
-from ..rendering.heights import wrap
-from ..rendering.ink import Ink
-from ..rendering.text import limit_text, margin_text
-from .sweep_figure import SweepFigure, fits
-from .sweep_marks import SweepFigureData, heading, value_words
-from .ucurves import MOST, SIZE, STYLES, Required, curves_drawn, has_points
+from ...base.errors import Diagnostic, InputError
+from ...evaluation import evaluate
+from ...rendering.heights import wrap
+from ...rendering.ink import Ink
+from ...rendering.text import limit_text, margin_text
+from ..ucurves import MOST, SIZE, STYLES, Required, curves_drawn, has_points
+from .shared import SweepFigure, SweepFigureData, fits, heading, value_words
 
 NBSP = "\N{NO-BREAK SPACE}"
 

@@ -7,13 +7,22 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..base.numeric import Array
-from ..rendering.axes import fitted
-from ..rendering.ink import BLACK, GREY, RED, WHITE, Ink, Point, text_width
-from ..rendering.text import SENSES, trimmed
-from .identification_axes import even_range, even_ticks
-from .sweep_figure import SweepFigure, fits
-from .sweep_marks import BETTER, INFEASIBLE, Rows, SweepFigureData, Track, heading, two_lines
+from ...base.numeric import Array
+from ...rendering.axes import fitted
+from ...rendering.ink import BLACK, GREY, RED, WHITE, Ink, Point, text_width
+from ...rendering.text import SENSES, trimmed
+from ..identification_axes import even_range, even_ticks
+from .shared import (
+    BETTER,
+    INFEASIBLE,
+    Rows,
+    SweepFigure,
+    SweepFigureData,
+    Track,
+    fits,
+    heading,
+    two_lines,
+)
 
 MOST = 1000
 """Designs drawn of the feasible, and of the others (a choice: more lines are a blot)."""

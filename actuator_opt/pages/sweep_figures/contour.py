@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from ..base.errors import Diagnostic, InputError
-from ..base.numeric import Array
-from ..rendering.axes import Axes
-from ..rendering.heights import wrap
-from ..rendering.ink import (
+from ...base.errors import Diagnostic, InputError
+from ...base.numeric import Array
+from ...rendering.axes import Axes
+from ...rendering.heights import wrap
+from ...rendering.ink import (
     BLACK,
     BLUE,
     GREY,
@@ -27,12 +27,11 @@ from ..rendering.ink import (
     hatch,
     text_width,
 )
-from ..rendering.text import trimmed
-from ..sweeps.field import Boundary, Field, field as field_of, require_grid
-from .identification_axes import even_ticks, spaced
-from .sweep_figure import SweepFigure
-from .sweep_marks import ORIGINS, SweepFigureData, heading
-from .wall_figures import GREEN, OCHRE
+from ...rendering.text import trimmed
+from ...sweeps.field import Boundary, Field, field as field_of, require_grid
+from ..identification_axes import even_ticks, spaced
+from ..wall_figures import GREEN, OCHRE
+from .shared import ORIGINS, SweepFigure, SweepFigureData, heading
 
 _LEFT, _WIDE, _TALL, _WIDTH = 20.0, 152.0, 100.0, 180.0
 LEVELS = 9

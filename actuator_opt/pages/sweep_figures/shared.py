@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from ..base.errors import Diagnostic, InputError
-from ..base.numeric import Array
-from ..base.quantities import Quantity
-from ..design.paths import quantity_of
-from ..evaluation import prepare
-from ..evaluation.limits import Limit
-from ..rendering.axes import fitted
-from ..rendering.heights import wrap
-from ..rendering.ink import GREY, PALE, Ink
-from ..rendering.text import SENSES, limit_text, number, unit_text, with_unit
-from ..sweeps import Best, Swept
+from ...base.errors import Diagnostic, InputError
+from ...base.numeric import Array
+from ...base.quantities import Quantity
+from ...design.paths import quantity_of
+from ...evaluation import prepare
+from ...evaluation.limits import Limit
+from ...rendering.axes import fitted
+from ...rendering.heights import wrap
+from ...rendering.ink import GREY, PALE, Ink
+from ...rendering.text import SENSES, limit_text, number, unit_text, with_unit
+from ...sweeps import Best, Swept
+from ...sweeps.chunk import Study
 
 BETTER = ("#7fb0cf", "#3f7aa3", "#0b3c5d")
 """Feasible designs by thirds of the objective, the best third last: darker on a grey print too."""
@@ -223,3 +224,26 @@ def two_lines(words: str, room: float, size: float) -> Sequence[str]:
         return [first]
     head, _, tail = words.rpartition(".")
     return [fitted(head + ".", room, size), fitted(tail, room, size)]
+
+
+@dataclass(frozen=True, slots=True)
+class SweepFigure:
+    """A figure of a sweep.
+
+    Attributes
+    ----------
+    every : whether it needs every design, not the best alone
+    lines : whether it draws Pareto lines of its metrics
+    check : raises `UsageError` for a sweep or metrics that do not fit
+    draw : pictures by the end of their file's name, from the sweep, the metrics, and whether
+        these were asked for
+    """
+
+    every: bool
+    lines: bool
+    check: Callable[[Study, Sequence[str]], None]
+    draw: Callable[[SweepFigureData, Sequence[str], bool], Mapping[str, Ink]]
+
+
+def fits(study: Study, metrics: Sequence[str]) -> None:
+    """The check of a figure that fits every sweep."""
