@@ -1,4 +1,4 @@
-"""Pareto fronts: found, and written down."""
+"""Pareto fronts: the search, and its files."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def write_front_csv(front: ParetoFront, path: str | Path) -> ReportFile:
 def write_front(front: ParetoFront, **paper: Unpack[Paper]) -> list[ReportFile]:
     """Write the page of a front (PDF and PNG) and its figure (PNG and SVG).
 
-    Nothing is written where no design was found. Parameters as `report`.
+    A front without designs writes nothing. Parameters as `report`.
     """
     from ..pages.pareto import front_figure, front_outcome, page
     from ..rendering import paper as printed

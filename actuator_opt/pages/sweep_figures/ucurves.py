@@ -52,7 +52,7 @@ def _key(drawn: SweepFigureData, ink: Ink, y: float, count: int) -> float:
     tracks = [drawn.axis(axis.path) for axis in drawn.study.plan.axes]
     for k in range(count):
         rows = drawn.best(k)
-        values = [value_words(one, float(drawn.values(one.words, rows)[0])) for one in tracks]
+        values = [value_words(track, float(drawn.values(track.words, rows)[0])) for track in tracks]
         said = [
             f"{track.words} {value}".replace(" ", NBSP)
             for track, value in zip(tracks, values, strict=True)
@@ -70,5 +70,5 @@ FIGURE = SweepFigure(
     every=False,
     lines=False,
     check=fits,
-    draw=lambda drawn, metrics, asked: {"ucurves": ucurves_figure(drawn)},
+    draw=lambda drawn, metrics, chosen: {"ucurves": ucurves_figure(drawn)},
 )
