@@ -67,13 +67,13 @@ def compare(
         raise InputError(faults)
     try:
         evaluations, origins, states = zip(*found, strict=True)
-        return comparison.compare(evaluations, _told(origins), states)
+        return comparison.compare(evaluations, _numbered(origins), states)
     except InputError as error:
         remedy = "name designs that differ"
         raise InputError(Diagnostic(error.diagnostics[0].message, remedy)) from None
 
 
-def _told(origins: Sequence[str]) -> list[str]:
+def _numbered(origins: Sequence[str]) -> list[str]:
     """Origins, numbered where one stands twice."""
     return [
         f"{one} ({origins[: k + 1].count(one)})" if origins.count(one) > 1 else one
@@ -121,41 +121,41 @@ def _file(one: str | Path, set: Any, plugins: Plugins) -> tuple[Actuator, str]:
     return actuator, "<stdin>" if name == "-" else name
 
 
-def comparison_json(found: Comparison) -> dict[str, Any]:
+def comparison_json(comparison: Comparison) -> dict[str, Any]:
     """The `compare --json` object (SI)."""
-    from ..pages.compare_text import sentences
+    from ..pages.comparison import sentences
 
-    said = sentences(found)
+    said = sentences(comparison)
     answers = {
         question.name: {
             "metric": question.metric,
-            "best": None if question.best is None else found.labels[question.best],
-            "than": None if question.other is None else found.labels[question.other],
+            "best": None if question.best is None else comparison.labels[question.best],
+            "than": None if question.other is None else comparison.labels[question.other],
             "values": list(question.values),
             "parts": [{"part": part, "change": step} for part, step in question.steps],
             "sentence": sentence,
         }
-        for question, sentence in zip(found.questions, said, strict=False)
+        for question, sentence in zip(comparison.questions, said, strict=False)
     }
-    return found.to_dict() | {"answers": answers, "notes": said[len(answers) :]}
+    return comparison.to_dict() | {"answers": answers, "notes": said[len(answers) :]}
 
 
-def report_comparison(found: Comparison, **paper: Unpack[Paper]) -> list[ReportFile]:
+def report_comparison(comparison: Comparison, **paper: Unpack[Paper]) -> list[ReportFile]:
     """Draw a comparison as its report: PNG and SVG carry no title block."""
-    return report_files(draw_comparison(found, paper.get("folder", "reports")))
+    return report_files(draw_comparison(comparison, paper.get("folder", "reports")))
 
 
-def draw_comparison(found: Comparison, folder: str | Path = "reports") -> list[Path]:
+def draw_comparison(comparison: Comparison, folder: str | Path = "reports") -> list[Path]:
     """Write PNG and SVG of a comparison.
 
     ``comparison``: mass, compliance and friction part by part; ``comparison-stiffness``: the
     stiffness over the stroke of the first six designs, where any has it.
     """
-    from ..pages.compare_figure import comparison_figure, comparison_ucurves
+    from ..pages.comparison import comparison_figure, comparison_ucurves
     from ..rendering.image import write_ink
 
-    paths = write_ink(comparison_figure(found), Path(folder), "comparison")
-    curves = comparison_ucurves(found)
+    paths = write_ink(comparison_figure(comparison), Path(folder), "comparison")
+    curves = comparison_ucurves(comparison)
     if curves is not None:
         paths += write_ink(curves, Path(folder), "comparison-stiffness")
     return paths

@@ -33,7 +33,7 @@ def export(
     their volumes are those of the mass breakdown. Not in it, for the models know no shape of
     theirs: threads, studs and plugs of the rod, eyes, seals and guides, ports, and the holes of tie
     rods in the plates. DXF is the section with true dimensions, layers by part; XLSX has the
-    requirements with live margins, the variables and the masses.
+    requirements with live margins, the section as a picture, the variables and the masses.
 
     Parameters
     ----------

@@ -100,7 +100,7 @@ def report_sweep(kept: KeptSweep, **paper: Unpack[Paper]) -> list[ReportFile]:
     InputError : its store is gone, holds other rows or lacks some, or the folder cannot be written
     """
     from ..base.files import require_folder
-    from ..pages.sweep_figures import watched
+    from ..pages.sweep_figures.drawing import watched
     from ..sweeps import swept_again
 
     target = Path(paper.get("folder", "reports"))

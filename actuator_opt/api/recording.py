@@ -145,7 +145,7 @@ def record_sweep(
     actuator, command, date, folder : as `record`
     store, csv, parquet, keep, figures, show : as given to `sweep`
     """
-    from ..pages.sweep_text import counts
+    from ..pages.sweep import counts
 
     study = found.study
     goal, met = study.goal, bool(found.best or found.feasible)

@@ -274,7 +274,7 @@ def _differences(
 ) -> dict[str, tuple[Any, Any]]:
     """What is not the same now: status, variables by PATH, metrics by name."""
     from ..optimisation.pareto_result import ParetoFront
-    from ..pages.pareto_rows import front_outcome
+    from ..pages.pareto import front_outcome
     from ..pages.report import outcome
 
     now = front_outcome(subject) if isinstance(subject, ParetoFront) else outcome(subject)

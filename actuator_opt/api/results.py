@@ -130,7 +130,7 @@ KINDS = kinds(
         report="report", csv=None, record=None,
     ),
     ResultKind(
-        "optimisation.pareto_result:ParetoFront", _solved, text="pages.pareto_rows:front_text",
+        "optimisation.pareto_result:ParetoFront", _solved, page="pages.pareto:page",
         report="api:write_front", csv="api:write_front_csv",
         record="api:record_front", writes=lambda front: bool(front.points),
     ),
@@ -139,13 +139,13 @@ KINDS = kinds(
         report="api:write_uncertainty", csv="api:write_draws", record=None,
     ),
     ResultKind(
-        "evaluation.comparison:Comparison", _always, text="pages.compare_text:comparison_text",
+        "evaluation.comparison:Comparison", _always, page="pages.comparison:page",
         report="api.comparing:report_comparison", csv=None, record=None,
         data="api:comparison_json",
     ),
     ResultKind(
         "sweeps.swept:Swept", lambda swept: _missed(not swept.best),
-        text="pages.sweep_text:sweep_text",
+        page="pages.sweep:page",
         report=None, csv=None, record="api:record_sweep",
         writes=lambda swept: False,  # rows are written as they come, figures by draw_sweep
     ),

@@ -130,19 +130,23 @@ def writing(
     study: Study, csv: str | Path | None, parquet: str | Path | None
 ) -> Iterator[Callable[[Chunk], None]]:
     """What writes a chunk into every file asked for, all in place once the last is complete."""
-    from ..pages.sweep_csv import SweepTable
-    from ..pages.sweep_parquet import SweepParquet
+    from ..pages.sweep import SweepColumns, about
+    from ..rendering.parquet import ParquetFile
+    from ..rendering.series import CsvFile
 
-    with ExitStack() as files:
-        tables: list[SweepTable | SweepParquet] = []
+    columns = SweepColumns(study)
+    with ExitStack() as stack:
+        files: list[CsvFile | ParquetFile] = []
         if csv is not None:
-            tables.append(files.enter_context(SweepTable(study, Path(csv))))
+            files.append(stack.enter_context(CsvFile(columns.fields, Path(csv))))
         if parquet is not None:
-            tables.append(files.enter_context(SweepParquet(study, Path(parquet))))
+            file = ParquetFile(columns.fields, about(study), Path(parquet))
+            files.append(stack.enter_context(file))
 
         def each(chunk: Chunk) -> None:
-            for table in tables:
-                table.add(chunk)
+            values = columns.values(chunk) if files else []
+            for file in files:
+                file.add(values)
 
         yield each
 
@@ -193,7 +197,7 @@ def _watched(study: Study, figures: Sequence[str], show: Sequence[str]) -> tuple
     """The metrics whose Pareto lines figures need; a faulty figure is refused before the work."""
     if not figures:
         return ()
-    from ..pages.sweep_figures import watched
+    from ..pages.sweep_figures.drawing import watched
 
     return watched(study, figures, show)
 
@@ -234,7 +238,7 @@ def draw_sweep(
     more, which the figure tells. Pareto lines are of every feasible design where the metrics were
     known before the sweep (``sweep(..., figures=["scatter"], show=...)``), and of those kept else.
     """
-    from ..pages.sweep_figures import write_figures
+    from ..pages.sweep_figures.drawing import write_figures
 
     name = stem or Path(file_name(swept.study.design, None)).stem
     return write_figures(swept, figures, show, Path(out), name)

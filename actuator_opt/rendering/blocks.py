@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 from ..base.suggest import CONTROLS
@@ -196,7 +196,8 @@ class Table:
     """Rows under their heads, plain cells or with a state; a rule parts the last `total` of them.
 
     `headless` leaves the title out on the terminal, and so does an empty title. Where every head
-    is empty, the terminal shows no line of heads.
+    is empty, the terminal shows no line of heads. A table with `repeat` that is too wide is shown
+    in parts, each of which begins with its first `repeat` columns.
     """
 
     title: str
@@ -205,7 +206,31 @@ class Table:
     note: str = ""
     total: int = 0
     headless: bool = False
+    repeat: int = 0
     on: Medium = "both"
+
+    def parts(self, widths: Sequence[float], room: float) -> list[Table]:
+        """The table in parts that fit a room; `widths` of its columns include their gaps."""
+        if not self.repeat or sum(widths) <= room:
+            return [self]
+        first, rest = list(range(self.repeat)), list(range(self.repeat, len(self.columns)))
+        parts = []
+        while rest:
+            shown = [*first, rest.pop(0)]
+            while rest and sum(widths[k] for k in (*shown, rest[0])) <= room:
+                shown.append(rest.pop(0))
+            parts.append(self._of(shown))
+        return parts
+
+    def _of(self, shown: Sequence[int]) -> Table:
+        """The table with these columns alone."""
+        rows = [
+            replace(row, cells=[row.cells[k] for k in shown])
+            if isinstance(row, Row)
+            else [row[k] for k in shown]
+            for row in self.rows
+        ]
+        return replace(self, columns=[self.columns[k] for k in shown], rows=rows, repeat=0)
 
 
 @dataclass(frozen=True, slots=True)
