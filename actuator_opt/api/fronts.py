@@ -1,4 +1,4 @@
-"""Pareto fronts: found, and written down."""
+"""Compute Pareto fronts and write their reports."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def pareto(
     ----------
     design : as `optimise`
     objectives : two to four of ``METRIC:min`` or ``METRIC:max``
-    n : designs asked for
+    n : designs requested
     seed : same seed, same front
-    checks : full searches at places in between, for what is merely local
+    checks : independent searches between designs, which reveal merely local ones
     plugins : the user's metrics and constraints
     """
     from ..optimisation.pareto import pareto as run
@@ -52,7 +52,7 @@ def write_front_csv(found: ParetoFront, path: str | Path) -> ReportFile:
 def write_front(front: ParetoFront, **paper: Unpack[Paper]) -> list[ReportFile]:
     """Write the page of a front (PDF and PNG) and its figure (PNG and SVG).
 
-    Nothing is written where no design was found. Parameters as `report`.
+    Writes nothing if there is no design. Parameters as `report`.
     """
     from ..pages.pareto_document import write_front_sheet
 

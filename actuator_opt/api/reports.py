@@ -1,4 +1,4 @@
-"""Reports of designs, and designs written down; what every report takes."""
+"""Reports of designs, saving of designs, and arguments common to all reports."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from ..studies.seal import SealStudy
 
 _LAST_SECOND = 253_402_300_799
-"""End of the year 9999, the last a date can hold."""
+"""End of the year 9999, the latest date."""
 
 
 def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
-    """The seal sheets of a report: every place of the design that asks for an oil film."""
+    """The seal sheets of a report, one for every place with an oil film in the design."""
     from ..studies.seal import study
 
     places: tuple[Place, ...] = ("piston", "rod")
@@ -40,7 +40,7 @@ def _seal_studies(subject: PreparedDesign) -> list[SealStudy]:
 
 
 class Paper(TypedDict, total=False):
-    """What every report takes; see `report`."""
+    """Arguments common to all reports; see `report`."""
 
     folder: str | Path
     stem: str | None
@@ -50,7 +50,7 @@ class Paper(TypedDict, total=False):
 
 
 class Target(TypedDict):
-    """Folder and name of the files of a page, without suffix."""
+    """Folder and name of a page's files, without suffix."""
 
     folder: Path
     stem: str
@@ -67,18 +67,18 @@ def page_of(
     command: str = "",
     date: str | None = None,
 ) -> tuple[Origin, Target]:
-    """What the title block of a page says, and where the page is written.
+    """Title block of a page, and its target.
 
     Parameters
     ----------
-    design : the page is about
-    tail : of the file names, behind the name of the design's file
+    design : subject of the page
+    tail : added to the name of the design's file
     beside : another file that gives the name
     folder, stem, actuator, command, date : as `report`
 
     Raises
     ------
-    UsageError : no ISO date
+    UsageError : not an ISO date
     """
     if date is not None:
         require_date(date)
@@ -116,7 +116,7 @@ def report_design(
 
 
 def verification_tables(verification: Verification | None) -> list[ExtraTable]:
-    """Requirements checked in time, as tables of a report."""
+    """Requirements verified in time, as tables of a report."""
     if verification is None:
         return []
     from ..pages.verification_rows import verification_rows
@@ -125,14 +125,14 @@ def verification_tables(verification: Verification | None) -> list[ExtraTable]:
 
 
 def report_files(paths: Iterable[Path]) -> list[ReportFile]:
-    """Files written by others, each with its hash."""
+    """Files written elsewhere, each with its hash."""
     from ..pages import ReportFile
 
     return [ReportFile(path, hashlib.sha256(path.read_bytes()).hexdigest(), 1) for path in paths]
 
 
 def file_name(design: Design, source: Source | None) -> str:
-    """Name of the design's file; of a design that came without one, its own name made fit."""
+    """Name of the design's file; without a file, the design's own name made suitable."""
     if source is not None and not source.file.startswith("<"):
         return Path(source.file).name
     name = re.sub(r"[^\w-]+", "_", design.name).strip("_")
@@ -142,7 +142,7 @@ def file_name(design: Design, source: Source | None) -> str:
 def origin(
     design: Design, source: Source | None, *, command: str = "", date: str | None = None
 ) -> Origin:
-    """Where a page about a design comes from: the file as read, else its text as written."""
+    """Origin of a page about a design: the file as read, else the design's text."""
     from ..design.writer import to_yaml
     from ..evaluation.build import spec_hash
     from ..rendering.origin import Origin
@@ -171,9 +171,9 @@ def is_date(text: str) -> bool:
 
 
 def require_date(text: str, option: str = "date") -> None:
-    """Refuse what is no ISO date; raises `UsageError`."""
+    """Reject a text that is not an ISO date; raises `UsageError`."""
     if not is_date(text):
-        raise UsageError(Diagnostic(f'{option} "{text}" is no date', "write YYYY-MM-DD"))
+        raise UsageError(Diagnostic(f'{option} "{text}" is not a date', "write YYYY-MM-DD"))
 
 
 def date_from_environment() -> str | None:
@@ -181,14 +181,14 @@ def date_from_environment() -> str | None:
 
     Raises
     ------
-    UsageError : it is no count of seconds
+    UsageError : it is not a count of seconds
     """
     stamp = os.environ.get("SOURCE_DATE_EPOCH", "").strip()
     if not stamp:
         return None
     digits = stamp.isdecimal() and stamp.isascii() and len(stamp) <= 12
     if not digits or int(stamp) > _LAST_SECOND:
-        message = f'SOURCE_DATE_EPOCH "{stamp[:40]}" is no count of seconds since 1970'
+        message = f'SOURCE_DATE_EPOCH "{stamp[:40]}" is not a count of seconds since 1970'
         raise UsageError(Diagnostic(message, "write e.g. 1700000000, or unset it"))
     from datetime import UTC, datetime
 
@@ -201,10 +201,10 @@ def save(
     *,
     source: Source | None = None,
 ) -> Path:
-    """Write a design file that keeps full precision, comments and order where it can.
+    """Write a design file with full precision, keeping comments and order if possible.
 
-    Of an optimisation it is the design to build. Its first line says so where it is an optimum,
-    unless it has metrics of the user's own, which may change without the file.
+    Of an optimisation it is the design to build. Its first line marks an optimum, unless it has
+    custom metrics, which may change independently of the file.
     """
     from ..base.files import write_text
     from ..design.writer import to_yaml
