@@ -30,9 +30,9 @@ def pareto(
     ----------
     design : as `optimise`
     objectives : two to four of ``METRIC:min`` or ``METRIC:max``
-    n : designs asked for
+    n : designs requested
     seed : same seed, same front
-    checks : full searches at places in between, for what is merely local
+    checks : independent searches between designs, which reveal merely local ones
     plugins : the user's metrics and constraints
     """
     from ..optimisation.pareto import pareto as run
