@@ -12,7 +12,8 @@ import report_fixture as fixture
 from full_disk import fill
 
 from actuator_opt.base.errors import InputError
-from actuator_opt.pages import ExtraTable, read_attachment
+from actuator_opt.pages import read_attachment
+from actuator_opt.rendering.blocks import text_table
 
 HERE = Path(__file__).parent
 NAME = r"a # $ \ * _ @ < > [x](y) `z` {w} ~ // /* é ü θ ≥ "
@@ -178,7 +179,7 @@ def test_absurd_content_still_prints(tmp_path):
         source_text="# " + "y" * 900 + "\n\ttab\n" * 3,
         command="c " * 900,
         date="2026-02-03",
-        extra_tables=[ExtraTable("#t", ["a"], [])],
+        extra_tables=[text_table("#t", ["a"], [])],
     )
     assert files[0].path.read_bytes().startswith(b"%PDF-1.7")
     assert files[0].pages < 12

@@ -28,13 +28,14 @@ from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.optimisation.robustness import Robust
 from actuator_opt.pages import (
     calibration_document,
-    compare_text,
-    pareto_document,
+    comparison,
+    pareto,
     report as page,
-    runs_text,
+    runs,
+    sweep,
 )
-from actuator_opt.pages.sweep_text import sweep_text
-from actuator_opt.rendering import paper, paper_plain as fallback
+from actuator_opt.rendering import paper, paper_plain as fallback, terminal as renderer
+from actuator_opt.rendering.terminal import blocks_text
 from actuator_opt.uncertainties.draw import normal_quantile
 from actuator_opt.uncertainties.estimate import exact
 from actuator_opt.uncertainties.quick import DRAWS, quick_yield
@@ -316,20 +317,21 @@ def test_other_places_that_say_met_say_it_without_reserve_too(optimum):
     evaluation = optimum.best_evaluation
     count = len(evaluation.tight)
     beside = verbs.compare(optimum, KNEE)
-    assert compare_text.named(beside, 0).endswith(f"met, {count} limits without reserve")
+    assert comparison.named(beside, 0).endswith(f"met, {count} limits without reserve")
     assert beside.to_dict()["designs"][0]["without_reserve"] == list(evaluation.tight)
     head = {"kind": "optimise", "status": "optimal", "met": True, "without_reserve": count}
-    assert runs_text.outcome(head) == f"met, {count} without reserve"
-    assert "\x1b[33mmet, " in runs_text.runs_table([("one", head)], colour=True)
+    assert runs.outcome(head) == f"met, {count} without reserve"
+    listing = runs.listing([("one", head)])
+    assert "\x1b[33mmet, " in blocks_text([listing], colour=True, unicode=True, width=100)
 
     class Front:
         points, knee = (1, 2), None
 
     Front.evaluation = evaluation
-    badge = pareto_document._verdict(Front())
-    assert badge["state"] == "checks"
-    assert badge["cautions"][0] == f"first design: {count} limits without reserve"
-    assert badge["cautions"][1:] == page.doubts(evaluation)[1]
+    badge = pareto.verdict(Front())
+    assert badge.state == "checks"
+    assert badge.cautions[0] == f"first design: {count} limits without reserve"
+    assert badge.cautions[1:] == page.doubts(evaluation)[1]
 
     class Changes:
         best_after = optimum
@@ -345,11 +347,11 @@ def test_the_best_of_a_sweep_say_that_they_have_no_reserve(optimum):
     """Around an optimum the least margin is 0; with limits relaxed by far there is no remark."""
     swept = ao.sweep(optimum.best, ["fluid.air_content=0.5 %,0.6 %"], workers=1)
     assert len(swept.best) == 1  # more air is less stiff
-    shown = sweep_text(swept, colour=True)
-    assert "\x1b[33m1 of these without reserve: least margin below 0.1 %" in shown
+    shown = renderer.text(sweep.page(swept), colour=True)
+    assert "\x1b[33m1 of the best without reserve: least margin below 0.1 %" in shown
     with_room = replace(swept.best[0], row=(*swept.best[0].row[:-3], 0.02, *swept.best[0].row[-2:]))
     swept.best[:] = [with_room]
-    assert "without reserve" not in sweep_text(swept)
+    assert "without reserve" not in renderer.text(sweep.page(swept))
 
 
 # ---- light ----

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..rendering.attachments import Attachment, read_attachment
-from ..rendering.blocks import ExtraTable
+from ..rendering.blocks import Table
 from ..rendering.paper import ReportFile
 
-__all__ = ["Attachment", "ExtraTable", "ReportFile", "read_attachment"]
+__all__ = ["Attachment", "ReportFile", "Table", "read_attachment"]

@@ -18,7 +18,7 @@ from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
 from ..rendering.axes import Axes, legend
 from ..rendering.ink import BLUE, GREY, Ink, spread_within
-from ..rendering.text import number, sentence, unit_text
+from ..rendering.text import bars, number, sentence, unit_text
 from .dynamics_figures import dot
 from .identification_axes import (
     IN,
@@ -40,7 +40,6 @@ from .identification_axes import (
 from .identification_map import map_panel, pressure_levels
 from .identification_rows import FORCE, SPEED
 from .identification_series import LINE, loop, strips
-from .seal_figures import bars
 from .wall_figures import GREEN, OCHRE
 
 WIDTH = 180.0

@@ -20,7 +20,6 @@ from ..rendering.blocks import (
     Block,
     Cell,
     Column,
-    ExtraTable,
     Flag,
     Medium,
     Notes,
@@ -33,13 +32,12 @@ from ..rendering.blocks import (
     Tile,
     Verdict,
     clean,
-    extra_table,
     soft,
 )
 from ..rendering.ink import Ink
 from ..rendering.text import DASH
 from ..studies.seal import SealStudy
-from . import dynamics, optimum, prices, seal_sheet, section, stiffness, trust, wall
+from . import dynamics, optimum, prices, seal, section, stiffness, trust, wall
 
 KEY_FIGURES = (
     "mass",
@@ -71,7 +69,7 @@ _MARK = Column("", on="terminal")
 def page(
     subject: Evaluation | Optimisation,
     *,
-    extra_tables: Sequence[ExtraTable] = (),
+    extra_tables: Sequence[Block] = (),
     seals: Sequence[SealStudy] = (),
 ) -> Page:
     """The page of a design.
@@ -79,7 +77,7 @@ def page(
     Parameters
     ----------
     subject : what to report
-    extra_tables : further tables, before the appendix
+    extra_tables : further tables and drawings, before the appendix
     seals : the seals of piston or rod, each with its sheet
     """
     evaluation, optimisation = parts_of(subject)
@@ -114,10 +112,10 @@ def page(
         blocks += trust.trust_blocks(optimisation) + prices.price_blocks(optimisation)
         blocks += optimum.robust_tables(optimisation)
         blocks += [masses(evaluation)] if optimisation.variables else []
-    blocks += [*seal_sheet.sheets(seals), *wall.wall_blocks(evaluation), *checks(evaluation)]
+    blocks += [block for study in seals for block in seal.blocks(study)]
+    blocks += [*wall.wall_blocks(evaluation), *checks(evaluation)]
     blocks += _remarks(evaluation, optimisation)
-    for given in extra_tables:
-        blocks += [extra_table(given)] + ([] if given.drawing is None else [given.drawing])
+    blocks += extra_tables
     return replace(first, blocks=[*blocks, *_appendix(evaluation)])
 
 

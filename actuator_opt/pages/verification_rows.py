@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ..base.quantities import RESULTS, Quantity
 from ..metrics import METRICS
 from ..rendering import text
-from ..rendering.blocks import ExtraTable
+from ..rendering.blocks import Table, text_table
 from ..rendering.text import DASH, number, pretty, sentence
 from ..simulation.sensitivity import Effect, Parameter, Sensitivities
 from ..simulation.verification import Verification, VerifiedRequirement
@@ -122,14 +122,14 @@ def effort(found: Verification) -> str:
     return f"{found.runs} runs."
 
 
-def verification_rows(found: Verification) -> tuple[ExtraTable, ...]:
+def verification_rows(found: Verification) -> tuple[Table, ...]:
     """Tables of a report: requirements in both tiers, and what each experiment showed."""
     if not found.rows:
         return ()
     lines = [line(row) for row in found.rows]
     notes = [verdict(found), MEANING, *(sentence(one) for one in found.notes), effort(found)]
     tables = [
-        ExtraTable("Requirements in time", HEADS, [one.cells for one in lines], " ".join(notes))
+        text_table("Requirements in time", HEADS, [one.cells for one in lines], " ".join(notes))
     ]
     said = [(one.cells[0], _where(row), _how(row), _why(row))
             for one, row in zip(lines, found.rows, strict=True) if one.said]  # fmt: skip
@@ -140,7 +140,7 @@ def verification_rows(found: Verification) -> tuple[ExtraTable, ...]:
             "fiftieth of the swing; what is left is the operating point."
         )
         tables.append(
-            ExtraTable("Experiments behind them", heads, said, note, widths=(1, 1.2, 1.5, 3.5))
+            text_table("Experiments behind them", heads, said, note, widths=(1, 1.2, 1.5, 3.5))
         )
     return tuple(tables)
 
@@ -203,7 +203,7 @@ def sensitivity_notes(found: Sensitivities) -> list[str]:
     return notes
 
 
-def sensitivity_rows(found: Sensitivities) -> tuple[ExtraTable, ...]:
+def sensitivity_rows(found: Sensitivities) -> tuple[Table, ...]:
     """The table of a report: parameters ranked by their largest effect."""
     results = shown_results(found)
     if not results:
@@ -211,4 +211,4 @@ def sensitivity_rows(found: Sensitivities) -> tuple[ExtraTable, ...]:
     heads = ("parameter", "value", "for", *(f"{head(name)}, %" for name in results))
     rows = [cells(one, results) for one in found.parameters]
     note = " ".join(sensitivity_notes(found))
-    return (ExtraTable("Sensitive parameters", heads, rows, note),)
+    return (text_table("Sensitive parameters", heads, rows, note),)

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 from ..base.suggest import CONTROLS
-from . import text
 from .ink import Ink
 from .text import STATUS_WORDS
 
@@ -158,6 +157,7 @@ class Column:
     width : "auto", a part of the room that is left (number), or ``"12mm"``; a column of the second
         kind shrinks on a narrow terminal
     breaks : letters of a word beyond which it may break; 0 never
+    wraps : a cell too wide for the terminal goes on in further lines; otherwise it is cut
     mono, strong : type on paper; on the terminal strong is bold
     least : letters that a shrinking column keeps on the terminal
     drop : on a narrow terminal the columns of the highest number go first; 0 never
@@ -169,6 +169,7 @@ class Column:
     align: Align = "left"
     width: float | str = "auto"
     breaks: int = 0
+    wraps: bool = False
     mono: bool = False
     strong: bool = False
     least: int = 14
@@ -194,7 +195,9 @@ class Row:
 class Table:
     """Rows under their heads, plain cells or with a state; a rule parts the last `total` of them.
 
-    `headless` leaves the title out on the terminal.
+    `headless` leaves the title out on the terminal, and so does an empty title. Where every head
+    is empty, the terminal shows no line of heads. A table with `repeat` that is too wide is shown
+    in parts, each of which begins with its first `repeat` columns.
     """
 
     title: str
@@ -203,7 +206,31 @@ class Table:
     note: str = ""
     total: int = 0
     headless: bool = False
+    repeat: int = 0
     on: Medium = "both"
+
+    def parts(self, widths: Sequence[float], room: float) -> list[Table]:
+        """The table in parts that fit a room; `widths` of its columns include their gaps."""
+        if not self.repeat or sum(widths) <= room:
+            return [self]
+        first, rest = list(range(self.repeat)), list(range(self.repeat, len(self.columns)))
+        parts = []
+        while rest:
+            shown = [*first, rest.pop(0)]
+            while rest and sum(widths[k] for k in (*shown, rest[0])) <= room:
+                shown.append(rest.pop(0))
+            parts.append(self._of(shown))
+        return parts
+
+    def _of(self, shown: Sequence[int]) -> Table:
+        """The table with these columns alone."""
+        rows = [
+            replace(row, cells=[row.cells[k] for k in shown])
+            if isinstance(row, Row)
+            else [row[k] for k in shown]
+            for row in self.rows
+        ]
+        return replace(self, columns=[self.columns[k] for k in shown], rows=rows, repeat=0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -315,44 +342,22 @@ class Page:
     lists_input: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ExtraTable:
-    """A table that a caller adds to a report.
-
-    A cell may be text or a number; `note` stands under the table, a `drawing` after it.
-    """
-
-    title: str
-    columns: Sequence[str]
-    rows: Sequence[Sequence[object]]
-    note: str = ""
-    drawing: Drawing | None = None
-    widths: Sequence[float] = ()
-    """Of the columns, over one another; default: all alike."""
+def text_table(
+    title: str,
+    heads: Sequence[str],
+    rows: Sequence[Sequence[Cell]],
+    note: str = "",
+    widths: Sequence[float | str] = (),
+) -> Table:
+    """A table of texts: its columns share the room alike or by `widths`, and long words break."""
+    columns = [
+        Column(head, "left", width, breaks=14)
+        for head, width in zip(heads, widths or [1.0] * len(heads), strict=True)
+    ]
+    return Table(title, columns, rows, note)
 
 
 def tile(label: str, words: str, note: str, state: State = "") -> Tile:
     """A key figure whose number and unit are in words ("12.3 N")."""
     value, _, unit = words.partition(" ")
     return Tile(label, value, unit, note, state)
-
-
-def extra_table(given: ExtraTable) -> Block:
-    """A table of the caller's."""
-    rows: list[list[Cell]] = []
-    for row in given.rows:
-        cells: list[Cell] = []
-        for value in row:
-            plain = isinstance(value, (int, float)) and not isinstance(value, bool)
-            cells.append(text.number(float(value)) if plain else soft(str(value)))  # type: ignore[arg-type]
-        rows.append(cells)
-    numeric = [
-        bool(given.rows) and all(isinstance(row[k], (int, float)) for row in given.rows)
-        for k in range(len(given.columns))
-    ]
-    widths = given.widths or [1.0] * len(given.columns)
-    columns = [
-        Column(clean(head), "right" if right else "left", width)
-        for head, right, width in zip(given.columns, numeric, widths, strict=True)
-    ]
-    return Table(given.title, columns, rows, note=given.note)

@@ -92,8 +92,10 @@ def height(block: Block, width: float = FULL) -> float:
     if isinstance(block, Pair):
         return max(sum(height(one, HALF) for one in side) for side in block.sides)
     if isinstance(block, Table):
-        shown = block.on != "terminal"
-        return shown * (HEAD + _note(block.note, width) + LINE * sum(_lines(block, width)))
+        if block.on == "terminal":
+            return 0.0
+        parts = fitting(block, width)
+        return sum(HEAD + _note(x.note, width) + LINE * sum(_lines(x, width)) for x in parts)
     if isinstance(block, Drawing):
         return HEAD + _note(block.note, width) + block.ink.height + 3.0
     if isinstance(block, Notes):
@@ -104,6 +106,11 @@ def height(block: Block, width: float = FULL) -> float:
     if isinstance(block, Listing):
         return HEAD + 2.5 * len(block.text.splitlines())
     return 0.0
+
+
+def fitting(table: Table, width: float) -> list[Table]:
+    """A table in the parts that paper shows."""
+    return table.parts(_widths(table), width) if table.repeat else [table]
 
 
 def room(page: Page) -> float:
@@ -133,18 +140,24 @@ def _note(words: str, width: float) -> float:
     return NOTE_LINE * len(wrap(words, width, 6.2)) + 1.2 if words else 0.0
 
 
+def _widths(table: Table) -> list[float]:
+    """Widths of the columns where no cell breaks [mm]."""
+    body = [cells_of(row) for row in table.rows]
+    widths = []
+    for k, column in enumerate(table.columns):
+        if isinstance(column.width, str) and column.width.endswith("mm"):
+            widths.append(float(column.width[:-2]))
+            continue
+        words = [*column.head.split("\n"), *(joined(row[k]) for row in body)]
+        widths.append(max(text_width(word, 6.8, bold=column.strong) for word in words) + 2.2)
+    return widths
+
+
 def _lines(table: Table, width: float) -> list[float]:
     """Lines of the heads and of every row: the flexible columns share what the others leave."""
     columns = [k for k, one in enumerate(table.columns) if one.on != "terminal"]
     body = [cells_of(row) for row in table.rows]
-    wides = {}
-    for k in columns:
-        one = table.columns[k]
-        if isinstance(one.width, str) and one.width.endswith("mm"):
-            wides[k] = float(one.width[:-2])
-            continue
-        words = [*one.head.split("\n"), *(joined(row[k]) for row in body)]
-        wides[k] = max(text_width(word, 6.8, bold=one.strong) for word in words) + 2.2
+    wides = dict(zip(columns, (_widths(table)[k] for k in columns), strict=True))
     spare = width - sum(wides.values())
     flexible = [k for k in columns if table.columns[k].flexible] or columns[:1]
     for k in flexible:

@@ -40,7 +40,7 @@ from .blocks import (
     short,
     soft,
 )
-from .heights import cells_of, room
+from .heights import FULL, HALF, cells_of, fitting, room
 from .origin import Origin
 
 PIXELS_PER_INCH = 150.0
@@ -160,14 +160,19 @@ def with_input(page: Page, origin: Origin | None) -> list[Block]:
     return blocks
 
 
-def plain_blocks(blocks: Sequence[Block]) -> list[dict[str, object]]:
-    """Blocks that paper shows, as plain data for the template."""
-    return [data for block in blocks if (data := _block(block)) is not None]
+def plain_blocks(blocks: Sequence[Block], width: float = FULL) -> list[dict[str, object]]:
+    """Blocks that paper shows in a width [mm], as plain data for the template."""
+    parts = [
+        part
+        for block in blocks
+        for part in (fitting(block, width) if isinstance(block, Table) else [block])
+    ]
+    return [data for part in parts if (data := _block(part)) is not None]
 
 
 def _block(block: Block) -> dict[str, object] | None:
     if isinstance(block, Pair):
-        return {"kind": "pair", "sides": [plain_blocks(side) for side in block.sides]}
+        return {"kind": "pair", "sides": [plain_blocks(side, HALF) for side in block.sides]}
     if isinstance(block, Table):
         return None if block.on == "terminal" else _table(block)
     if isinstance(block, Drawing):
@@ -202,7 +207,9 @@ def _table(table: Table) -> dict[str, object]:
         "title": clean(table.title),
         "columns": [
             {
-                "head": one.head,
+                "head": soft(one.head, one.breaks)
+                if one.breaks and "\n" not in one.head
+                else one.head,
                 "align": one.align,
                 "width": one.width,
             }
