@@ -44,6 +44,8 @@ from .heights import FULL, HALF, cells_of, fitting, room
 from .origin import Origin
 
 PIXELS_PER_INCH = 150.0
+_SUSPECTS = b"/Suspects false"
+"""What Typst writes by default; Poppler warns of it. Blanks of the same length keep every place."""
 TEMPLATE = Path(__file__).with_name("template.typ")
 
 
@@ -316,7 +318,8 @@ def sheets(source: bytes, data: Mapping[str, Any], timestamp: int) -> tuple[byte
     images: Any = compiler.compile(
         input=source, format="png", ppi=PIXELS_PER_INCH, timestamp=timestamp
     )
-    return bytes(pdf), [images] if isinstance(images, bytes) else list(images)
+    plain = bytes(pdf).replace(_SUSPECTS, b" " * len(_SUSPECTS))
+    return plain, [images] if isinstance(images, bytes) else list(images)
 
 
 def font_folders() -> list[str]:
