@@ -39,9 +39,6 @@ def designs() -> None:
         else:
             subject = ao.evaluate(actuator)
         files = ao.report(subject, folder=SAMPLES, actuator=actuator, command=command)
-        for file in files[1:]:
-            if file.path.stem != path.stem:  # the PDF holds every sheet; one PNG is enough here
-                file.path.unlink()
         print(files[0].path.relative_to(ROOT), files[0].pages, "sheets")
 
 
