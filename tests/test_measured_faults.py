@@ -126,9 +126,9 @@ def test_a_record_acts_until_its_last_change():
         ("t [s],U [V]\n", 'column "U" holds no course', 1),
         ("t [s],U [V]\n0,nan\n1,2\n", 'column "U" holds no course', 1),
         ("t [s],U [V]\n0,1\n,2\n2,1\n", "no time", 3),
-        ("t [s],U [V]\n0,1\n2,2\n1,1\n", "the time does not rise", 4),
+        ("t [s],U [V]\n0,1\n2,2\n1,1\n", "time does not increase", 4),
         ("t [s],U [mm]\n0,1\n2,2\n", 'column "U": ', 1),
-        ("t [s],U [V]\n0,1\n2,x\n", '"x" is no number', 3),
+        ("t [s],U [V]\n0,1\n2,x\n", '"x" is not a number', 3),
     ],
 )
 def test_bad_inputs_are_told_in_one_line(text, message, line):
