@@ -9,6 +9,7 @@ import math
 import jsonschema
 import pytest
 import scatter_case as case
+from actuator_opt.pages.uncertainty_figures import margins_figure, tornado
 from cli_runner import KNEE, run
 
 import actuator_opt as ao
@@ -19,7 +20,6 @@ from actuator_opt.design.standards import tables
 from actuator_opt.design.tolerances import class_limits
 from actuator_opt.design.writer import to_yaml
 from actuator_opt.pages import uncertainty_document as document
-from actuator_opt.pages.uncertainty_figures import margins_figure, tornado
 from actuator_opt.rendering.origin import Origin
 
 BORE, AIR = "cylinder.bore", "fluid.air_content"

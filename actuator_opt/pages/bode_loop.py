@@ -9,20 +9,10 @@ from typing import Any
 
 from ..evaluation.dynamics_study import DynamicsStudy, LoopStudy
 from ..evaluation.result import Requirement
-from ..rendering.axes import Axes, Ticks, fitted
+from ..rendering.axes import Axes, Ticks, dot, fitted, level_ticks
 from ..rendering.ink import BLACK, GREY, RED, WHITE, Ink
 from ..rendering.text import MINUS, SENSES, number, trimmed
-from .bode import (
-    LIMIT,
-    STATIC,
-    STYLES,
-    degrees,
-    dot,
-    frequency_axis,
-    inside,
-    level_ticks,
-    limit_mark,
-)
+from .bode import LIMIT, STATIC, STYLES, degrees, frequency_axis, inside, limit_mark
 
 HALF_POWER = -10 * math.log10(2.0)
 """-3 dB, where a closed loop's bandwidth ends."""

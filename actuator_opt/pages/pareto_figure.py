@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from ..optimisation.pareto_result import ParetoFront, Wish
-from ..rendering.axes import Axes
+from ..rendering.axes import Axes, even_ticks
 from ..rendering.ink import BLUE, GREY, PALE, RED, WHITE, Ink, text_width
 from ..rendering.text import trimmed, unit_text, value_text
-from .identification_axes import even_ticks
 
 WIDTH, HEIGHT = 180.0, 82.0
 ROOM = 0.06

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..rendering.axes import Axes, fitted, legend, ticks
+from ..rendering.axes import Axes, dot, fitted, legend, level_ticks, ticks
 from ..rendering.ink import (
     BLACK,
     BLUE,
@@ -27,7 +27,7 @@ from ..rendering.ink import (
 )
 from ..rendering.text import AT_LEAST, AT_MOST, MINUS, number, trimmed
 from ..studies.seal import FilmMap, RingPoint, SealStudy, SqueezeRow
-from .bode import STYLES, dot, inside, level_ticks, logs
+from .bode import STYLES, inside, logs
 from .wall_figures import GREEN, OCHRE
 
 STATIC: dict[str, Any] = {"stroke": GREY, "pen": 0.4, "dash": (0.5, 0.6)}

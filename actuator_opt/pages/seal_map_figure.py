@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from ..rendering.axes import Axes, ticks
+from ..rendering.axes import Axes, dot, level_ticks, ticks
 from ..rendering.ink import BLACK, GREY, PALE, WHITE, Ink, hatch
 from ..rendering.text import number, trimmed
 from ..studies.seal import FilmMap, SealStudy
-from .bode import dot, inside, level_ticks, logs
+from .bode import inside, logs
 from .seal_figures import stroke_names
 
 _LIGHT, _DARK = (0xF1, 0xF6, 0xF9), (0x0B, 0x3C, 0x5D)

@@ -9,10 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..base.numeric import Array
-from ..rendering.axes import Axes, fitted
+from ..rendering.axes import Axes, Box, even_range, even_ticks, fitted, spaced, thinned
 from ..rendering.ink import BLACK, BLUE, GREY, RED, Ink, Point, text_width
-from .identification_axes import Box, even_range, even_ticks, spaced
-from .identification_series import thinned
 from .wall_figures import GREEN, OCHRE
 
 COLOURS = (BLUE, OCHRE, GREEN, "#7a5a8c", RED, "#4f86a8", BLACK, "#b98b3e")

@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 
 from ..base.quantities import SCENARIOS
-from ..rendering.axes import AREAS, Axes, fitted
+from ..rendering.axes import AREAS, Axes, Box, even_ticks, fitted
 from ..rendering.ink import GREY, Ink, text_width
 from ..rendering.text import value_text
 from ..simulation.loops import LOOPS
 from ..simulation.result import Simulation
 from ..simulation.step_response import BAND
 from . import simulation_comparison as compare
-from .identification_axes import Box, even_ticks
 from .simulation_axes import (
     ASKED,
     MEASURED,

@@ -9,11 +9,10 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..base.quantities import RESULTS
-from ..rendering.axes import Axes, fitted, per_cent
+from ..rendering.axes import Axes, Box, even_ticks, fitted, per_cent
 from ..rendering.ink import BLUE, GREY, PALE, Ink, spread_within, text_width
 from ..rendering.text import number, value_text
 from ..simulation.result import Simulation
-from .identification_axes import Box, even_ticks
 from .simulation_axes import COLOURS, DASHES, ZERO, lines, steady_range, time_axis
 from .wall_figures import OCHRE
 

@@ -8,12 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.quantities import SCENARIOS
-from ..rendering.axes import Axes
+from ..rendering.axes import Axes, Box, even_ticks, thinned
 from ..rendering.ink import BLUE, Ink, text_width
 from ..rendering.text import unit_text
 from ..simulation.result import Simulation
-from .identification_axes import Box, even_ticks
-from .identification_series import thinned
 from .simulation_axes import STYLES, ZERO, kept, names, stack, steady_range, x_axis
 from .simulation_energy import ROW, TOP, over_time, rows_of, share_panel, time_panel
 from .simulation_series import Measured, scaled, strips, titled

@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.numeric import Array
-from ..rendering.axes import Axes
+from ..rendering.axes import Axes, Box, even_ticks
 from ..rendering.ink import BLACK, Ink, text_width
 from ..rendering.text import number
 from ..simulation.loops import LOOPS
 from ..simulation.result import Servo, Simulation
 from ..simulation.step_response import BAND
-from .identification_axes import Box, even_ticks
 from .simulation_axes import ASKED, SIZE, STYLES, lines, names, steady_range, time_axis
 from .simulation_series import Measured, overlay, scaled, titled
 from .wall_figures import OCHRE

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from ..base.fitting import NORMAL
 from ..base.numeric import Array
 from ..base.quantities import RESULTS
-from ..rendering.axes import Axes, required
+from ..rendering.axes import Axes, Box, band, error_bar, even_ticks, required
 from ..rendering.ink import BLUE, WHITE, Ink, text_width
 from ..rendering.text import SENSES, trimmed
 from ..simulation.harmonic import harmonic_fit
 from ..simulation.result import HarmonicLoad, Simulation, Window
-from .identification_axes import SURE, Box, band, error_bar, even_ticks
 from .simulation_axes import ASKED, LEVEL, STYLES, ZERO, names, steady_range, x_axis
 
 STIFFNESS, PHASE = RESULTS["dynamic_stiffness"], RESULTS["dynamic_phase"]
@@ -59,7 +59,7 @@ def along(words: str, shaken: HarmonicLoad, over: str, style: dict[str, Any]) ->
     order = sorted(shaken.windows, key=lambda one: one.position if over == "stroke" else one.time)
     place = [1e3 * one.position if over == "stroke" else one.time for one in order]
     size = [abs(one.stiffness) for one in order]
-    errors = [SURE * one.standard_error for one in order]
+    errors = [NORMAL * one.standard_error for one in order]
     turn = PHASE.to_display(1.0)
     phases = np.unwrap([float(np.angle(one.stiffness)) for one in order])
     scale = STIFFNESS.to_display(1.0)

@@ -9,11 +9,40 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, TypedDict, final
 
 Point: TypeAlias = tuple[float, float]
 Polygon: TypeAlias = Sequence[Point]
 Anchor: TypeAlias = Literal["left", "center", "right"]
+
+
+@final
+class PathMark(TypedDict):
+    """Polylines: corners, width of the pen and lengths of the dashes in mm, colours."""
+
+    path: list[list[list[float]]]
+    closed: bool
+    pen: float
+    dash: list[float]
+    stroke: str | None
+    fill: str | None
+
+
+@final
+class TextMark(TypedDict):
+    """A line of text: the middle of its capitals in mm, type size in points, clockwise angle."""
+
+    text: str
+    at: list[float]
+    size: float
+    anchor: Anchor
+    angle: float
+    bold: bool
+    color: str
+    halo: bool
+
+
+Mark: TypeAlias = PathMark | TextMark
 
 POINT = 25.4 / 72
 """Millimetres per typographic point."""
@@ -169,7 +198,7 @@ class Ink:
     def __init__(self, width: float, height: float) -> None:
         self.width = width
         self.height = height
-        self.marks: list[dict[str, Any]] = []
+        self.marks: list[Mark] = []
 
     def path(
         self,
@@ -185,8 +214,11 @@ class Ink:
         rounded = [[[round(x, 3), round(y, 3)] for x, y in line] for line in lines]
         rounded = [line for line in rounded if len(line) > 1]
         if rounded:
-            mark = {"path": rounded, "closed": closed, "pen": pen, "dash": list(dash)}
-            self.marks.append(mark | {"stroke": stroke, "fill": fill})
+            self.marks.append(
+                PathMark(
+                    path=rounded, closed=closed, pen=pen, dash=list(dash), stroke=stroke, fill=fill
+                )
+            )
 
     def line(self, *points: Point, **style: Any) -> None:
         """One polyline."""
@@ -228,10 +260,20 @@ class Ink:
         halo: bool = False,
     ) -> None:
         """A line of text; `y` is the middle of its capitals, `angle` clockwise in degrees."""
-        mark = {"text": text, "at": [round(x, 3), round(y, 3)], "size": size, "anchor": anchor}
-        self.marks.append(mark | {"angle": angle, "bold": bold, "color": color, "halo": halo})
+        self.marks.append(
+            TextMark(
+                text=text,
+                at=[round(x, 3), round(y, 3)],
+                size=size,
+                anchor=anchor,
+                angle=angle,
+                bold=bold,
+                color=color,
+                halo=halo,
+            )
+        )
 
-    def data(self) -> dict[str, Any]:
+    def data(self) -> dict[str, object]:
         """The drawing as plain data for the template."""
         return {"width": self.width, "height": self.height, "marks": self.marks}
 

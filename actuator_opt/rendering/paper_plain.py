@@ -69,7 +69,7 @@ class _Flow:
         """A ready drawing at the left margin."""
         self.need(drawing["height"])
         for mark in drawing["marks"]:
-            moved = dict(mark)
+            moved: Any = dict(mark)
             if "path" in mark:
                 moved["path"] = [[[x + LEFT, y + self.y] for x, y in line] for line in mark["path"]]
             else:
@@ -283,7 +283,7 @@ def drawn(sheet: Ink) -> Any:
                 points += [(x, y) for x, y in line]
                 codes += [int(Path.MOVETO)] + [int(Path.LINETO)] * (len(line) - 1)
                 if mark["closed"]:
-                    points.append(tuple(line[0]))
+                    points.append((line[0][0], line[0][1]))
                     codes.append(int(Path.CLOSEPOLY))
             pen = mark["pen"] * 72 / 25.4
             dash = (0.0, tuple(d / mark["pen"] for d in mark["dash"])) if mark["dash"] else "-"
