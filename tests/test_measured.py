@@ -96,7 +96,7 @@ def test_a_value_beyond_its_bounds_is_said():
 def test_the_report_names_the_record():
     """The data sheet of the report holds value, bounds and record."""
     block = tables.assumptions(ao.evaluate(ao.read(entry())))
-    row = next(row for row in block["rows"] if "bench.csv" in row)
+    row = next(row for row in block.rows if "bench.csv" in row)
     assert "0.100 (0.0900 to 0.110)" in "".join(row[1])
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from ..base.numeric import Array
 from ..base.quantities import Quantity
 from ..design.paths import quantity_of
+from ..rendering.series import heading
 from ..sweeps.chunk import Chunk, Study
-from .simulation_csv import heading
 
 NUMBER, LIMIT, MET, FAILURE = "number", "governing_limit", "feasible", "failure"
 """Columns beside those of numbers and of texts that vary."""

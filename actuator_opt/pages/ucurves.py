@@ -9,9 +9,8 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from ..evaluation.result import StrokeCurve
-from ..rendering.axes import Axes, even_range, even_ticks
+from ..rendering.axes import COLOURS, DASHES, Axes, even_range, even_ticks
 from ..rendering.ink import GREY, RED, Ink, spread_within
-from .simulation_axes import COLOURS, DASHES
 
 MOST = 6
 """Curves (a choice: as many as can be told apart)."""

@@ -27,6 +27,15 @@ class Series:
     digits: int = 7
 
 
+def heading(name: str, unit: str) -> str:
+    """A column's name with its unit.
+
+    >>> heading("position", "mm"), heading("phase", "")
+    ('position [mm]', 'phase')
+    """
+    return f"{name} [{unit}]" if unit else name
+
+
 def csv_text(columns: Sequence[Series]) -> str:
     """The columns as CSV; a value that is None or not a number stays empty."""
     stream = io.StringIO()

@@ -65,7 +65,16 @@ def text(page: Page, **style: Unpack[Style]) -> str:
     """
     console = Console(**style)
     parts = ["\n".join(heading(page.name, page.verdict, page.sentence, console))]
-    parts += [block_text(block, console) for block in page.blocks]
+    return _joined([*parts, *(block_text(block, console) for block in page.blocks)])
+
+
+def blocks_text(blocks: Sequence[Block], **style: Unpack[Style]) -> str:
+    """Blocks without a page as text that ends in a line break; parameters as `text`."""
+    console = Console(**style)
+    return _joined([block_text(block, console) for block in blocks])
+
+
+def _joined(parts: Sequence[str]) -> str:
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
