@@ -1,4 +1,4 @@
-"""Figures of the report as ink: stiffness over the stroke with its compliance contributions.
+"""Axes of figures: ranges, ticks, frames, and curves with their names.
 
 Readable in black and white: areas differ in lightness, lines in dash, and every curve carries
 its own label.
@@ -29,6 +29,21 @@ Box: TypeAlias = tuple[float, float, float, float]
 """Left, top, width and height on the paper [mm]."""
 THINNED = 640
 """Values of a thinned curve (a choice: two per 0.3 mm of paper)."""
+COLOURS = (BLUE, OCHRE, GREEN, "#7a5a8c", RED, "#4f86a8", BLACK, "#b98b3e")
+DASHES: tuple[tuple[float, ...], ...] = (
+    (), (1.6, 0.8), (2.4, 0.7, 0.4, 0.7), (0.8, 0.5), (3.2, 0.8), (0.4, 0.5),
+)  # fmt: skip
+"""Colours and dashes of curves."""
+ZERO: dict[str, Any] = {"stroke": GREY, "pen": 0.13}
+"""Ink of a line at zero."""
+SIZE = 6.2
+"""Type of the names of curves [pt]."""
+_DENSE = 8
+"""Values of a thinned curve per mm (a choice: four pairs, finer than the pen)."""
+_MOST_JUMPS = 500
+"""Most instants with two samples that a thinned curve keeps."""
+_MILLISECONDS = 0.1
+"""Time below which an axis counts milliseconds [s]."""
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
@@ -361,44 +376,17 @@ def thinned(values: Array, most: int = THINNED) -> Array:
     return np.array(sorted(found))
 
 
-COLOURS = (BLUE, OCHRE, GREEN, "#7a5a8c", RED, "#4f86a8", BLACK, "#b98b3e")
-
-
-DASHES: tuple[tuple[float, ...], ...] = (
-    (), (1.6, 0.8), (2.4, 0.7, 0.4, 0.7), (0.8, 0.5), (3.2, 0.8), (0.4, 0.5),
-)  # fmt: skip
-
-
-ZERO: dict[str, Any] = {"stroke": GREY, "pen": 0.13}
-
-
-SIZE = 6.2
-"""Type of the names of curves [pt]."""
-
-
-DENSE = 8
-"""Values of a thinned curve per mm (a choice: four pairs, finer than the pen)."""
-
-
-MOST_JUMPS = 500
-"""Instants that stand twice and are kept as they are."""
-
-
-SHORT = 0.1
-"""Time below which an axis counts milliseconds [s]."""
-
-
 def time_words(span: float, words: str = "time") -> tuple[str, float]:
     """Label of a time axis, and what is shown over seconds.
 
     >>> time_words(5.0), time_words(0.02)
     (('time, s', 1.0), ('time, ms', 1000.0))
     """
-    return (f"{words}, ms", 1e3) if span < SHORT else (f"{words}, s", 1.0)
+    return (f"{words}, ms", 1e3) if span < _MILLISECONDS else (f"{words}, s", 1.0)
 
 
 def steady_range(ends: Sequence[float], *, zero: bool = False) -> tuple[float, float]:
-    """`even_range`, wide enough to show what does not move as a straight line."""
+    """`even_range`, wide enough to show a constant value as a straight line."""
     low, high = even_range(ends, zero=zero)
     size = max((abs(v) for v in ends), default=0.0)
     least = 1e-6 * size if size > 1e-12 else 1.0
@@ -412,15 +400,15 @@ def lines(axes: Axes, time: Array, values: Array) -> list[list[Point]]:
     """A curve on paper, thinned, cut where it leaves the frame or has no value."""
     inside = (time >= axes.x_range[0]) & (time <= axes.x_range[1]) & np.isfinite(values)
     known = np.flatnonzero(inside)
-    jumps = np.flatnonzero(np.diff(time) == 0)  # an instant stands twice: upright, not aslant
-    jumps = np.union1d(jumps, jumps + 1) if jumps.size < MOST_JUMPS else jumps[:0]
-    found: list[list[Point]] = []
+    jumps = np.flatnonzero(np.diff(time) == 0)  # two samples at an instant: an upright line
+    jumps = np.union1d(jumps, jumps + 1) if jumps.size < _MOST_JUMPS else jumps[:0]
+    drawn: list[list[Point]] = []
     for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
         if run.size > 1:
-            at = run[thinned(values[run], max(int(DENSE * axes.width), 16))]
+            at = run[thinned(values[run], max(int(_DENSE * axes.width), 16))]
             at = np.union1d(at, np.intersect1d(run, jumps))
-            found += axes.clipped([float(t) for t in time[at]], [float(v) for v in values[at]])
-    return found
+            drawn += axes.clipped([float(t) for t in time[at]], [float(v) for v in values[at]])
+    return drawn
 
 
 def time_axis(axes: Axes, words: str = "time") -> None:
@@ -434,11 +422,11 @@ def x_axis(axes: Axes, label: str, scale: float = 1.0) -> None:
     bottom = axes.top + axes.height
     low, high = (scale * v for v in axes.x_range)
     ticks = even_ticks(low, high, max(2, int(axes.width / 11)))
-    for value, said in spaced([(v / scale, w, 1) for v, w in ticks], axes):
+    for value, number_words in spaced([(v / scale, w, 1) for v, w in ticks], axes):
         x = axes.x(value)
         axes.ink.line((x, bottom), (x, bottom + 1.0), pen=0.13)
         if label:
-            axes.ink.text(x, bottom + 2.8, said, anchor="center")
+            axes.ink.text(x, bottom + 2.8, number_words, anchor="center")
     if label:
         middle = axes.left + axes.width / 2
         axes.ink.text(middle, bottom + 6.0, label, anchor="center", color=GREY)
@@ -450,19 +438,19 @@ def names(
     """Names of curves in one line that ends at `right`, each after its line, cut to the room."""
     if not entries:
         return
-    words = [one for one, _ in entries]
+    words = [name for name, _ in entries]
     for line, gap in ((4.0, 2.2), (2.8, 1.4)):
         left = room + gap - len(entries) * (line + 0.8 + gap)
-        if sum(text_width(one, SIZE) for one in words) <= left:
+        if sum(text_width(name, SIZE) for name in words) <= left:
             break
-    while len(words) > 1 and sum(text_width(one, SIZE) for one in words) > left:
+    while len(words) > 1 and sum(text_width(name, SIZE) for name in words) > left:
         widest = max(range(len(words)), key=lambda k: text_width(words[k], SIZE))
         cut = fitted(words[widest], text_width(words[widest], SIZE) - 0.5, SIZE)
         if len(cut) < 3:
             break
         words[widest] = cut
-    x = right + gap - sum(text_width(one, SIZE) + line + 0.8 + gap for one in words)
-    for one, (_, style) in zip(words, entries, strict=True):
+    x = right + gap - sum(text_width(name, SIZE) + line + 0.8 + gap for name in words)
+    for name, (_, style) in zip(words, entries, strict=True):
         ink.line((x, y), (x + line, y), **style)
-        ink.text(x + line + 0.8, y, one, size=SIZE)
-        x += line + 0.8 + text_width(one, SIZE) + gap
+        ink.text(x + line + 0.8, y, name, size=SIZE)
+        x += line + 0.8 + text_width(name, SIZE) + gap
