@@ -26,6 +26,8 @@ from actuator_opt.evaluation.result import (
 )
 from actuator_opt.optimisation.result import Infeasibility, Kkt, Optimisation, VariableResult
 from actuator_opt.optimisation.sensitivity import Sensitivity
+from actuator_opt.rendering.blocks import Table
+from actuator_opt.replicas import published
 
 SOURCE = """name: robot knee
 fluid:
@@ -850,6 +852,11 @@ def scaled(bore: float) -> Evaluation:
         1e-3 * factor,
     )
     return build_evaluation(outlines=parts, lengths=lengths, curve=curve(110e-3 * factor))
+
+
+def published_tables(evaluation: Evaluation) -> list[Table]:
+    """Tables of the paper that a design reproduces, without its drawings."""
+    return [block for block in published(evaluation) if isinstance(block, Table)]
 
 
 def overlaps(boxes):

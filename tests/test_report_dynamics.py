@@ -18,7 +18,6 @@ from actuator_opt.pages import (
     bode,
     bode_loop,
     dynamics_page,
-    places,
     stiffness_page,
     terminal,
     write_report,
@@ -570,7 +569,7 @@ def test_terminal_keeps_places_and_groups_reasons():
     assert terminal.evaluation_text(evaluated("loop"), unicode=False, width=100).isascii()
 
 
-@pytest.mark.parametrize("module", [bode, bode_loop, dynamics_page, places, stiffness_page])
+@pytest.mark.parametrize("module", [bode, bode_loop, dynamics_page, stiffness_page])
 def test_examples_in_docstrings(module):
     """The worked examples hold."""
     assert doctest.testmod(module).failed == 0

@@ -30,12 +30,13 @@ from actuator_opt.pages import (
     compare_text,
     page,
     pareto_document,
-    runs_text,
+    runs,
     tables,
     terminal,
 )
 from actuator_opt.pages.sweep_text import sweep_text
 from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.rendering.terminal import blocks_text
 from actuator_opt.uncertainties.draw import normal_quantile
 from actuator_opt.uncertainties.estimate import exact
 from actuator_opt.uncertainties.quick import DRAWS, quick_yield
@@ -319,8 +320,9 @@ def test_other_places_that_say_met_say_it_without_reserve_too(optimum):
     assert compare_text.named(beside, 0).endswith(f"met, {count} limits without reserve")
     assert beside.to_dict()["designs"][0]["without_reserve"] == list(evaluation.tight)
     head = {"kind": "optimise", "status": "optimal", "met": True, "without_reserve": count}
-    assert runs_text.outcome(head) == f"met, {count} without reserve"
-    assert "\x1b[33mmet, " in runs_text.runs_table([("one", head)], colour=True)
+    assert runs.outcome(head) == f"met, {count} without reserve"
+    listing = runs.listing([("one", head)])
+    assert "\x1b[33mmet, " in blocks_text([listing], colour=True, unicode=True, width=100)
 
     class Front:
         points, knee = (1, 2), None
@@ -373,7 +375,7 @@ def test_the_estimate_loads_no_scipy():
     code = (
         "import sys\n"
         "import actuator_opt as ao\n"
-        "from actuator_opt import verbs\n"
+        "from actuator_opt import api as verbs\n"
         f"found = verbs.with_yield(ao.evaluate({str(DESIGNS / 'aalto_40_25_220.yaml')!r}))\n"
         "assert found.yield_estimate.draws == 500\n"
         "assert 'scipy' not in sys.modules, 'scipy was imported'\n"

@@ -269,7 +269,7 @@ def test_many_writers_at_once(tmp_path):
     threads = [threading.Thread(target=write) for _ in range(4)]
     other = subprocess.Popen(
         [sys.executable, "-c",
-         "import sys; from pathlib import Path; from actuator_opt import run_store\n"
+         "import sys; from pathlib import Path; from actuator_opt.base import runs as run_store\n"
          "for k in range(20): run_store.write(Path(sys.argv[1]), '20260101-000000', {}, {})",
          str(tmp_path)],
         env=surroundings(),

@@ -65,10 +65,11 @@ class Installation:
 
     def text(self, **style: Unpack[Style]) -> str:
         """What the terminal shows."""
-        from ..pages.installation_text import installation_text
+        from ..pages.installation import findings
+        from ..rendering.terminal import blocks_text
 
         rows = [(x.group, x.name, x.status, x.value, x.remedy) for x in self.findings]
-        return installation_text(rows, **style)
+        return blocks_text([findings(rows)], **style)
 
 
 def doctor(

@@ -46,10 +46,11 @@ class Run:
 
     def text(self, **style: Unpack[Style]) -> str:
         """What the terminal shows."""
-        from ..pages.runs_text import run_text
+        from ..pages.runs import blocks
+        from ..rendering.terminal import blocks_text
 
         with sound(self):
-            return run_text(self.id, self.head, self.body, **style)
+            return blocks_text(blocks(self.id, self.head, self.body), **style)
 
 
 @contextmanager

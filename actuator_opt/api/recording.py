@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,7 @@ from .reports import verification_tables
 if TYPE_CHECKING:
     from ..optimisation.pareto_result import ParetoFront
     from ..optimisation.result import Optimisation
-    from ..pages import ExtraTable
+    from ..pages import Table
     from ..simulation.verification import Verification
     from ..sweeps import Swept
 
@@ -32,7 +32,7 @@ def record(
     actuator: Actuator,
     command: str = "",
     date: str | None = None,
-    extra_tables: Sequence[ExtraTable] = (),
+    extra_tables: Sequence[Table] = (),
     dynamics_verified: Verification | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
@@ -69,13 +69,28 @@ def record(
         "result": result.to_dict(),
         "state": to_plain(result),
         "tables": [
-            asdict(table) for table in (*extra_tables, *verification_tables(dynamics_verified))
+            _plain_table(table)
+            for table in (*extra_tables, *verification_tables(dynamics_verified))
         ],
     }
     return record_run(
         "optimise", head, more, actuator=actuator, command=command, date=date,
         seed=result.seed, folder=folder,
     )  # fmt: skip
+
+
+def _plain_table(table: Table) -> dict[str, object]:
+    """A table of a report as a record holds it: texts under their heads."""
+    from ..rendering.heights import cells_of, joined
+
+    flexible = all(column.flexible for column in table.columns)
+    return {
+        "title": table.title,
+        "columns": [column.head for column in table.columns],
+        "rows": [[joined(cell) for cell in cells_of(row)] for row in table.rows],
+        "note": table.note,
+        "widths": [column.width for column in table.columns] if flexible else [],
+    }
 
 
 def record_front(

@@ -26,7 +26,7 @@ from .reports import Paper, is_date, verification_tables
 if TYPE_CHECKING:
     from ..optimisation.pareto_result import ParetoFront
     from ..optimisation.result import Optimisation
-    from ..pages import ExtraTable, ReportFile
+    from ..pages import ReportFile, Table
     from ..rendering.console import Style
 
 OPTIMISED, EVALUATED = ("optimise", "optimize", "sensitivity"), ("evaluate", "report")
@@ -52,7 +52,7 @@ class Rerun:
     date: str | None
     subject: Evaluation | Optimisation | ParetoFront
     actuator: Actuator
-    tables: tuple[ExtraTable, ...]
+    tables: tuple[Table, ...]
     repeats: bool | None
     differences: Mapping[str, tuple[Any, Any]]
     sentence: str
@@ -243,7 +243,7 @@ def _pair(text: str) -> tuple[str, str]:
 
 def _again(
     verb: str, asked: argparse.Namespace, actuator: Actuator
-) -> tuple[Evaluation | Optimisation | ParetoFront, Sequence[ExtraTable]]:
+) -> tuple[Evaluation | Optimisation | ParetoFront, Sequence[Table]]:
     """The result of the command, and the further tables of its report."""
     if verb in EVALUATED:
         return evaluate(actuator, seed=asked.seed), []

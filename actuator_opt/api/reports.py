@@ -6,6 +6,7 @@ import hashlib
 import os
 import re
 from collections.abc import Iterable, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict, Unpack
 
@@ -20,11 +21,18 @@ from .stamp import stamped
 if TYPE_CHECKING:
     from ..evaluation.rings import Place
     from ..optimisation.result import Optimisation
-    from ..pages import ExtraTable, ReportFile
+    from ..pages import ReportFile, Table
+    from ..rendering.blocks import Block
     from ..rendering.origin import Origin
     from ..simulation.verification import Verification
     from ..studies.seal import SealStudy
 
+REPLICAS = "actuator_opt.replicas"
+"""Package of the papers' tables, found by name."""
+ABSENT = (
+    "Caution: the tables that compare this design with {paper} are not part of this installation. "
+    "The source distribution and the repository contain them, in actuator_opt/replicas."
+)
 _LAST_SECOND = 253_402_300_799
 """End of the year 9999, the last a date can hold."""
 
@@ -91,18 +99,18 @@ def page_of(
 def report_design(
     subject: Evaluation | Optimisation,
     *,
-    extra_tables: Sequence[ExtraTable] = (),
+    extra_tables: Sequence[Table] = (),
     dynamics_verified: Verification | None = None,
     **paper: Unpack[Paper],
 ) -> list[ReportFile]:
     """Write the report of an evaluation or an optimisation; parameters as `report`."""
     from ..pages import write_report
     from ..pages.robust_rows import robust_tables
-    from ..replicas import published_tables
 
     design = subject.design if isinstance(subject, Evaluation) else subject.best
     origin, place = page_of(design, **paper)
-    tables = [*published_tables(subject), *robust_tables(subject), *extra_tables]
+    evaluation = subject if isinstance(subject, Evaluation) else subject.best_evaluation
+    tables = [*published(evaluation), *robust_tables(subject), *extra_tables]
     return write_report(
         subject,
         source_text=origin.source_text,
@@ -115,7 +123,27 @@ def report_design(
     )
 
 
-def verification_tables(verification: Verification | None) -> list[ExtraTable]:
+def published(evaluation: Evaluation) -> list[Block]:
+    """The numbers of the paper that a design reproduces, beside ours.
+
+    The package of these tables is found by name, because a wheel comes without it; then the report
+    says where the tables are.
+    """
+    from ..rendering.blocks import Notes
+
+    if evaluation.design.reproduces is None:
+        return []
+    try:
+        replicas = import_module(REPLICAS)
+    except ModuleNotFoundError as error:
+        if error.name != REPLICAS:
+            raise
+        return [Notes("Published numbers", [ABSENT.format(paper=evaluation.design.reproduces)])]
+    blocks: list[Block] = replicas.published(evaluation)
+    return blocks
+
+
+def verification_tables(verification: Verification | None) -> list[Table]:
     """Requirements checked in time, as tables of a report."""
     if verification is None:
         return []

@@ -158,13 +158,22 @@ def report_run(
 
 def _reported(found: Restored, paper: Paper) -> list[ReportFile]:
     from ..optimisation.result import Optimisation
-    from ..pages import ExtraTable
+    from ..rendering.blocks import text_table
 
     result = found.result
     if isinstance(result, KeptSweep):
         return report_sweep(result, **paper)
     if isinstance(result, Optimisation):
-        tables = [ExtraTable(**table) for table in found.run.body["tables"]]
+        tables = [
+            text_table(
+                table["title"],
+                table["columns"],
+                [[str(cell) for cell in row] for row in table["rows"]],
+                table["note"],
+                table["widths"],
+            )
+            for table in found.run.body["tables"]
+        ]
         return report_design(result, extra_tables=tables, **paper)
     files = write_front(result, **paper)
     return [*files, *(write_front_csv(result, x.path.with_suffix(".csv")) for x in files[:1])]

@@ -85,10 +85,14 @@ def write_seal(study: SealStudy, *, sheet: bool = True, **paper: Unpack[Paper]) 
     sheet : whether to write the sheet, or the map alone
     paper : as `report`
     """
-    from ..pages.seal_document import write_map, write_sheet
+    from ..pages.seal import page, series
+    from ..rendering.paper import write
+    from ..rendering.series import write_csv
 
     origin, place = page_of(study.design, f"_{study.place}_seal", **paper)
-    files = write_sheet(study, origin, **place) if sheet else []
+    files = write(page(study), origin, **place) if sheet else []
     if study.map is not None:
-        files.append(write_map(study.map, place["folder"] / f"{place['stem']}_map.csv"))
+        folder: Path = place["folder"]
+        folder.mkdir(parents=True, exist_ok=True)
+        files.append(write_csv(series(study.map), folder / f"{place['stem']}_map.csv"))
     return files

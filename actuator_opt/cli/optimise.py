@@ -1,4 +1,4 @@
-"""The best designs: `optimise`, `sensitivity` and `pareto`."""
+"""Optimisation commands: `optimise`, `sensitivity` and `pareto`."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def optimise(
     write: Write = None,
     out: Out = REPORTS,
     report: Annotated[
-        bool, typer.Option("--report", help="Write the report although --json is given.")
+        bool, typer.Option("--report", help="Write the report even with --json.")
     ] = False,
     date: Date = None,
     seed: Seed = 0,
@@ -93,11 +93,11 @@ def optimise(
 
 
 optimize = optimise
-"""The other spelling."""
+"""Alternative spelling."""
 
 
 def _scenario(file: str, actuator: Actuator) -> Trial:
-    """The scenario to verify the best design in, which must be one for it."""
+    """Scenario to verify the best design in; it must name this design."""
     from .. import api as verbs
 
     trial = verbs.read_scenario(file)
@@ -106,14 +106,14 @@ def _scenario(file: str, actuator: Actuator) -> Trial:
 
 
 def _unsaved(result: Optimisation, write: Path) -> Diagnostic | None:
-    """Why there is no best design to save; None where there is one."""
+    """Why there is no best design to save; None if there is."""
     from .. import api as verbs
 
     if verbs.exit_code(result) == ExitCode.MET or result.status == "interrupted":
         return None
     told = result if result.robust is not None else result.rounding or result
     why = "; ".join(part for part in (told.sentence, told.remedy) if part)
-    return Diagnostic(f"not written, there is no design to save: {why}", file=str(write))
+    return Diagnostic(f"not written, no design to save: {why}", file=str(write))
 
 
 def sensitivity(
@@ -127,7 +127,7 @@ def sensitivity(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """What each requirement and parameter costs at the optimum."""
+    """Cost of each requirement and parameter at the optimum."""
     from .. import api as verbs
 
     job = Job(
@@ -142,10 +142,12 @@ def pareto(
     objectives: Annotated[
         list[str] | None,
         typer.Option(
-            "--objective", metavar="METRIC:min|max", help='Twice to four times, e.g. "mass:min".'
+            "--objective",
+            metavar="METRIC:min|max",
+            help='Metric and direction, two to four times, e.g. "mass:min".',
         ),
     ] = None,
-    n: Annotated[int, typer.Option("-n", metavar="N", help="Designs of the front.")] = 50,
+    n: Annotated[int, typer.Option("-n", metavar="N", help="Number of designs on the front.")] = 50,
     checks: Annotated[
         int,
         typer.Option(
@@ -153,7 +155,7 @@ def pareto(
             min=CHECKS.least,
             max=CHECKS.most,
             metavar="N",
-            help="Full searches for what is merely local.",
+            help="Full searches to escape local optima.",
         ),
     ] = 3,
     csv: Annotated[
@@ -169,7 +171,7 @@ def pareto(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> ExitCode:
-    """Trade two to four objectives: the Pareto front and its knee."""
+    """Trade off two to four objectives: the Pareto front and its knee."""
     from .. import api as verbs
 
     job = Job(

@@ -1,6 +1,6 @@
 """Dimensions of the section as DIMENSION entities: diameters above the parts, lengths below.
 
-They measure the drawing itself (DIMLFAC 1), so a program that moves a line shows the new length.
+They measure the drawing itself (DIMLFAC 1): if a line is moved in CAD, its dimension follows.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ STYLE = "TRUE"
 _COLOUR = 5
 
 _SMALLEST = 1e-6
-"""Lengths below this (mm) are not dimensioned."""
+"""Shorter lengths (mm) are not dimensioned."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Diameter:
-    """A diameter and where along the axis it is dimensioned."""
+    """A diameter and its axial position in the drawing."""
 
     x: float
     value: float
@@ -40,7 +40,7 @@ class _Diameter:
 
 
 def number(value: float) -> str:
-    """A length as the dimension style shows it: three decimals, no trailing zeros.
+    """A length in the format of the dimension style: three decimals, no trailing zeros.
 
     >>> number(12.0), number(7.12345)
     ('12', '7.123')
@@ -66,7 +66,7 @@ def set_up(document: Any, paper: Paper) -> None:
 
 
 def reach(profiles: Sequence[Profile], x: float) -> float:
-    """Largest radius of the parts at a position along the axis."""
+    """Largest radius of the parts at an axial position."""
     found = [
         max(r for _, r in profile)
         for profile in profiles
@@ -76,7 +76,7 @@ def reach(profiles: Sequence[Profile], x: float) -> float:
 
 
 def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
-    """Start and end of every length along the axis, mm."""
+    """Start and end of every axial length, mm."""
     mm = {name: 1000 * value for name, value in lengths.items()}
     face = mm["eye_offset"]
     start = face + mm["plate"]
@@ -107,19 +107,19 @@ def lengths_below(
     profiles: Sequence[Profile],
     paper: Paper,
 ) -> float:
-    """Dimension lengths below the parts, row by row.
+    """Draw dimension lengths below the parts, row by row.
 
     Parameters
     ----------
     space : model space
     evaluated : `lengths` of the evaluation
-    skirts : start and end of the skirt to dimension, mm, if there is one
+    skirts : start and end of the dimensioned skirt, mm, if any
     profiles : half-sections of all parts
     paper : sizes of letters and gaps
 
     Returns
     -------
-    the lowest y used
+    the lowest y coordinate used
     """
     spans = _stations(evaluated) | {f"skirt {k}": span for k, span in enumerate(skirts)}
     lengths = [Length(*span, _words(name, span)) for name, span in spans.items()]
@@ -150,7 +150,7 @@ def lengths_below(
 
 
 def _wanted(evaluated: Mapping[str, float], profiles: Sequence[Profile]) -> list[_Diameter]:
-    """Diameters of rod, bore and barrel across the chamber, that of the plate across it."""
+    """Diameters of rod, bore and barrel at the chamber, and of the plate."""
     spans = _stations(evaluated)
     low, high = spans["stroke"]
     names = {
@@ -174,7 +174,7 @@ def _wanted(evaluated: Mapping[str, float], profiles: Sequence[Profile]) -> list
 def diameters_above(
     space: Any, evaluated: Mapping[str, float], profiles: Sequence[Profile], paper: Paper
 ) -> float:
-    """Dimension diameters, their texts in one row above the parts; returns the highest y used."""
+    """Draw diameters, with texts in one row above the parts; returns the highest y used."""
     wanted = _wanted(evaluated, profiles)
     top = max(r for profile in profiles for _, r in profile)
     widths = [paper.width(one.shown) for one in wanted]

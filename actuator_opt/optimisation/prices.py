@@ -1,9 +1,9 @@
-"""What each parameter of an optimum costs: prices, ranges, and the check by re-solving.
+"""Prices of the parameters of an optimum: value, range, and the check by re-solving.
 
 The price of a parameter is the derivative of the Lagrangian [Fiacco1983]: exact for limits,
-material data, pressures and bounds alike, whatever algebraic form the constraints take. How far
-it holds follows from the derivative of the optimum; re-solving at plus and minus 10 % tells how
-much the straight line hides.
+material data, pressures and bounds, whatever algebraic form the constraints take. Its range of
+validity follows from the derivative of the optimum. Re-solving at plus and minus 10 % shows the
+error of the straight line.
 """
 
 from __future__ import annotations

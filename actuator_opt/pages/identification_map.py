@@ -11,10 +11,10 @@ import numpy as np
 from ..identification.points import Point, by_pressure
 from ..identification.stribeck_fit import StribeckFit
 from ..rendering.axes import Axes, Box, even_range, even_ticks, log_range, log_ticks, spaced
+from ..rendering.contours import bands, levels, scale, shades
 from ..rendering.ink import BLACK, GREY, WHITE, Ink
 from ..rendering.text import unit_text
 from .identification_rows import PRESSURE, SPEED
-from .seal_map_figure import bands, levels, scale, shades
 
 LEAST_SPEEDS = 3
 """Speeds at a level of pressure from which on a map tells more than a curve (a choice)."""

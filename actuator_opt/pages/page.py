@@ -15,7 +15,6 @@ from ..optimisation.result import Optimisation
 from ..rendering import text
 from ..rendering.blocks import (
     Block,
-    ExtraTable,
     Notes,
     Page,
     State,
@@ -31,7 +30,7 @@ from . import (
     infeasibility_card,
     optimum,
     prices,
-    seal_sheet,
+    seal,
     stiffness_page,
     tables,
     trust,
@@ -231,7 +230,7 @@ def _before(optimisation: Optimisation | None, name: str) -> tuple[str, float, i
 def page(
     subject: Evaluation | Optimisation,
     *,
-    extra_tables: Sequence[ExtraTable] = (),
+    extra_tables: Sequence[Block] = (),
     seals: Sequence[SealStudy] = (),
 ) -> Page:
     """The report of a design.
@@ -239,7 +238,7 @@ def page(
     Parameters
     ----------
     subject : what to report
-    extra_tables : further tables, before the input listing
+    extra_tables : further tables and drawings, before the input listing
     seals : the seals of piston or rod to show on a sheet
     """
     evaluation, optimisation = parts_of(subject)
@@ -263,11 +262,11 @@ def page(
         blocks += trust.blocks(optimisation) + prices.blocks(optimisation)
     if optimisation is not None and optimisation.variables:
         blocks.append(tables.masses(evaluation))
-    blocks += seal_sheet.sheets(seals) + wall.blocks(evaluation)
+    blocks += [block for study in seals for block in seal.blocks(study)]
+    blocks += wall.blocks(evaluation)
     blocks += [tables.checks(evaluation), tables.models(evaluation)]
     blocks += _remarks(evaluation, optimisation)
-    for given in extra_tables:
-        blocks += [tables.extra(given)] + ([given.drawing] if given.drawing is not None else [])
+    blocks += extra_tables
     said = [] if optimisation is None else sentences(optimisation)
     said += reserve_sentences(subject)
     return Page(
@@ -304,7 +303,7 @@ def write_report(
     source_name: str,
     command: str,
     date: str | None = None,
-    extra_tables: Sequence[ExtraTable] = (),
+    extra_tables: Sequence[Block] = (),
     seals: Sequence[SealStudy] = (),
 ) -> list[ReportFile]:
     """Write ``STEM.pdf``, ``STEM.png`` (first sheet) and ``STEM-page-N.png`` into `folder`.
@@ -316,7 +315,7 @@ def write_report(
     source_text, source_name : the design file as read: listed, and attached to the PDF
     command : the command line that made this report, printed and attached
     date : ISO date to print, or None for none
-    extra_tables : further tables, before the input listing
+    extra_tables : further tables and drawings, before the input listing
     seals : the seals of piston or rod to show on a sheet
 
     Returns

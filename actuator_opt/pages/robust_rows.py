@@ -5,14 +5,14 @@ from __future__ import annotations
 from ..evaluation.result import Evaluation
 from ..optimisation.result import Optimisation
 from ..rendering import text
-from ..rendering.blocks import ExtraTable
+from ..rendering.blocks import Table, text_table
 from .uncertainty import percent
 
 WORTH = 10.0
 """Reserves beyond this many times the limit say only that the limit is far away."""
 
 
-def robust_tables(subject: Evaluation | Optimisation) -> list[ExtraTable]:
+def robust_tables(subject: Evaluation | Optimisation) -> list[Table]:
     """Optima on the way and reserves; none of a plain optimum."""
     found = subject.robust if isinstance(subject, Optimisation) else None
     if found is None or not isinstance(subject, Optimisation):
@@ -28,14 +28,14 @@ def robust_tables(subject: Evaluation | Optimisation) -> list[ExtraTable]:
         if 1e-3 <= reserve <= WORTH
     ]
     asked = percent(found.target)
-    rounds = ExtraTable(
+    rounds = text_table(
         f"Towards a yield of {asked}",
         ("round", quantity.label, "all limits hold"),
         way,
         f"Round 0 has no reserves. An independent sample of {found.samples} draws at the design "
         f"shown: {percent(found.rate)} ({percent(found.lower)} to {percent(found.upper)}).",
     )
-    reserves = ExtraTable(
+    reserves = text_table(
         "Reserves kept beyond limits",
         ("limit", "reserve, of the limit"),
         kept,

@@ -635,7 +635,7 @@ def _controller(simulation: Simulation) -> Block | None:
     if not rows:
         return None
     note = "Margins of the linear loop without sticking friction, at its worst place and direction."
-    columns = [Column("controller"), Column("", width=1.0, breaks=14)]
+    columns = [Column("controller"), Column("", width=1.0, breaks=14, wraps=True)]
     return Table("Controller and its margins", columns, rows, note=note)
 
 

@@ -12,7 +12,6 @@ from ..rendering.blocks import (
     Block,
     Cell,
     Column,
-    ExtraTable,
     Flag,
     Notes,
     Share,
@@ -214,27 +213,6 @@ def assumptions(evaluation: Evaluation) -> Block:
         " primary source; see the materials files."
     )
     return Table("Assumptions and unverified data", columns, rows, note=note)
-
-
-def extra(given: ExtraTable) -> Block:
-    """A table of the caller's."""
-    rows: list[list[Cell]] = []
-    for row in given.rows:
-        cells: list[Cell] = []
-        for value in row:
-            plain = isinstance(value, (int, float)) and not isinstance(value, bool)
-            cells.append(text.number(float(value)) if plain else soft(str(value)))  # type: ignore[arg-type]
-        rows.append(cells)
-    numeric = [
-        bool(given.rows) and all(isinstance(row[k], (int, float)) for row in given.rows)
-        for k in range(len(given.columns))
-    ]
-    widths = given.widths or [1.0] * len(given.columns)
-    columns = [
-        Column(clean(head), "right" if right else "left", width)
-        for head, right, width in zip(given.columns, numeric, widths, strict=True)
-    ]
-    return Table(given.title, columns, rows, note=given.note)
 
 
 NO_RESERVE = f"No reserve: met, with a margin below {100 * reserve.NO_RESERVE:g} %"

@@ -13,7 +13,7 @@ from ..optimisation.result import Optimisation
 from ..rendering import terminal_curve as plot, text
 from ..rendering.blocks import Column
 from ..rendering.console import Console, Style
-from ..rendering.text import DASH
+from ..rendering.text import DASH, brief
 from . import (
     choices_table,
     infeasibility_card,
@@ -25,7 +25,6 @@ from . import (
     trust,
     whole_plies,
 )
-from .places import brief
 
 _STATE_STYLE = {
     "met": "green",

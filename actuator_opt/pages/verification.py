@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ..base.quantities import RESULTS, Quantity
 from ..metrics import METRICS
 from ..rendering import text
-from ..rendering.blocks import Block, Column, ExtraTable, Notes, Row, State, Status, Table
+from ..rendering.blocks import Block, Column, Notes, Row, State, Status, Table, text_table
 from ..rendering.text import DASH, number, pretty
 from ..simulation.sensitivity import Effect, Sensitivities
 from ..simulation.verification import Verification, VerifiedRequirement
@@ -86,14 +86,14 @@ def blocks(verification: Verification) -> list[Block]:
     return [*made, Notes("Meaning", [" ".join(notes)], headless=True, style="dim")]
 
 
-def tables(verification: Verification) -> tuple[ExtraTable, ...]:
-    """The same as tables of a report."""
+def tables(verification: Verification) -> tuple[Table, ...]:
+    """The same as plain tables, which a record of a run can hold."""
     if not verification.rows:
         return ()
     lines = [_line(row) for row in verification.rows]
     notes = [verdict(verification), MEANING, *map(sentence, verification.notes)]
     note = " ".join([*notes, f"{verification.runs} runs."])
-    both = ExtraTable("Requirements in time", HEADS, [line.cells for line in lines], note)
+    both = text_table("Requirements in time", HEADS, [line.cells for line in lines], note)
     experiments = [
         (line.cells[0], *(pretty(words) or DASH for words in (row.where, row.how, row.why)))
         for line, row in zip(lines, verification.rows, strict=True)
@@ -107,7 +107,7 @@ def tables(verification: Verification) -> tuple[ExtraTable, ...]:
         "fiftieth of the swing; what is left is the operating point."
     )
     widths = (1, 1.2, 1.5, 3.5)
-    return both, ExtraTable("Experiments behind them", heads, experiments, note, widths=widths)
+    return both, text_table("Experiments behind them", heads, experiments, note, widths=widths)
 
 
 def verdict(verification: Verification) -> str:

@@ -123,6 +123,7 @@ class Column:
     width : "auto", a part of the room that is left (number), or ``"12mm"``; a column of the second
         kind shrinks on a narrow terminal
     breaks : letters of a word beyond which it may break; 0 never
+    wraps : a cell too wide for the terminal goes on in further lines; otherwise it is cut
     mono, strong : type on paper; on the terminal strong is bold
     least : letters that a shrinking column keeps on the terminal
     drop : on a narrow terminal the columns of the highest number go first; 0 never
@@ -134,6 +135,7 @@ class Column:
     align: Align = "left"
     width: float | str = "auto"
     breaks: int = 0
+    wraps: bool = False
     mono: bool = False
     strong: bool = False
     least: int = 14
@@ -159,7 +161,8 @@ class Row:
 class Table:
     """Rows under their heads, plain cells or with a state; a rule parts the last `total` of them.
 
-    `headless` leaves the title out on the terminal.
+    `headless` leaves the title out on the terminal, and so does an empty title. Where every head
+    is empty, the terminal shows no line of heads.
     """
 
     title: str
@@ -280,20 +283,19 @@ class Page:
     lists_input: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ExtraTable:
-    """A table that a caller adds to a report.
-
-    A cell may be text or a number; `note` stands under the table, a `drawing` after it.
-    """
-
-    title: str
-    columns: Sequence[str]
-    rows: Sequence[Sequence[object]]
-    note: str = ""
-    drawing: Drawing | None = None
-    widths: Sequence[float] = ()
-    """Of the columns, over one another; default: all alike."""
+def text_table(
+    title: str,
+    heads: Sequence[str],
+    rows: Sequence[Sequence[Cell]],
+    note: str = "",
+    widths: Sequence[float | str] = (),
+) -> Table:
+    """A table of texts: its columns share the room alike or by `widths`, and long words break."""
+    columns = [
+        Column(head, "left", width, breaks=14)
+        for head, width in zip(heads, widths or [1.0] * len(heads), strict=True)
+    ]
+    return Table(title, columns, rows, note)
 
 
 def tile(label: str, words: str, note: str, state: State = "") -> Tile:

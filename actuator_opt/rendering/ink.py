@@ -229,6 +229,13 @@ class Ink:
         corners = ((x, y), (x + width, y), (x + width, y + height), (x, y + height))
         self.path([corners], closed=True, **style)
 
+    def hatched(
+        self, polygon: Polygon, *, fill: str, angle: float, spacing: float, stroke: str
+    ) -> None:
+        """A cut face: a filled polygon without outline, hatched at `angle` degrees."""
+        self.path([polygon], stroke=None, fill=fill, closed=True)
+        self.path(hatch([polygon], angle=angle, spacing=spacing), pen=0.08, stroke=stroke)
+
     def circle(self, x: float, y: float, radius: float, **style: Any) -> None:
         """A circle, as a polygon of 32 corners."""
         turns = [math.tau * k / 32 for k in range(32)]

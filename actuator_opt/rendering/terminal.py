@@ -64,17 +64,14 @@ def text(page: Page, **style: Unpack[Style]) -> str:
     style : colour codes, Unicode signs, columns
     """
     console = Console(**style)
-    parts = ["\n".join(heading(page.name, page.verdict, page.sentence, console))]
-    return _joined([*parts, *(block_text(block, console) for block in page.blocks)])
+    head = "\n".join(heading(page.name, page.verdict, page.sentence, console))
+    return f"{head}\n\n{blocks_text(page.blocks, **style)}".rstrip("\n") + "\n"
 
 
 def blocks_text(blocks: Sequence[Block], **style: Unpack[Style]) -> str:
-    """Blocks without a page as text that ends in a line break; parameters as `text`."""
+    """Blocks one below the other, as text that ends in a line break."""
     console = Console(**style)
-    return _joined([block_text(block, console) for block in blocks])
-
-
-def _joined(parts: Sequence[str]) -> str:
+    parts = [block_text(block, console) for block in blocks]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
@@ -131,7 +128,7 @@ def _table(table: Table, console: Console) -> str:
         body.append([_cell(row.cells[k], console) for k in shown])
         total = "bold" if index >= last else ""
         styles.append([_paint(table.columns[k], row.cells[k], row.state) or total for k in shown])
-    said = [] if table.headless else [console.heading(table.title)]
+    said = [] if table.headless or not table.title else [console.heading(table.title)]
     said += console.table(columns, body, styles)
     return "\n".join([*said, *([console.wrap(table.note, "dim")] if table.note else [])])
 

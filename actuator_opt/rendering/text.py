@@ -231,6 +231,33 @@ def _tenth(percent: float) -> str:
     return f"{percent:+.1f}".replace("-", MINUS)
 
 
+def degrees(temperature: float) -> str:
+    """A temperature in whole °C.
+
+    >>> degrees(253.15), degrees(313.15)
+    ('−20 °C', '40 °C')
+    """
+    return f"{temperature - 273.15:.0f} °C".replace("-", MINUS)
+
+
+def bars(pressure: float) -> str:
+    """A pressure in bar as short as it was written.
+
+    >>> bars(2e5), bars(20.5e6)
+    ('2 bar', '205 bar')
+    """
+    return f"{trimmed(pressure / 1e5)} bar"
+
+
+def speed_words(speed: float) -> str:
+    """A speed in mm/s.
+
+    >>> speed_words(0.00917), speed_words(0.4)
+    ('9.17 mm/s', '400 mm/s')
+    """
+    return f"{trimmed(1e3 * speed)} mm/s"
+
+
 def share_text(share: float) -> str:
     """A share in per cent with one decimal."""
     return f"{100 * share:.1f} %".replace("-", MINUS)
@@ -240,3 +267,21 @@ def plain(text: str) -> str:
     """The same text for an ASCII stream."""
     text = _POWER.sub(lambda m: f"e{m[1].translate(_DIGITS)}", text)
     return text.translate(_ASCII).encode("ascii", "backslashreplace").decode("ascii")
+
+
+_PLACES = (
+    (re.compile(r"\b(extend|retract)ing, "), r"\1, "),
+    (re.compile(r"(\d+ %) of the stroke\b"), r"\1"),
+    (re.compile(r"\bweakest position\b"), "weakest"),
+)
+
+
+def brief(case: str | None, place: str | None) -> str:
+    """Case and place; places on the stroke are shortened.
+
+    >>> brief("stance", "retracting, 25 % of the stroke"), brief(None, "weakest position")
+    ('stance, retract, 25 %', 'weakest')
+    """
+    for pattern, written in _PLACES:
+        place = pattern.sub(written, place or "")
+    return ", ".join(part for part in (case, place) if part)

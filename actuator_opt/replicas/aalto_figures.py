@@ -15,23 +15,30 @@ import numpy as np
 
 from ..base.numeric import Array
 from ..pages.wall_figures import GREEN, OCHRE
+from ..rendering import text
 from ..rendering.axes import Axes
 from ..rendering.ink import BLACK, BLUE, GREY, PALE, Ink, Point, spread_within
 from ..rendering.text import DASH, trimmed
-from .aalto import PAPER, Theory
-from .aalto_dynamic import FREQUENCIES, DynamicTest, End, Response
-from .aalto_static import StaticTest
-from .aalto_text import area_text
+from .aalto_models import FREQUENCIES, PAPER, DynamicTest, End, Response, StaticTest, Theory
 
 Style: TypeAlias = dict[str, Any]
+
 FULL: Style = {"stroke": BLUE, "pen": 0.45}
+
 DASHED: Style = {"stroke": OCHRE, "pen": 0.4, "dash": (1.6, 0.8)}
+
 CHAIN: Style = {"stroke": GREEN, "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)}
+
 DOTTED: Style = {"stroke": GREY, "pen": 0.4, "dash": (0.5, 0.6)}
+
 THIN: Style = {"stroke": BLACK, "pen": 0.2, "dash": (3.2, 0.9)}
+
 _BAND = "#e9eef2"
+
 _POSITION = "piston position from the cap end, mm"
+
 _COLUMNS, _PANEL, _HEIGHT, _ROW, _TOP = (10.0, 101.0), 50.0, 36.0, 56.0, 9.0
+
 _LABEL = 3.2
 """Height (mm) of a line of a label."""
 
@@ -240,3 +247,8 @@ def dynamic_figure(test: DynamicTest, *, width: float = 180.0) -> Ink:
                 mark=PAPER.peak,
             )
     return ink
+
+
+def area_text(area: float) -> str:
+    """Area of a needle."""
+    return f"{text.trimmed(1e4 * area, 2)} cm²"

@@ -1,8 +1,8 @@
 """What [Huang2017] prints of its seal damping, and what its own numbers make of it.
 
-Table 2 (in `models.friction`) stands for the measured curves, whose figures carry no numbers. SI
+Table 2 (in `models.friction`) replaces the measured curves, whose figures carry no numbers. SI
 throughout. The text copy that was read loses leading minus signs (eq. 2 and 31), so the printed
-conditions b > 0 of its two fits may be meant for exponents -b; as they stand they cannot hold.
+conditions b > 0 of its two fits may be meant for exponents -b; as printed they cannot hold.
 """
 
 from __future__ import annotations
@@ -45,10 +45,13 @@ class Paper:
 
 
 PAPER = Paper()
+
 SPEEDS = np.linspace(*PAPER.speeds, 20)
 """Speeds the curves of figures 7 and 15 are drawn and fitted at: the printed range, our places."""
+
 TOLERANCE = 0.15
 """How near a printed value counts as holding."""
+
 SEAL_VISCOSITY = 0.043
 """Of the published rod-seal studies the paper takes its friction from (Pa s); it prints none."""
 

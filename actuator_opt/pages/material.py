@@ -1,7 +1,7 @@
-"""An oil of the library over temperature and pressure: a table for the terminal, a figure as file.
+"""Materials: the library as a list, an entry with its sources, entries side by side, an oil.
 
-The laws are the ones an evaluation uses where a design names none. Curves differ in dash as well
-as in colour and carry their own label.
+An oil is also shown over temperature and pressure, by the laws that an evaluation uses where a
+design names none. Curves differ in dash as well as in colour and carry their own label.
 """
 
 from __future__ import annotations
@@ -9,23 +9,155 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from ..design.material import Material
+from ..base.quantities import MATERIAL_PROPERTIES
+from ..design.material import Material, Property
 from ..design.material_laws import bulk_modulus_law, viscosity_law
+from ..design.materials import Library
 from ..evaluation import oil
 from ..models.fluid import LEAST_VISCOSITY
 from ..models.oil_laws import VISCOSITY_LAWS
-from ..rendering.axes import Axes, ticks
-from ..rendering.blocks import Column
-from ..rendering.console import Console
+from ..rendering.axes import Axes, Ticks, ticks
+from ..rendering.blocks import Block, Column, Notes, Table
 from ..rendering.heights import wrap
-from ..rendering.image import write_ink
 from ..rendering.ink import BLUE, GREY, PALE, RED, WHITE, Ink, spread_within, text_width
-from ..rendering.text import MINUS, number, trimmed
+from ..rendering.text import DASH, MINUS, number, pretty, trimmed
+
+SHOWN = {
+    "metal": ("density", "youngs_modulus", "yield_strength"),
+    "polymer": ("density", "youngs_modulus", "ultimate_strength"),
+    "ply": ("density", "youngs_modulus_1", "strength_1_tension"),
+    "fluid": ("density", "kinematic_viscosity", "bulk_modulus"),
+    "seal": ("density", "hardness", "friction_coefficient"),
+    "adhesive": ("density", "bond_strength", "shear_modulus"),
+}
+"""Properties that the list shows, by kind."""
+_STIFFNESS = ("youngs_modulus", "youngs_modulus_1")
+_STRENGTH = ("strength_1_tension", "yield_strength", "ultimate_strength")
+
+
+def listing(library: Library, *, kind: str | None = None) -> list[Block]:
+    """A material per line, by kind: main properties, share of unverified values, label."""
+    shown: list[Block] = []
+    for group in SHOWN if kind is None else (kind,):
+        materials = [library.get(name) for name in library.names(kind=group)]
+        if not materials:
+            continue
+        columns = [
+            Column(group),
+            *(Column(key.replace("_", " "), drop=k) for k, key in enumerate(SHOWN[group], 1)),
+            Column("unverified", drop=4),
+            Column("description", width=1.0, wraps=True, least=18),
+        ]
+        rows = []
+        for material in materials:
+            values = [_text(material, key) for key in SHOWN[group]]
+            share = f"{len(material.unverified)} of {len(material.properties)}"
+            rows.append((material.name, *values, share, pretty(material.label)))
+        shown.append(Table("", columns, rows))
+    end = "Every value has source, scatter and confidence: actuator-opt materials show NAME"
+    return [*shown, Notes("", [end], headless=True)]
+
+
+def _text(material: Material, name: str) -> str:
+    entry = material.properties.get(name)
+    return pretty(entry.text) if entry else DASH
+
+
+def blocks(material: Material) -> list[Block]:
+    """A material with all its properties, the sources numbered below; an oil over its range."""
+    remarks = [material.label, *([material.notes] if material.notes else [])]
+    if material.warning:
+        remarks.append(f"WARNING: {material.warning}")
+    if material.family:
+        remarks.append(f"fluid family: {material.family}")
+    if material.suits:
+        remarks.append(f"withstands fluids: {', '.join(material.suits)}")
+    columns = [
+        Column("property"),
+        Column("", drop=3),
+        Column("value"),
+        Column("scatter", drop=1),
+        Column("basis", drop=2),
+        Column("confidence"),
+        Column("source"),
+        Column("note", width=1.0, wraps=True, least=18),
+    ]
+    sources: dict[str, int] = {}
+    rows = []
+    for name, entry in material.completed().items():
+        source = f"[{sources.setdefault(entry.source, len(sources) + 1)}]"
+        first, *more = _values(entry)
+        scatter = pretty(entry.scatter.split(";")[0].replace("+-", "±"))
+        origin = (entry.basis, entry.confidence, source, pretty(entry.note))
+        rows.append((name, entry.quantity.symbol, first, scatter, *origin))
+        rows += [("", "", point, "", "", "", "", "") for point in more]
+    numbered = [(f"[{place}]", source) for source, place in sources.items()]
+    return [
+        Notes(f"{material.name}  ({material.kind})", remarks),
+        Table("", columns, rows),
+        Table("", [Column(""), Column("", width=1.0, wraps=True, least=24)], numbered),
+        *([_over_range(material)] if material.kind == "fluid" else []),
+    ]
+
+
+def _values(entry: Property) -> list[str]:
+    """The value, or each point of a table with its argument."""
+    if not entry.points:
+        return [pretty(entry.text)]
+    return [pretty(f"{entry.quantity.text(y)} at {_argument(entry, x)}") for x, y in entry.points]
+
+
+def _argument(entry: Property, x: float) -> str:
+    return f"{x - _ZERO:.4g} degC" if entry.argument == "temperature" else f"{x / 1e5:.4g} bar"
+
+
+def comparison(materials: Sequence[Material]) -> list[Block]:
+    """Properties side by side; from the second material on with the ratio to the first."""
+    completed = [material.completed() for material in materials]
+    known = {name for properties in completed for name in properties}
+    rows: list[Sequence[str]] = []
+    for name in (name for name in MATERIAL_PROPERTIES if name in known):
+        first = completed[0].get(name)
+        cells = [
+            _compared(properties.get(name), first if index else None)
+            for index, properties in enumerate(completed)
+        ]
+        rows.append((name, *cells))
+    for label, keys in (("stiffness per mass", _STIFFNESS), ("strength per mass", _STRENGTH)):
+        values = [_per_mass(properties, keys) for properties in completed]
+        base = values[0]
+        if base and all(values):
+            rows.append((label, *(f"×{(value or 0.0) / base:.3g}" for value in values)))
+    columns = [Column("property"), *(Column(material.name) for material in materials)]
+    note = "×: ratio to the first material; *: unverified; ~: derived"
+    warnings = [f"WARNING {x.name}: {x.warning}" for x in materials if x.warning]
+    shown: list[Block] = [Table("", columns, rows, note=note)]
+    return [*shown, Notes("", warnings, headless=True)] if warnings else shown
+
+
+def _per_mass(properties: Mapping[str, Property], names: Sequence[str]) -> float | None:
+    """The first of the named properties that is known, over the density."""
+    for name in names:
+        if name in properties and "density" in properties:
+            return properties[name].value / properties["density"].value
+    return None
+
+
+def _compared(entry: Property | None, first: Property | None) -> str:
+    if entry is None:
+        return DASH
+    value = pretty(entry.text) + {"unverified": "*", "derived": "~"}.get(entry.confidence, "")
+    temperature = entry.quantity.dimension == "temperature"
+    if first is None or first.value <= 0 or entry.value <= 0 or temperature:
+        return value
+    return f"{value} (×{entry.value / first.value:.3g})"
+
+
+# ---- an oil over temperature and pressure ----
 
 PRESSURES = (0.0, 200e5, 350e5)
 """Gauge pressures of the curves, Pa."""
@@ -41,7 +173,6 @@ _STYLES: tuple[dict[str, Any], ...] = (
 _SERVICE = "#e9eef2"
 _WIDTH, _PANEL, _TALL, _LABELS = 180.0, 58.0, 50.0, 18.0
 _ZERO = 273.15
-Ticks: TypeAlias = Sequence[tuple[float, str]]
 Curves: TypeAlias = Mapping[str, tuple[Any, Any]]
 """Label of each curve, with its x and y."""
 
@@ -74,35 +205,36 @@ def laws_text(material: Material) -> str:
     return f"bulk modulus {modulus} in pressure; viscosity {viscosity.words}"
 
 
-def table_lines(material: Material, *, colour: bool, unicode: bool, width: int) -> list[str]:
+def _over_range(material: Material) -> Table:
     """Viscosity, density, bulk modulus and vapour pressure over the service range."""
-    console = Console(colour, unicode, width)
     over = _range(material)
     inner = (
         np.arange(math.ceil((over.low - _ZERO) / 20), (over.high - _ZERO) // 20 + 1) * 20 + _ZERO
     )
     steps = [float(t) for t in inner if over.low + 3 < t < over.high - 3]
     columns = [
-        Column(head, "right")
-        for head in (
-            "degC", "mm²/s", "mPa·s", "at 200 bar", "350 bar", "kg/m³", "at 350 bar",
-            "K 1 bar", "K 200 bar", "air 1 %, 20 bar", "vapour",
-        )
-    ]  # fmt: skip
-    rows = [_row(material, t) for t in (over.low, *steps, over.high)]
-    lines = [
-        console.heading("Over the service range"),
-        *console.table(columns, rows),
-        console.wrap(
-            "mm²/s and mPa·s: viscosity without pressure, then at 200 and 350 bar; K: bulk modulus "
-            f"in MPa, without air but where stated; vapour pressure in Pa, absolute. Laws: "
-            f"{laws_text(material)}."
-        ),
+        Column("°C", "right"),
+        Column("mm²/s", "right"),
+        Column("mPa·s", "right"),
+        Column("at 200 bar", "right"),
+        Column("350 bar", "right", drop=6),
+        Column("kg/m³", "right"),
+        Column("at 350 bar", "right", drop=5),
+        Column("K 1 bar", "right", drop=1),
+        Column("K 200 bar", "right", drop=2),
+        Column("K 1 % air", "right", drop=3),
+        Column("vapour", "right", drop=4),
     ]
-    return [line for part in lines for line in part.split("\n")]
+    rows = [_oil_row(material, t) for t in (over.low, *steps, over.high)]
+    note = (
+        "mm²/s and mPa·s: viscosity without pressure, then at 200 and 350 bar; K: bulk modulus "
+        f"in MPa, without air, and at 20 bar with 1 % air; vapour pressure in Pa, absolute. Laws: "
+        f"{laws_text(material)}."
+    )
+    return Table("Over the service range", columns, rows, note=note)
 
 
-def _row(material: Material, temperature: float) -> list[str]:
+def _oil_row(material: Material, temperature: float) -> tuple[str, ...]:
     given = oil.alone(material)
     airy = oil.alone(material, air_content=0.01)
     nu = oil.kinematic_viscosity(*given, temperature)
@@ -111,14 +243,14 @@ def _row(material: Material, temperature: float) -> list[str]:
     modulus = [float(oil.pure_bulk_modulus(*given, temperature, p)) for p in (_LOW, 200e5)]
     modulus.append(float(oil.bulk_modulus(*airy, temperature, 20e5)))
     vapour = oil.vapour_pressure(given[2], material.name, temperature)
-    return [
+    return (
         _degrees(temperature),
         number(1e6 * float(nu)),
         *(number(x) for x in eta),
         *(f"{x:.1f}" for x in rho),
         *(f"{x / 1e6:.0f}" for x in modulus),
-        "–" if vapour is None else number(float(vapour), 3),
-    ]
+        DASH if vapour is None else number(float(vapour), 3),
+    )
 
 
 def fluid_figure(material: Material) -> Ink:
@@ -343,8 +475,3 @@ def _modulus_panel(
         modulus = oil.pure_bulk_modulus(*given, temperature, p) + 0 * temperature
         curves[_pressure(p)] = (temperature - _ZERO, modulus / 1e6)
     _over_temperature(ink, box, "Bulk modulus without air, MPa", over, curves)
-
-
-def write_figure(material: Material, folder: Path) -> list[Path]:
-    """Write NAME.png and NAME.svg into a folder, whole or not at all."""
-    return write_ink(fluid_figure(material), folder, material.name)

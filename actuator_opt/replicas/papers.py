@@ -1,4 +1,8 @@
-"""What the pages of all papers say alike: whose cylinder it is, where the equations are."""
+"""What the pages of all papers share: published numbers and sentences as data, words of tables.
+
+The data stand in ``notes/PAPER.yaml``. Every number has its place in the paper; every sentence is a
+template whose fields are filled from the design.
+"""
 
 from __future__ import annotations
 
