@@ -209,6 +209,13 @@ def test_the_valves_bench_tells_its_flows():
     assert printed(tiles["flow, valve centred"].value)[0] == pytest.approx(idle, rel=2e-3)
 
 
+def test_expected_reasons_are_left_out():
+    """A step against no stop under a constant load says only why the efficiency is missing."""
+    found = replace(case.simulated("step"), requirements=())
+    assert {"stop_speed", "dynamic_stiffness", "following_error"} <= found.why.keys()
+    assert set(subject.reasons(found)) <= {found.why["efficiency"]}
+
+
 # ---- energy ----
 
 LEAKED = "leakage across the piston"

@@ -38,6 +38,7 @@ from ..rendering.series import Series, heading
 from ..rendering.text import DASH, number, pretty, trimmed, unit_text, value_text, with_unit
 from ..simulation.assemble import ends_of
 from ..simulation.loops import LOOPS, loop_of
+from ..simulation.reading import EXPECTED
 from ..simulation.result import RequirementResult, Simulation
 from .optimum import sentence
 from .simulation_energy import doubts, table_rows
@@ -72,14 +73,6 @@ POINTS = 240
 """Points of the step on the terminal."""
 NEAR = 1e-6
 """Share of a step within which a sample lies on the grid of the CSV."""
-EXPECTED = (
-    "does not apply to this scenario",
-    "the reference has no step",
-    "the reference does not move on",
-    "no sine shakes the rod",
-    "the piston meets no stop",
-)
-"""Reasons that nobody needs to read, except for a result with a limit."""
 PRESSURE, LENGTH = INPUTS["pressure"], INPUTS["position"]
 _UNITS = r"(?:mm|m|m/s|ms|s|V|bar|k?N|Hz|J|l/min|rpm|rad|N·m|V/m|kN/mm|MPa)(?![\w/])|%|°"
 _TIED = re.compile(rf"(?<=\d) (?={_UNITS})")
