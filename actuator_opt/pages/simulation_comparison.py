@@ -207,11 +207,11 @@ def _unit(comparison: Comparison, name: str) -> str:
 def run_table(comparison: Comparison) -> Table:
     """A row for every run."""
     columns = [Column("run", width=1.0, breaks=14)]
-    for key in comparison.columns:
+    for k, key in enumerate(comparison.columns):
         unit = _unit(comparison, key)
         first, _, rest = COLUMNS[key].head.rpartition(" ")
         words = f"{first}\n{rest}" if first else rest
-        columns.append(Column(f"{words}, {unit}" if unit else words, "right"))
+        columns.append(Column(f"{words}, {unit}" if unit else words, "right", drop=k))
     body: list[list[Cell]] = []
     for name, run in comparison.runs:
         missed = {requirement.metric for requirement in run.requirements if not requirement.met}
