@@ -77,7 +77,7 @@ WRITERS = {
     ".png": ("typst", "matplotlib", "numpy", "pillow"),
     ".svg": ("matplotlib", "numpy"),
     ".dxf": ("ezdxf",),
-    ".xlsx": ("openpyxl", "python"),
+    ".xlsx": ("openpyxl", "python", "matplotlib", "numpy", "pillow"),
     ".parquet": ("pyarrow",),
 }
 """Tools whose versions decide the bytes of a file, beside the machine."""

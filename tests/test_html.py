@@ -39,23 +39,28 @@ class Balance(HTMLParser):
         self.open, self.seen, self.words = [], [], []
 
     def handle_starttag(self, tag, attrs):
+        """Remember an opened tag."""
         self.seen.append((tag, dict(attrs)))
         if tag not in VOID:
             self.open.append(tag)
 
     def handle_startendtag(self, tag, attrs):
+        """Remember a tag that closes itself."""
         self.seen.append((tag, dict(attrs)))
 
     def handle_endtag(self, tag):
+        """Close the tag opened last."""
         assert self.open, f"</{tag}> closes nothing"
         assert self.open.pop() == tag
 
     def handle_data(self, data):
+        """Remember the words on the page."""
         if self.open and self.open[-1] not in ("style", "title"):
             self.words.append(data)
 
 
 def ink(words="a curve"):
+    """A small drawing."""
     made = Ink(60.0, 20.0)
     made.line((0.0, 0.0), (60.0, 20.0), dash=(1.0, 0.5))
     made.text(10.0, 10.0, words, angle=30.0, bold=True, halo=True, anchor="center")
@@ -63,6 +68,7 @@ def ink(words="a curve"):
 
 
 def page(words="plain"):
+    """A page with every kind of block and cell."""
     columns = [
         Column("name", "left", 1.0, mono=True),
         Column("value", "right", strong=True, style="state"),
@@ -97,6 +103,7 @@ def page(words="plain"):
 
 
 def origin(words="plain"):
+    """Where the page comes from."""
     return Origin(f"name: {words}\n", f"{words}.yaml", f"actuator-opt report {words}", "0" * 32)
 
 

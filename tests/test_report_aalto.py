@@ -12,7 +12,7 @@ import pytest
 from report_fixture import overlaps, published_tables
 
 from actuator_opt import api as verbs
-from actuator_opt.pages.page import page
+from actuator_opt.pages.report import page
 from actuator_opt.rendering.blocks import Drawing, Table
 from actuator_opt.replicas import aalto, aalto_figures, aalto_models, published
 

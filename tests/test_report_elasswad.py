@@ -13,7 +13,7 @@ from report_fixture import overlaps, published_tables
 
 from actuator_opt import api as verbs
 from actuator_opt.models import barrel, stiffness, stiffness_published
-from actuator_opt.pages.page import page
+from actuator_opt.pages.report import page
 from actuator_opt.rendering.blocks import Drawing, Table
 from actuator_opt.replicas import elasswad, elasswad_models, published
 from actuator_opt.replicas.elasswad_figures import record_figure

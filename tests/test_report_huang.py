@@ -15,7 +15,7 @@ from report_fixture import overlaps
 
 from actuator_opt import api as verbs
 from actuator_opt.evaluation import film
-from actuator_opt.pages.page import page
+from actuator_opt.pages.report import page
 from actuator_opt.rendering.blocks import Drawing, Table
 from actuator_opt.replicas import MODULES, huang, huang_figures, huang_models
 

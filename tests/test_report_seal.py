@@ -11,12 +11,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+import report_fixture as fixture
 from test_through_wall import text_of
 
 import actuator_opt as ao
 from actuator_opt.evaluation import compute
-from actuator_opt.pages import seal, seal_figures, write_report
-from actuator_opt.pages.page import page
+from actuator_opt.pages import seal, seal_figures
+from actuator_opt.pages.report import page
 from actuator_opt.rendering import contours, paper, paper_plain as fallback, terminal, text
 from actuator_opt.rendering.ink import Ink
 from actuator_opt.rendering.origin import Origin
@@ -551,7 +552,7 @@ def test_the_report_carries_the_sheets(tmp_path):
     both = [studied("rings", place) for place in ("piston", "rod")]
     titles = [block.title for block in page(evaluation, seals=both).blocks]
     assert {"Piston seals: gland", "Rod seals: gland"} <= set(titles)
-    files = write_report(evaluation, folder=tmp_path, stem="r", seals=both, **source)
+    files = fixture.write_report(evaluation, folder=tmp_path, stem="r", seals=both, **source)
     assert files[0].pages > 3
 
 

@@ -18,7 +18,7 @@ from actuator_opt.base import runs as run_store
 from actuator_opt.optimisation import recorded
 from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.optimisation.run import optimise as solver_entry
-from actuator_opt.pages.convergence_figure import convergence_figure
+from actuator_opt.pages.trust import convergence_figure
 from actuator_opt.rendering.ink import Ink
 
 WALL = "  retention.wall:\n    lower: 1 mm\n    upper: 10 mm\n"

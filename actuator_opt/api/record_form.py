@@ -1,6 +1,6 @@
-"""What the fields of a run record and of a report's attachment must be.
+"""Required form of the fields of a run record and of a report's attachment.
 
-Either may be damaged, or written by a stranger.
+Either may be damaged, or written by someone else.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from typing import Any
 
 Form = Any
-"""A type, a tuple of forms of which one must fit, ``[form]`` for a list of any length, or an
-object: fields by name (``name?`` may be missing, others may be beside them), or ``{"*": form}``
-for any names. ``float`` takes whole numbers too, None is null, ``object`` is anything."""
+"""A type, a tuple of alternative forms, ``[form]`` for a list of any length, or an object: fields
+by name (``name?`` is optional, others are allowed), or ``{"*": form}`` for any names. ``float``
+also accepts whole numbers, None is null, ``object`` is anything."""
 
 _OBJECTIVE = {"metric?": (str, None), "value?": (float, None)}
 _HEAD: Form = {
@@ -117,12 +117,12 @@ _RUN: Form = {
 
 
 def run_fault(run: object) -> str:
-    """What is wrong with the facts attached to a report; "" where nothing is."""
+    """The fault of the facts attached to a report; "" if there is none."""
     return _fault(run, _RUN)
 
 
 def head_fault(head: object) -> str:
-    """What is wrong with the head of a record; "" where nothing is.
+    """The fault of the head of a record; "" if there is none.
 
     >>> head_fault({"kind": 3})
     'kind is no text'
@@ -134,7 +134,7 @@ def head_fault(head: object) -> str:
 
 
 def body_fault(kind: str, body: object) -> str:
-    """What is wrong with the body of a record of this kind; "" where nothing is."""
+    """The fault of the body of a record of this kind; "" if there is none."""
     return _fault(body, _BODY) or _fault(body, _BODIES.get(kind, {}))
 
 
@@ -142,7 +142,7 @@ _WORDS = {str: "text", int: "whole number", bool: "true or false", float: "numbe
 
 
 def _fault(value: object, form: Form, path: str = "") -> str:
-    """Where a value does not fit a form, and what it should be; "" where it does."""
+    """Where a value deviates from a form, and what is expected; "" if it fits."""
     if isinstance(form, tuple):
         found = [_fault(value, one, path) for one in form]
         return "" if "" in found else found[0]
@@ -163,7 +163,7 @@ def _fault(value: object, form: Form, path: str = "") -> str:
 
 
 def _object_fault(value: object, form: dict[str, Form], path: str) -> str:
-    """As `_fault`, of an object."""
+    """`_fault` for an object."""
     if not isinstance(value, dict):
         return f"{path or 'it'} is no object"
     head = f"{path}." if path else ""

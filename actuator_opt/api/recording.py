@@ -1,4 +1,4 @@
-"""What a run record keeps of an optimisation, of a front and of a sweep."""
+"""Contents of the run record of an optimisation, a front and a sweep."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from ..sweeps import Swept
 
 BEST = 10
-"""Best designs of a sweep that its record keeps, at most: the store has them all."""
+"""Maximum number of best designs in a sweep's record; the store has all rows."""
 
 REASONS = 20
-"""Reasons of failed designs that it keeps, the commonest."""
+"""Number of failure reasons recorded, most frequent first."""
 
 
 def record(
@@ -36,18 +36,18 @@ def record(
     dynamics_verified: Verification | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record an optimisation with its input, so that it can be shown and reported later.
+    """Record an optimisation with its input, for showing and reporting it later.
 
     Parameters
     ----------
     result : of `optimise`
-    actuator : that was optimised
+    actuator : the design optimised
     command, date, extra_tables, dynamics_verified : of its report
-    folder : where to; default: ACTUATOR_OPT_RUNS, else the person's data folder
+    folder : target; default: ACTUATOR_OPT_RUNS, else the user's data folder
 
     Returns
     -------
-    the record; None where recording is switched off (ACTUATOR_OPT_NO_RECORD)
+    the record; None if recording is switched off (ACTUATOR_OPT_NO_RECORD)
 
     Raises
     ------
@@ -101,7 +101,7 @@ def record_front(
     date: str | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record a Pareto front, so that it can be shown and reported later; as `record`."""
+    """Record a Pareto front, for showing and reporting it later; as `record`."""
     from ..optimisation.recorded import to_plain
 
     knee = None if found.knee is None else found.knee.index
@@ -137,7 +137,7 @@ def record_sweep(
     date: str | None = None,
     folder: str | Path | None = None,
 ) -> Run | None:
-    """Record a sweep: its plan, counts, the best designs and where its rows lie, but no rows.
+    """Record a sweep: plan, counts, best designs and the location of its rows, but no rows.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def record_sweep(
     actuator, command, date, folder : as `record`
     store, csv, parquet, keep, figures, show : as given to `sweep`
     """
-    from ..pages.sweep_text import counts
+    from ..pages.sweep import counts
 
     study = found.study
     goal, met = study.goal, bool(found.best or found.feasible)

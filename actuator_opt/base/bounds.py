@@ -21,10 +21,5 @@ SEED = Bounds(0, 2**32 - 1)
 FRONT = Bounds(3, 2000)
 """Number of designs on a front."""
 
-SWEEP_FIGURES = {
-    "parallel": "sweep_parallel",
-    "scatter": "sweep_scatter",
-    "contour": "sweep_contour",
-    "ucurves": "sweep_ucurves",
-}
-"""Figures of a sweep by name, each with the module of `pages` that draws it."""
+SWEEP_FIGURES = ("parallel", "scatter", "contour", "ucurves")
+"""Figures of a sweep, named as the modules of `pages.sweep_figures` that draw them."""

@@ -15,7 +15,19 @@ from ..base.errors import Diagnostic, ExitCode, UsageError
 from ..base.suggest import shown
 from . import streams
 from .job import Job
-from .options import REPORTS, Date, DesignFile, Json, Out, PluginFile, Quiet, Report, Seed, Set
+from .options import (
+    REPORTS,
+    AllPages,
+    Date,
+    DesignFile,
+    Json,
+    Out,
+    PluginFile,
+    Quiet,
+    Report,
+    Seed,
+    Set,
+)
 
 if TYPE_CHECKING:
     from ..api import Restored
@@ -134,6 +146,7 @@ def evaluate(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -143,7 +156,7 @@ def evaluate(
 
     job = Job(
         design, sets=sets, plugins=plugin, report=report, out=out, date=date,
-        as_json=as_json, quiet=quiet,
+        all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     return job.deliver(job.run(verbs.evaluate, seed=seed if report else None))
 
@@ -156,6 +169,7 @@ def report(
     sets: Set = None,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     plugin: PluginFile = None,
     as_json: Json = False,
@@ -166,7 +180,7 @@ def report(
 
     job = Job(
         design, sets=sets, plugins=plugin, report=True, out=out, date=date,
-        as_json=as_json, quiet=quiet,
+        all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     recorded = run_store.is_name(design)
     result: Any = _restored(job) if recorded else job.run(verbs.evaluate, seed=seed)

@@ -31,14 +31,14 @@ class Job:
 
     Parameters
     ----------
-    design : design file
-    others : further input files
-    sets, plugins : ``--set`` and ``--plugin`` of the design
-    csv, write : output files; they must not be input files, but `write` may be the design
-    report : whether to write the report to `out`, with `date`
-    as_json, quiet : form of the answer
-    record : whether to record the run
-    paper : extra keywords of the report
+    design : its file
+    others : further files that are read
+    sets, plugins : of the design
+    csv, write : files to write; neither may be one that is read, but `write` may be the design
+    report : whether to write the report into `out`, with `date`; `all_pages`: all as images
+    as_json, quiet : how to answer
+    record : whether to keep a record of the run
+    paper : keywords of the report besides those that every report takes
     """
 
     design: str = ""
@@ -50,6 +50,7 @@ class Job:
     report: bool = False
     out: Path = REPORTS
     date: str | None = None
+    all_pages: bool = False
     as_json: bool = False
     quiet: bool = False
     record: bool = False
@@ -140,7 +141,8 @@ class Job:
             return []
         files = [] if self.csv is None else [results.write_csv(result, self.csv)]
         if self.report:
-            files += verbs.report(result, **self._origin(), folder=self.out, **self.paper, **also)
+            paper = self.paper | {"folder": self.out, "all_pages": self.all_pages}
+            files += verbs.report(result, **self._origin(), **paper, **also)
         return [file.to_dict() for file in files]
 
     def keep(self, result: object, **how: Any) -> None:
@@ -186,8 +188,8 @@ class Job:
 _TARGETS = ("--out", "--write", "--csv", "--parquet")
 """Options of output files and folders."""
 
-_SILENT = ("--json", "--report", "--quiet", "-q", "--no-record", "--debug")
-"""Flags that do not change the result."""
+_SILENT = ("--json", "--report", "--all-pages", "--quiet", "-q", "--no-record", "--debug")
+"""Flags that change no result."""
 
 
 def command_line() -> str:

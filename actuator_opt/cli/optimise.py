@@ -13,6 +13,7 @@ from .job import Job
 from .options import (
     REPORTS,
     Algorithm,
+    AllPages,
     Certify,
     Date,
     DesignFile,
@@ -53,6 +54,7 @@ def optimise(
         bool, typer.Option("--report", help="Write the report even with --json.")
     ] = False,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     plugin: PluginFile = None,
     no_record: NoRecord = False,
@@ -64,7 +66,7 @@ def optimise(
 
     job = Job(
         design, sets=sets, plugins=plugin, write=write, report=report or not as_json, out=out,
-        date=date, as_json=as_json, quiet=quiet, record=not no_record,
+        date=date, all_pages=all_pages, as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip
     trial = None if verify is None else _scenario(verify, job.actuator)
     result = job.run(
@@ -123,6 +125,7 @@ def sensitivity(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -132,7 +135,7 @@ def sensitivity(
 
     job = Job(
         design, sets=sets, plugins=plugin, report=report, out=out, date=date,
-        as_json=as_json, quiet=quiet,
+        all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     return job.deliver(verbs.Prices(job.run(verbs.optimise, seed=seed)))
 
@@ -166,6 +169,7 @@ def pareto(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     no_record: NoRecord = False,
     as_json: Json = False,
@@ -176,7 +180,7 @@ def pareto(
 
     job = Job(
         design, sets=sets, plugins=plugin, csv=csv, report=report, out=out, date=date,
-        as_json=as_json, quiet=quiet, record=not no_record,
+        all_pages=all_pages, as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip
     return job.deliver(
         job.run(verbs.pareto, objectives=objectives or [], n=n, seed=seed, checks=checks)

@@ -118,7 +118,11 @@ VerifyDynamics = Annotated[
 NoRecord = Annotated[
     bool, typer.Option("--no-record", help="Do not record the run (see: runs list).")
 ]
-Report = Annotated[bool, typer.Option("--report", help="Also write the report (PDF and PNG).")]
+Report = Annotated[bool, typer.Option("--report", help="Write the report (PDF and PNG) too.")]
+AllPages = Annotated[
+    bool,
+    typer.Option("--all-pages", help="An image (PNG) of every sheet of the report, not of one."),
+]
 REPORTS = Path("reports")
 
 

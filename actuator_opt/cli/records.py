@@ -13,6 +13,7 @@ from ..base.quantities import RECORDS
 from .job import Job
 from .options import (
     REPORTS,
+    AllPages,
     Date,
     Json,
     Out,
@@ -139,6 +140,7 @@ def identify(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -148,7 +150,7 @@ def identify(
 
     job = Job(
         design, [record, *file_of_units(units)], sets=sets, plugins=plugin, csv=csv,
-        report=report, out=out, date=date, as_json=as_json, quiet=quiet,
+        report=report, out=out, date=date, all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     _check_bootstrap(bootstrap)
     reading = {"columns": named_columns(columns), "units": units}
@@ -186,6 +188,7 @@ def calibrate(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -195,7 +198,7 @@ def calibrate(
 
     job = Job(
         design, [record, *file_of_units(units)], sets=sets, plugins=plugin, write=write,
-        report=report, out=out, date=date, as_json=as_json, quiet=quiet,
+        report=report, out=out, date=date, all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     _check_bootstrap(bootstrap)
     settings = _settings(cutoff, order, uncompensated, mass, load_force, pressure_lag)

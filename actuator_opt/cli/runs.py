@@ -11,7 +11,7 @@ from ..base import files as store, runs as run_store
 from ..base.errors import Diagnostic, ExitCode, UsageError
 from . import streams
 from .job import Job
-from .options import REPORTS, Json, NoRecord, PluginFile, Quiet
+from .options import REPORTS, AllPages, Json, NoRecord, PluginFile, Quiet
 
 runs = typer.Typer(
     help="Recorded runs: list, show, delete, prune. Each optimise, pareto and sweep is recorded.",
@@ -127,6 +127,7 @@ def rerun(
         Path | None,
         typer.Option("--out", metavar="DIR", help="Write the report again, to this folder."),
     ] = None,
+    all_pages: AllPages = False,
     no_record: NoRecord = False,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -135,8 +136,8 @@ def rerun(
     from .. import api as verbs
 
     job = Job(
-        report=out is not None, out=out or REPORTS, as_json=as_json, quiet=quiet,
-        record=not no_record,
+        report=out is not None, out=out or REPORTS, all_pages=all_pages,
+        as_json=as_json, quiet=quiet, record=not no_record,
     )  # fmt: skip
     if out is not None:
         store.require_apart(out / f"{Path(report).stem}.pdf", report)

@@ -13,6 +13,7 @@ from ..base.quantities import INPUTS
 from .job import Job
 from .options import (
     REPORTS,
+    AllPages,
     Date,
     DesignFile,
     Json,
@@ -73,6 +74,7 @@ def uncertainty(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -82,7 +84,7 @@ def uncertainty(
 
     job = Job(
         design, sets=sets, plugins=plugin, csv=csv, report=report, out=out, date=date,
-        as_json=as_json, quiet=quiet,
+        all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     how = {"count": count, "seed": seed, "quasi_random": quasi, "rows": rows}
     return job.deliver(job.run(verbs.uncertainty, metrics=metric or [], **how))
@@ -128,6 +130,7 @@ def seal(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     seed: Seed = 0,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -139,7 +142,7 @@ def seal(
         raise UsageError(Diagnostic(f'--seal "{place}"', "write piston or rod"))
     job = Job(
         design, sets=sets, plugins=plugin, write=write, report=report or mapped, out=out,
-        date=date, as_json=as_json, quiet=quiet, paper={"sheet": report},
+        date=date, all_pages=all_pages, as_json=as_json, quiet=quiet, paper={"sheet": report},
     )  # fmt: skip
     study = job.run(
         verbs.seal,
@@ -210,6 +213,7 @@ def simulate(
     report: Report = False,
     out: Out = REPORTS,
     date: Date = None,
+    all_pages: AllPages = False,
     as_json: Json = False,
     quiet: Quiet = False,
     seed: Annotated[int, typer.Option("--seed", hidden=True)] = 0,
@@ -222,7 +226,7 @@ def simulate(
             raise UsageError(Diagnostic(f"{name}: only with --measured", "name the record"))
     job = Job(
         scenario, [*filter(None, [measured]), *file_of_units(units)], sets=sets, csv=csv,
-        report=report, out=out, date=date, as_json=as_json, quiet=quiet,
+        report=report, out=out, date=date, all_pages=all_pages, as_json=as_json, quiet=quiet,
     )  # fmt: skip
     trial = verbs.read_scenario(scenario, set=job.set, units=units)
     if units is not None and measured is None and not trial.records:

@@ -65,7 +65,7 @@ Figures = Annotated[
     typer.Option(
         "--figure",
         metavar="KIND",
-        help=f"Plot {', '.join([*SWEEP_FIGURES][:-1])} or {[*SWEEP_FIGURES][-1]} "
+        help=f"Draw {', '.join(SWEEP_FIGURES[:-1])} or {SWEEP_FIGURES[-1]} "
         "as PNG and SVG. Repeatable.",
     ),
 ]

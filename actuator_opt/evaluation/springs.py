@@ -98,7 +98,8 @@ class Springs:
         """Compliance by part at a position (m/N); the sum is 1/stiffness.
 
         Per chamber, the share of each part is its strain energy under a unit force: p^T C_part p
-        with the chamber pressures p of that force, and k x^2 for the seals; independent of part order.
+        with the chamber pressures p of that force, and k x^2 for the seals; independent of the
+        order of the parts.
         """
         if self.topology != "per_chamber":
             parts = self._published(position)

@@ -16,7 +16,8 @@ from .solids import Profile
 
 LAYER = "dimensions"
 STYLE = "TRUE"
-_COLOUR = 5
+_COLOUR, _BY_LAYER, _BLACK_OR_WHITE = 153, 256, 7
+"""Of the lines, which show on black and on white; letters take the colour that the ground lacks."""
 
 _SMALLEST = 1e-6
 """Shorter lengths (mm) are not dimensioned."""
@@ -58,9 +59,9 @@ def set_up(document: Any, paper: Paper) -> None:
         "dimexo": 1.0 * paper.scale, "dimexe": 1.5 * paper.scale, "dimgap": 0.8 * paper.scale,
         "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimdec": 3, "dimzin": 8, "dimdsep": ord("."),
         "dimtxsty": "Standard",
-        "dimclrd": _COLOUR,
-        "dimclre": _COLOUR,
-        "dimclrt": _COLOUR,
+        "dimclrd": _BY_LAYER,
+        "dimclre": _BY_LAYER,
+        "dimclrt": _BLACK_OR_WHITE,
     }.items():  # fmt: skip
         style.dxf.set(name, value)
 

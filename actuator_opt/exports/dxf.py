@@ -28,7 +28,8 @@ _COMPOSITE = ((60.0, 0.8), (120.0, 0.8), (75.0, 1.1), (105.0, 1.1))
 _POLYMER = ((15.0, 1.2),)
 """Angle and spacing (mm of paper) of hatches, by material in order of appearance."""
 
-_COLOURS = (7, 30, 34, 3, 4, 6, 140, 94, 200, 42, 174, 22)
+_COLOURS = (7, 23, 142, 94, 6, 42, 134, 200, 54, 213, 233, 74)
+"""Of the layers, by part: each shows on a black ground and on a white ground (7 is the other)."""
 
 _Corner: TypeAlias = tuple[float, float, float]
 """x, y and bulge of a polyline: tan of a quarter of the arc to the next corner."""

@@ -1,4 +1,4 @@
-"""An evaluation as a workbook: requirements with live margins, variables, masses with a chart.
+"""An evaluation as a workbook: limits with live margins, the section, variables, masses.
 
 Margins and verdicts are formulas of the limit and result cells: they follow a changed limit.
 Numbers are in display units; where a formula needs SI, the factor is beside it. Excel and
@@ -23,6 +23,8 @@ from ..design.paths import get, quantity_of
 from ..evaluation.reserve import NO_RESERVE, NO_ROOM
 from ..evaluation.result import Check, Evaluation, Requirement
 from ..metrics import METRICS
+from ..pages.section import section
+from ..rendering.image import images
 from .words import plain
 
 TOLERANCE = "0.000001"
@@ -49,6 +51,8 @@ _FONT = {"name": "Calibri", "size": 11}
 """Font of every cell; without a font, programs use their own."""
 _LINE = 15.0
 """Height of a line of text, points."""
+_PIXELS = 96 / 25.4
+"""Of a sheet, per millimetre."""
 _WIDEST = 110.0
 """Largest column width in characters."""
 _FIRST = 5
@@ -213,6 +217,18 @@ def _limits(
         sheet.colour(cells, "no", "F5C9C2")
 
 
+def _section(book: Any, evaluation: Evaluation) -> None:
+    """The longitudinal section as a picture below the requirements."""
+    drawn = section(evaluation)
+    picture = library("openpyxl.drawing.image").Image(
+        io.BytesIO(images(drawn.ink, "section")["section.png"])
+    )
+    picture.width = round(drawn.ink.width * _PIXELS)
+    picture.height = round(drawn.ink.height * _PIXELS)
+    sheet = book.worksheets[0]
+    sheet.add_image(picture, f"A{sheet.max_row + 2}")
+
+
 def _variables(book: Any, evaluation: Evaluation) -> None:
     """Variables of the optimiser with their bounds."""
     sheet = _Sheet(book, "Variables", (20, 20, 9, 12, 12, 12, 14))
@@ -324,6 +340,7 @@ def xlsx(evaluation: Evaluation, *, program: str, date: str | None = None) -> by
     book = library("openpyxl").Workbook()
     book.remove(book.active)
     _limits(book, "Requirements", evaluation, evaluation.requirements)
+    _section(book, evaluation)
     checks = [row for row in evaluation.checks if row.limit is not None and row.metric is not None]
     _limits(book, "Checks", evaluation, checks)
     _variables(book, evaluation)

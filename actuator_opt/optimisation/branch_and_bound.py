@@ -60,8 +60,8 @@ class Found:
     complete : whether the search finished before reaching a limit
     nearest, missed : without a feasible one, the least infeasible of the assignments examined, and
         its point
-    ends : result of every box, its optimum or least infeasible point, with its evaluator; empty where
-        a box has neither
+    ends : result of every box, its optimum or least infeasible point, with its evaluator; empty
+        where a box has neither
     """
 
     x: Vector | None

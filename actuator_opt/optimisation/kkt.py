@@ -60,8 +60,8 @@ class Kkt:
     ----------
     residual : relative norm of the gradient of the Lagrangian
     active : labels of active constraints, equalities and bounds ("NAME lower", "NAME upper")
-    count, rank : number of active gradients, and of independent ones; the multipliers are unique when
-        they are equal
+    count, rank : number of active gradients, and of independent ones; the multipliers are unique
+        when they are equal
     multipliers : (m,) of the constraints: change of the objective per unit of required margin
     equality_multipliers : (e,)
     lower_multipliers, upper_multipliers : (n,) of the bounds, per unit of solver coordinate

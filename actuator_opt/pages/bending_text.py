@@ -9,7 +9,7 @@ from ..metrics import METRICS
 from ..rendering import text
 from ..rendering.blocks import Column
 from ..rendering.console import Console, visible
-from .optimum import sentence
+from ..rendering.text import sentence
 
 _MODULUS, _SLOPE = MATERIAL_PROPERTIES["youngs_modulus"], METRICS["stiffness_rod"]
 _HEADS = ("three-point bending", "value", "lower", "upper", "verdict")

@@ -29,7 +29,7 @@ from ..studies.bench import Bench
 from . import calibration_rows as rows
 from .calibration_figure import calibration_figure
 from .identification_rows import force, samples_hash
-from .page import doubts
+from .report import doubts
 
 
 def write_calibration_sheet(

@@ -10,7 +10,7 @@ from ..identification.calibration import Calibration
 from ..optimisation.redesign import Redesign, Shift, solved
 from ..rendering import text
 from ..rendering.blocks import State
-from .optimum import sentence
+from ..rendering.text import sentence
 
 LEARNED_HEADS = ("value", "stated", "measured", "lower", "upper", "from")
 SHIFT_HEADS = ("requirement", "limit", "as stated", "as measured", "lower", "upper", "verdict")

@@ -32,12 +32,11 @@ from ..rendering.axes import (
     spaced,
 )
 from ..rendering.ink import BLUE, GREY, Ink, spread_within
-from ..rendering.text import bars, number, unit_text
+from ..rendering.text import bars, number, sentence, unit_text
 from .identification_axes import IN, OUT, SURE, Velocities, ways
 from .identification_map import map_panel, pressure_levels
 from .identification_rows import FORCE, SPEED
 from .identification_series import LINE, loop, strips
-from .optimum import sentence
 from .wall_figures import GREEN, OCHRE
 
 WIDTH = 180.0

@@ -25,12 +25,12 @@ from ..rendering.text import (
     fixed,
     number,
     pretty,
+    sentence,
     trimmed,
     unit_text,
     value_text,
     with_unit,
 )
-from .optimum import sentence
 
 FORCE, PRESSURE = METRICS["friction_running"], quantities.INPUTS["pressure"]
 SPEED, LENGTH = quantities.INPUTS["stribeck_speed"], quantities.INPUTS["position"]

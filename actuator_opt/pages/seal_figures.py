@@ -44,8 +44,8 @@ from ..rendering.text import AT_LEAST, AT_MOST, bars, degrees, number, speed_wor
 from ..seals.outline import Shape, box
 from ..seals.seal_type import Room
 from ..studies.seal import FilmMap, RingPoint, SealStudy, SqueezeRow
-from .bode import STYLES, inside, logs
-from .drawing import OUTLINE, THIN, choose_scale, scale_bar
+from .dynamics_figures import STYLES, inside, logs
+from .section import OUTLINE, THIN, choose_scale, scale_bar
 from .wall_figures import GREEN, OCHRE
 
 STATIC: dict[str, Any] = {"stroke": GREY, "pen": 0.4, "dash": (0.5, 0.6)}

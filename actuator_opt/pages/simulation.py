@@ -35,12 +35,20 @@ from ..rendering.blocks import (
     tile,
 )
 from ..rendering.series import Series, heading
-from ..rendering.text import DASH, number, pretty, trimmed, unit_text, value_text, with_unit
+from ..rendering.text import (
+    DASH,
+    number,
+    pretty,
+    sentence,
+    trimmed,
+    unit_text,
+    value_text,
+    with_unit,
+)
 from ..simulation.assemble import ends_of
 from ..simulation.loops import LOOPS, loop_of
 from ..simulation.reading import EXPECTED
 from ..simulation.result import RequirementResult, Simulation
-from .optimum import sentence
 from .simulation_energy import doubts, table_rows
 from .simulation_figures import LEAST, MOST, Measured, Static, simulation_figure, window
 

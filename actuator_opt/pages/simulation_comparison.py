@@ -23,10 +23,9 @@ from ..rendering.blocks import (
     short,
     tile,
 )
-from ..rendering.text import DASH, number, pretty, unit_text, with_unit
+from ..rendering.text import DASH, number, pretty, sentence, unit_text, with_unit
 from ..simulation.gains import Tuned
 from ..simulation.result import Simulation
-from .optimum import sentence
 from .simulation import known, label, remarks, share_words, sound, tied, what
 from .simulation_comparison_figures import LEAST, MOST, comparison_figure, kind_of
 from .simulation_figures import Measured, Static

@@ -8,10 +8,9 @@ from ..base.quantities import RESULTS, Quantity
 from ..metrics import METRICS
 from ..rendering import text
 from ..rendering.blocks import Block, Column, Notes, Row, State, Status, Table, text_table
-from ..rendering.text import DASH, number, pretty
+from ..rendering.text import DASH, number, pretty, sentence
 from ..simulation.sensitivity import Effect, Sensitivities
 from ..simulation.verification import Verification, VerifiedRequirement
-from .optimum import sentence
 from .simulation import label, tied
 
 HEADS = ("requirement", "limit", "evaluation", "linear", "in time", "difference", "holds")

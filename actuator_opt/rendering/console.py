@@ -16,6 +16,8 @@ _CODES = {"bold": "1", "dim": "2", "red": "31", "green": "32", "yellow": "33", "
 _CODE = "|".join(_CODES.values())
 PAINT = rf"\x1b\[(?:0|(?:{_CODE})(?:;(?:{_CODE}))*)m"
 """What `Console.paint` writes, as a regular expression."""
+GAP = 2
+"""Spaces between two columns of a table."""
 _BREAK = re.compile(r"[\t\n\r\v\f\u2028\u2029]+")
 
 
@@ -87,7 +89,7 @@ class Console:
         keep = list(range(len(columns)))
         while True:
             sizes = {k: max([visible(heads[k]), *(visible(row[k]) for row in cells)]) for k in keep}
-            spare = self.width - sum(sizes.values()) - 2 * (len(keep) - 1)
+            spare = self.width - sum(sizes.values()) - GAP * (len(keep) - 1)
             flexible = [k for k in keep if columns[k].flexible]
             floor = sum(min(sizes[k], columns[k].least) for k in flexible)
             dropped = sorted((columns[k].drop, k) for k in keep if columns[k].drop)
@@ -124,7 +126,7 @@ class Console:
                 gap = " " * (sizes[k] - visible(text))
                 painted = self.paint(text, *styles[k].split())
                 parts.append(gap + painted if columns[k].align == "right" else painted + gap)
-            lines.append("  ".join(parts).rstrip())
+            lines.append((" " * GAP).join(parts).rstrip())
         return lines
 
     def _pieces(self, column: Column, cell: str, size: int) -> list[str]:

@@ -27,8 +27,8 @@ from .blocks import (
     TerminalFigure,
     Verdict,
 )
-from .console import Console, Style
-from .heights import joined
+from .console import GAP, Console, Style, visible
+from .heights import cells_of, joined
 from .terminal_curve import curve
 
 PAINTS: dict[str, str] = {
@@ -97,7 +97,7 @@ def block_text(block: Block, console: Console) -> str:
     if isinstance(block, TerminalFigure):
         return _figure(block, console)
     if isinstance(block, Table):
-        return "" if block.on == "paper" else _table(block, console)
+        return "" if block.on == "paper" else _tables(block, console)
     if isinstance(block, Notes):
         return "" if block.on == "paper" else _notes(block, console)
     return ""
@@ -116,6 +116,17 @@ def _figure(figure: TerminalFigure, console: Console) -> str:
         return ""
     below = [console.wrap(figure.note, "dim")] if figure.note else []
     return "\n".join([console.heading(figure.title), *drawn, *below])
+
+
+def _tables(table: Table, console: Console) -> str:
+    """A table, in parts where it is wider than the terminal and repeats its first columns."""
+    if not table.repeat:
+        return _table(table, console)
+    cells = [[_cell(cell, console) for cell in cells_of(row)] for row in table.rows]
+    columns = zip(*([column.head for column in table.columns], *cells), strict=True)
+    widths = [max(visible(console.say(text)) for text in column) + GAP for column in columns]
+    parts = table.parts(widths, console.width + GAP)
+    return "\n\n".join(_table(part, console) for part in parts)
 
 
 def _table(table: Table, console: Console) -> str:

@@ -269,6 +269,19 @@ def plain(text: str) -> str:
     return text.translate(_ASCII).encode("ascii", "backslashreplace").decode("ascii")
 
 
+def sentence(words: str) -> str:
+    """Words with a capital letter and a full stop; a name as pressure_a stays as it is.
+
+    >>> sentence("optimum found"), sentence("pressure_a: left out")
+    ('Optimum found.', 'pressure_a: left out.')
+    """
+    words = words.strip()
+    if not words:
+        return ""
+    first = words[0] if "_" in words.split()[0] else words[0].upper()
+    return first + words[1:] + ("" if words[-1] in ".!?" else ".")
+
+
 _PLACES = (
     (re.compile(r"\b(extend|retract)ing, "), r"\1, "),
     (re.compile(r"(\d+ %) of the stroke\b"), r"\1"),

@@ -33,44 +33,45 @@ from ..models import elements, fluid, linear, lines, loop, one_way_valve, orific
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from ..models.line_ends import CONSTANT_PRESSURE, LineEnd, antiresonance_frequency
 from ..models.stiffness import LoadStep, trapped_air_load_step
+from .papers import published_numbers
 
 Topology = Literal["per_chamber", "aalto_as_published"]
 
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """What the thesis prints and the design does not hold, SI; the comment is its place."""
+    """What the thesis prints, SI; ``notes/aalto.yaml`` has the places."""
 
-    bore: float = 0.040  # chapter 3
-    rod: float = 0.025
-    stroke: float = 0.220
-    throttle: float = 0.22e-4  # section 3.3.5
-    temperatures: tuple[float, float] = (298.15, 303.15)  # of the tests, 25 to 30 degC
-    bulk_modulus: float = 1600e6  # section 3.3.1
-    bulk_modulus_with_air: float = 1300e6  # section 3.3.3
-    load_cell: float = 106e6  # section 3.2
-    pressure_a: float = 20.5e5  # chapter 3
-    pressure_b: float = 42e5
-    load_up: tuple[float, float] = (3.4e3, 3.5e3)  # section 4.1, piston direction up and down
-    load_down: tuple[float, float] = (4.6e3, 5.1e3)
-    moved_up: tuple[float, float] = (0.11e-3, 0.21e-3)  # figure 42, both piston directions
-    moved_down: tuple[float, float] = (0.31e-3, 0.48e-3)
-    most_up: tuple[float, float] = (0.20e-3, 0.21e-3)  # the same, each direction's largest
-    most_down: tuple[float, float] = (0.48e-3, 0.47e-3)
-    place: float = 0.185  # figure 41
-    loaded_up: tuple[float, float] = (12e5, 62e5)
-    loaded_down: tuple[float, float] = (40.5e5, 18e5)  # + 20 bar; "17 to 19 bar"
-    bubble_a: float = 0.4e-6  # figure 67
-    bubble_b: float = 0.08e-6
-    wave_speed: float = 1300.0  # section 2.1.3
-    peak: float = 20.0  # section 4.2.2
-    speed: float = 20e-3  # section 3.3.3, largest amplitude until the check valve opens
-    reynolds: float = 100.8  # section 3.3.3
-    flow_coefficient: float = 0.611
-    cracking_pressure: float = 0.4e5  # section 3.3.5
+    bore: float
+    rod: float
+    stroke: float
+    throttle: float
+    temperatures: tuple[float, float]
+    bulk_modulus: float
+    bulk_modulus_with_air: float
+    load_cell: float
+    pressure_a: float
+    pressure_b: float
+    load_up: tuple[float, float]
+    load_down: tuple[float, float]
+    moved_up: tuple[float, float]
+    moved_down: tuple[float, float]
+    most_up: tuple[float, float]
+    most_down: tuple[float, float]
+    place: float
+    loaded_up: tuple[float, float]
+    loaded_down: tuple[float, float]
+    bubble_a: float
+    bubble_b: float
+    wave_speed: float
+    peak: float
+    speed: float
+    reynolds: float
+    flow_coefficient: float
+    cracking_pressure: float
 
 
-PAPER = Paper()
+PAPER = published_numbers(Paper, "aalto")
 
 MARGIN = 0.005
 """How near the ends of the stroke the thesis' test runs came (m)."""

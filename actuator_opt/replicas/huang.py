@@ -44,7 +44,21 @@ from .huang_models import (
     study,
 )
 from .huang_published import PAPER, SEAL_VISCOSITY, CurveFits
-from .papers import SLASH, TRACE_COLUMNS, Trace, listed, of_another_cylinder, percent, trace_rows
+from .papers import (
+    SLASH,
+    TRACE_COLUMNS,
+    claim,
+    equations,
+    listed,
+    newtons,
+    of_another_cylinder,
+    percent,
+    pressure_text,
+    rounded,
+    speed_text,
+    times,
+    trace_rows,
+)
 
 AGREES, DISAGREES, IN_PART = "agrees", "disagrees", "agrees in part"
 
@@ -60,35 +74,6 @@ def mega(value: float, digits: int = 3) -> str:
 def megas(values: Sequence[float] | Array, digits: int = 3) -> str:
     """Dampings of one row in one cell."""
     return SLASH.join(mega(float(value), digits) for value in values)
-
-
-def rounded(value: float) -> str:
-    """Three digits, the rest zeros.
-
-    >>> rounded(252879.0)
-    '253\u202f000'
-    """
-    return text.number(float(f"{value:.3g}"), 3)
-
-
-def newtons(value: float) -> str:
-    """A force."""
-    return text.with_unit(rounded(value), "N")
-
-
-def speed_text(speed: float) -> str:
-    """In mm/s."""
-    return f"{text.trimmed(1e3 * speed, 3)} mm/s"
-
-
-def pressure_text(pressure: float) -> str:
-    """In MPa."""
-    return f"{text.trimmed(pressure / 1e6, 3)} MPa"
-
-
-def times(ratio: float) -> str:
-    """How many times one is the other."""
-    return f"{text.trimmed(ratio, 3)} times"
 
 
 def verdict(share: float) -> str:
@@ -120,7 +105,7 @@ STILL = 1.2
 def cylinder_table(design: Design, found: HuangStudy) -> list[Block]:
     """Figure 3: the piston cylinder of test A."""
     mapped, damping = found.cylinder, found.cylinder.damping
-    speed, pressure = PAPER.shown_a
+    speed, pressure = PAPER.shown_speed, PAPER.shown_pressure
     i = int(np.argmin(np.abs(mapped.pressures - pressure)))
     j = mapped.piston.at(0.0, TYPICAL)[1]
     shown = np.interp(speed, mapped.piston.speeds, damping[i] * mapped.piston.speeds) / speed
@@ -130,29 +115,25 @@ def cylinder_table(design: Design, found: HuangStudy) -> list[Block]:
     over = float(six / table), float(six / ours)
     rows = [
         (
-            "B falls from 0.5 to 10 mm/s",
-            "figure 3",
+            *claim("huang", "cylinder_speed"),
             f"{mega(damping[i, 0])} to {mega(damping[i, -1])} MN·s/m at {pressure_text(pressure)}",
             holds(bool(np.all(np.diff(damping, axis=1) < 0)), *np.ravel(damping)),
         ),
         (
-            "B rises with the chamber's pressure",
-            "conclusion 2",
+            *claim("huang", "cylinder_pressure"),
             f"{mega(damping[0, j])} to {mega(damping[-1, j])} MN·s/m from "
             f"{pressure_text(mapped.pressures[0])} to {pressure_text(mapped.pressures[-1])} "
             f"at {speed_text(TYPICAL)}",
             holds(bool(np.all(np.diff(damping[:, j]) > 0)), *damping[:, j]),
         ),
         (
-            "B is larger than the plunger's",
-            "section 2",
+            *claim("huang", "cylinder_larger"),
             f"{times(over[0])} table 2, {times(over[1])} our plunger at 6 MPa and "
             f"{speed_text(TYPICAL)}",
             verdict(float(np.mean([x > 1 if math.isfinite(x) else math.nan for x in over]))),
         ),
         (
-            "the point 9.17 mm/s, 7.15 MPa",
-            "figure 3(b), drawn only",
+            *claim("huang", "cylinder_point"),
             f"{mega(float(shown))} MN·s/m, {newtons(float(shown) * speed)}",
             "no number to compare",
         ),
@@ -191,34 +172,29 @@ def _trends(found: HuangStudy) -> list[tuple[str, ...]]:
     ratio = mapped.damping[mapped.at(PAPER.compared, 0.0)[0]] / table
     low, high = _ends(mapped, *PAPER.simulated, TYPICAL)
     first, last = _ends(mapped, *PAPER.pressures, TYPICAL)
-    claim = huang_published.claim_at(TYPICAL)
-    slowest, fastest = huang_published.claim_speeds()
+    fall = huang_published.claim_at(TYPICAL)
+    slowest, fastest = (text.trimmed(1e3 * v, 3) for v in huang_published.claim_speeds())
     falls = np.diff(mapped.damping, axis=1) < 0
     least, most = (text.trimmed(float(pick(ratio)), 2) for pick in (np.min, np.max))
     return [
         (
-            "B falls with speed at every pressure",
-            "figures 7, 15, 16",
+            *claim("huang", "plunger_speed"),
             f"{percent(float(np.mean(falls)), 3)} of the steps fall; all of table 2",
             holds(bool(np.all(falls)), *np.ravel(mapped.damping)),
         ),
         (
-            "B falls from 0.65 to 0.2 MN·s/m from 0.6 to 6 MPa",
-            "section 2; table 2 within 15 % from "
-            f"{text.trimmed(1e3 * slowest, 3)} to {text.trimmed(1e3 * fastest, 3)} mm/s only",
+            *claim("huang", "plunger_pressure", slowest=slowest, fastest=fastest),
             f"{mega(first)} to {mega(last)} MN·s/m at {speed_text(TYPICAL)} "
-            f"(table 2: {mega(claim.low)} to {mega(claim.high)})",
+            f"(table 2: {mega(fall.low)} to {mega(fall.high)})",
             holds(last < first, first, last),
         ),
         (
-            "simulated B agrees with the measured at 6 MPa",
-            "figure 15",
+            *claim("huang", "simulated_measured"),
             f"{least} to {most} times table 2",
             holds(bool(np.all(np.abs(np.log(ratio)) < math.log(NEAR))), *ratio),
         ),
         (
-            "B falls drastically from 8 to 10 MPa",
-            "figure 16",
+            *claim("huang", "simulated_pressure"),
             f"{mega(low)} to {mega(high)} MN·s/m at {speed_text(TYPICAL)}",
             holds(high < low, low, high),
         ),
@@ -230,10 +206,9 @@ def _asymptote(found: HuangStudy) -> tuple[str, ...]:
     fast, viscous = found.fast.damping[0], found.fast.viscous[0]
     known = np.flatnonzero(np.isfinite(fast))
     reached = min(map(huang_published.asymptote_speed, HUANG_TABLE_2))
-    paper = f"figure 15; table 2 comes within 10 % of it from {speed_text(reached)} on"
-    claim = "B reaches an asymptote, sigma2"
+    stated = claim("huang", "asymptote", speed=speed_text(reached))
     if known.size < 2:
-        return claim, paper, "no film", OPEN
+        return *stated, "no film", OPEN
     last, before = int(known[-1]), int(known[-2])
     ours = (
         f"{mega(float(fast[last]))} MN·s/m at {speed_text(float(found.fast.speeds[last]))}, "
@@ -243,7 +218,7 @@ def _asymptote(found: HuangStudy) -> tuple[str, ...]:
     still = (
         f", {percent(1 - fell)} below that at half the speed" if fell < 1 else ", no longer falling"
     )
-    return claim, paper, ours + still, holds(fell > 1 / STILL, fell)
+    return *stated, ours + still, holds(fell > 1 / STILL, fell)
 
 
 def _between_rows(found: HuangStudy) -> list[tuple[str, ...]]:
@@ -259,8 +234,7 @@ def _between_rows(found: HuangStudy) -> list[tuple[str, ...]]:
         words = f"above it at 6 MPa from {speed_text(float(found.fast.speeds[above[0]]))}"
     return [
         (
-            "the pressure between the seals can exceed the sealed one",
-            "section 3.2",
+            *claim("huang", "pressure_between"),
             f"{text.trimmed(float(np.nanmin(share)), 2)} to "
             f"{text.trimmed(float(np.nanmax(share)), 2)} times it up to 10 mm/s; {words}",
             holds(bool(above.size or np.nanmax(share) > 1)),
@@ -277,28 +251,24 @@ def ring_table(_: Design, found: HuangStudy) -> list[Block]:
     most = float(stress.pressures[int(np.argmax(stress.excess))])
     rows = [
         (
-            "the largest contact stress rises from 2 to 5 MPa",
-            "figure 17",
+            *claim("huang", "stress_rises"),
             f"{pressure_text(low)} to {pressure_text(high)}",
             holds(high > low),
         ),
         (
-            "beyond 5 MPa it falls",
-            "figure 17",
+            *claim("huang", "stress_falls"),
             f"{pressure_text(last)} at 10 MPa; its excess over the oil pressure is largest, "
             f"{pressure_text(float(stress.excess.max()))}, at {pressure_text(most)}",
             verdict(float(np.mean([last < high, most < stress.pressures[-1]]))),
         ),
         (
-            "the contact grows longer",
-            "figure 17",
+            *claim("huang", "contact_grows"),
             f"{text.number(1e3 * float(stress.width[0]), 3)} to "
             f"{text.number(1e3 * float(stress.width[-1]), 3)} mm",
             holds(bool(np.all(np.diff(stress.width) > 0))),
         ),
         (
-            "the mean film grows with pressure",
-            "figure 18",
+            *claim("huang", "film_grows"),
             f"{text.number(1e6 * float(films[0]), 4)} to {text.number(1e6 * float(films[-1]), 4)} "
             f"µm from {pressure_text(mapped.pressures[0])} to "
             f"{pressure_text(mapped.pressures[-1])}",
@@ -541,7 +511,7 @@ def _reasons(why: tuple[Missing, ...]) -> str:
 def cylinder_note(design: Design, found: HuangStudy) -> str:
     """Below figure 3."""
     mapped = found.cylinder
-    i, j = int(np.argmin(np.abs(mapped.pressures - PAPER.shown_a[1]))), -1
+    i, j = int(np.argmin(np.abs(mapped.pressures - PAPER.shown_pressure))), -1
     piston, rod = float(mapped.piston.friction[i, j]), float(mapped.rod.friction[0, j])
     return (
         f"{other_cylinder(design)}Seals, oil and their numbers are those of this "
@@ -791,92 +761,7 @@ def _proven(found: HuangStudy) -> str:
     )
 
 
-TRACES: tuple[Trace, ...] = (
-    Trace(1, 1, "force balance of the rod", ("models.damping.secant",), "gives the measured B"),
-    Trace(
-        2,
-        2,
-        "viscosity over pressure",
-        ("models.fluid.roelands",),
-        "our copy lost the leading minus of the exponent",
-    ),
-    Trace(3, 3, "density over pressure", ("lubrication.inputs.Lubricant",)),
-    Trace(
-        4,
-        4,
-        "Reynolds equation",
-        ("lubrication.reynolds.flux", "models.flow_factors.shear_flow_factor"),
-        'the text calls "a" the seal, but u_a = U is the rod: rough seal on a smooth rod, '
-        "phi_s below 0",
-    ),
-    Trace(5, 5, "composite roughness", ("models.rough_surface.composite_roughness",)),
-    Trace(6, 6, "mean gap", ("models.rough_surface.mean_gap_ratio",)),
-    Trace(
-        7,
-        7,
-        "shear stress of the oil",
-        (
-            "models.flow_factors.shear_stress_factor",
-            "models.flow_factors.shear_stress_correction",
-            "models.flow_factors.pressure_stress_factor",
-        ),
-    ),
-    Trace(8, 9, "asperity contact", ("models.rough_surface.asperity_pressure",)),
-    Trace(
-        10,
-        10,
-        "shear stress of asperities",
-        ("evaluation.film.FilmRow",),
-        f"{listed([text.trimmed(x) for x in PAPER.dry_friction])} times the contact load, in its "
-        "frictions",
-    ),
-    Trace(
-        11,
-        15,
-        "deformation and film",
-        ("lubrication.newton.residual",),
-        "eq. 14 and 15 lack the rigid shift that eq. 12 needs",
-    ),
-    Trace(16, 16, "flow", ("lubrication.reynolds.flux",), "negative pressure gradient drives it"),
-    Trace(17, 17, "equal flow of both seals", ("lubrication.tandem.solve_tandem",)),
-    Trace(
-        18,
-        18,
-        "friction of the seals",
-        ("lubrication.film.outputs", "evaluation.film.FilmRow"),
-        "pi d times drag and contact, in its frictions",
-    ),
-    Trace(
-        19,
-        22,
-        "back-up ring",
-        ("lubrication.smooth.solve_gap",),
-        "eq. 19 prints q and g: density and viscosity",
-    ),
-    Trace(
-        23,
-        25,
-        "chamber",
-        ("models.damping.flat_gap",),
-        f"its {PAPER.chamber_shear} N s/m has no inputs",
-    ),
-    Trace(26, 26, "total damping", ("replicas.huang_models.total",)),
-    Trace(
-        27,
-        28,
-        "dimensionless forms",
-        (),
-        "out of scope: the solver scales by itself; q of eq. 28 is the density",
-    ),
-    Trace(29, 30, "stopping", ("lubrication.newton.newton",), "on residuals instead of steps"),
-    Trace(
-        31,
-        31,
-        "Stribeck curve",
-        ("models.friction.stribeck", "models.damping.secant"),
-        "v_s of table 2 in mm/s",
-    ),
-)
+TRACES = equations("huang")
 """All of eq. 1 to 31, in order."""
 
 

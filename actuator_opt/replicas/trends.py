@@ -31,7 +31,7 @@ from ..rendering import text
 from ..rendering.blocks import Table, text_table
 from ..seals import o_ring
 from ..seals.kinds import SIZES
-from .papers import listed
+from .papers import Reasons, listed, reasons
 
 Verdict = Literal["agrees", "disagrees", "no effect", "no answer"]
 
@@ -293,72 +293,8 @@ COLUMNS = ("to increase friction, as printed", "ours by coefficient", "ours on t
 PRINTED = {1: "increase", -1: "decrease"}
 """What the column "to increase friction" prints."""
 
-Reasons = Mapping[tuple[str, Verdict], str]
-
-COEFFICIENT: Reasons = {
-    ("squeeze", "agrees"): "the preload grows with the squeeze",
-    ("metal surface finish (RMS)", "no effect"): "a coefficient knows no roughness",
-    ("seal material hardness", "agrees"): "the modulus grows with hardness",
-    ("seal material hardness", "no effect"): "this contact law has no preload",
-    ("relative motion speed", "agrees"): "{ratio} Stribeck speeds, where the curve falls",
-    ("relative motion speed", "no effect"): "{ratio} Stribeck speeds, where its fall is over or "
-    "none is stated",
-    ("relative motion speed", "disagrees"): "the stated viscous friction outweighs the fall",
-    ("cross section of seal", "agrees"): "load per length of circumference grows with the section",
-    ("hydraulic pressure", "disagrees"): "the pressure presses the ring on",
-    ("hydraulic pressure", "no effect"): "no ring holds pressure in this case",
-    ("temperature", "agrees"): "rubber softens with heat",
-    ("temperature", "disagrees"): "this rubber stiffens with heat",
-    ("temperature", "no effect"): "the modulus does not enter, or not its temperature",
-    ("groove width", "no effect"): "the load does not know the groove's walls",
-    ("diameter of rod or bore", "agrees"): "friction follows the circumference, less what the "
-    "grown barrel takes",
-    ("O-ring surface finish", "no effect"): "a coefficient knows no roughness",
-}
-"""Why the friction by coefficients goes the way it does."""
-
-STICKS = "that smooth rubber sticks is not in the model"
-
-SPREADS = "rough faces stand further apart, so that speed raises friction less"
-
-BEARS = "a rough face bears more of the load on its asperities"
-
-FILM: Reasons = {
-    ("squeeze", "agrees"): "the load grows with the squeeze, and by more than the oil bears under "
-    "the wider contact",
-    ("squeeze", "no effect"): "load and width of the contact grow with the squeeze, and the oil "
-    "under the wider contact bears all that the load gains",
-    ("squeeze", "disagrees"): "the contact widens faster than its load grows: the oil bears more",
-    ("metal surface finish (RMS)", "agrees"): f"{BEARS}; weak, as the ring is {{roughness}} times "
-    "as rough",
-    ("metal surface finish (RMS)", "disagrees"): f"{SPREADS}; weak, as the ring is {{roughness}} "
-    "times as rough",
-    ("metal surface finish (RMS)", "no effect"): "the ring is {roughness} times as rough, and a "
-    "polished metal that sticks to rubber is not in the model",
-    ("seal material hardness", "agrees"): "a stiffer ring is pressed on harder",
-    ("relative motion speed", "agrees"): "mixed lubrication: speed lifts the ring off",
-    ("relative motion speed", "disagrees"): "running towards the pressure the faces part, the oil "
-    "loses pressure and asperities take its load; the other way speed lifts the ring off",
-    ("relative motion speed", "no effect"): "too slow to change the oil's pressure",
-    ("cross section of seal", "agrees"): "load per length of circumference grows with the section",
-    ("hydraulic pressure", "disagrees"): "the pressure presses the ring on, the oil carries "
-    "a share of it",
-    ("hydraulic pressure", "agrees"): "the oil under pressure carries more than the pressure "
-    "presses on",
-    ("hydraulic pressure", "no effect"): "no ring holds pressure, or the oil carries all of it",
-    ("temperature", "agrees"): "softer rubber is pressed on less, {oil}",
-    ("temperature", "disagrees"): "thin oil lifts less, which counts for more than softer rubber",
-    ("temperature", "no effect"): "softer rubber and less lift of thin oil cancel",
-    ("groove width", "no effect"): "it acts only where the contact is as wide as the groove: here "
-    "{contact} of it; an overfull groove is a missed check, not friction",
-    ("diameter of rod or bore", "agrees"): "friction follows the circumference, less what the "
-    "grown barrel takes",
-    ("O-ring surface finish", "agrees"): f"{SPREADS}; {STICKS}",
-    ("O-ring surface finish", "disagrees"): f"{BEARS}; {STICKS}",
-    ("O-ring surface finish", "no effect"): "what a rough face bears and what speed adds cancel; "
-    f"{STICKS}",
-}
-"""Why the friction on the oil film goes the way it does."""
+COEFFICIENT, FILM = reasons("aalto", "coefficient"), reasons("aalto", "film")
+"""Why the friction by coefficients, and on the oil film, goes the way it does."""
 
 OTHERWISE: Mapping[Verdict, str] = {
     "agrees": "as printed",
@@ -401,7 +337,7 @@ def _cell(model: Model, known: Reasons, index: int) -> str:
         return text.DASH
     value = model.elasticities[index]
     shown = "" if said == "no effect" else f"{text.number(value, 2, signed=True)} "
-    return f"{shown}{said}: {known.get((FACTORS[index].name, said), OTHERWISE[said])}"
+    return f"{shown}{said}: {known.get(FACTORS[index].name, {}).get(said, OTHERWISE[said])}"
 
 
 def _note(found: Trends) -> str:

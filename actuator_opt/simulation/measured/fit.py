@@ -66,8 +66,8 @@ class Fit:
     scenario, plant : with the fitted parameters
     parameters : by name
     correlations : of the errors of two parameters, by their names
-    before, after : the record against the simulation with the first and the fitted values, the first
-        with the best lag if a lag is fitted
+    before, after : the record against the simulation with the first and the fitted values, the
+        first with the best lag if a lag is fitted
     doubts : caveats that the numbers do not show
     runs, seconds : number of runs, and time taken
     """

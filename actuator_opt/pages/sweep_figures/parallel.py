@@ -7,12 +7,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..base.numeric import Array
-from ..rendering.axes import even_range, even_ticks, fitted
-from ..rendering.ink import BLACK, GREY, RED, WHITE, Ink, Point, text_width
-from ..rendering.text import SENSES, trimmed
-from .sweep_figure import SweepFigure, fits
-from .sweep_marks import BETTER, INFEASIBLE, Rows, SweepFigureData, Track, heading, two_lines
+from ...base.numeric import Array
+from ...rendering.axes import even_range, even_ticks, fitted
+from ...rendering.ink import BLACK, GREY, RED, WHITE, Ink, Point, text_width
+from ...rendering.text import SENSES, trimmed
+from .shared import (
+    BETTER,
+    INFEASIBLE,
+    Rows,
+    SweepFigure,
+    SweepFigureData,
+    Track,
+    fits,
+    heading,
+    two_lines,
+)
 
 MOST = 1000
 """Designs drawn of the feasible, and of the others (a choice: more lines are a blot)."""
@@ -54,8 +63,8 @@ def parallel_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
     gap = (ink.width - _LEFT - _RIGHT) / (len(tracks) - 1)
     places = [_LEFT + k * gap for k in range(len(tracks))]
     ranges = _ranges(tracks, values)
-    lines = [_lines(one, ranges, places, top) for one in values]
-    ink.path([part for one in lines[0] for part in one], stroke=INFEASIBLE, pen=0.08)
+    lines = [_lines(designs, ranges, places, top) for designs in values]
+    ink.path([part for parts in lines[0] for part in parts], stroke=INFEASIBLE, pen=0.08)
     for fill in BETTER:
         of_fill = [parts for parts, own in zip(lines[1], fills, strict=True) if own == fill]
         ink.path([part for parts in of_fill for part in parts], stroke=fill, pen=0.12)
@@ -76,7 +85,7 @@ def _ranges(tracks: Sequence[Track], values: Sequence[Array]) -> list[tuple[floa
         if track.names:
             ranges.append((-0.5, len(track.names) - 0.5))
         else:
-            known = np.concatenate([one[k] for one in values])
+            known = np.concatenate([designs[k] for designs in values])
             known = known[np.isfinite(known)]
             ranges.append(even_range([float(known.min()), float(known.max())]))
     return ranges
@@ -88,7 +97,7 @@ def _lines(
     """Every design's line in parts, cut where it has no value."""
     low, high = (np.array(side)[:, None] for side in zip(*ranges, strict=True))
     heights = top + (high - table) / (high - low) * _TALL
-    found = []
+    lines = []
     for column in heights.T.tolist():
         parts: list[list[Point]] = [[]]
         for x, y in zip(places, column, strict=True):
@@ -96,8 +105,8 @@ def _lines(
                 parts[-1].append((x, y))
             else:
                 parts.append([])
-        found.append([part for part in parts if len(part) > 1])
-    return found
+        lines.append([part for part in parts if len(part) > 1])
+    return lines
 
 
 def _axis(
@@ -167,5 +176,5 @@ FIGURE = SweepFigure(
     every=True,
     lines=False,
     check=fits,
-    draw=lambda drawn, metrics, asked: {"parallel": parallel_figure(drawn, metrics)},
+    draw=lambda drawn, metrics, chosen: {"parallel": parallel_figure(drawn, metrics)},
 )

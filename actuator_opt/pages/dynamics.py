@@ -14,8 +14,15 @@ from ..evaluation.result import Evaluation, Requirement
 from ..rendering import text
 from ..rendering.blocks import Block, Cell, Column, Drawing, Table, clean, short, soft
 from ..rendering.text import DASH
-from .bode import Shaken, compact_figure, modes_figure, response_figure
-from .bode_loop import LoopLimits, closed_figure, open_figure
+from .dynamics_figures import (
+    LoopLimits,
+    Shaken,
+    closed_figure,
+    compact_figure,
+    modes_figure,
+    open_figure,
+    response_figure,
+)
 
 FASTEST = 1e4
 """Poles above this frequency (Hz) are counted, not listed: the model describes nothing there."""
@@ -27,7 +34,7 @@ _END = {
 }
 
 
-def blocks(evaluation: Evaluation) -> list[Block]:
+def dynamics_blocks(evaluation: Evaluation) -> list[Block]:
     """Every block of the dynamics; none where there is no study."""
     study = evaluation.dynamics
     if study is None or len(study.position) < 2 or not study.position[-1] > study.position[0]:
@@ -168,7 +175,7 @@ def _poles(study: DynamicsStudy) -> Block:
     if fast:
         plural = "poles lie" if fast > 1 else "pole lies"
         note += f" {fast} {plural} above 10 kHz, where the model describes nothing."
-    return Table("Dynamics: poles", columns, rows, note=note)
+    return Table("Dynamics: poles", columns, rows, note=note, on="paper")
 
 
 # ---- the loop ----
@@ -248,7 +255,7 @@ def _loop_table(evaluation: Evaluation, loops: tuple[LoopStudy, ...]) -> Block:
         " least over load cases, places and directions."
     )
     rows = [row(name) for name in names if name in evaluation.metrics]
-    return Table("Position loop: gain, margins, bandwidth", columns, rows, note=note)
+    return Table("Position loop: gain, margins, bandwidth", columns, rows, note=note, on="paper")
 
 
 def _remark(name: str, one: LoopStudy, tuned: str) -> str:

@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from ..base.errors import Diagnostic, UsageError
-from ..base.numeric import Array
-from ..rendering.axes import Axes, even_range, even_ticks, fitted, spaced
-from ..rendering.ink import BLACK, GREY, PALE, RED, WHITE, Ink, text_width
-from ..sweeps.sample import better
-from .sweep_figure import SweepFigure
-from .sweep_marks import BETTER, INFEASIBLE, SweepFigureData, heading
+from ...base.errors import Diagnostic, UsageError
+from ...base.numeric import Array
+from ...rendering.axes import Axes, even_range, even_ticks, fitted, spaced
+from ...rendering.ink import BLACK, GREY, PALE, RED, WHITE, Ink, text_width
+from ...sweeps.sample import better
+from .shared import BETTER, INFEASIBLE, SweepFigure, SweepFigureData, heading
 
 MOST = 2000
 """Designs drawn of the feasible, and of the others, in a panel (a choice)."""
@@ -46,12 +45,15 @@ def scatter_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
     lines = {(a, b): _front(drawn, a, b) for a, b in _pairs(metrics)}
     notes = drawn.counts(("feasible", feasible.every), ("infeasible", others.every))
     ink = Ink(_WIDTH, 400.0)
-    top = heading(ink, drawn, "metrics in pairs", f"{notes}. {_told(drawn, metrics, lines)}") + 3.0
+    top = (
+        heading(ink, drawn, "metrics in pairs", f"{notes}. {_directions(drawn, metrics, lines)}")
+        + 3.0
+    )
     if side == 1:
         _legend(ink, 2.0, top, across=True)
         top += 6.0
     ink.height = top + side * tall + (side - 1) * _GAP + _FOOT
-    tables = [np.array([drawn.values(name, one) for name in metrics]) for one in (feasible, best)]
+    tables = [np.array([drawn.values(name, x) for name in metrics]) for x in (feasible, best)]
     if len(others.rows):
         tables.append(np.array([drawn.values(name, others) for name in metrics]))
     spans = [_span(tables[0][k], [table[k] for table in tables]) for k in range(len(metrics))]
@@ -65,7 +67,7 @@ def scatter_figure(drawn: SweepFigureData, metrics: Sequence[str]) -> Ink:
             if len(tables) > 2:
                 _points(axes, tables[2][[column, row]], INFEASIBLE, 0.45)
             for fill in BETTER:
-                own = np.array([one == fill for one in fills], dtype=bool)
+                own = np.array([own_fill == fill for own_fill in fills], dtype=bool)
                 _points(axes, tables[0][[column, row]][:, own], fill, 0.55)
             for k, name in enumerate((metrics[column], metrics[row])):
                 _limits(drawn, axes, name, upright=k == 0)
@@ -96,16 +98,16 @@ def _front(drawn: SweepFigureData, first: str, second: str) -> tuple[Array, bool
     return drawn.swept.sample.front(drawn.study, (first, second))
 
 
-def _told(
+def _directions(
     drawn: SweepFigureData, metrics: Sequence[str], lines: dict[tuple[str, str], tuple[Array, bool]]
 ) -> str:
     """Which way each metric is better, and what the Pareto lines are of."""
     ways = {name: better(drawn.study, name) for name in metrics}
     said = ["frames about the feasible designs"] if len(drawn.swept.sample.others.rows) else []
     said += [
-        f"{words}: {', '.join(found)}"
+        f"{words}: {', '.join(named)}"
         for words, way in (("more is better", 1), ("less is better", -1), ("neither", 0))
-        if (found := [name for name in metrics if ways[name] == way])
+        if (named := [name for name in metrics if ways[name] == way])
     ]
     if not all(exact for _, exact in lines.values()):
         said.append("Pareto lines of the kept designs alone")
@@ -136,8 +138,8 @@ def _frame(
         ink.line((axes.left, y), (right, y), stroke=PALE, pen=0.08)
         if first:
             ink.text(axes.left - 1.2, y, words, size=6.0, anchor="right")
-    found = [(v, w, 1) for v, w in even_ticks(*axes.x_range, max(2, int(axes.width / 11)))]
-    for value, words in spaced(found, axes):
+    places = [(v, w, 1) for v, w in even_ticks(*axes.x_range, max(2, int(axes.width / 11)))]
+    for value, words in spaced(places, axes):
         x, half = axes.x(value), text_width(words, 6.0) / 2
         ink.line((x, axes.top), (x, bottom), stroke=PALE, pen=0.08)
         if last and min(x - axes.left, right - x) > half - _GAP / 2 + 0.3:
@@ -186,7 +188,7 @@ def _line(
     if not values.shape[1]:
         return
     xs, ys = (
-        drawn.metric(name).shown(one).tolist() for name, one in zip(pair, values, strict=True)
+        drawn.metric(name).shown(column).tolist() for name, column in zip(pair, values, strict=True)
     )
     points = [(xs[0], ys[0])]
     for x, y in zip(xs[1:], ys[1:], strict=True):
@@ -223,5 +225,5 @@ FIGURE = SweepFigure(
     every=True,
     lines=True,
     check=lambda study, metrics: require_some(metrics),
-    draw=lambda drawn, metrics, asked: {"scatter": scatter_figure(drawn, metrics)},
+    draw=lambda drawn, metrics, chosen: {"scatter": scatter_figure(drawn, metrics)},
 )

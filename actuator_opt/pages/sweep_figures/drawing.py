@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
 
-from ..base.bounds import SWEEP_FIGURES
-from ..base.errors import Diagnostic, UsageError
-from ..base.files import write_all
-from ..base.suggest import remedy, shown
-from ..rendering.image import images
-from ..rendering.ink import Ink
-from ..sweeps import Swept
-from ..sweeps.chunk import Study
-from .sweep_figure import figure
-from .sweep_marks import SweepFigureData
+from ...base.bounds import SWEEP_FIGURES
+from ...base.errors import Diagnostic, UsageError
+from ...base.files import write_all
+from ...base.suggest import remedy, shown
+from ...rendering.image import images
+from ...rendering.ink import Ink
+from ...sweeps import Swept
+from ...sweeps.chunk import Study
+from .shared import ORIGINS, SweepFigure, SweepFigureData
 
 USUAL = 5
 """Metrics shown where none is chosen, at most."""
@@ -35,7 +35,7 @@ def chosen(study: Study, show: Sequence[str]) -> tuple[str, ...]:
     if show:
         return tuple(dict.fromkeys(show))
     goal = [*study.goal.weights]
-    own = [one.metric for one in study.binding if one.origin in ("requirement", "case")]
+    own = [limit.metric for limit in study.binding if limit.origin in ORIGINS]
     return tuple(dict.fromkeys([*goal, *own]))[:USUAL]
 
 
@@ -47,15 +47,15 @@ def watched(study: Study, kinds: Sequence[str], show: Sequence[str]) -> tuple[st
     UsageError
         no such figure or metric, or a sweep that does not fit it
     """
-    asked = [(kind, figure(kind)) for kind in dict.fromkeys(kinds)]
+    figures = [figure(kind) for kind in dict.fromkeys(kinds)]
     metrics = chosen(study, show)
-    if not study.full and any(one.every for _, one in asked):
+    if not study.full and any(own.every for own in figures):
         every = " and ".join(kind for kind in SWEEP_FIGURES if figure(kind).every)
         message = f"--reduce keeps the best alone, {every} need every design"
         raise UsageError(Diagnostic(message, "leave out --reduce"))
-    for _, one in asked:
-        one.check(study, metrics)
-    return metrics if any(one.lines for _, one in asked) else ()
+    for own in figures:
+        own.check(study, metrics)
+    return metrics if any(own.lines for own in figures) else ()
 
 
 def sweep_figures(swept: Swept, kinds: Sequence[str], show: Sequence[str] = ()) -> dict[str, Ink]:
@@ -70,13 +70,13 @@ def sweep_figures(swept: Swept, kinds: Sequence[str], show: Sequence[str] = ()) 
     """
     watched(swept.study, kinds, show)
     drawn, metrics = SweepFigureData(swept), chosen(swept.study, show)
-    found: dict[str, Ink] = {}
+    inks: dict[str, Ink] = {}
     for kind in dict.fromkeys(kinds):
         pictures = figure(kind).draw(drawn, metrics, bool(show))
-        if doubled := found.keys() & pictures.keys():
-            raise ValueError(f"figure {kind}: another one draws {', '.join(doubled)} too")
-        found |= pictures
-    return found
+        if doubled := inks.keys() & pictures.keys():
+            raise ValueError(f"figure {kind}: another figure draws {', '.join(doubled)} too")
+        inks |= pictures
+    return inks
 
 
 def write_figures(
@@ -88,3 +88,18 @@ def write_figures(
         contents |= images(ink, f"{stem}-sweep-{name}")
     write_all(folder, contents)
     return [folder / name for name in contents]
+
+
+def figure(kind: str) -> SweepFigure:
+    """The figure of a word.
+
+    Raises
+    ------
+    UsageError : no such figure
+    """
+    if kind not in SWEEP_FIGURES:
+        advice = remedy(kind, SWEEP_FIGURES, 4)
+        raise UsageError(Diagnostic(f"--figure {shown(kind)}: unknown", advice))
+    module = import_module(f".{kind}", __package__)
+    stated: SweepFigure = module.FIGURE
+    return stated

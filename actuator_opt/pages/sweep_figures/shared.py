@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from ..base.errors import Diagnostic, InputError
-from ..base.numeric import Array
-from ..base.quantities import Quantity
-from ..design.paths import quantity_of
-from ..evaluation import prepare
-from ..evaluation.limits import Limit
-from ..rendering.axes import fitted
-from ..rendering.heights import wrap
-from ..rendering.ink import GREY, PALE, Ink
-from ..rendering.text import SENSES, limit_text, number, unit_text, with_unit
-from ..sweeps import Best, Swept
+from ...base.errors import Diagnostic, InputError
+from ...base.numeric import Array
+from ...base.quantities import Quantity
+from ...design.paths import quantity_of
+from ...evaluation import prepare
+from ...evaluation.limits import Limit
+from ...rendering.axes import fitted
+from ...rendering.heights import wrap
+from ...rendering.ink import GREY, PALE, Ink
+from ...rendering.text import SENSES, limit_text, number, unit_text, with_unit
+from ...sweeps import Best, Swept
+from ...sweeps.chunk import Study
 
 BETTER = ("#7fb0cf", "#3f7aa3", "#0b3c5d")
 """Feasible designs by thirds of the objective, the best third last: darker on a grey print too."""
@@ -38,7 +39,7 @@ class Rows:
 
 @dataclass(frozen=True)
 class Track:
-    """Something that every design has a value of: a number, or one of `names`."""
+    """What every design has a value of: a number, or a name out of `names`."""
 
     words: str
     quantity: Quantity | None = None
@@ -58,8 +59,8 @@ class Track:
         """SI values in the unit people read."""
         if self.quantity is None:
             return values
-        found: Array = self.quantity.to_display(values)
-        return found
+        displayed: Array = self.quantity.to_display(values)
+        return displayed
 
 
 class SweepFigureData:
@@ -82,16 +83,16 @@ class SweepFigureData:
 
     def limits_on(self, metric: str) -> list[tuple[str, float]]:
         """Senses and values (SI) of the limits on a metric, the strictest of each sense."""
-        found: dict[str, float] = {}
+        strictest: dict[str, float] = {}
         for limit, value in self.limits:
             if limit.metric == metric:
                 pick = max if limit.sense == "min" else min
-                found[limit.sense] = pick(value, found.get(limit.sense, value))
-        return list(found.items())
+                strictest[limit.sense] = pick(value, strictest.get(limit.sense, value))
+        return list(strictest.items())
 
     def limit_words(self, limit: Limit) -> str:
         """A limit in words: ``"stiffness_min ≥ 10 kN/mm"``."""
-        known = next((value for one, value in self.limits if one is limit), None)
+        known = next((value for other, value in self.limits if other is limit), None)
         head = limit.name if limit.origin == "case" else limit.metric
         if known is None:
             return f"{head} {SENSES[limit.sense]} what varies"
@@ -99,7 +100,7 @@ class SweepFigureData:
 
     def axis(self, path: str) -> Track:
         """What varies."""
-        axis = next(one for one in self.study.plan.axes if one.path == path)
+        axis = next(axis for axis in self.study.plan.axes if axis.path == path)
         if axis.values is None:
             return Track(path, names=axis.texts)
         return Track(path, quantity_of(path, self.study.design))
@@ -112,7 +113,7 @@ class SweepFigureData:
         """What designs have of something that varies or of a metric, as `Track` shows it."""
         for axis in self.study.plan.named:
             if axis.path == name:
-                texts = [self.study.plan.texts(int(one))[name] for one in drawn.variants]
+                texts = [self.study.plan.texts(int(variant))[name] for variant in drawn.variants]
                 return np.array([axis.texts.index(text) for text in texts], dtype=float)
         of_axis = any(axis.path == name for axis in self.study.plan.axes)
         track = self.axis(name) if of_axis else self.metric(name)
@@ -146,9 +147,9 @@ class SweepFigureData:
         InputError
             no design is feasible
         """
-        one = self.bests()[place]
-        variant = self.study.plan.points(one.number, 1).variant
-        return Rows(variant, np.array([one.row]))
+        best = self.bests()[place]
+        variant = self.study.plan.points(best.number, 1).variant
+        return Rows(variant, np.array([best.row]))
 
     def bests(self) -> list[Best]:
         """The best designs; raises `InputError` where none is feasible."""
@@ -170,7 +171,7 @@ class SweepFigureData:
 
     def require(self, metric: str, *drawn: Rows) -> None:
         """Refuse a metric that no design has a value of; raises `InputError`."""
-        if not any(np.isfinite(self.values(metric, one)).any() for one in drawn if len(one.rows)):
+        if not any(np.isfinite(self.values(metric, x)).any() for x in drawn if len(x.rows)):
             message = f"--show {metric}: no design of this sweep has a value of it"
             raise InputError(Diagnostic(message, "show another metric"))
 
@@ -179,8 +180,8 @@ class SweepFigureData:
         swept = self.swept
         words = f"{_many(swept.requested)} variants, "
         if swept.feasible is None:
-            looked = swept.computed - swept.screened
-            words += f"{_many(swept.screened)} ruled out early, {_many(looked)} evaluated in full"
+            full = swept.computed - swept.screened
+            words += f"{_many(swept.screened)} ruled out early, {_many(full)} evaluated in full"
         else:
             words += f"{_many(swept.feasible)} feasible"
         if swept.failed:
@@ -223,3 +224,26 @@ def two_lines(words: str, room: float, size: float) -> Sequence[str]:
         return [first]
     head, _, tail = words.rpartition(".")
     return [fitted(head + ".", room, size), fitted(tail, room, size)]
+
+
+@dataclass(frozen=True, slots=True)
+class SweepFigure:
+    """A figure of a sweep.
+
+    Attributes
+    ----------
+    every : whether it needs every design, not the best alone
+    lines : whether it draws Pareto lines of its metrics
+    check : raises `UsageError` for a sweep or metrics that do not fit
+    draw : pictures by the end of their file's name, from the sweep, the metrics, and whether
+        the user names these
+    """
+
+    every: bool
+    lines: bool
+    check: Callable[[Study, Sequence[str]], None]
+    draw: Callable[[SweepFigureData, Sequence[str], bool], Mapping[str, Ink]]
+
+
+def fits(study: Study, metrics: Sequence[str]) -> None:
+    """The check of a figure that fits every sweep."""

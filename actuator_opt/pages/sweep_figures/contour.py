@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from ..base.errors import Diagnostic, InputError
-from ..base.numeric import Array
-from ..rendering.axes import Axes, even_ticks, spaced
-from ..rendering.heights import wrap
-from ..rendering.ink import (
+from ...base.errors import Diagnostic, InputError
+from ...base.numeric import Array
+from ...rendering.axes import Axes, even_ticks, spaced
+from ...rendering.heights import wrap
+from ...rendering.ink import (
     BLACK,
     BLUE,
     GREY,
@@ -27,11 +27,10 @@ from ..rendering.ink import (
     hatch,
     text_width,
 )
-from ..rendering.text import trimmed
-from ..sweeps.field import Boundary, Field, field as field_of, require_grid
-from .sweep_figure import SweepFigure
-from .sweep_marks import ORIGINS, SweepFigureData, heading
-from .wall_figures import GREEN, OCHRE
+from ...rendering.text import trimmed
+from ...sweeps.field import Boundary, Field, field as field_of, require_grid
+from ..wall_figures import GREEN, OCHRE
+from .shared import ORIGINS, SweepFigure, SweepFigureData, heading
 
 _LEFT, _WIDE, _TALL, _WIDTH = 20.0, 152.0, 100.0, 180.0
 LEVELS = 9
@@ -134,23 +133,23 @@ def contour_figure(
     ink = Ink(_WIDTH, 400.0)
     words = f"{track.label} over {first.words} and {second.words}"
     top = heading(ink, drawn, words, _notes(drawn, field)) + 4.0
-    spans = [(float(one[0]), float(one[-1])) for one in (xs, ys)]
+    spans = [(float(values[0]), float(values[-1])) for values in (xs, ys)]
     axes = Axes(ink, (_LEFT, top, _WIDE, _TALL), *spans)
-    styles = {one.number: STYLES[k % len(STYLES)] for k, one in enumerate(boundaries)}
+    styles = {line.number: STYLES[k % len(STYLES)] for k, line in enumerate(boundaries)}
     scale = (first.shown, second.shown)
-    edges = {one.number: [_paper(axes, line, scale) for line in one.lines] for one in boundaries}
+    edges = {b.number: [_paper(axes, line, scale) for line in b.lines] for b in boundaries}
     _missed(axes, field, boundaries, scale)
     levels = _metric_lines(axes, xs, ys, table)
     for lines in levels.values():
         ink.path(lines, **_METRIC)
-    for one in boundaries:
-        ink.path(edges[one.number], **styles[one.number])
+    for boundary in boundaries:
+        ink.path(edges[boundary.number], **styles[boundary.number])
     ink.box(*(axes.left, axes.top, axes.width, axes.height), pen=0.25)
     _frame(axes, first.label, second.label)
     labels = _Labels(axes)
     if drawn.swept.best:
         values = drawn.study.values(drawn.swept.best[0].number)
-        at = np.array([[float(values[one.words]) for one in (first, second)]])
+        at = np.array([[float(values[axis.words]) for axis in (first, second)]])
         x, y = _paper(axes, at, scale)[0]
         ink.circle(x, y, 1.2, fill=WHITE, stroke=BLACK, pen=0.5)
         labels.boxes.append((x - 1.4, y - 1.4, x + 1.4, y + 1.4))
@@ -173,7 +172,7 @@ def _notes(drawn: SweepFigureData, field: Field) -> str:
 
 def _paper(axes: Axes, points: Array, scale: Sequence[Any]) -> list[Point]:
     """Points in SI on the paper."""
-    shown = [one(points[:, k]).tolist() for k, one in enumerate(scale)]
+    shown = [convert(points[:, k]).tolist() for k, convert in enumerate(scale)]
     return [(axes.x(x), axes.y(y)) for x, y in zip(*shown, strict=True)]
 
 
@@ -227,7 +226,7 @@ def _nowhere(field: Field) -> list[int]:
     known = np.where(np.isnan(field.margins), -np.inf, field.margins)
     known[:, field.failed] = -np.inf
     answered = not field.failed.all()
-    return [k for k, one in enumerate(known) if answered and float(one.max()) < 0]
+    return [k for k, margins in enumerate(known) if answered and float(margins.max()) < 0]
 
 
 def _metric_lines(axes: Axes, xs: Array, ys: Array, table: Array) -> dict[float, list[list[Point]]]:
@@ -241,13 +240,13 @@ def _metric_lines(axes: Axes, xs: Array, ys: Array, table: Array) -> dict[float,
     maker = contour_generator(
         xs, ys, np.ma.masked_invalid(table.T), line_type=LineType.Separate, corner_mask=True
     )
-    found = {}
+    contours = {}
     for level, _ in even_ticks(low, high, LEVELS):
         traced: Any = maker.lines(level)
         lines = [[(axes.x(float(x)), axes.y(float(y))) for x, y in line] for line in traced]
         if lines:
-            found[level] = lines
-    return found
+            contours[level] = lines
+    return contours
 
 
 def _frame(axes: Axes, across: str, up: str) -> None:
@@ -256,8 +255,8 @@ def _frame(axes: Axes, across: str, up: str) -> None:
         y = axes.y(value)
         ink.line((axes.left - 1.0, y), (axes.left, y), pen=0.18)
         ink.text(axes.left - 1.6, y, words, anchor="right")
-    found = [(v, w, 1) for v, w in even_ticks(*axes.x_range, 8)]
-    for value, words in spaced(found, axes):
+    places = [(v, w, 1) for v, w in even_ticks(*axes.x_range, 8)]
+    for value, words in spaced(places, axes):
         x = axes.x(value)
         ink.line((x, bottom), (x, bottom + 1.0), pen=0.18)
         ink.text(x, bottom + 3.0, words, anchor="center")
@@ -314,7 +313,7 @@ def _below(
     for words, angles in kinds:
         box = ((x, y - 1.5), (x + 6.0, y - 1.5), (x + 6.0, y + 1.5), (x, y + 1.5))
         for angle in angles:
-            ink.path([list(one) for one in hatch([box], angle=angle, spacing=1.2)], **_HATCH)
+            ink.path([list(line) for line in hatch([box], angle=angle, spacing=1.2)], **_HATCH)
         ink.path([box], closed=True, pen=0.13, stroke=PALE, fill=None)
         ink.text(x + 7.4, y, words, size=_SIZE)
         x += 11.0 + text_width(words, _SIZE)
@@ -333,22 +332,22 @@ def _below(
 
 def _everywhere(drawn: SweepFigureData, field: Field) -> list[str]:
     """Requirements that every node meets."""
-    found = []
+    met = []
     for k, margins in enumerate(field.margins):
         limit = drawn.study.binding[k]
         known = margins[~field.failed]
         if limit.origin in ORIGINS and len(known) and bool((known >= 0).all()):
-            found.append(drawn.limit_words(limit))
-    return found
+            met.append(drawn.limit_words(limit))
+    return met
 
 
-def _draw(drawn: SweepFigureData, metrics: Sequence[str], asked: bool) -> dict[str, Ink]:
-    """A picture of every metric asked for, else of the first."""
+def _draw(drawn: SweepFigureData, metrics: Sequence[str], chosen: bool) -> dict[str, Ink]:
+    """A picture of every metric that the user names, else of the first."""
     grid = field_of(drawn.study)
     lines = list(grid.boundaries())
     return {
         f"contour-{name}": contour_figure(drawn, grid, lines, name)
-        for name in (metrics if asked else metrics[:1])
+        for name in (metrics if chosen else metrics[:1])
     }
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from ..base.errors import Diagnostic, InputError
-from ..evaluation import evaluate
-from ..rendering.heights import wrap
-from ..rendering.ink import Ink
-from ..rendering.text import limit_text, margin_text
-from .sweep_figure import SweepFigure, fits
-from .sweep_marks import SweepFigureData, heading, value_words
-from .ucurves import MOST, SIZE, STYLES, Required, curves_drawn, has_points
+from ...base.errors import Diagnostic, InputError
+from ...evaluation import evaluate
+from ...rendering.heights import wrap
+from ...rendering.ink import Ink
+from ...rendering.text import limit_text, margin_text
+from ..ucurves import MOST, SIZE, STYLES, Required, curves_drawn, has_points
+from .shared import SweepFigure, SweepFigureData, fits, heading, value_words
 
 NBSP = "\N{NO-BREAK SPACE}"
 
@@ -53,7 +52,7 @@ def _key(drawn: SweepFigureData, ink: Ink, y: float, count: int) -> float:
     tracks = [drawn.axis(axis.path) for axis in drawn.study.plan.axes]
     for k in range(count):
         rows = drawn.best(k)
-        values = [value_words(one, float(drawn.values(one.words, rows)[0])) for one in tracks]
+        values = [value_words(track, float(drawn.values(track.words, rows)[0])) for track in tracks]
         said = [
             f"{track.words} {value}".replace(" ", NBSP)
             for track, value in zip(tracks, values, strict=True)
@@ -71,5 +70,5 @@ FIGURE = SweepFigure(
     every=False,
     lines=False,
     check=fits,
-    draw=lambda drawn, metrics, asked: {"ucurves": ucurves_figure(drawn)},
+    draw=lambda drawn, metrics, chosen: {"ucurves": ucurves_figure(drawn)},
 )

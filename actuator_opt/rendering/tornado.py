@@ -1,68 +1,36 @@
-"""The tornado of an optimum: what -10 % and +10 % of every requirement and parameter change."""
+"""TODO."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..optimisation.price_words import PER_CENT, display_of, short_name
-from ..optimisation.result import Optimisation
-from ..optimisation.sensitivity import Sensitivity
-from ..rendering import text
-from ..rendering.axes import Axes, fitted, ticks
-from ..rendering.blocks import Block, Drawing
-from ..rendering.ink import BLACK, BLUE, GREY, RED, Ink
+from . import text
+from .axes import Axes, fitted, ticks
+from .ink import BLACK, BLUE, GREY, RED, Ink
 
 MOST = 16
 """Most rows drawn, the largest first."""
 
-LEAST = 1e-5
-"""Share of the objective below which a row changes nothing worth drawing."""
 
 ROW = 5.0
 """Height of a row (mm): two bars of 1.8 mm."""
 
+
 LABELS, FIGURES = 64.0, 34.0
 """Room for the names at the left and the changes in per cent at the right (mm)."""
+
 
 LIGHT = "#9ec3da"
 """Fill of a decrease; an increase is dark: apart on a grey print too."""
 
-NO_DESIGN = "no design"
-"""What stands where an end has none."""
 
 BEYOND = 1.4
 """Most room that predictions take beyond the re-solved changes."""
 
 
-def drawn(optimisation: Optimisation) -> list[Sensitivity]:
-    """The rows worth drawing: ranked as in the table, those without any effect left out."""
-    objective = optimisation.objective_value
-    least = LEAST * abs(objective)
-    rows = [
-        row
-        for row in optimisation.sensitivities
-        if row.effect(objective) > least or any(solved is None for _, _, solved in row.ends)
-    ]
-    return rows[:MOST]
-
-
-def block(optimisation: Optimisation) -> Block | None:
-    """The tornado with its title, or None where nothing changes anything."""
-    rows = drawn(optimisation)
-    if not rows:
-        return None
-    left = len(optimisation.sensitivities) - len(rows)
-    rest = f" {left} more change less or nothing." if left else ""
-    note = (
-        "Bars are solved again, each an optimum of its own; strokes are what the price predicts."
-        f" Ranked by the larger bar.{rest}"
-    )
-    return Drawing(f"What ±{PER_CENT} % of each changes", tornado(optimisation), note)
-
-
 @dataclass(frozen=True, slots=True)
-class Bar:
+class TornadoBar:
     """One input: changes in display units at its upper, then its lower end.
 
     `predicted` of each end is drawn as a stroke where there is one; `words` stand at the right,
@@ -75,29 +43,8 @@ class Bar:
     predicted: tuple[float | None, float | None] = (None, None)
 
 
-def tornado(optimisation: Optimisation, *, width: float = 180.0) -> Ink:
-    """Bars of the re-solved objective at +10 % (dark) and -10 % (light) of every row.
-
-    A row without a design at an end says so at the right; predictions beyond the frame end at
-    it with an arrow.
-    """
-    objective = optimisation.objective_value
-    quantity = text.metric(optimisation.objective_metric)
-    factor = quantity.to_display(1.0) - quantity.to_display(0.0)
-    rows = [_bar(row, objective, factor) for row in drawn(optimisation)]
-    unit = text.unit_text(quantity.unit)
-    return bars(
-        rows,
-        axis=f"change of {quantity.label}" + (f", {unit}" if unit else ""),
-        centre=f"optimum {text.value_text(quantity, objective)}",
-        ends=(f"+{PER_CENT} %", f"{text.MINUS}{PER_CENT} %"),
-        predicted=True,
-        width=width,
-    )
-
-
 def bars(
-    rows: Sequence[Bar],
+    rows: Sequence[TornadoBar],
     *,
     axis: str,
     centre: str,
@@ -135,32 +82,6 @@ def bars(
     return ink
 
 
-def _bar(row: Sensitivity, objective: float, factor: float) -> Bar:
-    """A price row as a bar."""
-    limit = text.with_unit(text.trimmed(display_of(row, row.limit)), text.unit_text(row.unit))
-    changes: dict[bool, float | None] = {}
-    told: dict[bool, float | None] = {}
-    words: dict[bool, str] = {}
-    for sign, predicted, solved in row.ends:
-        changes[sign > 0] = None if solved is None else factor * (solved - objective)
-        seen = predicted is not None and abs(predicted - objective) > LEAST * abs(objective)
-        told[sign > 0] = (
-            factor * (predicted - objective) if seen and predicted is not None else None
-        )
-        if solved is None:
-            words[sign > 0] = NO_DESIGN
-            continue
-        share = 100 * (solved - objective) / abs(objective) if objective else None
-        said = "" if share is None else f"{text.number(share, 2, signed=True)} %"
-        words[sign > 0] = "0" if share is not None and abs(share) < 100 * LEAST else said
-    return Bar(
-        f"{short_name(row)}  {limit}",
-        (changes.get(True), changes.get(False)),
-        (words.get(True, ""), words.get(False, "")),
-        (told.get(True), told.get(False)),
-    )
-
-
 def _frame(solved: list[float], predicted: list[float]) -> tuple[float, float]:
     """The range of changes drawn: all that was solved, and predictions as far as they are near."""
     low, high = min([0.0, *solved]), max([0.0, *solved])
@@ -191,7 +112,7 @@ def _heads(
         ink.text(place, axes.top - 2.4, words, anchor="right", color=GREY)
 
 
-def _row(ink: Ink, axes: Axes, y: float, row: Bar, width: float) -> None:
+def _row(ink: Ink, axes: Axes, y: float, row: TornadoBar, width: float) -> None:
     name = fitted(row.name, LABELS - 3.0, 6.5)
     ink.text(LABELS - 2.0, y, name, anchor="right", bold=False)
     left, right = axes.left, axes.left + axes.width
