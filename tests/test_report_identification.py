@@ -18,7 +18,7 @@ from hypothesis import given, strategies as st
 
 from actuator_opt.identification.record import Record
 from actuator_opt.pages import (
-    identification_axes as axes,
+    identification_axes,
     identification_document as document,
     identification_figures as figures,
     identification_map as maps,
@@ -27,7 +27,7 @@ from actuator_opt.pages import (
     identification_text as terminal,
     read_attachment,
 )
-from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.rendering import axes, paper_plain as fallback
 from actuator_opt.rendering.axes import Axes
 from actuator_opt.rendering.blocks import printable
 from actuator_opt.rendering.ink import Ink
@@ -339,7 +339,7 @@ def test_points_stand_where_the_ticks_say():
 def test_thinning_keeps_every_peak(values, most):
     """Least and greatest of every stretch stay, in order; no more are kept than asked for and 2."""
     whole = np.array(values)
-    kept = series.thinned(whole, most)
+    kept = axes.thinned(whole, most)
     assert np.all(np.diff(kept) > 0) or kept.size == 1
     assert kept.size <= max(most + 2, 2)
     assert whole[kept].max() == whole.max()
@@ -385,7 +385,7 @@ def test_a_long_record_stays_small():
 )
 def test_velocities_keep_their_order_and_their_sign(values):
     """The axis is odd and increasing, and holds every value."""
-    axis = axes.Velocities(values)
+    axis = identification_axes.Velocities(values)
     places = [axis.at(v) for v in sorted(values)]
     assert all(b >= a for a, b in itertools.pairwise(places))
     for v in values:

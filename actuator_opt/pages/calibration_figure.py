@@ -10,22 +10,23 @@ import numpy as np
 
 from ..identification.points import Point, by_pressure
 from ..optimisation.redesign import Redesign, Shift
-from ..rendering.axes import Axes, fitted, legend, ticks
-from ..rendering.ink import BLACK, BLUE, GREY, WHITE, Ink, spread_within
-from ..rendering.text import trimmed, unit_text
-from ..studies.bench import Bench
-from .dynamics_figures import dot, level_ticks
-from .identification_axes import (
-    IN,
-    OUT,
-    SURE,
+from ..rendering.axes import (
+    Axes,
     Box,
+    dot,
     error_bar,
     even_range,
     even_ticks,
+    fitted,
+    legend,
+    level_ticks,
     log_range,
-    ways,
+    ticks,
 )
+from ..rendering.ink import BLACK, BLUE, GREY, WHITE, Ink, spread_within
+from ..rendering.text import trimmed, unit_text
+from ..studies.bench import Bench
+from .identification_axes import IN, OUT, SURE, ways
 from .identification_rows import FORCE, SPEED
 from .wall_figures import OCHRE
 

@@ -16,27 +16,24 @@ from ..identification.lugre_fit import LuGreFit
 from ..identification.points import Point
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
-from ..rendering.axes import Axes, legend
-from ..rendering.ink import BLUE, GREY, Ink, spread_within
-from ..rendering.text import bars, number, sentence, unit_text
-from .dynamics_figures import dot
-from .identification_axes import (
-    IN,
-    OUT,
-    SURE,
+from ..rendering.axes import (
+    Axes,
     Box,
-    Velocities,
     band,
+    dot,
     empty,
     error_bar,
     even_range,
     even_ticks,
+    legend,
     log_range,
     log_ticks,
     reason,
     spaced,
-    ways,
 )
+from ..rendering.ink import BLUE, GREY, Ink, spread_within
+from ..rendering.text import bars, number, sentence, unit_text
+from .identification_axes import IN, OUT, SURE, Velocities, ways
 from .identification_map import map_panel, pressure_levels
 from .identification_rows import FORCE, SPEED
 from .identification_series import LINE, loop, strips

@@ -10,11 +10,10 @@ import numpy as np
 
 from ..identification.points import Point, by_pressure
 from ..identification.stribeck_fit import StribeckFit
-from ..rendering.axes import Axes
+from ..rendering.axes import Axes, Box, even_range, even_ticks, log_range, log_ticks, spaced
 from ..rendering.contours import bands, levels, scale, shades
 from ..rendering.ink import BLACK, GREY, WHITE, Ink
 from ..rendering.text import unit_text
-from .identification_axes import Box, even_range, even_ticks, log_range, log_ticks, spaced
 from .identification_rows import PRESSURE, SPEED
 
 LEAST_SPEEDS = 3

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,38 +15,18 @@ import numpy as np
 from ..base.numeric import Array
 from ..identification.balance import Sliding
 from ..identification.result import Identification
-from ..rendering.axes import Axes
+from ..rendering.axes import THINNED, Axes, Box, even_range, even_ticks, spaced, thinned
 from ..rendering.ink import BLUE, GREY, Ink, Point
 from ..rendering.text import unit_text
-from .identification_axes import Box, even_range, even_ticks, spaced
 from .identification_rows import FORCE, GROWTH, LENGTH, PRESSURE, STIFFNESS
 from .wall_figures import OCHRE
 
-MOST = 640
-"""Values of a thinned curve (a choice: two per 0.3 mm of paper)."""
 LINE: dict[str, Any] = {"stroke": BLUE, "pen": 0.2}
 SECOND: dict[str, Any] = {"stroke": OCHRE, "pen": 0.2, "dash": (1.2, 0.5)}
 _HEAD, _FOOT = 5.2, 7.5
 """Height of the words above a strip and below the last one [mm]."""
 Curve = tuple[dict[str, Any], list[tuple[Array, Array]]]
 """A style with times and values of every stretch."""
-
-
-def thinned(values: Array, most: int = MOST) -> Array:
-    """Samples that hold the least and the greatest value of every stretch, in order.
-
-    >>> thinned(np.array([0.0, 5.0, 1.0, 2.0, -3.0, 3.0]), 4)
-    array([0, 1, 4, 5])
-    """
-    size = values.size
-    if size <= most:
-        return np.arange(size)
-    edges = np.linspace(0, size, max(most // 2, 1) + 1).round().astype(int)
-    found = {0, size - 1}
-    for first, last in pairwise(edges.tolist()):
-        found |= {first + int(np.argmin(values[first:last]))}
-        found |= {first + int(np.argmax(values[first:last]))}
-    return np.array(sorted(found))
 
 
 def strips(ink: Ink, box: Box, found: Identification) -> None:
@@ -140,7 +119,7 @@ def _time_axis(axes: Axes, marks: Sequence[tuple[float, str]]) -> None:
 def _shares(slidings: Sequence[Sliding]) -> list[int]:
     """Values each piece may have, by its length."""
     sizes = np.array([one.piece.time.size for one in slidings], dtype=float)
-    return [max(8, int(MOST * share)) for share in sizes / sizes.sum()]
+    return [max(8, int(THINNED * share)) for share in sizes / sizes.sum()]
 
 
 def loop(found: Identification) -> list[list[tuple[float, float]]]:

@@ -47,6 +47,7 @@ _ASCII = str.maketrans(
         MINUS: "-",
         DASH: "-",
         NARROW: " ",
+        "\N{NO-BREAK SPACE}": " ",
         AT_LEAST: ">=",
         AT_MOST: "<=",
         "·": "*",
