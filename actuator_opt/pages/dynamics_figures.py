@@ -25,7 +25,7 @@ from ..rendering.axes import (
     required,
 )
 from ..rendering.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, spread_within
-from ..rendering.text import MINUS, SENSES, number, trimmed
+from ..rendering.text import MINUS, SENSES, SUPERSCRIPTS, number, trimmed
 from .wall_figures import GREEN, OCHRE
 
 STYLES: tuple[dict[str, Any], ...] = (
@@ -128,7 +128,7 @@ def damping_panel(
     low = min([0.0, *ys, friction])
     high = max([*ys, friction, *near, 0.0]) or 1.0
     axes = Axes(ink, box, (xs[0], xs[-1]), (1.08 * low, 1.08 * high))
-    unit = "" if power == 0 else f", 10{str(power).translate(_SUPERSCRIPTS)}"
+    unit = "" if power == 0 else f", 10{str(power).translate(SUPERSCRIPTS)}"
     axes.frame(f"Damping ratio{unit}", "piston position from the cap end, mm")
     ink.path(axes.clipped(xs, ys), **STYLES[0])
     for row, level in zip(requirements, limits, strict=True):
