@@ -27,7 +27,7 @@ from actuator_opt.pages import (
     write_report,
 )
 from actuator_opt.pages.page import page
-from actuator_opt.rendering import paper_plain as fallback
+from actuator_opt.rendering import paper_plain as fallback, shading
 from actuator_opt.rendering.ink import Ink
 from actuator_opt.rendering.origin import Origin
 from actuator_opt.studies.seal import study
@@ -339,7 +339,7 @@ def test_contours_lie_where_the_values_are():
 def test_levels_enclose_the_values():
     """Levels are round, ascending, few, and reach beyond both ends."""
     for low, high in ((33.0, 121.0), (1.0, 2.0), (5e-5, 9e6), (100.0, 100.1)):
-        found = seal_map_figure.levels(low, high)
+        found = shading.levels(low, high)
         assert found[0] <= low * (1 + 1e-6)
         assert found[-1] >= high * (1 - 1e-6)
         assert found == sorted(set(found))
@@ -552,7 +552,7 @@ def test_the_report_carries_the_sheets(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "module", [seal_figures, seal_gland_figure, seal_map_figure, seal_rows, seal_shapes]
+    "module", [shading, seal_figures, seal_gland_figure, seal_map_figure, seal_rows, seal_shapes]
 )
 def test_examples_in_docstrings(module):
     """The worked examples hold."""

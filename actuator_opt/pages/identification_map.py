@@ -12,9 +12,9 @@ from ..identification.points import Point, by_pressure
 from ..identification.stribeck_fit import StribeckFit
 from ..rendering.axes import Axes, Box, even_range, even_ticks, log_range, log_ticks, spaced
 from ..rendering.ink import BLACK, GREY, WHITE, Ink
+from ..rendering.shading import bands, levels, scale, shades
 from ..rendering.text import unit_text
 from .identification_rows import PRESSURE, SPEED
-from .seal_map_figure import bands, levels, scale, shades
 
 LEAST_SPEEDS = 3
 """Speeds at a level of pressure from which on a map tells more than a curve (a choice)."""

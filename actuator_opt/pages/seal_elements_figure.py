@@ -18,13 +18,13 @@ from ..evaluation.contact_elements import closed_form, room
 from ..evaluation.rings import Ring
 from ..rendering.axes import Axes, legend, ticks
 from ..rendering.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, Point, Polygon, hatch
+from ..rendering.shading import shades
 from ..rendering.text import number, trimmed
 from ..studies.seal import SealStudy
 from . import stress_bands
 from .bode import STYLES
 from .drawing import OUTLINE, choose_scale
 from .seal_figures import bars
-from .seal_map_figure import shades
 
 WIDTH = 180.0
 _METAL, _LINES = "#eef1f3", "#9aa3ab"
