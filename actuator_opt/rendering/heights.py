@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 
 from .blocks import Block, Cell, Drawing, Flag, Listing, Notes, Page, Pair, Row, Status, Table, soft
+from .chart import Chart
 from .ink import text_width
 
 SHEET, TILES, FOOT, HEAD = 265.0, 23.0, 24.5, 8.2
@@ -74,6 +75,8 @@ def height(block: Block, width: float = FULL) -> float:
         return shown * (HEAD + _note(block.note, width) + LINE * sum(_lines(block, width)))
     if isinstance(block, Drawing):
         return HEAD + _note(block.note, width) + block.ink.height + 3.0
+    if isinstance(block, Chart):
+        return HEAD + _note(block.note, width) + block.height + 3.0
     if isinstance(block, Notes):
         if block.on == "terminal":
             return 0.0

@@ -49,6 +49,7 @@ POINT = 25.4 / 72
 
 BLACK, GREY, PALE, WHITE = "#16202a", "#5b6670", "#c9d0d6", "#ffffff"
 BLUE, RED = "#0b4f83", "#a8321a"
+OCHRE, GREEN = "#9a6a12", "#00654a"
 
 _NARROW = {
     ".": 0.318,

@@ -27,6 +27,7 @@ from .blocks import (
     TerminalFigure,
     Verdict,
 )
+from .chart import Chart
 from .console import Console, Style
 from .heights import joined
 from .terminal_curve import curve
@@ -86,7 +87,7 @@ def block_text(block: Block, console: Console) -> str:
     if isinstance(block, Pair):
         parts = [block_text(one, console) for side in block.sides for one in side]
         return "\n\n".join(part for part in parts if part)
-    if isinstance(block, Drawing):
+    if isinstance(block, (Drawing, Chart)):
         return "" if block.instead is None else block_text(block.instead, console)
     if isinstance(block, TerminalFigure):
         return _figure(block, console)
