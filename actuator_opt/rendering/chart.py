@@ -20,7 +20,9 @@ Weight: TypeAlias = Literal["normal", "thin", "guide"]
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """An axis of a panel; panels above each other share the x axis of the first one.
+    """An axis of a panel.
+
+    Of panels above each other, one without an x label shares the x axis of the next one below.
 
     Parameters
     ----------
@@ -53,7 +55,7 @@ class Curve:
     low, high : bounds of a band around it
     style : colour and dash by number; default: its place among the curves of the panel
     weight : "thin" for a record over time, "guide" for a grey hairline
-    at_end : its name stands at its right end instead of the legend
+    end : words at its right end
     """
 
     words: str
@@ -63,7 +65,7 @@ class Curve:
     high: Values = ()
     style: int | None = None
     weight: Weight = "normal"
-    at_end: bool = False
+    end: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -147,7 +149,7 @@ class Panel:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Chart:
-    """Panels side by side; a sequence of panels is a column with a common x axis.
+    """Panels side by side; a sequence of panels is a column.
 
     Parameters
     ----------

@@ -115,8 +115,11 @@ class _Frame:
     """A panel with its scale of y, what stands above it, and its place."""
 
     panel: Panel
+    x: Scale
     y: Scale
     why: str
+    label: str = ""
+    shared: bool = False
     notes: list[str] = field(default_factory=list)
     rows: list[list[_Entry]] = field(default_factory=list)
     beside: bool = True
@@ -131,12 +134,20 @@ class _Frame:
 
 
 class _Column:
-    """Panels above each other with a common x axis."""
+    """Panels above each other; those with a common x axis are a group."""
 
     def __init__(self, panels: Sequence[Panel]) -> None:
-        self.x = _x_scale(panels)
-        self.frames = [_frame(panel, self.x) for panel in panels]
-        self.label = next((panel.x.label for panel in panels if panel.x.label), "")
+        self.frames: list[_Frame] = []
+        group: list[Panel] = []
+        for panel in panels:
+            group.append(panel)
+            if panel.x.label or panel is panels[-1]:
+                x = _x_scale(group)
+                members = [_frame(member, x) for member in group]
+                members[-1].label = panel.x.label or " "
+                members[-1].shared = any(not member.why for member in members)
+                self.frames += members
+                group = []
         self.left = self.right = self.wide = 0.0
 
     @property
@@ -153,7 +164,8 @@ class _Column:
         for frame in self.frames:
             _fit_head(frame, self.wide)
         heads = [max(self.frames[0].head, head)]
-        heads += [BELOW + frame.head for frame in self.frames[1:]]
+        for upper, lower in pairwise(self.frames):
+            heads.append((FOOT if upper.label else BELOW) + lower.head)
         free = height - sum(heads) - FOOT
         shares = [frame.panel.share for frame in self.frames]
         top = 0.0
@@ -163,16 +175,14 @@ class _Column:
             top = frame.top + frame.height
 
     def draw(self, ink: Ink, left: float) -> None:
-        """All frames; numbers and label of x below the last one."""
+        """All frames."""
         for frame in self.frames:
-            last = frame is self.frames[-1]
-            box = (left + self.left, frame.top, self.wide, frame.height)
-            _draw(ink, box, frame, self.x, self.label if last else "", left)
+            _draw(ink, (left + self.left, frame.top, self.wide, frame.height), frame, left)
 
 
 def _x_scale(panels: Sequence[Panel]) -> Scale:
-    """The common scale of x: it ends at the values where only functions of x are drawn."""
-    axis = panels[0].x
+    """The common scale of x; it ends at the values where there are only functions of x."""
+    axis = panels[-1].x
     values = [
         value
         for panel in panels
@@ -216,7 +226,7 @@ def _frame(panel: Panel, x: Scale) -> _Frame:
     why = "" if ends or levels else _why(panel)
     if ends:
         levels = _near(ends, levels, log, 3.0, cut=False)
-    return _Frame(panel, scale(panel.y, [*ends, *(levels or limits)]), why)
+    return _Frame(panel, x, scale(panel.y, [*ends, *(levels or limits)]), why)
 
 
 def _seen(curve: Curve, values: Values, x: Scale, log: bool) -> list[float]:
@@ -297,8 +307,9 @@ def _entries(frame: _Frame, wide: float) -> Iterator[_Entry]:
         else:
             add(points.words, point=MARKS[style % len(MARKS)])
     for k, curve in enumerate(panel.curves):
-        if curve not in _at_end(frame):
-            add(curve.words, line=_line(curve, k) | {"pen": 0.4})
+        words = curve.words or ("" if curve in _at_end(frame) else curve.end)
+        if words:
+            add(words, line=_line(curve, k) | {"pen": 0.4})
     for level in panel.levels:
         if not level.sense and level.between is None:
             add(level.words, line=_level_style(level))
@@ -317,14 +328,14 @@ def _level_style(level: Level) -> dict[str, Any]:
 
 
 def _at_end(frame: _Frame) -> list[Curve]:
-    """Curves named at their right end: none where the frame is too low for all of them."""
-    named = [curve for curve in frame.panel.curves if curve.at_end and curve.words]
+    """Curves with words at their right end: none where the frame is too low for all of them."""
+    named = [curve for curve in frame.panel.curves if curve.end]
     limits = sum(bool(level.sense) for level in frame.panel.levels)
     return named if 2.7 * (len(named) + limits) <= frame.height - 1.0 else []
 
 
 def _right_room(frame: _Frame) -> float:
-    words = [curve.words for curve in _at_end(frame)]
+    words = [curve.end for curve in _at_end(frame)]
     words += [level.words + " ↑" for level in frame.panel.levels if level.sense]
     room = min(max(text_width(w, SIZE) for w in words), RIGHT) + 2.0 if words else 0.5
     return room + (SHADES if frame.panel.surface is not None and not frame.why else 0.0)
@@ -333,15 +344,17 @@ def _right_room(frame: _Frame) -> float:
 # ---- drawing ----
 
 
-def _draw(ink: Ink, box: Box, frame: _Frame, x: Scale, label: str, edge: float) -> None:
+def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
     """A frame with what it shows; `edge` is the left end of its column."""
-    panel = frame.panel
+    panel, x, label = frame.panel, frame.x, frame.label
     _head(ink, box, frame, edge)
-    if frame.why:
-        _empty(ink, box, frame.why, panel.title)
-        return
     axes = Axes(ink, box, x.range, frame.y.range)
     x_ticks = x.ticks(box[2], across=True)
+    if frame.why:
+        _empty(ink, box, frame.why)
+        if frame.shared:
+            axes.frame_at("", label, x_ticks, [])
+        return
     y_ticks = [(at, fitted(words, NAMES, SIZE)) for at, words in _y_ticks(frame)]
     if panel.surface is not None:
         bounds = _shaded(axes, frame, x)
@@ -399,7 +412,7 @@ def _legend(ink: Ink, x: float, y: float, row: Sequence[_Entry]) -> None:
         x += entry.width()
 
 
-def _empty(ink: Ink, box: Box, why: str, title: str) -> None:
+def _empty(ink: Ink, box: Box, why: str) -> None:
     ink.box(*box, stroke=PALE, pen=0.13)
     lines = wrap(why, max(box[2] - 4.0, 8.0), SIZE)[: max(int((box[3] - 1.0) / 3.1), 1)]
     first = box[1] + box[3] / 2 - 3.1 * (len(lines) - 1) / 2
@@ -555,7 +568,7 @@ def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> 
     for k, (curve, parts) in enumerate(zip(frame.panel.curves, lines, strict=True)):
         if curve in ends and parts:
             last = max((line[-1] for line in parts), key=lambda at: at[0])
-            named.append((last[1], curve.words, str(_line(curve, k)["stroke"])))
+            named.append((last[1], curve.end, str(_line(curve, k)["stroke"])))
     for level in frame.panel.levels:
         if level.sense and level.words:
             place = frame.y.place(level.value)
