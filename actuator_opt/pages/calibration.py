@@ -320,8 +320,8 @@ def _margins(redesign: Redesign) -> Panel:
         Axis(names=[shift.after.name for shift in moved]),
         curves=[Curve("", *links, weight="guide")],
         points=[
-            Points(f"{MEASURED}, bar: 95 %", after, rows, low, high, style=3, across=True),
             Points(STATED, before, rows, style=2),
+            Points(f"{MEASURED}, bar: 95 %", after, rows, low, high, style=3, across=True),
         ],
     )
 

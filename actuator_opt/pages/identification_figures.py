@@ -30,7 +30,7 @@ from .optimum import sentence
 FORCE, PRESSURE = METRICS["friction_running"], quantities.INPUTS["pressure"]
 SPEED, LENGTH = quantities.INPUTS["stribeck_speed"], quantities.INPUTS["position"]
 STIFFNESS, GROWTH = METRICS["stiffness_min"], METRICS["growth_at_seal"]
-LEAST, MOST = 70.0, 140.0
+LEAST, MOST = 64.0, 140.0
 """Heights of the whole figure [mm]."""
 NEAREST = 1.5
 """How far towards rest a Stribeck curve goes on below the least speed, as a ratio."""
@@ -114,12 +114,13 @@ def _friction(identification: Identification) -> list[Panel]:
     if isinstance(fit, StribeckFit):
         return [_velocity_panel(identification, fit), _residuals(identification, fit)]
     why = sentence(f"no Stribeck curve: {fit}")
-    title = f"Friction, {unit_text(FORCE.unit)}"
+    unit = unit_text(FORCE.unit)
     x = Axis(f"velocity, {unit_text(SPEED.unit)}", log=True, signed=True)
     points = measured(identification.points, _velocity, _signed_friction)
-    loop = _loop(identification, title, "" if points else why)
+    loop = _loop(identification, f"Friction over position, {unit}", "" if points else why)
     if not points:
         return [loop]
+    title = f"Friction over velocity, {unit}"
     return [Panel(title, x, Axis(zero=True), points=points, note=why, share=0.7), loop]
 
 

@@ -53,11 +53,13 @@ MARKS = (
 """Edge and fill of points."""
 THIN, GUIDE = 0.2, {"stroke": GREY, "pen": 0.18}
 LIMIT: dict[str, Any] = {"stroke": RED, "pen": 0.25, "dash": (1.8, 1.0)}
+SKETCH, BETWEEN = 4.6, 2.6
+"""Length of a line in the legend, room between its entries [mm]."""
 GAP, ROW, BELOW = 6.0, 3.7, 2.2
 """Room between columns, of a row of words above a frame, and between two frames [mm]."""
 FOOT = 8.4
 """Ticks and label below the last frame [mm]."""
-LEAST = 6.0
+LEAST = 4.0
 """Least height of a frame [mm]."""
 RIGHT, NAMES = 26.0, 36.0
 """Most room for words right and left of a frame [mm]."""
@@ -65,7 +67,7 @@ SHADES = 13.0
 """Room of the scale of shades [mm]."""
 DENSE = 10.0
 """Values of a curve and cells of points drawn per mm (a choice: finer than the pen)."""
-SIZE, SMALL = 6.5, 6.2
+TITLE, SIZE, SMALL = 6.8, 6.5, 6.2
 Line: TypeAlias = list[Point]
 
 
@@ -78,7 +80,8 @@ def drawn(chart: Chart, *, width: float = 180.0, height: float | None = None) ->
     room = width - GAP * (len(columns) - 1)
     wides = [room * share / sum(shares) for share in shares]
     for _ in range(3):  # ticks need the height, heights need the rows of the legend
-        head = max((column.head for column in columns), default=0.0)
+        row = all(len(column.frames) == 1 for column in columns)
+        head = max((column.head for column in columns), default=0.0) if row else 0.0
         for column, wide in zip(columns, wides, strict=True):
             column.fit(wide, tall, head)
     left = 0.0
@@ -103,11 +106,11 @@ class _Entry:
     @property
     def sketch(self) -> float:
         """Width of what stands before the words."""
-        return 7.5 if self.line else 2.8
+        return SKETCH + 1.3 if self.line else 2.8
 
     def width(self) -> float:
         """With the gap after it."""
-        return self.sketch + text_width(self.words, SIZE) + 3.5
+        return self.sketch + text_width(self.words, SIZE) + BETWEEN
 
 
 @dataclass(slots=True)
@@ -123,6 +126,8 @@ class _Frame:
     notes: list[str] = field(default_factory=list)
     rows: list[list[_Entry]] = field(default_factory=list)
     beside: bool = True
+    above: float = 0.0
+    right: float = 0.0
     top: float = 0.0
     height: float = 20.0
 
@@ -162,7 +167,7 @@ class _Column:
         self.right = max(_right_room(frame) for frame in self.frames)
         self.wide = max(room - self.left - self.right, 8.0)
         for frame in self.frames:
-            _fit_head(frame, self.wide)
+            _fit_head(frame, self.wide, self.right)
         heads = [max(self.frames[0].head, head)]
         for upper, lower in pairwise(self.frames):
             heads.append((FOOT if upper.label else BELOW) + lower.head)
@@ -170,7 +175,8 @@ class _Column:
         shares = [frame.panel.share for frame in self.frames]
         top = 0.0
         for frame, above, share in zip(self.frames, heads, shares, strict=True):
-            frame.top = top + above
+            frame.top, frame.right = top + above, self.right
+            frame.above = frame.head if top else above
             frame.height = max(free * share / sum(shares), LEAST)
             top = frame.top + frame.height
 
@@ -269,19 +275,19 @@ def _y_ticks(frame: _Frame) -> Ticks:
     return [] if frame.why else frame.y.ticks(frame.height, across=False)
 
 
-def _fit_head(frame: _Frame, wide: float) -> None:
+def _fit_head(frame: _Frame, wide: float, right: float) -> None:
     """Rows of the legend: beside the title where there is room, else below it."""
     panel = frame.panel
-    frame.notes = wrap(panel.note, wide, SMALL) if panel.note and not frame.why else []
+    note = "" if frame.why else panel.note
+    frame.notes = wrap(note, wide + right - 0.5, SMALL) if note else []
     entries = [] if frame.why else list(_entries(frame, wide))
-    beside = text_width(panel.title, 7.0, bold=True) + 3.0
-    frame.beside = (
-        not frame.notes and beside + sum(entry.width() for entry in entries) <= wide + 3.5
-    )
+    whole = text_width(panel.title, TITLE, bold=True) + 2.0 - BETWEEN
+    whole += sum(entry.width() for entry in entries)
+    frame.beside = not frame.notes and whole <= wide
     frame.rows = []
     room = 0.0
     for entry in entries:
-        if not frame.rows or (not frame.beside and entry.width() > room + 3.5):
+        if not frame.rows or (not frame.beside and entry.width() > room + BETWEEN):
             frame.rows.append([])
             room = wide
         frame.rows[-1].append(entry)
@@ -297,7 +303,7 @@ def _entries(frame: _Frame, wide: float) -> Iterator[_Entry]:
             before = found.get(words)
             line = sketch.get("line") or (before.line if before else None)
             point = sketch.get("point") or (before.point if before else None)
-            room = wide - (7.5 if line else 2.8)
+            room = wide - (SKETCH + 1.3 if line else 2.8)
             found[words] = _Entry(fitted(words, room, SIZE), line, point, sketch.get("small"))
 
     for k, points in enumerate(panel.points):
@@ -382,15 +388,15 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
 
 def _head(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
     """Title, note and legend, from the frame upwards."""
-    left, wide = box[0] - 1.4, box[2] + 1.4
-    title, y = frame.panel.title, box[1] - frame.head + 1.6
-    if text_width(title, 7.0, bold=True) > wide:
-        left, wide = edge, box[0] + box[2] - edge
-    ink.text(left, y, fitted(title, wide / 1.1, 7.0), size=7.0, bold=True)
+    left, wide = box[0] - 1.4, box[2] + frame.right
+    title, y = frame.panel.title, box[1] - frame.above + 1.6
+    if text_width(title, TITLE, bold=True) > wide:
+        left, wide = edge, box[0] + box[2] + frame.right - edge
+    ink.text(left, y, fitted(title, wide / 1.1, TITLE), size=TITLE, bold=True)
     for k, words in enumerate(frame.notes):
         ink.text(box[0], y + ROW + 3.0 * k, words, size=SMALL, color=GREY)
     if frame.beside and frame.rows:
-        long = sum(entry.width() for entry in frame.rows[0]) - 3.5
+        long = sum(entry.width() for entry in frame.rows[0]) - BETWEEN
         _legend(ink, box[0] + box[2] - long, y, frame.rows[0])
         return
     y += 3.0 * len(frame.notes)
@@ -402,8 +408,8 @@ def _head(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
 def _legend(ink: Ink, x: float, y: float, row: Sequence[_Entry]) -> None:
     for entry in row:
         if entry.line is not None:
-            ink.line((x, y), (x + 6.0, y), **entry.line)
-        middle = x + (3.0 if entry.line else 1.0)
+            ink.line((x, y), (x + SKETCH, y), **entry.line)
+        middle = x + (SKETCH / 2 if entry.line else 1.0)
         if entry.point is not None:
             ink.circle(middle, y, 0.75, fill=entry.point[1], stroke=entry.point[0], pen=0.3)
         if entry.small is not None:
@@ -526,6 +532,8 @@ def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, colo
         error_bar(axes, place, low, high, color)
         return
     first, last = axes.x(max(low, bottom)), axes.x(min(high, top))
+    if last - first < 2.0:  # it lies behind its point
+        return
     axes.ink.line((first, at[1]), (last, at[1]), pen=0.4, stroke=color)
     for end in (low, high):
         if bottom <= end <= top:
@@ -595,13 +603,15 @@ def _beside(axes: Axes, level: Level, y: Scale, x: Scale, taken: Sequence[Point]
     place = y.place(level.value)
     if level.between is None or not axes.y_range[0] <= place <= axes.y_range[1]:
         return
-    ends = sorted(axes.x(float(v)) for v in x.at(level.between))
+    start, end = (axes.x(float(v)) for v in x.at(level.between))
+    way = 1.0 if end >= start else -1.0
+    before: Anchor = "right" if way > 0 else "left"
+    beyond: Anchor = "left" if way > 0 else "right"
     at, wide = axes.y(place), text_width(level.words, 6.0)
-    middle = (ends[0] + ends[1]) / 2
     sides: list[tuple[float, Anchor, float]] = []
     for dy in (0.0, -2.6, 2.6):
-        sides += [(ends[1] + 1.2, "left", dy), (ends[0] - 1.2, "right", dy)]
-    sides += [(middle, "center", -2.0), (middle, "center", 2.0)]
+        sides += [(start - 1.2 * way, before, dy), (end + 1.2 * way, beyond, dy)]
+    sides += [((start + end) / 2, "center", dy) for dy in (-2.0, 2.0)]
     best: tuple[int, float, Anchor, float] | None = None
     written = [box[1:] for box in axes.ink.text_boxes()]
     for across, anchor, dy in sides:
