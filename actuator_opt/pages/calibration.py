@@ -172,7 +172,7 @@ def _shifts(redesign: Redesign) -> Table:
     note = f"{len(still)} more do not depend on the measured values" if still else ""
     if missed := ", ".join(row.name for row in still if not row.met):
         note += f"; missed among them: {missed}"
-    title = "Requirements of the actuator as tested that move"
+    title = "Requirements that move"
     return Table(title, columns, rows, note=f"{note}." if note else "")
 
 

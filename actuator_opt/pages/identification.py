@@ -178,7 +178,7 @@ def _friction(identification: Identification) -> Table:
         numbers = [number(x, 3) for x in (mu.value, mu.lower, mu.upper)]
         rows.append(["friction coefficient", *numbers])
     columns = [
-        Column("friction", width=1.0),
+        Column("friction", width=1.0, least=24),
         Column("value", "right", strong=True),
         Column("lower", "right", drop=1, style="dim"),
         Column("upper", "right", drop=1, style="dim"),

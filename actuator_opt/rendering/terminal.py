@@ -28,7 +28,7 @@ from .blocks import (
     Verdict,
 )
 from .chart import Chart
-from .console import Console, Style
+from .console import Console, Style, visible
 from .heights import joined
 from .terminal_curve import curve
 
@@ -75,6 +75,9 @@ def heading(name: str, verdict: Verdict, sentence: str, console: Console) -> lis
     mark = f"{MARKS[verdict.state][0]} " if console.unicode and verdict.state else ""
     state = console.paint(console.say(mark + verdict.text.lower()), *PAINTS[verdict.state].split())
     said = [f"{console.paint(console.say(name), 'bold')}  {state}"]
+    if visible(console.say(name) + console.say(mark + verdict.text)) + 2 > console.width:
+        paint = PAINTS[verdict.state].split()
+        said = [console.wrap(name, "bold"), console.wrap(mark + verdict.text.lower(), *paint)]
     if verdict.lines:
         said.append(console.wrap("; ".join(verdict.lines), "dim"))
     if verdict.cautions:
