@@ -15,7 +15,6 @@ import actuator_opt as ao
 from actuator_opt.optimisation.redesign import solved
 from actuator_opt.pages import calibration as document
 from actuator_opt.rendering import paper, paper_plain as fallback, terminal
-from actuator_opt.rendering.blocks import printable
 from actuator_opt.rendering.origin import Origin
 
 ORIGIN = Origin("a: 1\n", "a.yaml", "calibrate r.csv", "12ab")
@@ -81,7 +80,7 @@ def test_without_a_search_there_is_no_optimum():
     assert found.redesign.best_after is None
     titles = [block["title"] for block in page(found)["blocks"]]
     assert titles == [
-        "Numbers the record gave, 95 % bounds",
+        "Values measured, 95 % bounds",
         "Requirements that move",
         "Changes, and the basis of these results",
     ]
@@ -132,7 +131,7 @@ def test_the_terminal_fits_its_width(width):
 
 def test_the_fallback_draws_it():
     """Without the typesetter the page is still written, in pure Python."""
-    data = printable(page(calibrated("shipped")))
+    data = paper._printable(page(calibrated("shipped")))
     data |= {"title": "knee", "source": "name: knee", "source_file": "knee.yaml", "run": "{}"}
     pdf, images = fallback.render(data, 0)
     assert pdf.startswith(b"%PDF")

@@ -165,6 +165,9 @@ class _Column:
         ticks = [words for frame in self.frames for _, words in _y_ticks(frame)]
         self.left = min(max([text_width(w, SIZE) for w in ticks], default=0.0), NAMES) + 2.0
         self.right = max(_right_room(frame) for frame in self.frames)
+        for frame in self.frames:
+            before, after = _overhang(frame, room - self.left - self.right)
+            self.left, self.right = max(self.left, before), max(self.right, after)
         self.wide = max(room - self.left - self.right, 8.0)
         for frame in self.frames:
             _fit_head(frame, self.wide, self.right)
@@ -184,6 +187,16 @@ class _Column:
         """All frames."""
         for frame in self.frames:
             _draw(ink, (left + self.left, frame.top, self.wide, frame.height), frame, left)
+
+
+def _overhang(frame: _Frame, wide: float) -> tuple[float, float]:
+    """How far the numbers of x reach beyond both ends of a frame."""
+    low, high = frame.x.range
+    before = after = 0.0
+    for place, words in frame.x.ticks(wide, across=True) if frame.label else ():
+        half, at = text_width(words, SIZE) / 2, (place - low) / (high - low) * wide
+        before, after = max(before, half - at), max(after, at + half - wide)
+    return before, after
 
 
 def _x_scale(panels: Sequence[Panel]) -> Scale:
