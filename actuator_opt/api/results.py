@@ -172,15 +172,15 @@ KINDS = kinds(
     ),
     ResultKind(
         "identification.result:Identification", _always,
-        text="pages.identification_text:identification_text",
+        page="pages.identification:page",
         report="api:write_identification", csv="api:write_series", record=None,
     ),
     ResultKind(
-        "identification.bending:BendingResult", _always, text="pages.bending_text:bending_text",
+        "identification.bending:BendingResult", _always, page="pages.bending:page",
         report=None, csv=None, record=None,
     ),
     ResultKind(
-        "api.records:Calibrated", lambda new: _met(new.redesign.evaluation), text="text",
+        "api.records:Calibrated", lambda new: _met(new.redesign.evaluation), page="page",
         report="api:write_calibration", csv=None, record=None,
     ),
     ResultKind(
