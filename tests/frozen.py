@@ -212,6 +212,7 @@ def run_case(case: Case, keep: str | None) -> tuple[str, str, float]:
     with tempfile.TemporaryDirectory(prefix="frozen-") as folder:
         place = Path(folder).resolve()
         shutil.copytree(SHIPPED, place / "designs", ignore=shutil.ignore_patterns("__pycache__"))
+        (place / "out").mkdir()
         os.chdir(place)
         try:
             parts = [f"# {case.name}\n"]

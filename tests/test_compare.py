@@ -245,7 +245,7 @@ def test_what_cannot_be_compared(tmp_path):
     one = run("compare", good, "--json")
     assert (one.code, one.errors[0]["message"]) == (2, "one design cannot be compared")
     one = run("compare", "-", "-", "--json", stdin=b"")
-    assert (one.code, one.errors[0]["message"]) == (2, "standard input holds one design")
+    assert (one.code, one.errors[0]["message"]) == (2, "standard input can only give one design")
     for twice in ((good, good), (good, renamed)):
         same = run("compare", *twice, "--json", "--out", tmp_path / "out")
         assert same.code == 3

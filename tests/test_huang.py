@@ -43,7 +43,7 @@ def found(actuator):
 @pytest.fixture(scope="module")
 def studied(actuator):
     """Everything the pages show."""
-    return huang_models.study(actuator.design)
+    return huang_models.study_of(actuator.design)
 
 
 def by_hand(ring, pressure):

@@ -9,7 +9,8 @@ import pytest
 
 from actuator_opt.identification.bending import Specimen, bending
 from actuator_opt.identification.record import Record
-from actuator_opt.pages.bending_text import bending_text
+from actuator_opt.pages import bending as document
+from actuator_opt.rendering import terminal
 
 BAR = {"span": 0.3, "outer_diameter": 0.02, "inner_diameter": 0.016}
 KNOWN = {"shear_modulus": 26e9, "local_compliance": 1e-7, "expected_modulus": 205e9}
@@ -23,6 +24,11 @@ def a_test(*, cycles=2, name="bend.csv", noise=2.0, **specimen):
     force = 5e5 * w * way + noise * np.random.default_rng(0).standard_normal(w.size)
     channels = {"w": w, "F_L": force}
     return bending(Record(0.01 * np.arange(w.size), channels, name), Specimen(**BAR, **specimen))
+
+
+def bending_text(bending, *, colour=False, unicode=True, width=100):
+    """Its text for the terminal."""
+    return terminal.text(document.page(bending), colour=colour, unicode=unicode, width=width)
 
 
 CASES = {

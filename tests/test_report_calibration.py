@@ -12,16 +12,10 @@ import pytest
 from identification_case import DESIGN, identified
 
 import actuator_opt as ao
-from actuator_opt.pages import (
-    calibration_document as document,
-    calibration_figure as figure,
-    calibration_rows as rows,
-)
-from actuator_opt.pages.calibration_text import calibration_text
-from actuator_opt.rendering import paper_plain as fallback
-from actuator_opt.rendering.blocks import printable
+from actuator_opt.optimisation.redesign import solved
+from actuator_opt.pages import calibration as document
+from actuator_opt.rendering import paper, paper_plain as fallback, terminal
 from actuator_opt.rendering.origin import Origin
-from actuator_opt.studies.bench import bench
 
 ORIGIN = Origin("a: 1\n", "a.yaml", "calibrate r.csv", "12ab")
 
@@ -40,21 +34,20 @@ def calibrated(kind):
 
 def page(found):
     """Its page as data."""
-    measured = bench(found.actuator.subject())
-    return document.calibration_page(found.calibration, found.redesign, measured, ORIGIN)
+    return paper.plain(found.page(), ORIGIN)
 
 
 def test_the_page_says_the_numbers_of_the_json():
     """Every new value stands in the table as in the JSON."""
     found = calibrated("levels")
     data = found.to_dict()
-    body = rows.learned(found.calibration)
+    body = document._values(found.calibration).rows
     named = {path: one for part in data["learned"].values() for path, one in part["values"].items()}
-    assert {line.cells[0] for line in body} == set(named)
+    assert {line[0] for line in body} == set(named)
     for line in body:
-        value = named[line.cells[0]]["value"]
-        shown = float(line.cells[2].split(" ")[0].replace("\N{NARROW NO-BREAK SPACE}", ""))
-        scale = 1e3 if line.cells[0].endswith("stribeck_speed") else 1.0
+        value = named[line[0]]["value"]
+        shown = float(line[2].split(" ")[0].replace("\N{NARROW NO-BREAK SPACE}", ""))
+        scale = 1e3 if line[0].endswith("stribeck_speed") else 1.0
         assert shown == pytest.approx(scale * value, rel=6e-3)
 
 
@@ -72,10 +65,10 @@ def test_a_design_that_cannot_meet_its_limits_says_so():
     bore = {"cylinder.bore": design.variables["cylinder.bore"]}
     stiff = design.model_copy(update={"variables": bore})
     found = ao.calibrate(identified("levels"), design=stiff)
-    assert not document.solved(found.redesign.best_after)
+    assert not solved(found.redesign.best_after)
     data = page(found)
     assert data["verdict"]["state"] == "infeasible"
-    said = rows.remarks(found.calibration, found.redesign)
+    said = document.remarks(found.calibration, found.redesign)
     assert any("no design meets every requirement" in words for words in said)
     assert any("smallest change of limits" in words for words in said)
     assert not any("at its limit" in words for words in said)
@@ -87,27 +80,27 @@ def test_without_a_search_there_is_no_optimum():
     assert found.redesign.best_after is None
     titles = [block["title"] for block in page(found)["blocks"]]
     assert titles == [
-        "Numbers the record gave, 95 % bounds",
-        "Requirements of the actuator as tested that move",
-        "What changed, and what this rests on",
+        "Values measured, 95 % bounds",
+        "Requirements that move",
+        "Changes, and the basis of these results",
     ]
 
 
 def test_one_speed_lists_what_was_left():
     """What the record cannot tell stands with its reason."""
     found = calibrated("one speed")
-    said = " ".join(rows.remarks(found.calibration, found.redesign))
+    said = " ".join(document.remarks(found.calibration, found.redesign))
     for key in ("breakaway_ratio", "stribeck_speed", "viscous_friction"):
         assert f"{key} stays as the design says: one speed, 50 mm/s" in said
 
 
 def test_levels_of_pressure_are_drawn_apart():
     """Points of like pressure share a curve; at most three curves are drawn."""
-    groups = figure.shown_levels(identified("levels").points)
+    groups = document.shown_levels(identified("levels").points)
     assert len(groups) == 3
     tops = [max(one.pressure for one in group) for group in groups]
     assert tops == sorted(tops)
-    assert len(figure.shown_levels(identified("plateaus").points)) <= 3
+    assert len(document.shown_levels(identified("plateaus").points)) <= 3
 
 
 def test_texts_of_the_figure_do_not_meet():
@@ -115,9 +108,7 @@ def test_texts_of_the_figure_do_not_meet():
     for kind in KINDS:
         found = calibrated(kind)
         stated = found.calibration.identification.bench
-        drawing = figure.calibration_figure(
-            found.calibration.identification.points, stated, stated, found.redesign
-        )
+        drawing = document.figure(found.calibration, found.redesign, stated)
         for a, b in itertools.combinations(drawing.text_boxes(), 2):
             apart = a[3] <= b[1] + 0.2 or b[3] <= a[1] + 0.2 or a[4] <= b[2] or b[4] <= a[2]
             assert apart, (kind, a[0], b[0])
@@ -133,14 +124,14 @@ def test_the_terminal_fits_its_width(width):
     """No line is wider than the terminal, and ASCII stays ASCII."""
     found = calibrated("shipped")
     for unicode in (True, False):
-        text = calibration_text(found.calibration, found.redesign, unicode=unicode, width=width)
+        text = terminal.text(found.page(), colour=False, unicode=unicode, width=width)
         assert max(len(line) for line in text.splitlines()) <= width
         assert unicode or text.isascii()
 
 
 def test_the_fallback_draws_it():
     """Without the typesetter the page is still written, in pure Python."""
-    data = printable(page(calibrated("shipped")))
+    data = paper._printable(page(calibrated("shipped")))
     data |= {"title": "knee", "source": "name: knee", "source_file": "knee.yaml", "run": "{}"}
     pdf, images = fallback.render(data, 0)
     assert pdf.startswith(b"%PDF")
@@ -152,6 +143,6 @@ def test_where_nothing_moves_it_says_so():
     found = calibrated("plateaus")
     still = replace(found, redesign=replace(found.redesign, shifts=()))
     assert still.redesign.moved is None
-    said = rows.remarks(still.calibration, still.redesign)
+    said = document.remarks(still.calibration, still.redesign)
     assert said[0] == "No requirement moves."
     assert "No requirement moved." in json.dumps(page(still), allow_nan=False)

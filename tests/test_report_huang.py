@@ -45,8 +45,8 @@ def pages(subject):
     """All tables, then all drawings, of one study with films of 61 nodes instead of 121."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(film, "NODES", 61)
-        found = huang_models.study(subject.design)
-        patch.setattr(huang, "study", lambda design: found)
+        found = huang_models.study_of(subject.design)
+        patch.setattr(huang, "study_of", lambda design: found)
         made = huang.blocks(subject)
     drawn = (
         huang_figures.cylinder_figure(found),

@@ -27,7 +27,7 @@ from actuator_opt.optimisation.recorded import from_plain, to_plain
 from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.optimisation.robustness import Robust
 from actuator_opt.pages import (
-    calibration_document,
+    calibration,
     comparison,
     pareto,
     report as page,
@@ -337,10 +337,10 @@ def test_other_places_that_say_met_say_it_without_reserve_too(optimum):
         best_after = optimum
 
     Changes.evaluation = evaluation
-    badge = calibration_document.verdict(Changes())
-    assert badge["text"] == f"REDESIGN MEETS ALL, {count} LIMITS WITHOUT RESERVE"
-    assert badge["cautions"] == page.doubts(evaluation)[1]
-    assert badge["state"] == "checks"
+    badge = calibration.verdict(Changes())
+    assert badge.text == f"REDESIGN MEETS ALL, {count} LIMITS WITHOUT RESERVE"
+    assert badge.cautions == page.doubts(evaluation)[1]
+    assert badge.state == "checks"
 
 
 def test_the_best_of_a_sweep_say_that_they_have_no_reserve(optimum):

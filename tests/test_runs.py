@@ -120,7 +120,7 @@ def test_own_metrics_come_back_where_their_file_is_named(folder, design, tmp_pat
     optimised(design, "--plugin", plugin, "--report", "--out", tmp_path / "a")
     refused = run("report", "last", "--out", tmp_path / "b", "--json")
     assert refused.code == 3
-    assert refused.errors[0]["message"].startswith(f"its own metrics came from {plugin}")
+    assert refused.errors[0]["message"].startswith(f"its custom metrics came from {plugin}")
     assert refused.errors[0]["remedy"] == "name it with --plugin to run it"
     named = run("report", "last", "--out", tmp_path / "b", "--plugin", plugin)
     assert (named.code, named.err.count("SHA-256")) == (0, 0)

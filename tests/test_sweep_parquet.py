@@ -225,4 +225,4 @@ def test_the_terminal_names_the_file(tmp_path):
     assert parquet.read_metadata(file).num_rows == 3
     done = terminal(*words, "--parquet", str(file), "--reduce", "best:3")
     assert done.code == 2
-    assert "leave out --store, --csv and --parquet" in done.err
+    assert "omit --store, --csv and --parquet" in done.err

@@ -125,7 +125,7 @@ def head_fault(head: object) -> str:
     """The fault of the head of a record; "" if there is none.
 
     >>> head_fault({"kind": 3})
-    'kind is no text'
+    'kind must be text'
     """
     found = _fault(head, _HEAD)
     if found or not isinstance(head, Mapping):
@@ -138,7 +138,7 @@ def body_fault(kind: str, body: object) -> str:
     return _fault(body, _BODY) or _fault(body, _BODIES.get(kind, {}))
 
 
-_WORDS = {str: "text", int: "whole number", bool: "true or false", float: "number"}
+_WORDS = {str: "text", int: "a whole number", bool: "true or false", float: "a number"}
 
 
 def _fault(value: object, form: Form, path: str = "") -> str:
@@ -148,24 +148,24 @@ def _fault(value: object, form: Form, path: str = "") -> str:
         return "" if "" in found else found[0]
     if isinstance(form, list):
         if not isinstance(value, list):
-            return f"{path} is no list"
+            return f"{path} must be a list"
         return next(
             filter(None, (_fault(x, form[0], f"{path}[{k}]") for k, x in enumerate(value))), ""
         )
     if isinstance(form, dict):
         return _object_fault(value, form, path)
     if form is None:
-        return "" if value is None else f"{path} is not null"
+        return "" if value is None else f"{path} must be null"
     wanted = (int, float) if form is float else form
     if isinstance(value, wanted) and (form in (bool, object) or not isinstance(value, bool)):
         return ""
-    return f"{path} is no {_WORDS[form]}"
+    return f"{path} must be {_WORDS[form]}"
 
 
 def _object_fault(value: object, form: dict[str, Form], path: str) -> str:
     """`_fault` for an object."""
     if not isinstance(value, dict):
-        return f"{path or 'it'} is no object"
+        return f"{path or 'it'} must be an object"
     head = f"{path}." if path else ""
     if "*" in form:
         found = (_fault(below, form["*"], f"{head}{name}") for name, below in value.items())

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..identification.specimen import Part
     from ..optimisation.redesign import Redesign
     from ..pages import ReportFile
-    from ..rendering.console import Style
+    from ..rendering.blocks import Page
 
 MOST_BYTES = 1_000_000_000
 """Largest file of a record (a choice: memory must hold it several times)."""
@@ -219,11 +219,12 @@ class Calibrated:
             **self.redesign.to_dict(),
         }
 
-    def text(self, **style: Unpack[Style]) -> str:
-        """What the terminal shows."""
-        from ..pages.calibration_text import calibration_text
+    def page(self) -> Page:
+        """The page: from the record to the redesigned actuator."""
+        from ..pages.calibration import page
+        from ..studies.bench import bench
 
-        return calibration_text(self.calibration, self.redesign, **style)
+        return page(self.calibration, self.redesign, bench(self.actuator.subject()))
 
 
 def calibrate(
@@ -325,18 +326,23 @@ def write_identification(
     identification: Identification, **paper: Unpack[Paper]
 ) -> list[ReportFile]:
     """Write the page of an identification (PDF and PNG); parameters as `report`."""
-    from ..pages.identification_document import write_identification_sheet
+    from ..pages.identification import page, samples_hash
+    from ..rendering import paper as writer
 
-    record = identification.record.file_name
-    origin, place = page_of(identification.bench.design, "_identification", beside=record, **paper)
-    return write_identification_sheet(identification, origin, **place)
+    record = identification.record
+    origin, place = page_of(
+        identification.bench.design, "_identification", beside=record.file_name, **paper
+    )
+    run = {"record": record.file_name, "record_sha256": samples_hash(record)}
+    return writer.write(page(identification), origin, **place, **run)
 
 
 def write_series(identification: Identification, path: str | Path) -> ReportFile:
     """Write friction, stiffness and bore growth over time as CSV."""
-    from ..pages.identification_csv import write_series as write
+    from ..pages.identification import series
+    from ..rendering.series import write_csv
 
-    return write(identification, Path(path))
+    return write_csv(series(identification), Path(path))
 
 
 def write_calibration(calibrated: Calibrated, **paper: Unpack[Paper]) -> list[ReportFile]:
@@ -345,16 +351,12 @@ def write_calibration(calibrated: Calibrated, **paper: Unpack[Paper]) -> list[Re
     Parameters as `report`; the attached design is the calibrated one.
     """
     from ..design.writer import to_yaml
-    from ..pages.calibration_document import write_calibration_sheet
-    from ..studies.bench import bench
+    from ..pages.identification import samples_hash
+    from ..rendering import paper as writer
 
     actuator = paper["actuator"] = calibrated.actuator
-    record = calibrated.calibration.identification.record.file_name
-    origin, place = page_of(actuator.design, "_calibration", beside=record, **paper)
-    return write_calibration_sheet(
-        calibrated.calibration,
-        calibrated.redesign,
-        bench(actuator.subject()),
-        replace(origin, source_text=to_yaml(actuator.design, actuator.source)),
-        **place,
-    )
+    record = calibrated.calibration.identification.record
+    origin, place = page_of(actuator.design, "_calibration", beside=record.file_name, **paper)
+    origin = replace(origin, source_text=to_yaml(actuator.design, actuator.source))
+    run = {"record": record.file_name, "record_sha256": samples_hash(record)}
+    return writer.write(calibrated.page(), origin, **place, **run)

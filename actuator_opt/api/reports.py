@@ -146,9 +146,9 @@ def verification_tables(verification: Verification | None) -> list[Table]:
     """Requirements checked in time, as tables of a report."""
     if verification is None:
         return []
-    from ..pages.verification_rows import verification_rows
+    from ..pages.verification import tables
 
-    return [*verification_rows(verification)]
+    return [*tables(verification)]
 
 
 def report_files(paths: Iterable[Path]) -> list[ReportFile]:

@@ -39,7 +39,8 @@ class ResultKind:
     type : of the result, "module:class"
     exit_code : of a command that gives this result
     page : builds the `Page` of a result: its text, its report and its HTML
-    text : lines for the terminal of (result, colour=, unicode=, width=), if there is no page
+    blocks : builds the blocks of a result that has no page: its text
+    text : lines for the terminal of (result, colour=, unicode=, width=), if there is neither
     report : writes the report of (result, **`Paper`); some kinds need more keywords
     csv : writes the result to a path
     record : records the run of (result, actuator=, command=, date=)
@@ -54,6 +55,7 @@ class ResultKind:
     csv: str | None
     record: str | None
     page: str | None = None
+    blocks: str | None = None
     text: str | None = None
     data: str | None = "to_dict"
     remarks: Callable[[Any], list[str]] | None = None
@@ -153,33 +155,32 @@ KINDS = kinds(
         report="api:write_seal", csv=None, record=None,
     ),
     ResultKind(
-        "simulation.result:Simulation", _met, text="pages.simulation_text:simulation_text",
-        report="api:write_simulation", csv="api:write_signals",
-        record=None,
+        "simulation.result:Simulation", _met, page="pages.simulation:page",
+        report="api:write_simulation", csv="api:write_signals", record=None,
     ),
     ResultKind(
-        "api.simulations:Compared", lambda compared: _met(compared.simulation), text="text",
+        "api.simulations:Compared", lambda compared: _met(compared.simulation), blocks="blocks",
         report="report", csv=None, record=None,
     ),
     ResultKind(
         "simulation.sensitivity:Sensitivities", _always,
-        text="pages.verification_text:sensitivity_text", report=None, csv=None, record=None,
+        blocks="pages.verification:sensitivity_blocks", report=None, csv=None, record=None,
     ),
     ResultKind(
         "simulation.verification.verify:Verification", _met,
-        text="pages.verification_text:verification_text", report=None, csv=None, record=None,
+        blocks="pages.verification:blocks", report=None, csv=None, record=None,
     ),
     ResultKind(
         "identification.result:Identification", _always,
-        text="pages.identification_text:identification_text",
+        page="pages.identification:page",
         report="api:write_identification", csv="api:write_series", record=None,
     ),
     ResultKind(
-        "identification.bending:BendingResult", _always, text="pages.bending_text:bending_text",
+        "identification.bending:BendingResult", _always, page="pages.bending:page",
         report=None, csv=None, record=None,
     ),
     ResultKind(
-        "api.records:Calibrated", lambda new: _met(new.redesign.evaluation), text="text",
+        "api.records:Calibrated", lambda new: _met(new.redesign.evaluation), page="page",
         report="api:write_calibration", csv=None, record=None,
     ),
     ResultKind(
@@ -235,6 +236,10 @@ def text(result: object, **style: Unpack[Style]) -> str:
         from ..rendering import terminal
 
         return terminal.text(piece(kind.page, result)(), **style)
+    if kind.blocks is not None:
+        from ..rendering import terminal
+
+        return terminal.blocks_text(piece(kind.blocks, result)(), **style)
     return "" if kind.text is None else str(piece(kind.text, result)(**style))
 
 

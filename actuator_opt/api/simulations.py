@@ -19,7 +19,7 @@ from .reports import Paper, Target, page_of
 if TYPE_CHECKING:
     from ..design.scenario import LoadedScenario, Scenario
     from ..pages import ReportFile
-    from ..rendering.console import Style
+    from ..rendering.blocks import Block
     from ..rendering.origin import Origin
     from ..simulation import Simulation
     from ..simulation.measured import Overlay
@@ -183,9 +183,10 @@ def as_trial(
 
 def write_signals(simulation: Simulation, path: str | Path) -> ReportFile:
     """Write every signal of a simulation as CSV."""
-    from ..pages.simulation_csv import write_signals as write
+    from ..pages.simulation import series
+    from ..rendering.series import write_csv
 
-    return write(simulation, Path(path))
+    return write_csv(series(simulation), Path(path))
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,11 +206,11 @@ class Compared:
         """As plain data for JSON, SI."""
         return self.overlay.to_dict() if self.fit is None else self.fit.to_dict()
 
-    def text(self, **style: Unpack[Style]) -> str:
-        """Terminal text below that of the simulation."""
-        from ..pages.measured_rows import measured_text
+    def blocks(self) -> list[Block]:
+        """Blocks below those of the simulation."""
+        from ..pages.measured import blocks
 
-        return measured_text(self.overlay, self.fit, **style)
+        return blocks(self.overlay, self.fit)
 
     def report(self, **how: Any) -> list[ReportFile]:
         """Write the page of the simulation with the record; parameters as `write_simulation`."""
@@ -347,24 +348,20 @@ def write_simulation(
     ------
     UsageError : no `scenario`, as the simulation does not keep its file
     """
-    from ..pages.measured_figures import drawn
-    from ..pages.measured_rows import measured_blocks
-    from ..pages.simulation_document import write_simulation_sheet
-    from ..pages.verification_rows import sensitivity_rows
+    from ..pages.measured import drawn
+    from ..pages.simulation import page
+    from ..pages.verification import sensitivity_blocks
+    from ..rendering import paper as printed
 
     if scenario is None:
         message = "the page of a simulation needs its scenario"
         raise UsageError(Diagnostic(message, "give scenario=read_scenario(...)"))
     origin, place = _page(scenario, simulation, "", paper)
-    blocks = [] if measured is None else measured_blocks(measured.overlay, measured.fit)
-    blocks += [] if sensitivities is None else sensitivity_rows(sensitivities)
-    return write_simulation_sheet(
-        simulation,
-        origin,
-        measured=None if measured is None else drawn(measured.overlay),
-        extra=blocks,
-        **place,
-    )
+    blocks = [] if measured is None else measured.blocks()
+    blocks += [] if sensitivities is None else sensitivity_blocks(sensitivities)
+    record = None if measured is None else drawn(measured.overlay)
+    made = page(simulation, measured=record, extra=blocks)
+    return printed.write(made, origin, **place, scenario_hash=simulation.spec_hash)
 
 
 def write_comparison(
@@ -389,12 +386,12 @@ def write_comparison(
     InputError
         no run, or a repeated name
     """
-    from ..pages.simulation_comparison import comparison
-    from ..pages.simulation_comparison_document import write_comparison_sheet
+    from ..pages.simulation_comparison import comparison, page
+    from ..rendering import paper as printed
 
-    made = comparison(runs, title, notes)
+    made = page(comparison(runs, title, notes))
     origin, place = _page(scenario, runs[0][1], "-compared", paper)
-    return write_comparison_sheet(made, origin, **place)
+    return printed.write(made, origin, **place)
 
 
 def _page(

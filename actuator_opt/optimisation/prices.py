@@ -34,7 +34,7 @@ class ParameterPrice:
     percent_per_percent : relative change of the objective per relative change of the parameter;
         None where the objective or the parameter is 0
     predicted_up, predicted_down : objective at +10 % and -10 % by the price; None where infinite
-    resolved_up, resolved_down : the same re-optimised; None where infeasible or not asked for
+    resolved_up, resolved_down : the same re-optimised; None if infeasible or not requested
     holds_until : the nearest value of the parameter at which the active set changes; None where
         that is beyond -100 % and +100 %
     change : what changes there, "LABEL becomes active" or "LABEL stops being active"

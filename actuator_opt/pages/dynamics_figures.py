@@ -14,9 +14,18 @@ from typing import Any
 from ..base.numeric import Array
 from ..evaluation.dynamics_study import DynamicsStudy, LoopStudy, Response
 from ..evaluation.result import Requirement
-from ..rendering.axes import Axes, Ticks, fitted, legend, lowest, required
+from ..rendering.axes import (
+    Axes,
+    Ticks,
+    dot,
+    fitted,
+    legend,
+    level_ticks,
+    lowest,
+    required,
+)
 from ..rendering.ink import BLACK, BLUE, GREY, RED, WHITE, Ink, spread_within
-from ..rendering.text import MINUS, SENSES, number, trimmed
+from ..rendering.text import MINUS, SENSES, SUPERSCRIPTS, number, trimmed
 from .wall_figures import GREEN, OCHRE
 
 STYLES: tuple[dict[str, Any], ...] = (
@@ -30,7 +39,6 @@ DEEPEST = 1000.0
 """How far below the static stiffness a curve is drawn, as a ratio."""
 MOST_CASES = 6
 """Shaken load cases named beside the figure."""
-_SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 _ROW = 3.5
 
 
@@ -42,34 +50,6 @@ class Shaken:
     frequency: float
     stiffness: float | None = None
     phase: float | None = None
-
-
-def level_words(value: float) -> str:
-    """A power of ten or a step between, short enough for an axis.
-
-    >>> level_words(0.01), level_words(2000.0), level_words(1e5), level_words(5e-7)
-    ('0.01', '2000', '10⁵', '5×10⁻⁷')
-    """
-    if 1e-3 < value < 9999:
-        return trimmed(value)
-    power = math.floor(math.log10(value) + 1e-9)
-    step = round(value / 10.0**power)
-    raised = f"10{str(power).translate(_SUPERSCRIPTS)}"
-    return raised if step == 1 else f"{step}×{raised}"
-
-
-def level_ticks(low: float, high: float) -> Ticks:
-    """Ticks of a logarithmic axis (log10): decades, or 1, 2, 5 where there are few of them.
-
-    >>> level_ticks(0.0, 0.8)
-    [(0.0, '1'), (0.3010299956639812, '2'), (0.6989700043360189, '5')]
-    """
-    powers = range(math.floor(low), math.ceil(high) + 1)
-    every = max(1, math.ceil((high - low) / 7))
-    steps = (1, 2, 5) if high - low < 2.2 else (1,)
-    found = [(step, power) for power in powers for step in steps if power % every == 0]
-    places = [(math.log10(step) + power, step * 10.0**power) for step, power in found]
-    return [(at, level_words(v)) for at, v in places if low - 1e-9 <= at <= high + 1e-9]
 
 
 def logs(values: Array) -> list[float]:
@@ -96,11 +76,6 @@ def limit_mark(axes: Axes, x: float, y: float, sense: str) -> None:
     towards = level + (-1.7 if sense == "min" else 1.7)
     corners = ((at - 0.8, level), (at + 0.8, level), (at, towards))
     axes.ink.path([corners], stroke=None, fill=RED, closed=True)
-
-
-def dot(axes: Axes, x: float, y: float, color: str = BLUE, fill: str = WHITE) -> None:
-    """A value at one place."""
-    axes.ink.circle(axes.x(x), axes.y(y), 0.75, fill=fill, stroke=color, pen=0.3)
 
 
 # ---- along the stroke ----
@@ -153,7 +128,7 @@ def damping_panel(
     low = min([0.0, *ys, friction])
     high = max([*ys, friction, *near, 0.0]) or 1.0
     axes = Axes(ink, box, (xs[0], xs[-1]), (1.08 * low, 1.08 * high))
-    unit = "" if power == 0 else f", 10{str(power).translate(_SUPERSCRIPTS)}"
+    unit = "" if power == 0 else f", 10{str(power).translate(SUPERSCRIPTS)}"
     axes.frame(f"Damping ratio{unit}", "piston position from the cap end, mm")
     ink.path(axes.clipped(xs, ys), **STYLES[0])
     for row, level in zip(requirements, limits, strict=True):

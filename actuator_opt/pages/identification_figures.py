@@ -1,359 +1,358 @@
-"""Figures of an Identification as ink: over time, over velocity, damping, residuals.
-
-Curves differ in dash as well as in colour. Where something has no value its frame says why.
-"""
+"""Figures of an Identification: over time, over velocity, secant damping, residuals."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
+from ..base import quantities
+from ..base.fitting import NORMAL
+from ..base.numeric import Array
+from ..base.quantities import Quantity
 from ..design.material_fits import Fit
+from ..identification.balance import Sliding
 from ..identification.lugre_fit import LuGreFit
-from ..identification.points import Point
+from ..identification.points import Point, by_pressure
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
-from ..rendering.axes import Axes, legend
-from ..rendering.ink import BLUE, GREY, Ink, spread_within
-from ..rendering.text import bars, number, sentence, unit_text
-from .dynamics_figures import dot
-from .identification_axes import (
-    IN,
-    OUT,
-    SURE,
-    Box,
-    Velocities,
-    band,
-    empty,
-    error_bar,
-    even_range,
-    even_ticks,
-    log_range,
-    log_ticks,
-    reason,
-    spaced,
-    ways,
-)
-from .identification_map import map_panel, pressure_levels
-from .identification_rows import FORCE, SPEED
-from .identification_series import LINE, loop, strips
-from .wall_figures import GREEN, OCHRE
+from ..metrics import METRICS
+from ..rendering.axes import even_range, log_range
+from ..rendering.chart import Axis, Chart, Curve, Level, Panel, Points, Surface, Values
+from ..rendering.chart_ink import drawn
+from ..rendering.ink import Ink
+from ..rendering.text import number, sentence, trimmed, unit_text
 
-WIDTH = 180.0
-LEAST, MOST = 70.0, 140.0
+FORCE, PRESSURE = METRICS["friction_running"], quantities.INPUTS["pressure"]
+SPEED, LENGTH = quantities.INPUTS["stribeck_speed"], quantities.INPUTS["position"]
+STIFFNESS, GROWTH = METRICS["stiffness_min"], METRICS["growth_at_seal"]
+LEAST, MOST = 64.0, 140.0
 """Heights of the whole figure [mm]."""
-_CURVE: dict[str, Any] = {"stroke": BLUE, "pen": 0.4}
-_OTHER: dict[str, Any] = {"stroke": OCHRE, "pen": 0.4, "dash": (1.6, 0.8)}
-_LUGRE: dict[str, Any] = {"stroke": GREEN, "pen": 0.35, "dash": (0.8, 0.5)}
-_ZERO: dict[str, Any] = {"stroke": GREY, "pen": 0.18}
-_MISFIT: dict[str, Any] = {"stroke": GREEN, "pen": 0.25, "dash": (1.2, 0.8)}
-_NAMES = {"power_law": "power law", "double_exponential": "double exp."}
-FIT_STYLES = {"power_law": _CURVE, "double_exponential": _OTHER}
+NEAREST = 1.5
+"""How far towards rest a Stribeck curve goes on below the least speed, as a ratio."""
+LEAST_SPEEDS = 3
+"""Speeds at a level of pressure from which on a map shows more than a curve (a choice)."""
+DAMPING = "Secant damping F/v, kN·s/m"
+FITS = {"power_law": "power law", "double_exponential": "double exp."}
+STYLES = {"power_law": 0, "double_exponential": 1}
+"""Styles of the fits of the secant damping."""
+_OTHER = 2
+"""Style of any other fit and of the LuGre model."""
 
 
-def identification_figure(found: Identification, height: float = MOST) -> Ink:
+def identification_figure(identification: Identification, height: float = MOST) -> Ink:
     """All figures of an identification in one drawing of a stated height [mm]."""
-    height = min(max(height, LEAST), MOST)
-    ink = Ink(WIDTH, height)
-    strips(ink, (10.0, 0.0, 45.0, height), found)
-    _friction_column(ink, (68.0, 9.5, 52.0, height - 18.0), found)
-    _damping_column(ink, (133.0, 9.5, 46.0, height - 18.0), found)
-    return ink
+    chart = Chart(
+        "Friction and damping",
+        [_over_time(identification), _friction(identification), _damping(identification)],
+        widths=(57.0, 63.0, 54.0),
+    )
+    return drawn(chart, height=min(max(height, LEAST), MOST))
+
+
+# ---- over time ----
+
+
+def _over_time(identification: Identification) -> list[Panel]:
+    """Position, pressures, friction, growth and stiffness over time, one above the other."""
+    slidings = identification.slidings
+
+    def curve(words: str, quantity: Quantity, values: Callable[[Sliding], Array]) -> Curve:
+        pieces = [(sliding.piece.time, values(sliding)) for sliding in slidings]
+        times, shown = joined(pieces)
+        return Curve(words, times, quantity.to_display(1.0) * shown, weight="thin")
+
+    pressures = [curve("p1", PRESSURE, lambda sliding: sliding.piece["p1"])]
+    if "p2" in slidings[0].piece:
+        pressures.append(curve("p2", PRESSURE, lambda sliding: sliding.piece["p2"]))
+    stiffness = curve("", STIFFNESS, identification.stiffness_along)
+    outside = "" if np.isfinite(stiffness.ys).any() else "The record lies outside the stroke."
+    rows: list[tuple[str, Quantity, list[Curve], str]] = [
+        ("Position", LENGTH, [curve("", LENGTH, lambda sliding: sliding.piece["x"])], ""),
+        ("Pressures", PRESSURE, pressures, ""),
+        ("Friction", FORCE, [curve("", FORCE, _sound)], ""),
+        ("Bore growth at the seal", GROWTH, [curve("", GROWTH, identification.growth_along)], ""),
+        ("k_eq", STIFFNESS, [stiffness], outside),
+    ]
+    return [
+        Panel(
+            f"{words}, {unit_text(quantity.unit)}",
+            Axis("time, s" if words == "k_eq" else ""),
+            Axis(zero=quantity not in (LENGTH, PRESSURE)),
+            curves=curves,
+            note=why,
+        )
+        for words, quantity, curves, why in rows
+    ]
+
+
+def _sound(sliding: Sliding) -> Array:
+    """Friction where nothing disturbs the record."""
+    return np.where(sliding.piece.sound, sliding.friction, np.nan)
+
+
+def joined(pieces: Sequence[tuple[Values, Values]]) -> tuple[Array, Array]:
+    """Pieces of a curve as one curve with a break after each."""
+    breaks = np.array([np.nan])
+    xs, ys = (
+        np.concatenate([*chain.from_iterable((piece[k], breaks) for piece in pieces), breaks])
+        for k in (0, 1)
+    )
+    return xs, ys
 
 
 # ---- friction over velocity ----
 
 
-def _friction_column(ink: Ink, box: Box, found: Identification) -> None:
-    """Friction over velocity above its residuals; without a curve beside the loop over position."""
-    left, top, width, tall = box
-    if isinstance(found.stribeck, StribeckFit):
-        residual = max(0.22 * tall, 9.0)
-        upper = (left, top, width, tall - residual - 6.5)
-        axis = _friction_panel(ink, upper, found, found.stribeck)
-        lower = (left, top + tall - residual, width, residual)
-        _residual_panel(ink, lower, found, found.stribeck, axis)
-        return
-    said = sentence(f"no Stribeck curve: {found.stribeck}")
-    title = f"Friction, {unit_text(FORCE.unit)}"
-    ink.text(left - 1.4, top - 5.0, title, size=7.0, bold=True)
-    left, top, width, tall = reason(ink, (left, top - 1.0, width, tall + 1.0), said)
-    top, tall = top + 1.5, tall - 1.5
-    if found.points:
-        half = (width - 13.0) / 2
-        _points_panel(ink, (left, top, half, tall), found)
-        left, width = left + half + 13.0, half
-    _loop_panel(ink, (left, top, width, tall), found)
+def _friction(identification: Identification) -> list[Panel]:
+    """Friction over velocity above its residuals; without a curve above the loop over position."""
+    fit = identification.stribeck
+    if isinstance(fit, StribeckFit):
+        return [_velocity_panel(identification, fit), _residuals(identification, fit)]
+    why = sentence(f"no Stribeck curve: {fit}")
+    unit = unit_text(FORCE.unit)
+    x = Axis(f"velocity, {unit_text(SPEED.unit)}", log=True, signed=True)
+    points = measured(identification.points, _velocity, _signed_friction)
+    loop = _loop(identification, f"Friction over position, {unit}", "" if points else why)
+    if not points:
+        return [loop]
+    title = f"Friction over velocity, {unit}"
+    return [Panel(title, x, Axis(zero=True), points=points, note=why, share=0.7), loop]
 
 
-def _friction_panel(ink: Ink, box: Box, found: Identification, fit: StribeckFit) -> Velocities:
-    """Points with their 95 % bars, the curve with its band, F_C and F_S of the LuGre model."""
-    axis = Velocities([SPEED.to_display(one.velocity) for one in found.points])
-    curves = _stribeck_curves(found.points, fit, axis)
-    ends = [one.friction + side * SURE * one.error for one in found.points for side in (-1, 1)]
-    least = abs(axis.at(axis.low))  # towards rest the curve may leave the frame: nothing is seen
-    for xs, _, middle, _, _, _ in curves:
-        ends += [v for x, v in zip(xs, middle, strict=True) if abs(x) >= least]
-    marks = _level_marks(found.lugre, axis)
-    axes = Axes(ink, box, axis.range, even_range([*ends, *(f for f, _, _ in marks)], zero=True))
-    for xs, _, _, low, high, _ in curves:
-        band(axes, xs, low, high)
-    title = f"Friction over velocity, {unit_text(FORCE.unit)}"
-    axes.frame_at("", "", axis.ticks(axes), even_ticks(*axes.y_range, 4), upright=True)
-    ink.text(box[0] - 1.4, box[1] - 6.2, title, size=7.0, bold=True)
-    _cross_lines(axes)
-    names: dict[str, dict[str, Any]] = {}
-    for xs, words, middle, _, _, style in curves:
-        ink.path(axes.clipped(xs, middle), **style)
-        names[words] = style
-    _draw_levels(axes, marks)
-    for one in found.points:
-        x, style = axis.at(SPEED.to_display(one.velocity)), OUT if one.velocity > 0 else IN
-        error_bar(axes, x, one.friction - SURE * one.error, one.friction + SURE * one.error,
-                  style["color"])  # fmt: skip
-        dot(axes, x, one.friction, **style)
-    legend(ink, box[0] + box[2], box[1] - 2.4, list(names.items()))
-    return axis
+def measured(
+    points: Sequence[Point],
+    across: Callable[[Point], float],
+    up: Callable[[Point], tuple[float, float]],
+) -> list[Points]:
+    """Points of both ways with their 95 % bars; `up`: value and standard error."""
+    groups = []
+    for style, (words, way) in enumerate((("out", 1), ("in", -1))):
+        here = [point for point in points if way * point.velocity > 0]
+        values = [up(point) for point in here]
+        if here:
+            low, high = (
+                [value + side * NORMAL * error for value, error in values] for side in (-1, 1)
+            )
+            xs, ys = [across(point) for point in here], [value for value, _ in values]
+            groups.append(Points(words, xs, ys, low, high, style))
+    return groups
 
 
-def _stribeck_curves(
-    points: Sequence[Point], fit: StribeckFit, axis: Velocities
-) -> list[tuple[list[float], str, list[float], list[float], list[float], dict[str, Any]]]:
-    """Curves with bounds by way: at the mean pressure, or at the ends where pressure matters."""
-    levels = [(fit.reference_pressure, "Stribeck curve, 95 % band", _CURVE)]
+def _velocity(point: Point) -> float:
+    return SPEED.to_display(point.velocity)
+
+
+def speed(point: Point) -> float:
+    """Speed in display units."""
+    return SPEED.to_display(point.speed)
+
+
+def _signed_friction(point: Point) -> tuple[float, float]:
+    return point.friction, point.error
+
+
+def _velocity_panel(identification: Identification, fit: StribeckFit) -> Panel:
+    """Points with their bars, the curve with its band, F_C and F_S of the LuGre model."""
+    points = identification.points
+    return Panel(
+        f"Friction over velocity, {unit_text(FORCE.unit)}",
+        Axis(log=True, signed=True),
+        Axis(zero=True),
+        curves=_stribeck_curves(points, fit),
+        points=measured(points, _velocity, _signed_friction),
+        levels=_levels(identification.lugre, points),
+        share=0.78,
+    )
+
+
+def _stribeck_curves(points: Sequence[Point], fit: StribeckFit) -> list[Curve]:
+    """Curves with their bounds: at the mean pressure, or at both ends where it matters."""
+    levels = [(fit.reference_pressure, "Stribeck curve, 95 % band")]
     if "pressure_slope" in fit.parameters:
-        ends = [min(one.pressure for one in points), max(one.pressure for one in points)]
-        styles = (_CURVE, _OTHER)
-        names = [bars(1e5 * round(p / 1e5)) for p in ends]
-        names[1] += "; bands 95 %"
-        levels = list(zip(ends, names, styles, strict=True))
-    found = []
-    for level, words, style in levels:
-        for way in axis.ways:
-            shown = way * axis.curve()
-            speed = shown / SPEED.to_display(1.0)
-            low, high = fit.bounds(speed, np.full(speed.shape, level))
-            middle = fit.predict(speed, np.full(speed.shape, level))
-            xs = [axis.at(float(v)) for v in shown]
-            lists = [[float(v) for v in one] for one in (middle, low, high)]
-            found.append((xs, words, lists[0], lists[1], lists[2], style))
-    return found
+        ends = [f(point.pressure for point in points) for f in (min, max)]
+        names = [f"{trimmed(round(pressure / 1e5))} bar" for pressure in ends]
+        levels = list(zip(ends, (names[0], f"{names[1]}; bands 95 %"), strict=True))
+    speeds = [point.speed for point in points]
+    along = np.geomspace(min(speeds) / NEAREST, max(speeds), 90)
+    ways = [way for way in (1, -1) if any(way * point.velocity > 0 for point in points)]
+    curves = []
+    for level, words in levels:
+        pressure = np.full(along.shape, level)
+        parts = []
+        for way in ways:
+            low, high = fit.bounds(way * along, pressure)
+            shown = way * SPEED.to_display(1.0) * along
+            parts.append((shown, fit.predict(way * along, pressure), low, high))
+        xs, ys = joined([(shown, force) for shown, force, _, _ in parts])
+        low, high = (joined([(part[0], part[k]) for part in parts])[1] for k in (2, 3))
+        curves.append(Curve(words, xs, ys, low, high))
+    return curves
 
 
-def _level_marks(lugre: LuGreFit | str, axis: Velocities) -> list[tuple[float, str, int]]:
-    """F_C and F_S of the LuGre model: force, name, way."""
+def _levels(lugre: LuGreFit | str, points: Sequence[Point]) -> list[Level]:
+    """F_C and F_S of the LuGre model, short lines at rest."""
     if isinstance(lugre, str):
         return []
-    values = lugre.values
-    names = [("coulomb", "F_C"), ("static", "F_S")]
-    offset = values.get("offset", 0.0)
+    values, offset = lugre.values, lugre.values.get("offset", 0.0)
+    least = min(speed(point) for point in points) / NEAREST
     return [
-        (way * values[name] + offset, words, way)
-        for name, words in names
+        Level(way * values[name] + offset, words, style=_OTHER, between=(0.0, way * least))
+        for name, words in (("coulomb", "F_C"), ("static", "F_S"))
         if name in lugre.parameters
-        for way in axis.ways
+        for way in (1, -1)
+        if any(way * point.velocity > 0 for point in points)
     ]
 
 
-def _draw_levels(axes: Axes, marks: Sequence[tuple[float, str, int]]) -> None:
-    """Short lines at rest, named on the side where no curve runs."""
-    zero = axes.x(0.0)
-    for way in (1, -1):
-        here = sorted((one for one in marks if one[2] == way), key=lambda one: -one[0])
-        wanted = [axes.y(level) for level, _, _ in here]
-        low, high = axes.top + 1.2, axes.top + axes.height - 1.2
-        places = spread_within(wanted, [2.8] * len(here), low, high)
-        both = axes.x_range[0] < 0 < axes.x_range[1]
-        for (_, words, _), y, at in zip(here, wanted, places, strict=True):
-            axes.ink.line((zero, y), (zero + way * 3.2, y), **_LUGRE)
-            side = -way if both else way
-            x = zero + side * (1.2 if both else 4.0)
-            anchor: Any = "left" if side > 0 else "right"
-            axes.ink.text(x, at, words, size=6.0, anchor=anchor, color=GREEN, halo=not both)
-
-
-def _cross_lines(axes: Axes) -> None:
-    """Lines at rest and at no force, where they lie inside."""
-    (left, right), (bottom, top) = axes.x_range, axes.y_range
-    if bottom < 0 < top:
-        axes.ink.line((axes.x(left), axes.y(0.0)), (axes.x(right), axes.y(0.0)), **_ZERO)
-    if left < 0 < right:
-        axes.ink.line((axes.x(0.0), axes.y(bottom)), (axes.x(0.0), axes.y(top)), **_ZERO)
-
-
-def _residual_panel(
-    ink: Ink, box: Box, found: Identification, fit: StribeckFit, axis: Velocities
-) -> None:
+def _residuals(identification: Identification, fit: StribeckFit) -> Panel:
     """Measured less fitted friction of every point; the scatter about the LuGre model in lines."""
-    bars95 = [SURE * float(e) for e in fit.errors]
-    residuals = [float(r) for r in fit.residuals]
-    largest = max([abs(r) + e for r, e in zip(residuals, bars95, strict=True)] + [1e-9])
-    misfit = None if isinstance(found.lugre, str) else found.lugre.misfit
-    near = misfit is not None and misfit < 4 * largest
-    if near and misfit is not None:
-        largest = max(largest, misfit)
-    axes = Axes(ink, box, axis.range, (-1.15 * largest, 1.15 * largest))
-    words = f"velocity, {unit_text(SPEED.unit)}, outwards positive"
-    axes.frame_at("", words, axis.ticks(axes), even_ticks(*axes.y_range, 2), upright=True)
-    _cross_lines(axes)
-    title = f"Residual, {unit_text(FORCE.unit)}"
-    ink.text(box[0] - 1.4, box[1] - 2.4, title, size=6.5, bold=True)
-    if misfit is not None:
-        said = f"LuGre windows ±{number(misfit, 3)} N"
-        if near:
-            for level in (-misfit, misfit):
-                right = box[0] + box[2]
-                ink.line((box[0], axes.y(level)), (right, axes.y(level)), **_MISFIT)
-            legend(ink, box[0] + box[2], box[1] - 2.4, [(said, _MISFIT)])
-        else:
-            ink.text(box[0] + box[2], box[1] - 2.4, said, anchor="right", color=GREEN)
-    for one, residual, half in zip(found.points, residuals, bars95, strict=True):
-        x, style = axis.at(SPEED.to_display(one.velocity)), OUT if one.velocity > 0 else IN
-        error_bar(axes, x, residual - half, residual + half, style["color"])
-        dot(axes, x, residual, **style)
-
-
-def _points_panel(ink: Ink, box: Box, found: Identification) -> None:
-    """Points over velocity without a curve."""
-    axis = Velocities([SPEED.to_display(one.velocity) for one in found.points])
-    ends = [one.friction + side * SURE * one.error for one in found.points for side in (-1, 1)]
-    axes = Axes(ink, box, axis.range, even_range(ends, zero=True))
-    words = f"velocity, {unit_text(SPEED.unit)}"
-    axes.frame_at("", words, axis.ticks(axes), even_ticks(*axes.y_range, 4), upright=True)
-    _cross_lines(axes)
-    for one in found.points:
-        x, style = axis.at(SPEED.to_display(one.velocity)), OUT if one.velocity > 0 else IN
-        error_bar(axes, x, one.friction - SURE * one.error, one.friction + SURE * one.error,
-                  style["color"])  # fmt: skip
-        dot(axes, x, one.friction, **style)
-
-
-def _loop_panel(ink: Ink, box: Box, found: Identification) -> None:
-    """Friction over position, with F_C of the LuGre model."""
-    lines = loop(found)
-    xs, ys = zip(*[one for line in lines for one in line], strict=True)
-    axes = Axes(ink, box, even_range(xs), even_range(ys, zero=True))
+    numbers = zip(fit.residuals, fit.errors, strict=True)
+    of_point = dict(zip(identification.points, numbers, strict=True))
+    points = measured(identification.points, _velocity, lambda point: of_point[point])
     levels = []
-    if isinstance(found.lugre, LuGreFit) and "coulomb" in found.lugre.parameters:
-        values = found.lugre.values
-        levels = [way * values["coulomb"] + values.get("offset", 0.0) for way in (1, -1)]
-        axes.y_range = even_range([*ys, *levels], zero=True)
-    marks = spaced([(v, w, 1) for v, w in even_ticks(*axes.x_range, 4)], axes)
-    axes.frame_at("", "position, mm", marks, even_ticks(*axes.y_range, 4), upright=True)
-    _cross_lines(axes)
-    for line in lines:
-        ink.path(axes.clipped([x for x, _ in line], [y for _, y in line]), **LINE)
-    right = box[0] + box[2]
-    for level in levels:
-        y = axes.y(level)
-        ink.line((box[0], y), (right, y), **_LUGRE)
-    if levels:
-        legend(ink, right, box[1] - 2.0, [("±F_C of the LuGre model", _LUGRE)])
+    if isinstance(identification.lugre, LuGreFit):
+        misfit = identification.lugre.misfit
+        words = f"LuGre windows ±{number(misfit, 3)} N"
+        levels = [Level(way * misfit, words, style=_OTHER) for way in (-1, 1)]
+    return Panel(
+        f"Residual, {unit_text(FORCE.unit)}",
+        Axis(f"velocity, {unit_text(SPEED.unit)}, outwards positive", log=True, signed=True),
+        Axis(zero=True),
+        points=[replace(way, words="") for way in points],
+        levels=levels,
+        share=0.22,
+    )
+
+
+def _loop(identification: Identification, title: str, why: str) -> Panel:
+    """Friction over position, with F_C of the LuGre model."""
+    pieces = [
+        (
+            LENGTH.to_display(1.0) * sliding.piece["x"][sliding.piece.sound],
+            sliding.friction[sliding.piece.sound],
+        )
+        for sliding in identification.slidings
+    ]
+    levels = []
+    if isinstance(identification.lugre, LuGreFit) and "coulomb" in identification.lugre.parameters:
+        values = identification.lugre.values
+        levels = [
+            Level(
+                way * values["coulomb"] + values.get("offset", 0.0),
+                "±F_C of the LuGre model",
+                style=_OTHER,
+            )
+            for way in (1, -1)
+        ]
+    return Panel(
+        title,
+        Axis(f"position, {unit_text(LENGTH.unit)}"),
+        Axis(zero=True),
+        curves=[Curve("", *joined(pieces), weight="thin")],
+        levels=levels,
+        note=why,
+    )
 
 
 # ---- secant damping ----
 
 
-def _damping_column(ink: Ink, box: Box, found: Identification) -> None:
+def _damping(identification: Identification) -> list[Panel]:
     """Secant damping: a map over speed and pressure, or curves above what they leave."""
-    left, top, width, tall = box
-    title = "Secant damping F/v, kN·s/m"
-    usable = [one for one in found.points if one.damping > 0]
+    usable = [point for point in identification.points if point.damping > 0]
     if not usable:
         why = "No point of steady sliding with friction against motion: no secant damping."
-        empty(ink, (left, top, width, tall), title, why)
-        return
+        return [Panel(DAMPING, note=why)]
     if pressure_levels(usable):
-        map_panel(ink, (left, top + 3.4, width - 13.0, tall - 3.4), title, usable, found.stribeck)
-        return
-    fits = {name: fit for name, fit in found.fits.items() if isinstance(fit, Fit)}
-    ink.text(left - 1.4, top - 6.2, title, size=7.0, bold=True)
+        return [_map(usable, identification.stribeck)]
+    fits = {name: fit for name, fit in identification.fits.items() if isinstance(fit, Fit)}
+    why = ""
     if not fits:
-        why = sentence(f"no fit: {next(iter(found.fits.values()), 'none was tried')}")
-        left, top, width, tall = reason(ink, (left, top - 1.0, width, tall + 1.0), why)
-        top, tall = top + 1.0, tall - 1.0
-    names = [(_NAMES.get(name, name), FIT_STYLES.get(name, _LUGRE)) for name in fits]
-    ways(ink, left, top - 2.2, found.points)
-    top, tall = top + 3.4, tall - 3.4
-    legend(ink, left + width, top - 2.4, names)
-    residual = max(0.22 * tall, 9.0) if fits else 0.0
-    upper = (left, top, width, tall - residual - (6.5 if fits else 0.0))
-    across = log_range([SPEED.to_display(one.speed) for one in usable])
-    _damping_panel(ink, upper, usable, fits, across)
-    if fits:
-        _ratio_panel(ink, (left, top + tall - residual, width, residual), usable, fits, across)
-
-
-def _damping_panel(
-    ink: Ink, box: Box, points: Sequence[Point], fits: dict[str, Fit], across: tuple[float, float]
-) -> None:
-    """Points with their bars and the fits over speed, both logarithmic."""
-    values = [one.damping / 1e3 for one in points]
-    axes = Axes(ink, box, across, log_range(values))
-    axes.frame_at(
-        "",
-        "" if fits else "speed, mm/s",
-        _log_ticks(axes),
-        log_ticks(*axes.y_range),
-        upright=True,
+        why = sentence(f"no fit: {next(iter(identification.fits.values()), 'none was tried')}")
+    label = f"speed, {unit_text(SPEED.unit)}"
+    above = Panel(
+        DAMPING,
+        Axis("" if fits else label, log=True),
+        Axis(log=True),
+        curves=[_fit_curve(name, fit, usable) for name, fit in fits.items()],
+        points=measured(usable, speed, lambda p: (p.damping / 1e3, p.error / p.speed / 1e3)),
+        note=why,
+        share=0.78,
     )
-    lowest, highest = (f(one.speed for one in points) for f in (min, max))
-    speeds = np.geomspace(lowest, highest, 90)
-    for name, fit in fits.items():
-        damping = np.asarray(fit.predict(speeds)) / 1e3
-        drawn = [(math.log10(1e3 * v), math.log10(b)) for v, b in zip(speeds, damping, strict=True)
-                 if b > 0 and math.isfinite(b)]  # fmt: skip
-        if len(drawn) > 1:
-            xs, ys = zip(*drawn, strict=True)
-            ink.path(axes.clipped(xs, ys), **FIT_STYLES.get(name, _LUGRE))
-    for one in points:
-        half = SURE * one.error / one.speed
-        low, high = (max(one.damping + s * half, 1e-12) / 1e3 for s in (-1, 1))
-        x = math.log10(SPEED.to_display(one.speed))
-        style = OUT if one.velocity > 0 else IN
-        error_bar(axes, x, math.log10(low), math.log10(high), style["color"])
-        dot(axes, x, math.log10(one.damping / 1e3), **style)
+    if not fits:
+        return [above]
+    ratios = [_ratios(name, fit, usable) for name, fit in fits.items()]
+    x, y = Axis(label, log=True), Axis(zero=True)
+    return [above, Panel("Residual, % of the fit", x, y, points=ratios, share=0.22)]
 
 
-def _log_ticks(axes: Axes) -> Sequence[tuple[float, str]]:
-    """Ticks of a logarithmic x axis that have room."""
-    found = log_ticks(*axes.x_range)
-    return spaced([(v, w, int(abs(v - round(v)) > 1e-9)) for v, w in found], axes)
+def _fit_curve(name: str, fit: Fit, points: Sequence[Point]) -> Curve:
+    low, high = (f(point.speed for point in points) for f in (min, max))
+    speeds = np.geomspace(low, high, 90)
+    damping = np.asarray(fit.predict(speeds)) / 1e3
+    shown = SPEED.to_display(1.0) * speeds
+    return Curve(FITS.get(name, name), shown, damping, style=STYLES.get(name, _OTHER))
 
 
-def _ratio_panel(
-    ink: Ink, box: Box, points: Sequence[Point], fits: dict[str, Fit], across: tuple[float, float]
-) -> None:
+def _ratios(name: str, fit: Fit, points: Sequence[Point]) -> Points:
     """Measured over fitted damping less one, per cent."""
-    rows = []
-    for name, fit in fits.items():
-        fitted_ = np.asarray(fit.predict(np.array([one.speed for one in points])))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = 100 * (np.array([one.damping for one in points]) / fitted_ - 1)
-        rows.append((name, [float(r) for r in ratio]))
-    sizes = [abs(r) for _, one in rows for r in one if math.isfinite(r)]
-    top = 1.2 * max([*sizes, 1e-3])
-    axes = Axes(ink, box, across, (-top, top))
-    marks = even_ticks(-top, top, 2)
-    axes.frame_at("", "speed, mm/s", _log_ticks(axes), marks, upright=True)
-    axes.ink.line((box[0], axes.y(0.0)), (box[0] + box[2], axes.y(0.0)), **_ZERO)
-    ink.text(box[0] - 1.4, box[1] - 2.4, "Residual, % of the fit", size=6.5, bold=True)
-    for name, one in rows:
-        color = FIT_STYLES.get(name, _LUGRE)["stroke"]
-        for point, value in zip(points, one, strict=True):
-            x = math.log10(SPEED.to_display(point.speed))
-            if math.isfinite(value):
-                _mark(axes, x, value, color, round_=name == "power_law")
+    predicted = np.asarray(fit.predict(np.array([point.speed for point in points])))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = 100 * (np.array([point.damping for point in points]) / predicted - 1)
+    speeds = [speed(point) for point in points]
+    return Points("", speeds, ratio, style=STYLES.get(name, _OTHER), small=True)
 
 
-def _mark(axes: Axes, x: float, y: float, color: str, *, round_: bool) -> None:
-    """A small filled circle, or a cross."""
-    at, level = axes.x(x), axes.y(y)
-    if round_:
-        axes.ink.circle(at, level, 0.6, fill=color, stroke=None)
-        return
-    for side in (-0.7, 0.7):
-        axes.ink.line((at - 0.7, level - side), (at + 0.7, level + side), pen=0.25, stroke=color)
+# ---- map ----
+
+
+def pressure_levels(points: Sequence[Point]) -> list[list[Point]]:
+    """Points one way by level of pressure, where two levels or more hold three speeds; else none.
+
+    Both ways differ in pressure without a load already: that alone makes no map.
+    """
+    for way in (1, -1):
+        here = [point for point in points if way * point.velocity > 0]
+        full = [group for group in by_pressure(here) if _speeds(group) >= LEAST_SPEEDS]
+        if len(full) > 1 and _overlap(full):
+            return full
+    return []
+
+
+def _speeds(group: Sequence[Point]) -> int:
+    return len({round(10 * math.log(point.speed)) for point in group})
+
+
+def _overlap(groups: Sequence[Sequence[Point]]) -> bool:
+    """Whether all levels share a range of speeds: else speed alone makes the pressure."""
+    low = max(min(point.speed for point in group) for group in groups)
+    high = min(max(point.speed for point in group) for group in groups)
+    return high > 1.5 * low
+
+
+def _map(points: Sequence[Point], fit: StribeckFit | str) -> Panel:
+    """Points over speed and pressure, shaded by their damping, on the Stribeck curve's surface."""
+    speeds = [speed(point) for point in points]
+    pressures = [PRESSURE.to_display(point.pressure) for point in points]
+    surface = Surface((), (), np.empty((0, 0)))
+    words = f"upwards: pressure, {unit_text(PRESSURE.unit)}; circles: measured"
+    across, upwards = log_range(speeds), even_range(pressures)
+    if isinstance(fit, StribeckFit):
+        xs, ys = np.logspace(*across, 40), np.linspace(*upwards, 24)
+        moving = xs / SPEED.to_display(1.0)
+        table = fit.predict(moving[None, :], ys[:, None] / PRESSURE.to_display(1.0)) / moving
+        surface = Surface(xs, ys, np.broadcast_to(np.asarray(table) / 1e3, (24, 40)))
+        words += "; bands: Stribeck curve, outwards"
+    low, high = (10.0**end for end in across)
+    return Panel(
+        DAMPING,
+        Axis(f"speed, {unit_text(SPEED.unit)}", log=True, range=(low, high)),
+        Axis(range=upwards),
+        points=[Points("", speeds, pressures, shades=[point.damping / 1e3 for point in points])],
+        surface=surface,
+        note=words,
+    )

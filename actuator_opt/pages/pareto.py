@@ -11,12 +11,11 @@ from ..evaluation.reserve import count_words
 from ..optimisation.front.even import Gap
 from ..optimisation.pareto_result import ParetoFront, Wish
 from ..rendering import text
-from ..rendering.axes import Axes
+from ..rendering.axes import Axes, even_ticks
 from ..rendering.blocks import Block, Column, Notes, Page, State, Table, Tile, Verdict, short, tile
 from ..rendering.ink import BLUE, GREY, PALE, RED, WHITE, Ink, text_width
 from ..rendering.series import Series, heading
 from ..rendering.text import trimmed, unit_text, value_text
-from .identification_axes import even_ticks
 from .report import doubts
 
 SHOWN, FEWER = 21, 17

@@ -23,7 +23,7 @@ from ..evaluation.grooves import Groove, grooves as cut_grooves
 from ..evaluation.rings import Place, Ring
 from ..evaluation.values import Values
 from ..rendering import contours
-from ..rendering.axes import Axes, fitted, legend, ticks
+from ..rendering.axes import Axes, dot, fitted, legend, level_ticks, ticks
 from ..rendering.blocks import clean
 from ..rendering.contours import bands, levels, scale, shades
 from ..rendering.ink import (
@@ -44,7 +44,7 @@ from ..rendering.text import AT_LEAST, AT_MOST, bars, degrees, number, speed_wor
 from ..seals.outline import Shape, box
 from ..seals.seal_type import Room
 from ..studies.seal import FilmMap, RingPoint, SealStudy, SqueezeRow
-from .dynamics_figures import STYLES, dot, inside, level_ticks, logs
+from .dynamics_figures import STYLES, inside, logs
 from .section import OUTLINE, THIN, choose_scale, scale_bar
 from .wall_figures import GREEN, OCHRE
 

@@ -9,10 +9,8 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from ..evaluation.result import StrokeCurve
-from ..rendering.axes import Axes
+from ..rendering.axes import COLOURS, DASHES, Axes, even_range, even_ticks
 from ..rendering.ink import GREY, RED, Ink, spread_within
-from .identification_axes import even_range, even_ticks
-from .simulation_axes import COLOURS, DASHES
 
 MOST = 6
 """Most curves (a choice: more are hard to distinguish)."""

@@ -1,4 +1,4 @@
-"""Figures of the report as ink: stiffness over the stroke with its compliance contributions.
+"""Axes of figures: ranges, ticks, frames, and curves with their names.
 
 Readable in black and white: areas differ in lightness, lines in dash, and every curve carries
 its own label.
@@ -7,11 +7,16 @@ its own label.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from typing import Any, TypeAlias
 
-from .ink import BLUE, GREY, PALE, RED, Ink, Point, text_width
-from .text import MINUS, number, trimmed
+import numpy as np
+
+from ..base.numeric import Array
+from .heights import wrap
+from .ink import BLACK, BLUE, GREEN, GREY, OCHRE, PALE, RED, WHITE, Ink, Point, text_width
+from .text import MINUS, SUPERSCRIPTS, fixed, number, trimmed
 
 AREAS = (
     "#0b3c5d", "#9ec3da", "#d5e6f0", "#4f86a8", "#f0e2b6", "#b98b3e",
@@ -20,6 +25,25 @@ AREAS = (
 """Fills of stacked areas: distinct in hue for colour-blind eyes, in lightness on a grey print."""
 Ticks: TypeAlias = Sequence[tuple[float, str]]
 """Places on an axis with what is written there."""
+Box: TypeAlias = tuple[float, float, float, float]
+"""Left, top, width and height on the paper [mm]."""
+THINNED = 640
+"""Values of a thinned curve (a choice: two per 0.3 mm of paper)."""
+COLOURS = (BLUE, OCHRE, GREEN, "#7a5a8c", RED, "#4f86a8", BLACK, "#b98b3e")
+DASHES: tuple[tuple[float, ...], ...] = (
+    (), (1.6, 0.8), (2.4, 0.7, 0.4, 0.7), (0.8, 0.5), (3.2, 0.8), (0.4, 0.5),
+)  # fmt: skip
+"""Colours and dashes of curves."""
+ZERO: dict[str, Any] = {"stroke": GREY, "pen": 0.13}
+"""Ink of a line at zero."""
+SIZE = 6.2
+"""Type of the names of curves [pt]."""
+_DENSE = 8
+"""Values of a thinned curve per mm (a choice: four pairs, finer than the pen)."""
+_MOST_JUMPS = 500
+"""Most instants with two samples that a thinned curve keeps."""
+_MILLISECONDS = 0.1
+"""Time below which an axis counts milliseconds [s]."""
 
 
 def ticks(low: float, high: float, count: int = 5) -> list[float]:
@@ -186,3 +210,246 @@ def per_cent(share: float) -> str:
         return "< 0.1 %"
     decimals = 1 if 0 < size < 0.95 else 0
     return f"{100 * share:.{decimals}f} %".replace("-", MINUS)
+
+
+def level_words(value: float) -> str:
+    """A power of ten or a step between, short enough for an axis.
+
+    >>> level_words(0.01), level_words(2000.0), level_words(1e5), level_words(5e-7)
+    ('0.01', '2000', '10⁵', '5×10⁻⁷')
+    """
+    if 1e-3 < value < 9999:
+        return trimmed(value)
+    power = math.floor(math.log10(value) + 1e-9)
+    step = round(value / 10.0**power)
+    raised = f"10{str(power).translate(SUPERSCRIPTS)}"
+    return raised if step == 1 else f"{step}×{raised}"
+
+
+def level_ticks(low: float, high: float) -> Ticks:
+    """Ticks of a logarithmic axis (log10): decades, or 1, 2, 5 where there are few of them.
+
+    >>> level_ticks(0.0, 0.8)
+    [(0.0, '1'), (0.3010299956639812, '2'), (0.6989700043360189, '5')]
+    """
+    powers = range(math.floor(low), math.ceil(high) + 1)
+    every = max(1, math.ceil((high - low) / 7))
+    steps = (1, 2, 5) if high - low < 2.2 else (1,)
+    found = [(step, power) for power in powers for step in steps if power % every == 0]
+    places = [(math.log10(step) + power, step * 10.0**power) for step, power in found]
+    return [(at, level_words(v)) for at, v in places if low - 1e-9 <= at <= high + 1e-9]
+
+
+def dot(axes: Axes, x: float, y: float, color: str = BLUE, fill: str = WHITE) -> None:
+    """A value at one place."""
+    axes.ink.circle(axes.x(x), axes.y(y), 0.75, fill=fill, stroke=color, pen=0.3)
+
+
+def even_ticks(low: float, high: float, count: int) -> Ticks:
+    """Round ticks with as many decimals as their step needs.
+
+    >>> even_ticks(54.91, 55.09, 3)
+    [(54.95, '54.95'), (55.0, '55.00'), (55.05, '55.05')]
+    """
+    values = ticks(low, high, count)
+    while len(values) < 2 and count < 9:  # one tick tells no scale
+        count += 1
+        values = ticks(low, high, count)
+    step = values[1] - values[0] if len(values) > 1 else abs(high) or 1.0
+    places = max(0, min(9, -math.floor(math.log10(step) + 1e-9)))
+    if any(abs(round(v, places) - v) > 1e-6 * step for v in values):
+        places += 1
+    return [(v, fixed(v, places) if places else trimmed(v, 7)) for v in values]
+
+
+def spaced(found: Iterable[tuple[float, str, int]], axes: Axes) -> Ticks:
+    """Ticks of an x axis (place, words, rank) whose words do not touch; the least rank stays."""
+    kept: list[tuple[float, str]] = []
+    for value, words, _ in sorted(found, key=lambda one: (one[2], abs(one[0]))):
+        half = text_width(words, 6.5) / 2
+        x = axes.x(value)
+        if all(abs(x - axes.x(v)) > half + text_width(w, 6.5) / 2 + 1.0 for v, w in kept):
+            kept.append((value, words))
+    return sorted(kept)
+
+
+def log_ticks(low: float, high: float) -> Ticks:
+    """Ticks of a logarithmic axis (log10): as `level_ticks`, or even ones where those are few.
+
+    >>> log_ticks(0.5, 0.9)
+    [(0.6020599913279624, '4'), (0.7781512503836436, '6')]
+    """
+    found = level_ticks(low, high)
+    if len(found) > 1:
+        return found
+    values = even_ticks(10.0**low, 10.0**high, 3)
+    return [(math.log10(v), words) for v, words in values if v > 0]
+
+
+def log_range(values: Sequence[float], least: float = 0.5) -> tuple[float, float]:
+    """Range of a logarithmic axis (log10), at least `least` decades."""
+    low, high = math.log10(min(values)), math.log10(max(values))
+    spare = max(0.06 * (high - low), (least - (high - low)) / 2, 0.04)
+    return low - spare, high + spare
+
+
+def even_range(values: Sequence[float], *, zero: bool = False) -> tuple[float, float]:
+    """Range of a straight axis with a little room; never empty."""
+    known = [v for v in values if math.isfinite(v)] or [0.0]
+    low, high = min(known), max(known)
+    if zero:
+        low, high = min(low, 0.0), max(high, 0.0)
+    spare = 0.06 * (high - low)
+    if spare <= 1e-9 * max(abs(low), abs(high), 1e-12):
+        spare = 0.05 * abs(high) or 1.0
+    flat = low == high
+    below = 0.0 if zero and low == 0 and not (flat and high < 0) else spare
+    above = 0.0 if zero and high == 0 and not flat else spare
+    return low - below, high + above
+
+
+def error_bar(axes: Axes, x: float, low: float, high: float, color: str) -> None:
+    """A bar from low to high, cut at the frame, with feet where it ends inside."""
+    bottom, top = axes.y_range
+    if high < bottom or low > top:
+        return
+    at = axes.x(x)
+    axes.ink.line(
+        (at, axes.y(max(low, bottom))), (at, axes.y(min(high, top))), pen=0.2, stroke=color
+    )
+    for level in (low, high):
+        if bottom <= level <= top:
+            y = axes.y(level)
+            axes.ink.line((at - 0.7, y), (at + 0.7, y), pen=0.2, stroke=color)
+
+
+def reason(ink: Ink, box: Box, words: str) -> Box:
+    """Why something is missing, above a frame; what is left of its box."""
+    lines = wrap(words, box[2], 6.2)
+    for k, line in enumerate(lines):
+        ink.text(box[0], box[1] - 1.0 + 2.9 * k, line, size=6.2, color=GREY)
+    used = 2.9 * len(lines) + 1.0
+    return box[0], box[1] + used, box[2], max(box[3] - used, 6.0)
+
+
+def empty(ink: Ink, box: Box, title: str, words: str) -> None:
+    """A frame that holds the reason why there is nothing in it."""
+    ink.text(box[0] - 1.4, box[1] - 3.6, title, size=7.0, bold=True)
+    ink.box(*box, stroke=PALE, pen=0.13)
+    lines = wrap(words, box[2] - 6.0, 6.5)
+    first = box[1] + box[3] / 2 - 3.1 * (len(lines) - 1) / 2
+    for k, line in enumerate(lines):
+        ink.text(box[0] + box[2] / 2, first + 3.1 * k, line, anchor="center", color=GREY)
+
+
+def band(axes: Axes, xs: Sequence[float], low: Sequence[float], high: Sequence[float]) -> None:
+    """The area between two curves, cut at the frame; nothing where a bound has no value."""
+    bottom, top = axes.y_range
+    runs: list[list[tuple[float, float, float]]] = [[]]
+    for x, below, above in zip(xs, low, high, strict=True):
+        if math.isfinite(below) and math.isfinite(above) and below < top and above > bottom:
+            runs[-1].append((x, max(below, bottom), min(above, top)))
+        elif runs[-1]:
+            runs.append([])
+    for run in runs:
+        upper = [(axes.x(x), axes.y(y)) for x, _, y in run]
+        lower = [(axes.x(x), axes.y(y)) for x, y, _ in run]
+        if len(run) > 1:
+            axes.ink.path([[*upper, *lower[::-1]]], fill="#d5e6f0", stroke=None, closed=True)
+
+
+def thinned(values: Array, most: int = THINNED) -> Array:
+    """Samples that hold the least and the greatest value of every stretch, in order.
+
+    >>> thinned(np.array([0.0, 5.0, 1.0, 2.0, -3.0, 3.0]), 4)
+    array([0, 1, 4, 5])
+    """
+    size = values.size
+    if size <= most:
+        return np.arange(size)
+    edges = np.linspace(0, size, max(most // 2, 1) + 1).round().astype(int)
+    found = {0, size - 1}
+    for first, last in pairwise(edges.tolist()):
+        found |= {first + int(np.argmin(values[first:last]))}
+        found |= {first + int(np.argmax(values[first:last]))}
+    return np.array(sorted(found))
+
+
+def time_words(span: float, words: str = "time") -> tuple[str, float]:
+    """Label of a time axis, and what is shown over seconds.
+
+    >>> time_words(5.0), time_words(0.02)
+    (('time, s', 1.0), ('time, ms', 1000.0))
+    """
+    return (f"{words}, ms", 1e3) if span < _MILLISECONDS else (f"{words}, s", 1.0)
+
+
+def steady_range(ends: Sequence[float], *, zero: bool = False) -> tuple[float, float]:
+    """`even_range`, wide enough to show a constant value as a straight line."""
+    low, high = even_range(ends, zero=zero)
+    size = max((abs(v) for v in ends), default=0.0)
+    least = 1e-6 * size if size > 1e-12 else 1.0
+    if high - low >= least:
+        return low, high
+    middle = (low + high) / 2
+    return middle - 0.05 * max(size, 1e-9), middle + 0.05 * max(size, 1e-9)
+
+
+def lines(axes: Axes, time: Array, values: Array) -> list[list[Point]]:
+    """A curve on paper, thinned, cut where it leaves the frame or has no value."""
+    inside = (time >= axes.x_range[0]) & (time <= axes.x_range[1]) & np.isfinite(values)
+    known = np.flatnonzero(inside)
+    jumps = np.flatnonzero(np.diff(time) == 0)  # two samples at an instant: an upright line
+    jumps = np.union1d(jumps, jumps + 1) if jumps.size < _MOST_JUMPS else jumps[:0]
+    drawn: list[list[Point]] = []
+    for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
+        if run.size > 1:
+            at = run[thinned(values[run], max(int(_DENSE * axes.width), 16))]
+            at = np.union1d(at, np.intersect1d(run, jumps))
+            drawn += axes.clipped([float(t) for t in time[at]], [float(v) for v in values[at]])
+    return drawn
+
+
+def time_axis(axes: Axes, words: str = "time") -> None:
+    """Ticks, numbers and the name of the time below a frame, whose range is in seconds."""
+    label, scale = time_words(axes.x_range[1] - axes.x_range[0], words)
+    x_axis(axes, label, scale)
+
+
+def x_axis(axes: Axes, label: str, scale: float = 1.0) -> None:
+    """Ticks of an x axis that shows its values times `scale`; their numbers only with a label."""
+    bottom = axes.top + axes.height
+    low, high = (scale * v for v in axes.x_range)
+    ticks = even_ticks(low, high, max(2, int(axes.width / 11)))
+    for value, number_words in spaced([(v / scale, w, 1) for v, w in ticks], axes):
+        x = axes.x(value)
+        axes.ink.line((x, bottom), (x, bottom + 1.0), pen=0.13)
+        if label:
+            axes.ink.text(x, bottom + 2.8, number_words, anchor="center")
+    if label:
+        middle = axes.left + axes.width / 2
+        axes.ink.text(middle, bottom + 6.0, label, anchor="center", color=GREY)
+
+
+def names(
+    ink: Ink, right: float, y: float, entries: Sequence[tuple[str, dict[str, Any]]], room: float
+) -> None:
+    """Names of curves in one line that ends at `right`, each after its line, cut to the room."""
+    if not entries:
+        return
+    words = [name for name, _ in entries]
+    for line, gap in ((4.0, 2.2), (2.8, 1.4)):
+        left = room + gap - len(entries) * (line + 0.8 + gap)
+        if sum(text_width(name, SIZE) for name in words) <= left:
+            break
+    while len(words) > 1 and sum(text_width(name, SIZE) for name in words) > left:
+        widest = max(range(len(words)), key=lambda k: text_width(words[k], SIZE))
+        cut = fitted(words[widest], text_width(words[widest], SIZE) - 0.5, SIZE)
+        if len(cut) < 3:
+            break
+        words[widest] = cut
+    x = right + gap - sum(text_width(name, SIZE) + line + 0.8 + gap for name in words)
+    for name, (_, style) in zip(words, entries, strict=True):
+        ink.line((x, y), (x + line, y), **style)
+        ink.text(x + line + 0.8, y, name, size=SIZE)
+        x += line + 0.8 + text_width(name, SIZE) + gap

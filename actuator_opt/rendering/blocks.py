@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 from ..base.suggest import CONTROLS
+from .chart import Chart
 from .ink import Ink
 from .text import STATUS_WORDS
 
@@ -285,7 +286,7 @@ class Pair:
     sides: Sequence[Sequence[Block]]
 
 
-Block: TypeAlias = Table | Drawing | TerminalFigure | Notes | Listing | Pair
+Block: TypeAlias = Table | Drawing | Chart | TerminalFigure | Notes | Listing | Pair
 
 
 @dataclass(frozen=True, slots=True)

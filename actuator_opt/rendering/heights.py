@@ -28,6 +28,7 @@ from .blocks import (
     Table,
     soft,
 )
+from .chart import Chart
 from .ink import text_width
 
 SHEET, TILES, FOOT, HEAD = 265.0, 23.0, 24.5, 8.2
@@ -98,6 +99,8 @@ def height(block: Block, width: float = FULL) -> float:
         return sum(HEAD + _note(x.note, width) + LINE * sum(_lines(x, width)) for x in parts)
     if isinstance(block, Drawing):
         return HEAD + _note(block.note, width) + block.ink.height + 3.0
+    if isinstance(block, Chart):
+        return HEAD + _note(block.note, width) + block.height + 3.0
     if isinstance(block, Notes):
         if block.on == "terminal":
             return 0.0

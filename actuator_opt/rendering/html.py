@@ -36,6 +36,8 @@ from .blocks import (
     Tile,
     clean,
 )
+from .chart import Chart
+from .chart_ink import drawn
 from .heights import cells_of, joined
 from .ink import POINT, Ink, PathMark, TextMark
 from .origin import Origin
@@ -185,6 +187,8 @@ def _block(block: Block) -> list[str]:
         return [] if block.on == "terminal" else _table(block)
     if isinstance(block, Drawing):
         return [_head(block.title), svg(block.ink, block.title), _note(block.note)]
+    if isinstance(block, Chart):
+        return [_head(block.title), svg(drawn(block), block.title), _note(block.note)]
     if isinstance(block, Notes):
         if block.on == "terminal":
             return []

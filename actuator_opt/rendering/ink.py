@@ -48,7 +48,7 @@ POINT = 25.4 / 72
 """Millimetres per typographic point."""
 
 BLACK, GREY, PALE, WHITE = "#16202a", "#5b6670", "#c9d0d6", "#ffffff"
-BLUE, RED = "#0b4f83", "#a8321a"
+BLUE, RED, OCHRE, GREEN = "#0b4f83", "#a8321a", "#9a6a12", "#00654a"
 
 _NARROW = {
     ".": 0.318,

@@ -40,7 +40,10 @@ from .blocks import (
     short,
     soft,
 )
+from .chart import Chart
+from .chart_ink import drawn
 from .heights import FULL, HALF, cells_of, fitting, room
+from .ink import Ink
 from .origin import Origin
 
 PIXELS_PER_INCH = 150.0
@@ -178,8 +181,9 @@ def _block(block: Block) -> dict[str, object] | None:
     if isinstance(block, Table):
         return None if block.on == "terminal" else _table(block)
     if isinstance(block, Drawing):
-        ink, note = block.ink.data(), clean(block.note)
-        return {"kind": "figure", "title": clean(block.title), "ink": ink, "note": note}
+        return _figure(block.title, block.ink, block.note)
+    if isinstance(block, Chart):
+        return _figure(block.title, drawn(block), block.note)
     if isinstance(block, Notes):
         items = [soft(item) for item in block.items]
         data: dict[str, object] = {
@@ -199,6 +203,10 @@ def _block(block: Block) -> dict[str, object] | None:
             "columns": 1 if wide else 2,
         }
     return None
+
+
+def _figure(title: str, ink: Ink, note: str) -> dict[str, object]:
+    return {"kind": "figure", "title": clean(title), "ink": ink.data(), "note": clean(note)}
 
 
 def _table(table: Table) -> dict[str, object]:

@@ -22,12 +22,14 @@ from .paper import ReportFile
 class Series:
     """A column: its head with the unit, and its values (numbers, text, None where missing).
 
-    `digits` are the significant digits of its numbers; whole numbers have all of theirs.
+    `digits` are the significant digits of its numbers; whole numbers have all of theirs. `form`,
+    where given, is their format instead: ``"5f"`` are five decimals.
     """
 
     head: str
     values: Sequence[Any]
     digits: int = 7
+    form: str = ""
 
 
 def heading(name: str, unit: str) -> str:
@@ -44,7 +46,10 @@ def csv_text(columns: Sequence[Series]) -> str:
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow([column.head for column in columns])
-    texts = [[_cell(value, column.digits) for value in column.values] for column in columns]
+    texts = [
+        [_cell(value, column.form or f"{column.digits}g") for value in column.values]
+        for column in columns
+    ]
     writer.writerows(zip(*texts, strict=True))
     return stream.getvalue()
 
@@ -56,14 +61,14 @@ def write_csv(columns: Sequence[Series], path: Path) -> ReportFile:
     return ReportFile(path, hashlib.sha256(text.encode()).hexdigest(), 1)
 
 
-def _cell(value: Any, digits: int) -> str:
+def _cell(value: Any, form: str) -> str:
     if value is None:
         return ""
     if isinstance(value, str):
         return value
     if isinstance(value, bool) or (float(value).is_integer() and isinstance(value, int)):
         return str(int(value))
-    return "" if isnan(value) else f"{value:.{digits}g}"
+    return "" if isnan(value) else f"{value:.{form}}"
 
 
 # ---- files that grow by rows ----

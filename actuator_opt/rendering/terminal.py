@@ -27,6 +27,7 @@ from .blocks import (
     TerminalFigure,
     Verdict,
 )
+from .chart import Chart
 from .console import GAP, Console, Style, visible
 from .heights import cells_of, joined
 from .terminal_curve import curve
@@ -80,6 +81,9 @@ def heading(name: str, verdict: Verdict, sentence: str, console: Console) -> lis
     mark = f"{MARKS[verdict.state][0]} " if console.unicode and verdict.state else ""
     state = console.paint(console.say(mark + verdict.text.lower()), *PAINTS[verdict.state].split())
     said = [f"{console.paint(console.say(name), 'bold')}  {state}"]
+    if visible(console.say(name) + console.say(mark + verdict.text)) + 2 > console.width:
+        paint = PAINTS[verdict.state].split()
+        said = [console.wrap(name, "bold"), console.wrap(mark + verdict.text.lower(), *paint)]
     if verdict.lines:
         said.append(console.wrap("; ".join(verdict.lines), "dim"))
     if verdict.cautions:
@@ -92,7 +96,7 @@ def block_text(block: Block, console: Console) -> str:
     if isinstance(block, Pair):
         parts = [block_text(one, console) for side in block.sides for one in side]
         return "\n\n".join(part for part in parts if part)
-    if isinstance(block, Drawing):
+    if isinstance(block, (Drawing, Chart)):
         return "" if block.instead is None else block_text(block.instead, console)
     if isinstance(block, TerminalFigure):
         return _figure(block, console)

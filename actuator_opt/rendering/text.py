@@ -26,7 +26,7 @@ STATUS_WORDS = {
 }
 
 _UNITS = {"-": "", "degC": "°C", "degF": "°F", "deg": "°", "um": "µm"}
-_SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 _PRETTY = tuple(
     (re.compile(pattern), written)
     for pattern, written in (
@@ -47,6 +47,7 @@ _ASCII = str.maketrans(
         MINUS: "-",
         DASH: "-",
         NARROW: " ",
+        "\N{NO-BREAK SPACE}": " ",
         AT_LEAST: ">=",
         AT_MOST: "<=",
         "·": "*",
@@ -93,7 +94,7 @@ def number(value: float | None, digits: int = 4, *, signed: bool = False) -> str
     exponent = math.floor(math.log10(float(f"{size:.{digits - 1}e}")))
     if exponent < -3 or exponent > 6:
         mantissa, _, power = f"{size:.{digits - 1}e}".partition("e")
-        return f"{sign}{mantissa}×10{str(int(power)).translate(_SUPERSCRIPTS)}"
+        return f"{sign}{mantissa}×10{str(int(power)).translate(SUPERSCRIPTS)}"
     text = f"{size:.{max(digits - 1 - exponent, 0)}f}"
     whole, point, fraction = text.partition(".")
     if len(whole) > 4:
@@ -155,7 +156,7 @@ def pretty(words: str) -> str:
     """
     for pattern, written in _PRETTY:
         words = pattern.sub(written, words)
-    return _POWER_E.sub(lambda m: f"×10{str(int(m[1])).translate(_SUPERSCRIPTS)}", words)
+    return _POWER_E.sub(lambda m: f"×10{str(int(m[1])).translate(SUPERSCRIPTS)}", words)
 
 
 def with_unit(text: str, unit: str) -> str:

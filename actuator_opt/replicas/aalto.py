@@ -74,14 +74,14 @@ SAME = 0.1
 
 def _moduli(design: Design) -> str:
     """Young's moduli of rod and barrel; nothing for a laminate."""
-    library, found = load_library(), []
+    library, moduli = load_library(), []
     names = [design.rod.material, *(layer.material for layer in design.barrel.layup)]
     for name in names:
         known = library.get(name).numbers if name in library else {}
         modulus = {**known, **design.materials.get(name, {})}.get("youngs_modulus")
         if modulus is not None:
-            found.append(text.trimmed(float(modulus) * 1e-9))
-    return f" and E {SLASH.join(dict.fromkeys(found))} GPa" if found else ""
+            moduli.append(text.trimmed(float(modulus) * 1e-9))
+    return f" and E {SLASH.join(dict.fromkeys(moduli))} GPa" if moduli else ""
 
 
 def stiffness_note(design: Design, figures: Sequence[Theory]) -> str:
@@ -89,7 +89,7 @@ def stiffness_note(design: Design, figures: Sequence[Theory]) -> str:
     geometry = evaluated(design).geometry
     bore = design.cylinder.bore
     outer = bore + 2 * sum(layer.thickness for layer in design.barrel.layup)
-    excess = [float(np.max(one.published / one.per_chamber)) - 1 for one in figures]
+    excess = [float(np.max(theory.published / theory.per_chamber)) - 1 for theory in figures]
     ratio = float(np.squeeze(geometry.area_a / geometry.area_b))
     parts = [
         f"Rod {text.trimmed(1e3 * float(np.squeeze(geometry.rod_length)))} mm",
@@ -171,20 +171,20 @@ def _fraction(share: float) -> str:
     return percent(share)
 
 
-def _judged(one: Answer, measured: tuple[float, float]) -> str:
+def _judged(answer: Answer, measured: tuple[float, float]) -> str:
     """The largest displacement against the largest of each piston direction."""
-    if one.cavitating:
+    if answer.cavitating:
         return "into cavitation"
-    if one.range[1] < min(measured):
+    if answer.range[1] < min(measured):
         return "too little"
-    return "too much" if one.range[1] > max(measured) else "as much as measured"
+    return "too much" if answer.range[1] > max(measured) else "as much as measured"
 
 
 def _bubbles(test: StaticTest) -> str:
     """The thesis' bubbles in both readings, against the largest displacements."""
     fits, words = [], []
-    for one in test.assumptions[4:6]:
-        up, down = _judged(one.up, PAPER.most_up), _judged(one.down, PAPER.most_down)
+    for assumption in test.assumptions[4:6]:
+        up, down = _judged(assumption.up, PAPER.most_up), _judged(assumption.down, PAPER.most_down)
         fits.append((up == "as much as measured", down == "as much as measured"))
         words.append(up if up == down else f"{up} up, {down} down")
     if (True, True) in fits:
@@ -209,7 +209,7 @@ def softer(loaded: tuple[float, float]) -> float:
 def _pressures(test: StaticTest) -> str:
     """Which chamber the measured pressures call the softer."""
     ours = test.assumptions[1]
-    even = [softer((one.pressure_a, one.pressure_b)) for one in (ours.up, ours.down)]
+    even = [softer((answer.pressure_a, answer.pressure_b)) for answer in (ours.up, ours.down)]
     measured = [softer(PAPER.loaded_up), softer(PAPER.loaded_down)]
     words = (
         f"The pressures say where to look: at {text.trimmed(1e3 * test.place)} mm the rod chamber "
@@ -255,7 +255,7 @@ OPENINGS_SAY = 1.02
 
 def shares(test: DynamicTest, responses: Sequence[Response]) -> Array:
     """Dynamic over static stiffness: (openings, tested frequencies)."""
-    return np.array([np.abs(one.tested) / test.static for one in responses])
+    return np.array([np.abs(response.tested) / test.static for response in responses])
 
 
 def _range(values: Array) -> str:
@@ -268,8 +268,8 @@ def _times(values: Array) -> str:
     return f"{text.trimmed(float(values[0]), 3)} to {text.trimmed(float(values[-1]), 3)} times"
 
 
-def told(share: Array) -> tuple[tuple[str, bool, Array], ...]:
-    """What the thesis tells of the stiffness, whether these shares do it, and those concerned."""
+def judged_statements(share: Array) -> tuple[tuple[str, bool, Array], ...]:
+    """Each statement of the thesis on the stiffness, whether the shares bear it, and those."""
     slow, twenty, above, last = share[:, :2], share[:, 2], share[:, 3], share[:, 4]
     return (
         ("soft up to 15 Hz", bool(np.all(slow < 1)), slow),
@@ -284,27 +284,29 @@ def told(share: Array) -> tuple[tuple[str, bool, Array], ...]:
 
 
 def does_it(test: DynamicTest) -> bool:
-    """Whether the valve, at every throttle and needle, does what the thesis tells, and is stable.
+    """Whether the valve bears every statement at every needle, and is stable.
 
     Sections 4.2.2, 5.2 and 5.5: soft up to 15 Hz, "more than doubled" at 20 Hz, "slightly higher"
     at 25 Hz, static at 30 Hz.
     """
     both = [*test.stated["reducing_valve"], *test.read_back["reducing_valve"]]
-    return test.peak.slowest_decay < 0 and all(holds for _, holds, _ in told(shares(test, both)))
+    return test.peak.slowest_decay < 0 and all(
+        holds for _, holds, _ in judged_statements(shares(test, both))
+    )
 
 
 def _valve(test: DynamicTest) -> str:
-    """What the valve makes of the stiffness, against what the thesis tells."""
+    """The stiffness with the valve, against the statements of the thesis."""
     both = [*test.stated["reducing_valve"], *test.read_back["reducing_valve"]]
-    found = told(shares(test, both))
-    if all(holds for _, holds, _ in found):
+    judged = judged_statements(shares(test, both))
+    if all(holds for _, holds, _ in judged):
         words = (
             "what the thesis tells of the stiffness happens: soft up to 15 Hz, more than twice the "
             "static stiffness at 20 Hz, a little above it at 25, the static one at 30 Hz."
         )
     else:
-        met = [name for name, holds, _ in found if holds]
-        missed = [f"not {name} ({_range(share)})" for name, holds, share in found if not holds]
+        met = [name for name, holds, _ in judged if holds]
+        missed = [f"not {name} ({_range(share)})" for name, holds, share in judged if not holds]
         part = f"happens only in part: {listed(met)}" if met else "does not happen"
         words = f"what the thesis tells of the stiffness {part}."
         words += f" With these numbers the cylinder is {listed(missed)}."
@@ -324,7 +326,7 @@ def _moves(share: Array, *, more: str, less: str, none: str) -> tuple[str, bool]
 
 
 def throttle_explained(test: DynamicTest) -> bool:
-    """Whether the needle behind the measured drop does what the thesis tells of throttling.
+    """Whether the needle behind the measured drop throttles as the thesis states.
 
     It stiffens at 10 Hz, lowers the peak and is "inconsequential" at 30 Hz.
     """
@@ -355,23 +357,23 @@ def _throttle(test: DynamicTest) -> str:
     )
 
 
-def _alike(one: Neighbour) -> bool:
+def _alike(neighbour: Neighbour) -> bool:
     """Whether a neighbour does much the same: stable, soft, about twice at 20 Hz, then static."""
     return bool(
-        one.slowest_decay < 0
-        and np.all(one.ratio[:2] < 0.95)
-        and one.ratio[2] > 1.85
-        and abs(one.ratio[4] - 1) < 0.1
+        neighbour.slowest_decay < 0
+        and np.all(neighbour.ratio[:2] < 0.95)
+        and neighbour.ratio[2] > 1.85
+        and abs(neighbour.ratio[4] - 1) < 0.1
     )
 
 
 def _neighbours(test: DynamicTest) -> str:
     """Whether the answer hangs on the valve's exact numbers, and on its opening."""
-    frequencies = [one.valve.natural_frequency for one in test.neighbours]
-    dampings = [one.valve.damping_ratio for one in test.neighbours]
+    frequencies = [neighbour.valve.natural_frequency for neighbour in test.neighbours]
+    dampings = [neighbour.valve.damping_ratio for neighbour in test.neighbours]
     open_needle = shares(test, test.stated["reducing_valve"])[0]
     ours = _alike(Neighbour(test.valve, open_needle, test.peak.slowest_decay))
-    alike = [_alike(one) for one in test.neighbours]
+    alike = [_alike(neighbour) for neighbour in test.neighbours]
     verdict = "do not all do the same"
     if ours and all(alike):
         verdict = "do much the same"
@@ -406,12 +408,12 @@ def _closed(test: DynamicTest) -> str:
 
 def _constant(test: DynamicTest) -> str:
     over = [
-        np.abs(one.over)
-        for found in (test.stated, test.read_back)
-        for one in found["constant_pressure"]
+        np.abs(response.over)
+        for responses in (test.stated, test.read_back)
+        for response in responses["constant_pressure"]
     ]
-    highest = max(float(one.max()) for one in over) / test.static
-    rises = all(bool(np.all(np.diff(one) > 0)) for one in over)
+    highest = max(float(stiffness.max()) for stiffness in over) / test.static
+    rises = all(bool(np.all(np.diff(stiffness) > 0)) for stiffness in over)
     if rises and highest < 1:
         return (
             "With constant pressure nothing peaks: the cylinder is soft at every frequency and the "
@@ -527,15 +529,15 @@ def _kn_per_mm(values: Array) -> str:
     return SLASH.join(text.number(float(v) * 1e-6) for v in values)
 
 
-def _row(name: str, one: Theory) -> tuple[str, ...]:
-    place, weakest = one.weakest
+def _row(name: str, theory: Theory) -> tuple[str, ...]:
+    place, weakest = theory.weakest
     minimum = f"{text.number(weakest * 1e-6)} at {text.trimmed(1e3 * place)} mm"
     return (
         name,
-        _kn_per_mm(one.published_at),
+        _kn_per_mm(theory.published_at),
         minimum,
-        _kn_per_mm(one.per_chamber_at),
-        _kn_per_mm(one.stretched_at),
+        _kn_per_mm(theory.per_chamber_at),
+        _kn_per_mm(theory.stretched_at),
     )
 
 
@@ -551,7 +553,7 @@ def stiffness_table(evaluation: Evaluation) -> list[Block]:
     with_air = PAPER.bulk_modulus_with_air
     figure_29 = total(design, pipes, PAPER.bulk_modulus)
     figure_32 = total(design, design.lines, with_air)
-    rows = [_row(f"figure 5, oil alone, {name}", one) for name, one in oil]
+    rows = [_row(f"figure 5, oil alone, {name}", theory) for name, theory in oil]
     rows += [
         _row("figure 29, eq. 37", figure_29),
         _row(
@@ -581,26 +583,26 @@ def stiffness_table(evaluation: Evaluation) -> list[Block]:
     return [text_table("Aalto thesis: stiffness along the stroke", columns, rows, note), drawn]
 
 
-def _moved(one: Answer) -> str:
-    if not np.isfinite(one.range[0]):
+def _moved(answer: Answer) -> str:
+    if not np.isfinite(answer.range[0]):
         return "none: cavitates"
-    words = text.DASH.join(f"{1e3 * value:.2f}" for value in one.range)
-    return words + (f" ({one.cavitating} of 22 cavitate)" if one.cavitating else "")
+    words = text.DASH.join(f"{1e3 * value:.2f}" for value in answer.range)
+    return words + (f" ({answer.cavitating} of 22 cavitate)" if answer.cavitating else "")
 
 
-def _held(one: Answer) -> str:
-    if not np.isfinite(one.pressure_a):
+def _chamber_pressures(answer: Answer) -> str:
+    if not np.isfinite(answer.pressure_a):
         return "none: cavitates"
-    return SLASH.join(text.trimmed(p * 1e-5, 3) for p in (one.pressure_a, one.pressure_b))
+    return SLASH.join(text.trimmed(p * 1e-5, 3) for p in (answer.pressure_a, answer.pressure_b))
 
 
 def _measured(moved: tuple[float, float]) -> str:
     return text.DASH.join(f"{1e3 * value:.2f}" for value in moved)
 
 
-def _carried(found: Bypass, load: float) -> str:
-    beside = f", {percent(found.share)} by-pass" if found.share >= 0 else ": more than all"
-    return f"{text.trimmed(found.force / 1e3, 3)} of {text.trimmed(load / 1e3)} kN{beside}"
+def _carried(bypass: Bypass, load: float) -> str:
+    beside = f", {percent(bypass.share)} by-pass" if bypass.share >= 0 else ": more than all"
+    return f"{text.trimmed(bypass.force / 1e3, 3)} of {text.trimmed(load / 1e3)} kN{beside}"
 
 
 def static_table(evaluation: Evaluation) -> list[Block]:
@@ -617,8 +619,14 @@ def static_table(evaluation: Evaluation) -> list[Block]:
         )
     ]
     rows += [
-        (one.name, _moved(one.up), _moved(one.down), _held(one.up), _held(one.down))
-        for one in test.assumptions
+        (
+            assumption.name,
+            _moved(assumption.up),
+            _moved(assumption.down),
+            _chamber_pressures(assumption.up),
+            _chamber_pressures(assumption.down),
+        )
+        for assumption in test.assumptions
     ]
     rows += [
         (
@@ -658,14 +666,19 @@ def dynamic_table(evaluation: Evaluation) -> list[Block]:
     """Dynamic stiffness at the tested frequencies for every throttle and line end."""
     test = dynamic_test(evaluation.design)
     rows: list[tuple[str, ...]] = [("closed", text.DASH, "100 %", *_five(test.closed.tested))]
-    for needle, found in (
+    for needle, by_end in (
         (area_text(test.area), test.stated),
         (area_text(test.needle.area), test.read_back),
     ):
-        for end, responses in found.items():
+        for end, responses in by_end.items():
             rows += [
-                (_ENDS[end], needle, f"{100 * (1 - one.opening):.0f} %", *_five(one.tested))
-                for one in responses
+                (
+                    _ENDS[end],
+                    needle,
+                    f"{100 * (1 - response.opening):.0f} %",
+                    *_five(response.tested),
+                )
+                for response in responses
             ]
     drawn = Drawing(
         "Aalto thesis: dynamic stiffness over frequency",

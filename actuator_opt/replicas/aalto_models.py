@@ -130,8 +130,8 @@ def temperature_of(design: Design, viscosity: float) -> float:
     v = subject.values()
     stock = MaterialValues(v, subject.materials, subject.factors, subject.constants)
     warm = np.linspace(253.15, 393.15, 1401)
-    found = np.log(np.ravel(oil.kinematic_viscosity(v, design.fluid, stock, warm)))
-    return float(np.interp(-np.log(viscosity), -found, warm, left=np.nan, right=np.nan))
+    viscosities = np.log(np.ravel(oil.kinematic_viscosity(v, design.fluid, stock, warm)))
+    return float(np.interp(-np.log(viscosity), -viscosities, warm, left=np.nan, right=np.nan))
 
 
 def first(values: Array) -> Array:
@@ -256,10 +256,10 @@ class Answer:
     @property
     def range(self) -> tuple[float, float]:
         """Least and largest displacement over the positions that have one; NaN without any."""
-        found = self.displacement[np.isfinite(self.displacement)]
-        if not found.size:
+        known = self.displacement[np.isfinite(self.displacement)]
+        if not known.size:
             return float("nan"), float("nan")
-        return float(found.min()), float(found.max())
+        return float(known.min()), float(known.max())
 
     @property
     def cavitating(self) -> int:
@@ -333,12 +333,12 @@ class ClosedCylinder:
 
     def answer(self, load: float, air: Air, *, share: float = 0.0) -> Answer:
         """Displacement behind the load cell; `share` of the load passes the chambers by."""
-        found = self.step((1 - share) * load, air)
-        moved = np.abs(found.displacement) + abs(load) * self.flexibility
+        step = self.step((1 - share) * load, air)
+        moved = np.abs(step.displacement) + abs(load) * self.flexibility
         return Answer(
             displacement=np.broadcast_to(moved, self.oil.a.shape)[:-1],
-            pressure_a=float(found.pressure_a[-1]),
-            pressure_b=float(found.pressure_b[-1]),
+            pressure_a=float(step.pressure_a[-1]),
+            pressure_b=float(step.pressure_b[-1]),
         )
 
     def air_needed(self, load: float, most: float, *, share: float) -> float:
@@ -571,11 +571,11 @@ class Bench:
         self, end: End, position: Array, frequency: Sequence[float] | Array, *, area: float
     ) -> Array:
         """Complex dynamic stiffness (frequencies, positions)."""
-        found = linear.dynamic_stiffness(
+        response = linear.dynamic_stiffness(
             model=self.model(end, position, area=area),
             frequency=np.asarray(frequency).reshape(-1, 1, 1),
         )
-        value = np.asarray(found.real + 1j * found.imaginary)
+        value = np.asarray(response.real + 1j * response.imaginary)
         return value[:, 0, :]
 
     def response(self, end: End, opening: float, area: float) -> Response:
@@ -666,7 +666,7 @@ class Bench:
 
 def _neighbours(bench: Bench, areas: Sequence[float]) -> tuple[Neighbour, ...]:
     """Valves a little slower, faster and more damped."""
-    ours, found = bench.valve, []
+    ours, neighbours = bench.valve, []
     slow = max(ours.natural_frequency - NEAR, ours.natural_frequency / 2)
     for frequency in (slow, ours.natural_frequency + NEAR):
         for damping in MORE_DAMPING:
@@ -678,10 +678,10 @@ def _neighbours(bench: Bench, areas: Sequence[float]) -> tuple[Neighbour, ...]:
             )
             other = Bench(bench.design, valve)
             shaken = other.response("reducing_valve", 1.0, bench.throttle.area).tested
-            found.append(
+            neighbours.append(
                 Neighbour(valve, np.abs(shaken) / bench.static, other.slowest_decay(areas))
             )
-    return tuple(found)
+    return tuple(neighbours)
 
 
 def dynamic_test(design: Design) -> DynamicTest:

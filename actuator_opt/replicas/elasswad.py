@@ -177,7 +177,7 @@ percent = partial(papers.percent, digits=3)
 
 def _by_case(evaluation: Evaluation, metric: str) -> str:
     """The friction of every load case, the largest first."""
-    cases = sorted(evaluation.metrics[metric].by_case.items(), key=lambda one: -one[1])
+    cases = sorted(evaluation.metrics[metric].by_case.items(), key=lambda case: -case[1])
     return "; ".join(f"{in_n(force)} ({name})" for name, force in cases) or text.DASH
 
 
@@ -504,7 +504,7 @@ def _range(values: Array, unit: str) -> str:
 
 def _record(evaluation: Evaluation) -> list[Block]:
     record = own_record(evaluation)
-    found = along(evaluation, record)
+    curves = along(evaluation, record)
     average, largest = (
         f"{in_mpa(pressure)} ({in_n(force)} by eq. 15–20)"
         for pressure, force in (
@@ -518,16 +518,16 @@ def _record(evaluation: Evaluation) -> list[Block]:
         (
             "radial expansion, largest",
             text.DASH,
-            f"{in_um(float(max(found.growth_published)))} (eq. 12)",
-            f"{in_um(float(max(found.growth_inner)))} with the inner radius; "
-            f"{in_um(float(max(found.growth_designed)))} as designed",
+            f"{in_um(float(max(curves.growth_published)))} (eq. 12)",
+            f"{in_um(float(max(curves.growth_inner)))} with the inner radius; "
+            f"{in_um(float(max(curves.growth_designed)))} as designed",
         ),
         (
             "equivalent stiffness k_eq",
             text.DASH,
-            f"{_range(found.stiffness_published, 'N/mm')} (eq. 7, 10–12)",
-            f"{_range(found.stiffness_chambers, 'kN/mm')} per chamber with the paper's numbers; "
-            f"{_range(found.stiffness_designed, 'kN/mm')} as designed",
+            f"{_range(curves.stiffness_published, 'N/mm')} (eq. 7, 10–12)",
+            f"{_range(curves.stiffness_chambers, 'kN/mm')} per chamber with the paper's numbers; "
+            f"{_range(curves.stiffness_designed, 'kN/mm')} as designed",
         ),
     )
     note = (
@@ -538,7 +538,7 @@ def _record(evaluation: Evaluation) -> list[Block]:
     )
     drawn = Drawing(
         "El Asswad 2018: k_eq and radial expansion along a record, as its figure 10",
-        record_figure(record, found),
+        record_figure(record, curves),
         "A record of our own with the pressures behind the paper's friction, not its measured "
         "one. Eq. 7 with eq. 10 follows the pressure and leaves no stiffness where there is none. "
         "Per chamber it follows the place of the piston: with the paper's numbers "

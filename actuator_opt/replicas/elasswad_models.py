@@ -378,8 +378,8 @@ def along(evaluation: Evaluation, record: Record) -> Along:
 
 def value(evaluation: Evaluation, name: str) -> float:
     """Value of a metric; NaN where it has none."""
-    found = evaluation.metrics[name].value
-    return float("nan") if found is None else found
+    number = evaluation.metrics[name].value
+    return float("nan") if number is None else number
 
 
 def properties(evaluation: Evaluation, name: str) -> Mapping[str, float]:

@@ -41,7 +41,7 @@ from .huang_models import (
     Readings,
     dry_ring,
     kind_name,
-    study,
+    study_of,
 )
 from .huang_published import PAPER, SEAL_VISCOSITY, CurveFits
 from .papers import (
@@ -102,16 +102,16 @@ STILL = 1.2
 """Factor within which a damping no longer falls at twice the speed."""
 
 
-def cylinder_table(design: Design, found: HuangStudy) -> list[Block]:
+def cylinder_table(design: Design, study: HuangStudy) -> list[Block]:
     """Figure 3: the piston cylinder of test A."""
-    mapped, damping = found.cylinder, found.cylinder.damping
+    mapped, damping = study.cylinder, study.cylinder.damping
     speed, pressure = PAPER.shown_speed, PAPER.shown_pressure
     i = int(np.argmin(np.abs(mapped.pressures - pressure)))
     j = mapped.piston.at(0.0, TYPICAL)[1]
     shown = np.interp(speed, mapped.piston.speeds, damping[i] * mapped.piston.speeds) / speed
     six = damping[int(np.argmin(np.abs(mapped.pressures - PAPER.compared))), j]
     table = float(huang_published.secant_of(HUANG_TABLE_2[-1], TYPICAL))
-    ours = found.plunger.damping[found.plunger.at(PAPER.compared, TYPICAL)]
+    ours = study.plunger.damping[study.plunger.at(PAPER.compared, TYPICAL)]
     over = float(six / table), float(six / ours)
     rows = [
         (
@@ -140,11 +140,11 @@ def cylinder_table(design: Design, found: HuangStudy) -> list[Block]:
     ]
     drawn = Drawing(
         "Huang 2017: piston cylinder, as its figure 3",
-        cylinder_figure(found),
+        cylinder_figure(study),
         "Piston and rod seals on their films, driven out; the rod chamber at return pressure. "
         "Contours over a logarithmic speed.",
     )
-    note = cylinder_note(design, found)
+    note = cylinder_note(design, study)
     return [text_table("Huang 2017: piston cylinder, test A", CLAIMS, rows, note), drawn]
 
 
@@ -154,20 +154,20 @@ def _ends(mapped: FilmMap, low: float, high: float, speed: float) -> tuple[float
     )
 
 
-def simulated_table(_: Design, found: HuangStudy) -> list[Block]:
+def simulated_table(_: Design, study: HuangStudy) -> list[Block]:
     """Figures 15 and 16: what the paper says of its simulation, by ours."""
-    rows = [*_trends(found), _asymptote(found), *_between_rows(found)]
+    rows = [*_trends(study), _asymptote(study), *_between_rows(study)]
     drawn = Drawing(
         "Huang 2017: plunger at 6, 8 and 10 MPa, as its figures 15 and 16",
-        simulated_figure(found),
+        simulated_figure(study),
     )
-    note = simulated_note(found)
+    note = simulated_note(study)
     return [text_table("Huang 2017: its simulation by ours", CLAIMS, rows, note), drawn]
 
 
-def _trends(found: HuangStudy) -> list[tuple[str, ...]]:
+def _trends(study: HuangStudy) -> list[tuple[str, ...]]:
     """Claims on the curves over speed and pressure."""
-    mapped = found.plunger
+    mapped = study.plunger
     table = np.asarray(huang_published.secant_of(HUANG_TABLE_2[-1], mapped.speeds))
     ratio = mapped.damping[mapped.at(PAPER.compared, 0.0)[0]] / table
     low, high = _ends(mapped, *PAPER.simulated, TYPICAL)
@@ -201,9 +201,9 @@ def _trends(found: HuangStudy) -> list[tuple[str, ...]]:
     ]
 
 
-def _asymptote(found: HuangStudy) -> tuple[str, ...]:
+def _asymptote(study: HuangStudy) -> tuple[str, ...]:
     """Whether B comes to a constant beyond the tested speeds."""
-    fast, viscous = found.fast.damping[0], found.fast.viscous[0]
+    fast, viscous = study.fast.damping[0], study.fast.viscous[0]
     known = np.flatnonzero(np.isfinite(fast))
     reached = min(map(huang_published.asymptote_speed, HUANG_TABLE_2))
     stated = claim("huang", "asymptote", speed=speed_text(reached))
@@ -211,7 +211,7 @@ def _asymptote(found: HuangStudy) -> tuple[str, ...]:
         return *stated, "no film", OPEN
     last, before = int(known[-1]), int(known[-2])
     ours = (
-        f"{mega(float(fast[last]))} MN·s/m at {speed_text(float(found.fast.speeds[last]))}, "
+        f"{mega(float(fast[last]))} MN·s/m at {speed_text(float(study.fast.speeds[last]))}, "
         f"{percent(float(viscous[last]))} of it oil"
     )
     fell = float(fast[last] / fast[before])
@@ -221,17 +221,17 @@ def _asymptote(found: HuangStudy) -> tuple[str, ...]:
     return *stated, ours + still, holds(fell > 1 / STILL, fell)
 
 
-def _between_rows(found: HuangStudy) -> list[tuple[str, ...]]:
+def _between_rows(study: HuangStudy) -> list[tuple[str, ...]]:
     """The pressure between two seals; nothing for one."""
-    mapped = found.plunger
+    mapped = study.plunger
     share = mapped.between / mapped.pressures[:, None]
-    beyond = found.fast.between[0] / PAPER.compared
+    beyond = study.fast.between[0] / PAPER.compared
     if not np.any(np.isfinite(share)):
         return []
     above = np.flatnonzero(beyond > 1)
-    words = "never above it at 6 MPa up to " + speed_text(float(found.fast.speeds[-1]))
+    words = "never above it at 6 MPa up to " + speed_text(float(study.fast.speeds[-1]))
     if above.size:
-        words = f"above it at 6 MPa from {speed_text(float(found.fast.speeds[above[0]]))}"
+        words = f"above it at 6 MPa from {speed_text(float(study.fast.speeds[above[0]]))}"
     return [
         (
             *claim("huang", "pressure_between"),
@@ -242,9 +242,9 @@ def _between_rows(found: HuangStudy) -> list[tuple[str, ...]]:
     ]
 
 
-def ring_table(_: Design, found: HuangStudy) -> list[Block]:
+def ring_table(_: Design, study: HuangStudy) -> list[Block]:
     """Figures 17 and 18: the step ring's contact and film over pressure."""
-    stress, mapped = found.stress, found.plunger
+    stress, mapped = study.stress, study.plunger
     low, high = (float(np.interp(p, stress.pressures, stress.peak)) for p in (2e6, PAPER.tightest))
     last = float(stress.peak[-1])
     films = mapped.thickness[:, mapped.at(0.0, FILM_SPEED)[1], 0]
@@ -277,16 +277,16 @@ def ring_table(_: Design, found: HuangStudy) -> list[Block]:
     ]
     drawn = Drawing(
         "Huang 2017: step ring over the sealed pressure, as its figures 17 and 18",
-        ring_figure(found),
+        ring_figure(study),
         "Contact of a run-in face by its radial balance; films of the step ring in the tandem.",
     )
-    note = ring_note(found)
+    note = ring_note(study)
     return [text_table("Huang 2017: step ring at rest and running", CLAIMS, rows, note), drawn]
 
 
-def plunger_table(design: Design, found: HuangStudy) -> list[Block]:
+def plunger_table(design: Design, study: HuangStudy) -> list[Block]:
     """Figure 6: table 2 and our films over speed and pressure."""
-    mapped = found.plunger
+    mapped = study.plunger
     columns = [mapped.at(0.0, v)[1] for v in SHOWN]
     rows = []
     for row in HUANG_TABLE_2:
@@ -300,12 +300,12 @@ def plunger_table(design: Design, found: HuangStudy) -> list[Block]:
     at = ", ".join(text.trimmed(1e3 * v) for v in SHOWN)
     drawn = Drawing(
         "Huang 2017: plunger over speed and pressure, as its figure 6",
-        plunger_figure(found),
+        plunger_figure(study),
         "Above: eq. 31 with the paper's table 2. Below: step ring and Yx seal on their films, "
         "flows matched, outstroke.",
     )
     names = ("pressure", f"table 2, MN·s/m at {at} mm/s", "our films", "ours over table 2")
-    note = plunger_note(design, found)
+    note = plunger_note(design, study)
     return [text_table("Huang 2017: plunger, test B", names, rows, note), drawn]
 
 
@@ -331,19 +331,25 @@ def _quality(fit: Fit) -> str:
     return f"{square}, {percent(fit.largest_error)}"
 
 
-def fits_table(_: Design, found: HuangStudy) -> list[Block]:
+def fits_table(_: Design, study: HuangStudy) -> list[Block]:
     """Figures 7 and 8: both laws through table 2 and through our films."""
     curves: list[tuple[str, CurveFits]] = [
-        (f"table 2, {pressure_text(one.row.pressure)}", one) for one in found.published
+        (f"table 2, {pressure_text(fits.row.pressure)}", fits) for fits in study.published
     ]
-    curves += [(f"our films, {pressure_text(p)}", one) for p, one in found.films]
+    curves += [(f"our films, {pressure_text(p)}", fits) for p, fits in study.films]
     rows = [
-        (name, _power(one.power), _quality(one.power), _double(one.double), _quality(one.double))
-        for name, one in curves
+        (
+            name,
+            _power(fits.power),
+            _quality(fits.power),
+            _double(fits.double),
+            _quality(fits.double),
+        )
+        for name, fits in curves
     ]
     drawn = Drawing(
         "Huang 2017: damping over speed and over pressure, as its figures 7 and 8",
-        speed_figure(found),
+        speed_figure(study),
         "Left the paper's table 2, right our films.",
     )
     names = (
@@ -353,33 +359,33 @@ def fits_table(_: Design, found: HuangStudy) -> list[Block]:
         "a1 e^(b1 v) + a2 e^(b2 v), MN·s/m, s/m",
         "R², largest error",
     )
-    return [text_table("Huang 2017: fits over speed", names, rows, fits_note(found)), drawn]
+    return [text_table("Huang 2017: fits over speed", names, rows, fits_note(study)), drawn]
 
 
-def parts_table(_: Design, found: HuangStudy) -> list[Block]:
+def parts_table(_: Design, study: HuangStudy) -> list[Block]:
     """Equation 26 with every part, figures 19 and 20."""
     rows = []
-    for one in found.totals:
-        parts = one.parts
+    for total in study.totals:
+        parts = total.parts
         seals = [name for name in parts if name not in (BACK_UP, CHAMBER)]
         rows.append(
             (
-                f"{pressure_text(one.pressure)}, {speed_text(one.speed)}",
+                f"{pressure_text(total.pressure)}, {speed_text(total.speed)}",
                 " / ".join(rounded(parts[name]) for name in seals),
-                f"{rounded(parts[BACK_UP])} ({rounded(one.ring_range[0])} to "
-                f"{rounded(one.ring_range[1])})",
+                f"{rounded(parts[BACK_UP])} ({rounded(total.ring_range[0])} to "
+                f"{rounded(total.ring_range[1])})",
                 f"{parts[CHAMBER]:.2f}",
-                rounded(one.damping),
-                percent(one.beside_share),
+                rounded(total.damping),
+                percent(total.beside_share),
             )
         )
     drawn = Drawing(
         "Huang 2017: back-up ring, as its figures 19 and 20",
-        back_up_figure(found),
+        back_up_figure(study),
         "PTFE of the step ring, 15 mm wide, edges rounded by 5 µm, 0.1 MPa of mean contact "
         "pressure: all assumed; the paper prints none.",
     )
-    labels = " / ".join(map(kind_name, found.sealings.plunger.rings))
+    labels = " / ".join(map(kind_name, study.sealings.plunger.rings))
     names = (
         "N·s/m at",
         labels,
@@ -388,21 +394,21 @@ def parts_table(_: Design, found: HuangStudy) -> list[Block]:
         "total, eq. 26",
         "ring and chamber over seals",
     )
-    note = parts_note(found, dry_ring(found.sealings))
+    note = parts_note(study, dry_ring(study.sealings))
     return [text_table("Huang 2017: plunger part by part", names, rows, note), drawn]
 
 
-def kinds_table(_: Design, found: HuangStudy) -> list[Block]:
+def kinds_table(_: Design, study: HuangStudy) -> list[Block]:
     """Why the pressure trends of both cylinders can be opposite, by seal type."""
     rows = [
         (
-            one.name,
-            text.trimmed(one.balance, 3),
-            mega(one.damping[0]),
-            mega(one.damping[1]),
-            text.number(one.rise, 3),
+            kind.name,
+            text.trimmed(kind.balance, 3),
+            mega(kind.damping[0]),
+            mega(kind.damping[1]),
+            text.number(kind.rise, 3),
         )
-        for one in found.kinds
+        for kind in study.kinds
     ]
     names = (
         f"seal, {speed_text(TYPICAL)}",
@@ -411,25 +417,25 @@ def kinds_table(_: Design, found: HuangStudy) -> list[Block]:
         "B at 6 MPa",
         "6 over 0.6 MPa",
     )
-    note = kinds_note(found)
+    note = kinds_note(study)
     return [text_table("Huang 2017: why pressure acts both ways", names, rows, note)]
 
 
-def relief_table(_: Design, found: HuangStudy) -> list[Block]:
+def relief_table(_: Design, study: HuangStudy) -> list[Block]:
     """What the relief of the step ring does to the trend over pressure."""
-    both = list(zip(found.whole, found.drained, strict=True)) or [(math.nan, math.nan)] * len(
-        found.reliefs
+    both = list(zip(study.whole, study.drained, strict=True)) or [(math.nan, math.nan)] * len(
+        study.reliefs
     )
     rows = [
         (
-            f"{1e3 * one.relief:.2f} mm",
-            f"{1e3 * one.land:.2f} mm",
-            text.number(one.balance, 3),
-            *(text.number(x, 3) for x in (one.rise, drained, whole)),
+            f"{1e3 * relief.relief:.2f} mm",
+            f"{1e3 * relief.land:.2f} mm",
+            text.number(relief.balance, 3),
+            *(text.number(x, 3) for x in (relief.rise, drained, whole)),
         )
-        for one, (whole, drained) in zip(found.reliefs, both, strict=True)
+        for relief, (whole, drained) in zip(study.reliefs, both, strict=True)
     ]
-    ink, drawn = relief_figure(found), []
+    ink, drawn = relief_figure(study), []
     if ink is not None:
         drawn = [
             Drawing(
@@ -447,15 +453,15 @@ def relief_table(_: Design, found: HuangStudy) -> list[Block]:
         "both, no pressure between",
         "both, flows matched",
     )
-    note = relief_note(found)
+    note = relief_note(study)
     none = [("no step ring", *(text.DASH,) * 5)]
     title = "Huang 2017: relief of the step ring"
     return [text_table(title, names, rows or none, note), *drawn]
 
 
-def equations_table(_: Design, found: HuangStudy) -> list[Block]:
+def equations_table(_: Design, study: HuangStudy) -> list[Block]:
     """Every equation of the paper with its function."""
-    return table(found.readings)
+    return table(study.readings)
 
 
 TABLES: tuple[Callable[[Design, HuangStudy], list[Block]], ...] = (
@@ -474,8 +480,8 @@ TABLES: tuple[Callable[[Design, HuangStudy], list[Block]], ...] = (
 
 def blocks(evaluation: Evaluation) -> list[Block]:
     """Every table and drawing, of one study."""
-    found = study(evaluation.design)
-    return [block for table in TABLES for block in table(evaluation.design, found)]
+    study = study_of(evaluation.design)
+    return [block for table in TABLES for block in table(evaluation.design, study)]
 
 
 NEGLIGIBLE = 0.05
@@ -508,9 +514,9 @@ def _reasons(why: tuple[Missing, ...]) -> str:
     return f" No film at {at}: {first.reason}{more}."
 
 
-def cylinder_note(design: Design, found: HuangStudy) -> str:
+def cylinder_note(design: Design, study: HuangStudy) -> str:
     """Below figure 3."""
-    mapped = found.cylinder
+    mapped = study.cylinder
     i, j = int(np.argmin(np.abs(mapped.pressures - PAPER.shown_pressure))), -1
     piston, rod = float(mapped.piston.friction[i, j]), float(mapped.rod.friction[0, j])
     return (
@@ -525,9 +531,9 @@ def cylinder_note(design: Design, found: HuangStudy) -> str:
     )
 
 
-def plunger_note(design: Design, found: HuangStudy) -> str:
+def plunger_note(design: Design, study: HuangStudy) -> str:
     """Below figure 6."""
-    mapped = found.plunger
+    mapped = study.plunger
     j = mapped.at(0.0, TYPICAL)[1]
     curve = mapped.damping[:, j]
     ours = float(curve[mapped.at(PAPER.pressures[1], 0.0)[0]] / curve[0])
@@ -546,7 +552,7 @@ def plunger_note(design: Design, found: HuangStudy) -> str:
         words = f"Table 2 falls to {theirs:.2f}, ours does not change with pressure. "
     share = [huang_published.balance_error(float(v)) for v in huang_published.SPEEDS]
     return (
-        f"{words}{_dry(mapped.viscous)} {_between(found)}The measured fall deserves a doubt: "
+        f"{words}{_dry(mapped.viscous)} {_between(study)}The measured fall deserves a doubt: "
         "friction is the difference of two large forces (eq. 1), and an error of "
         f"{percent(min(share))} to {percent(max(share))} in the change of the pressure force, in "
         "sensor or area, is as large as the whole fall at the tested speeds. The paper states no "
@@ -555,9 +561,9 @@ def plunger_note(design: Design, found: HuangStudy) -> str:
     )
 
 
-def _between(found: HuangStudy) -> str:
+def _between(study: HuangStudy) -> str:
     """Who carries the pressure in the tandem."""
-    mapped = found.plunger
+    mapped = study.plunger
     share = mapped.between / mapped.pressures[:, None]
     if not np.any(np.isfinite(share)):
         return ""
@@ -569,17 +575,17 @@ def _between(found: HuangStudy) -> str:
     )
 
 
-def fits_note(found: HuangStudy) -> str:
+def fits_note(study: HuangStudy) -> str:
     """Below the fits."""
-    exponents = [one.power.values["exponent"] for one in found.published]
-    exponents += [one.power.values["exponent"] for _, one in found.films]
+    exponents = [fits.power.values["exponent"] for fits in study.published]
+    exponents += [fits.power.values["exponent"] for _, fits in study.films]
     rates = [
         value
-        for one in (*found.published, *(fit for _, fit in found.films))
-        for name, value in one.double.values.items()
+        for fits in (*study.published, *(fit for _, fit in study.films))
+        for name, value in fits.double.values.items()
         if name.startswith("rate")
     ]
-    errors = [max(one.power.largest_error, one.double.largest_error) for one in found.published]
+    errors = [max(fits.power.largest_error, fits.double.largest_error) for fits in study.published]
     if max(*exponents, *rates) < 0:
         words = (
             "Every exponent is below 0, so the printed conditions b > 0 do not describe these "
@@ -588,9 +594,9 @@ def fits_note(found: HuangStudy) -> str:
     else:
         words = "Not every exponent is below 0. "
     loose = [
-        text.trimmed(one.row.pressure / 1e6)
-        for one in found.published
-        if not (one.power.determined and one.double.determined)
+        text.trimmed(fits.row.pressure / 1e6)
+        for fits in study.published
+        if not (fits.power.determined and fits.double.determined)
     ]
     doubt = ""
     if loose:
@@ -603,9 +609,9 @@ def fits_note(found: HuangStudy) -> str:
     )
 
 
-def simulated_note(found: HuangStudy) -> str:
+def simulated_note(study: HuangStudy) -> str:
     """Below figures 15 and 16."""
-    mapped = found.plunger
+    mapped = study.plunger
     i = mapped.at(PAPER.compared, 0.0)[0]
     ours = mapped.friction[i]
     theirs = [huang_published.friction_of(HUANG_TABLE_2[-1], v) for v in PAPER.speeds]
@@ -613,30 +619,30 @@ def simulated_note(found: HuangStudy) -> str:
         "The paper gives neither the inputs of its simulation nor its static pressures, so its "
         "curves cannot be re-computed; these are ours, from this design. Friction at 6 MPa from "
         f"0.5 to 10 mm/s: table 2 {newtons(float(theirs[0]))} to {newtons(float(theirs[1]))}, "
-        f"ours {newtons(ours[0])} to {newtons(ours[-1])}. {_stribeck(ours, found)}"
+        f"ours {newtons(ours[0])} to {newtons(ours[-1])}. {_stribeck(ours, study)}"
         f"sigma2 v is {percent(huang_published.viscous_share(HUANG_TABLE_2[0], 10e-3))} to "
         f"{percent(huang_published.viscous_share(HUANG_TABLE_2[-1], 10e-3))} of table 2's "
         "friction at 10 mm/s: its asymptote lies outside the tests."
-        f"{_reasons(found.fast.why)}"
+        f"{_reasons(study.fast.why)}"
     )
 
 
-def _stribeck(ours: np.ndarray, found: HuangStudy) -> str:
+def _stribeck(ours: np.ndarray, study: HuangStudy) -> str:
     """Whether our friction falls over the tested speeds as table 2 does."""
     if not np.all(np.isfinite(ours)) or ours[-1] < 0.9 * ours[0]:
         return ""
-    i = found.plunger.at(PAPER.compared, 0.0)[0]
-    share = float(np.max(np.abs(found.plunger.viscous[i])))
+    i = study.plunger.at(PAPER.compared, 0.0)[0]
+    share = float(np.max(np.abs(study.plunger.viscous[i])))
     return (
         "The Stribeck fall of table 2 is not in our films: none is carried by speed below "
         f"10 mm/s (oil shears with {percent(share)} at most). "
     )
 
 
-def ring_note(found: HuangStudy) -> str:
+def ring_note(study: HuangStudy) -> str:
     """Below figures 17 and 18."""
-    ring = found.sealings.plunger.rings[0]
-    kind = found.kinds[1]
+    ring = study.sealings.plunger.rings[0]
+    kind = study.kinds[1]
     words = (
         f"First rod seal on {text.trimmed(1e3 * PAPER.plunger)} mm, section "
         f"{text.trimmed(1e3 * ring['section'])} mm, squeeze {percent(ring['squeeze'])}"
@@ -652,7 +658,7 @@ def ring_note(found: HuangStudy) -> str:
         "the oil pressure, which asperities carry, falls below 1/2. The paper's peak may be one of "
         "a tilting, unworn edge, which a run-in face does not have. "
     )
-    thickness = found.plunger.thickness[:, :, 0]
+    thickness = study.plunger.thickness[:, :, 0]
     known = thickness[np.isfinite(thickness)]
     if not known.size:
         return words
@@ -660,13 +666,13 @@ def ring_note(found: HuangStudy) -> str:
     return f"{words}Over all points of the map its mean film changes by {percent(spread)}."
 
 
-def parts_note(found: HuangStudy, dry: float) -> str:
+def parts_note(study: HuangStudy, dry: float) -> str:
     """Below the parts of eq. 26."""
-    most = max(one.beside_share for one in found.totals)
-    chamber = max(one.share(CHAMBER) for one in found.totals)
+    most = max(total.beside_share for total in study.totals)
+    chamber = max(total.share(CHAMBER) for total in study.totals)
     member = huang_published.plausible_chamber()
-    ring = min(float(np.min(one.film.film)) for one in found.rings)
-    seals = min(one.seals * one.speed for one in found.totals)
+    ring = min(float(np.min(ring.film.film)) for ring in study.rings)
+    seals = min(total.seals * total.speed for total in study.totals)
     verdict = "can be neglected, as the paper says" if most < NEGLIGIBLE else "cannot be neglected"
     if math.isnan(most):
         verdict = "have no film at a point"
@@ -684,51 +690,51 @@ def parts_note(found: HuangStudy, dry: float) -> str:
     )
 
 
-def kinds_note(found: HuangStudy) -> str:
+def kinds_note(study: HuangStudy) -> str:
     """Why pressure may act both ways."""
     words = (
         "The balance k is the rise of a face's load with pressure over its width. Oil that falls "
         "evenly across the face carries half of the pressure; where asperities hold the friction, "
         "B rises with pressure above k = 1/2 and falls below it. "
     )
-    compact = found.kinds[0]
+    compact = study.kinds[0]
     if compact.rise > 1 + EVEN:
         share = text.trimmed(compact.balance, 2)
         words += f"The piston's seal has k = {share} and rises {times(compact.rise)}. "
-    whole = [one for one in found.kinds if one.name == BOTH]
-    for one in whole:
+    whole = [kind for kind in study.kinds if kind.name == BOTH]
+    for kind in whole:
         words += (
-            f"The tandem rises {times(one.rise)}, because its outer seal bears most of the "
+            f"The tandem rises {times(kind.rise)}, because its outer seal bears most of the "
             "pressure when both pass the same flow. "
-            if one.rise > 1 + EVEN
+            if kind.rise > 1 + EVEN
             else "The tandem does not rise. "
         )
-    return words + (_proven(found) if whole else "")
+    return words + (_proven(study) if whole else "")
 
 
-def relief_note(found: HuangStudy) -> str:
+def relief_note(study: HuangStudy) -> str:
     """What relief turns the trend."""
-    turn = found.turn
+    turn = study.turn
     if turn is None:
         return "This design's first rod seal is no step ring: nothing turns its trend."
     if math.isnan(turn.relief):
-        return "No relief turns the trend of its step ring. " + _tandem(found)
+        return "No relief turns the trend of its step ring. " + _tandem(study)
     return (
         f"Alone, the step ring turns from rising to falling at a relief of "
         f"{1e3 * turn.relief:.2f} mm, {percent(turn.share)} of its width, where "
         f"k = {turn.balance:.2f}; the design has "
-        f"{text.trimmed(1e3 * found.sealings.plunger.rings[0]['relief'])} mm. " + _tandem(found)
+        f"{text.trimmed(1e3 * study.sealings.plunger.rings[0]['relief'])} mm. " + _tandem(study)
     )
 
 
-def _tandem(found: HuangStudy) -> str:
+def _tandem(study: HuangStudy) -> str:
     """What the second seal makes of it."""
-    if not found.whole:
+    if not study.whole:
         return ""
-    least = float(np.nanmin(found.whole))
+    least = float(np.nanmin(study.whole))
     falls = [
-        (one.relief, rise)
-        for one, rise in zip(found.reliefs, found.drained, strict=True)
+        (shape.relief, rise)
+        for shape, rise in zip(study.reliefs, study.drained, strict=True)
         if rise < 1 - EVEN
     ]
     words = (
@@ -746,10 +752,10 @@ def _tandem(found: HuangStudy) -> str:
     return words
 
 
-def _proven(found: HuangStudy) -> str:
+def _proven(study: HuangStudy) -> str:
     """What is shown, and what is only plausible."""
-    measured = found.kinds[-1]
-    drained = found.kinds[-2]
+    measured = study.kinds[-1]
+    drained = study.kinds[-2]
     return (
         "Shown: seal types alone can make B rise on one cylinder and fall on the other. Not "
         "shown: that they did in this one. A fall needs a long relief and no pressure between the "
@@ -765,21 +771,21 @@ TRACES = equations("huang")
 """All of eq. 1 to 31, in order."""
 
 
-def table(found: Readings) -> list[Block]:
+def table(readings: Readings) -> list[Block]:
     """Every equation of the paper with its function."""
     note = (
         "Functions stand in actuator_opt. Beside the numbered ones the paper fits B = a v^b and "
         "B = a1 e^(b1 v) + a2 e^(b2 v), here fits.fit_power_law and fits.fit_double_exponential. "
     )
-    if found.shift == found.shift:
-        thinner = "thinner" if found.shift > 0 else "thicker"
+    if readings.shift == readings.shift:
+        thinner = "thinner" if readings.shift > 0 else "thicker"
         note += (
             f"What the letters would do to the first seal alone at 6 MPa and 5 mm/s: without the "
-            f"rigid shift its film of {text.trimmed(1e6 * found.mean, 3)} µm would be "
-            f"{text.trimmed(1e6 * abs(found.shift), 2)} µm {thinner} and carry "
-            f"{percent(abs(found.excess))} {'more' if found.excess > 0 else 'less'} than presses "
-            "it down, so no film meets eq. 12; with the rough side on the rod it passes "
-            f"{percent(found.swapped / found.flow - 1)} more."
+            f"rigid shift its film of {text.trimmed(1e6 * readings.mean, 3)} µm would be "
+            f"{text.trimmed(1e6 * abs(readings.shift), 2)} µm {thinner} and carry "
+            f"{percent(abs(readings.excess))} {'more' if readings.excess > 0 else 'less'} than "
+            "presses it down, so no film meets eq. 12; with the rough side on the rod it passes "
+            f"{percent(readings.swapped / readings.flow - 1)} more."
         )
     return [
         text_table("Huang 2017: where its equations are", TRACE_COLUMNS, trace_rows(TRACES), note)

@@ -76,11 +76,11 @@ def panel(
     if level is not None:
         ink.line((left, axes.y(level)), (right, axes.y(level)), stroke=GREY, pen=0.2)
     ends: list[tuple[Point, Style, tuple[str, ...]]] = []
-    for one in curves:
-        found = [line for xs, ys in _unbroken(one.xs, one.ys) for line in axes.clipped(xs, ys)]
-        ink.path(found, **one.style)
-        if found:
-            ends.append((found[-1][-1], one.style, one.label))
+    for drawn in curves:
+        lines = [line for xs, ys in _unbroken(drawn.xs, drawn.ys) for line in axes.clipped(xs, ys)]
+        ink.path(lines, **drawn.style)
+        if lines:
+            ends.append((lines[-1][-1], drawn.style, drawn.label))
     ends.sort(key=lambda end: end[0][1])
     heights = [_LABEL * len(label) for *_, label in ends]
     gaps = [(a + b) / 2 + 0.6 for a, b in itertools.pairwise(heights)]
@@ -150,22 +150,22 @@ def _inside(point: Point, frame: tuple[float, float, float, float]) -> bool:
 
 def segments(xs: Array, ys: Array, values: Array, level: float) -> list[tuple[Point, Point]]:
     """Straight pieces of a level, cell by cell, each cell as two triangles."""
-    found = []
+    pieces = []
     for i, j in itertools.product(range(len(ys) - 1), range(len(xs) - 1)):
         corners = [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)]
         for three in ((0, 1, 2), (0, 2, 3)):
             crossed = []
             nodes = [corners[k] for k in three]
             for a, b in itertools.combinations(nodes, 2):
-                one, other = values[a] - level, values[b] - level
-                if one * other < 0:
-                    t = float(one / (one - other))
+                here, other = values[a] - level, values[b] - level
+                if here * other < 0:
+                    t = float(here / (here - other))
                     x = xs[a[1]] + t * (xs[b[1]] - xs[a[1]])
                     y = ys[a[0]] + t * (ys[b[0]] - ys[a[0]])
                     crossed.append((float(x), float(y)))
             if len(crossed) == 2:
-                found.append((crossed[0], crossed[1]))
-    return found
+                pieces.append((crossed[0], crossed[1]))
+    return pieces
 
 
 def surface(ink: Ink, place: tuple[int, int], title: str, field: Field) -> None:
@@ -249,8 +249,8 @@ def published_field() -> Field:
 def cylinder_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
     """Figure 3(c) and (d): the piston cylinder on its films."""
     ink = Ink(width, ROW)
-    found = study.cylinder
-    field = _field(found.piston.speeds, found.pressures, found.damping)
+    cylinder = study.cylinder
+    field = _field(cylinder.piston.speeds, cylinder.pressures, cylinder.damping)
     surface(ink, (0, 0), f"Figure 3(c): B, {_UNIT}", field)
     contours(ink, (0, 1), f"Figure 3(d): B, {_UNIT}, over chamber pressure, MPa", field, LEVELS)
     return ink
@@ -273,7 +273,7 @@ def _limits(values: Sequence[float]) -> tuple[float, float]:
 
 
 def _highest(curves: list[Curve]) -> float:
-    return 1.08 * _limits([y for one in curves for y in one.ys])[1]
+    return 1.08 * _limits([y for drawn in curves for y in drawn.ys])[1]
 
 
 def _over_speed(speeds: Array, rows: list[tuple[float, Array]]) -> list[Curve]:
@@ -347,29 +347,29 @@ def simulated_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
 def ring_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
     """Figures 17 and 18: stress and length of the step ring's contact, and its film."""
     ink = Ink(width, 2 * ROW)
-    found = study.stress
-    pressures = found.pressures / 1e6
+    stress = study.stress
+    pressures = stress.pressures / 1e6
     span = (0.0, float(pressures[-1]))
     stresses = [
-        curve(pressures, found.peak / 1e6, STYLES[0], "highest"),
-        curve(pressures, found.excess / 1e6, STYLES[1], "over the oil", "pressure"),
+        curve(pressures, stress.peak / 1e6, STYLES[0], "highest"),
+        curve(pressures, stress.excess / 1e6, STYLES[1], "over the oil", "pressure"),
         curve(pressures, pressures, STYLES[7], "sealed pressure"),
     ]
     panel(
         ink, (0, 0), "Figure 17: contact stress at rest, MPa", _PRESSURE, stresses,
         span=span, range_=(0.0, _highest(stresses)),
     )  # fmt: skip
-    lengths = [curve(pressures, 1e3 * found.width, STYLES[0], "step ring")]
+    lengths = [curve(pressures, 1e3 * stress.width, STYLES[0], "step ring")]
     panel(
         ink, (0, 1), "Figure 17: contact length, mm", _PRESSURE, lengths,
         span=span, range_=(0.0, _highest(lengths)),
     )  # fmt: skip
     films = [
-        curve(1e3 * one.x, 1e6 * one.film, style, f"{trimmed(one.pressure / 1e6)} MPa")
-        for one, style in zip(study.profiles, STYLES, strict=False)
+        curve(1e3 * profile.x, 1e6 * profile.film, style, f"{trimmed(profile.pressure / 1e6)} MPa")
+        for profile, style in zip(study.profiles, STYLES, strict=False)
     ]
     if films:
-        values = np.concatenate([one.ys for one in films])
+        values = np.concatenate([profile.ys for profile in films])
         low, high = _limits([float(value) for value in values])
         margin = 0.15 * (high - low) + 0.01
         panel(
@@ -378,7 +378,7 @@ def ring_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
             "Figure 18: film of the step ring, µm, 5 mm/s",
             "from the sealed side, mm",
             films,
-            span=(0.0, max(max(one.xs) for one in films)),
+            span=(0.0, max(max(profile.xs) for profile in films)),
             range_=(low - margin, high + margin),
         )
     thickness = study.plunger.thickness[:, study.plunger.at(0.0, 5e-3)[1], 0]
@@ -394,19 +394,19 @@ def ring_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
 def back_up_figure(study: HuangStudy, *, width: float = 180.0) -> Ink:
     """Figures 19 and 20: film and damping of the back-up ring."""
     ink = Ink(width, ROW)
-    shown = [one for one in study.rings if one.speed in PAPER.ring_speeds]
+    shown = [ring for ring in study.rings if ring.speed in PAPER.ring_speeds]
     films = [
-        curve(1e3 * one.film.x, 1e6 * one.film.film, style, f"{trimmed(1e3 * one.speed)} mm/s")
-        for one, style in zip(shown, STYLES, strict=False)
-        if one.film.converged
+        curve(1e3 * ring.film.x, 1e6 * ring.film.film, style, f"{trimmed(1e3 * ring.speed)} mm/s")
+        for ring, style in zip(shown, STYLES, strict=False)
+        if ring.film.converged
     ]
     if films:
         panel(
             ink, (0, 0), "Figure 19: film of the back-up ring, µm", "along the ring, mm", films,
-            span=(0.0, 1e3 * WIDTH), range_=(0.0, 3 * max(np.median(one.ys) for one in films)),
+            span=(0.0, 1e3 * WIDTH), range_=(0.0, 3 * max(np.median(ring.ys) for ring in films)),
         )  # fmt: skip
-    speeds = np.array([one.speed for one in study.rings])
-    damping = np.array([one.damping for one in study.rings])
+    speeds = np.array([ring.speed for ring in study.rings])
+    damping = np.array([ring.damping for ring in study.rings])
     over = [curve(1e3 * speeds, damping, STYLES[0], "back-up ring")]
     panel(
         ink, (0, 1), "Figure 20: its B, N·s/m", _SPEED, over,
@@ -422,20 +422,22 @@ def relief_figure(study: HuangStudy, *, width: float = 180.0) -> Ink | None:
     ink = Ink(width, ROW)
     curves = [
         curve(
-            one.pressures / 1e6,
-            one.damping / 1e6,
+            relief.pressures / 1e6,
+            relief.damping / 1e6,
             style,
-            f"{1e3 * one.relief:.2f} mm, k {one.balance:.2f}",
+            f"{1e3 * relief.relief:.2f} mm, k {relief.balance:.2f}",
         )
-        for one, style in zip(study.reliefs, STYLES, strict=False)
+        for relief, style in zip(study.reliefs, STYLES, strict=False)
     ]
     title = f"Step ring alone, {trimmed(1e3 * TYPICAL)} mm/s: B, {_UNIT}"
     panel(
         ink, (0, 0), title, _PRESSURE, curves,
         span=(0.0, max(curves[0].xs)), range_=(0.0, _highest(curves)),
     )  # fmt: skip
-    lengths = np.array([1e3 * one.relief for one in study.reliefs])
-    rises = [curve(lengths, np.array([one.rise for one in study.reliefs]), STYLES[0], "alone")]
+    lengths = np.array([1e3 * relief.relief for relief in study.reliefs])
+    rises = [
+        curve(lengths, np.array([relief.rise for relief in study.reliefs]), STYLES[0], "alone")
+    ]
     if study.whole:
         rises.append(
             curve(lengths, np.array(study.drained), STYLES[1], "both, no", "pressure", "between")

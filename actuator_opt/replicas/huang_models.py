@@ -88,13 +88,13 @@ def sealings(design: Design) -> Sealings:
     """The rings of both tests, each on its oil film whatever the design asks for."""
     subject = prepare(_on_films(design))
     v = subject.values()
-    found = base(subject, v)
+    state = base(subject, v)
     drain = float(v["supply.return_pressure"])
-    rod = sealing(found, "rod", CASE)
+    rod = sealing(state, "rod", CASE)
     plunger = tuple(ring.at(diameter=PAPER.plunger) for ring in rod.rings)
     first = rod.rings[0]
     return Sealings(
-        piston=sealing(found, "piston", CASE),
+        piston=sealing(state, "piston", CASE),
         rod=rod,
         plunger=replace(rod, rings=plunger),
         return_pressure=drain,
@@ -138,24 +138,24 @@ class CylinderMap:
         return self.piston.damping + self.rod.damping
 
 
-def cylinder_map(found: Sealings, speeds: Sequence[float] = SPEEDS) -> CylinderMap:
+def cylinder_map(seals: Sealings, speeds: Sequence[float] = SPEEDS) -> CylinderMap:
     """Figure 3: piston and rod seals, driven out."""
-    across = [p - found.return_pressure for p in PISTON_PRESSURES]
+    across = [p - seals.return_pressure for p in PISTON_PRESSURES]
     return CylinderMap(
-        piston=film_map(found.piston, across, speeds),
-        rod=film_map(found.rod, [found.return_pressure], speeds),
+        piston=film_map(seals.piston, across, speeds),
+        rod=film_map(seals.rod, [seals.return_pressure], speeds),
         pressures=np.array(PISTON_PRESSURES),
     )
 
 
-def fast_map(found: Sealings) -> FilmMap:
+def fast_map(seals: Sealings) -> FilmMap:
     """The plunger at 6 MPa beyond the tested speeds."""
-    return film_map(found.plunger, [PAPER.compared], FAST)
+    return film_map(seals.plunger, [PAPER.compared], FAST)
 
 
-def plunger_map(found: Sealings, speeds: Sequence[float] = SPEEDS) -> FilmMap:
+def plunger_map(seals: Sealings, speeds: Sequence[float] = SPEEDS) -> FilmMap:
     """Figures 6 to 8, 15 and 16: the tandem of the plunger on the outstroke."""
-    return film_map(found.plunger, PRESSURES, speeds)
+    return film_map(seals.plunger, PRESSURES, speeds)
 
 
 ENDS = (0.6e6, 6e6)
@@ -171,8 +171,8 @@ FILM_SPEED = 5e-3
 
 def balance(ring: Ring, pressure: float) -> float:
     """Rise of a ring's load with pressure over its width, (df/dp)/b."""
-    found = seal_contact(ring.at(pressure=complex(pressure, STEP)))
-    return float(np.imag(found.line_load) / STEP / np.real(found.width))
+    contact = seal_contact(ring.at(pressure=complex(pressure, STEP)))
+    return float(np.imag(contact.line_load) / STEP / np.real(contact.width))
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,14 +210,14 @@ def kind_name(ring: Ring) -> str:
 def single(name: str, sealing: Sealing) -> Kind:
     """A seal alone, the whole pressure across it."""
     (ring,) = sealing.rings
-    found = film_map(sealing, ENDS, (TYPICAL,)).damping[:, 0]
-    return Kind(name, balance(ring, sum(ENDS) / 2), (float(found[0]), float(found[1])))
+    damping = film_map(sealing, ENDS, (TYPICAL,)).damping[:, 0]
+    return Kind(name, balance(ring, sum(ENDS) / 2), (float(damping[0]), float(damping[1])))
 
 
-def kinds(found: Sealings, mapped: FilmMap) -> tuple[Kind, ...]:
+def kinds(seals: Sealings, mapped: FilmMap) -> tuple[Kind, ...]:
     """Every seal type of both cylinders, the tandem, and the tandem with its room drained."""
-    plunger = found.plunger
-    every = [single(f"{kind_name(found.piston.rings[0])}, piston", found.piston.alone(0))]
+    plunger = seals.plunger
+    every = [single(f"{kind_name(seals.piston.rings[0])}, piston", seals.piston.alone(0))]
     every += [
         single(f"{kind_name(ring)}, plunger, alone", plunger.alone(k))
         for k, ring in enumerate(plunger.rings)
@@ -226,17 +226,17 @@ def kinds(found: Sealings, mapped: FilmMap) -> tuple[Kind, ...]:
     ends = [float(mapped.damping[mapped.at(p, TYPICAL)[0], j]) for p in ENDS]
     if len(plunger.rings) == 2:
         every.append(Kind(BOTH, nan, (ends[0], ends[1])))
-        low, high = (drained(found, p) for p in ENDS)
+        low, high = (drained(seals, p) for p in ENDS)
         every.append(Kind(DRAINED, nan, (low, high)))
     low, high = (float(secant_of(row, TYPICAL)) for row in (HUANG_TABLE_2[0], HUANG_TABLE_2[-1]))
     every.append(Kind("plunger, measured (table 2)", nan, (low, high)))
     return tuple(every)
 
 
-def drained(found: Sealings, pressure: float, speed: float = TYPICAL, **changes: float) -> float:
+def drained(seals: Sealings, pressure: float, speed: float = TYPICAL, **changes: float) -> float:
     """Damping of the plunger with the room between its seals at the outer pressure."""
-    first = solve(found.plunger.alone(0).row(pressure, speed, **changes))
-    second = solve(found.plunger.alone(1).row(0.0, speed))
+    first = solve(seals.plunger.alone(0).row(pressure, speed, **changes))
+    second = solve(seals.plunger.alone(1).row(0.0, speed))
     return sum((*ring_friction(first), *ring_friction(second))) / speed
 
 
@@ -269,9 +269,9 @@ def reshaped(ring: Ring, relief: float) -> dict[str, float]:
     return {"relief": relief, "land": min(ring["land"], ring["width"] - relief)}
 
 
-def with_relief(found: Sealings, relief: float, pressures: Sequence[float] = PRESSURES) -> Relief:
+def with_relief(seals: Sealings, relief: float, pressures: Sequence[float] = PRESSURES) -> Relief:
     """The plunger's step ring alone with a relief."""
-    alone = found.plunger.alone(0)
+    alone = seals.plunger.alone(0)
     ring = alone.rings[0]
     changes = reshaped(ring, relief)
     return Relief(
@@ -299,18 +299,18 @@ class Turn:
     share: float
 
 
-def turn(found: Sealings) -> Turn:
+def turn(seals: Sealings) -> Turn:
     """From rising to falling between 0.6 and 6 MPa, the step ring alone."""
-    ring = found.plunger.rings[0]
+    ring = seals.plunger.rings[0]
 
     def excess(relief: float) -> float:
-        return with_relief(found, relief, ENDS).rise - 1
+        return with_relief(seals, relief, ENDS).rise - 1
 
     # above a relief of nine tenths no land is left to speak of
     relief = _root(excess, 0.05 * ring["width"], 0.9 * ring["width"])
     if not isfinite(relief):
         return Turn(nan, nan, nan, nan)
-    there = with_relief(found, relief, ENDS)
+    there = with_relief(seals, relief, ENDS)
     return Turn(relief, there.land, there.balance, relief / ring["width"])
 
 
@@ -327,17 +327,17 @@ def _root(excess: Callable[[float], float], low: float, high: float) -> float:
     return low if abs(excess(low)) < 0.01 else nan
 
 
-def tandem_rise(found: Sealings, relief: float) -> float:
+def tandem_rise(seals: Sealings, relief: float) -> float:
     """Damping of the whole plunger at 6 over that at 0.6 MPa with a relief of its step ring."""
-    changes = reshaped(found.plunger.rings[0], relief)
-    ends = film_map(found.plunger, ENDS, (TYPICAL,), **changes).damping[:, 0]
+    changes = reshaped(seals.plunger.rings[0], relief)
+    ends = film_map(seals.plunger, ENDS, (TYPICAL,), **changes).damping[:, 0]
     return float(ends[1] / ends[0])
 
 
-def drained_rise(found: Sealings, relief: float) -> float:
+def drained_rise(seals: Sealings, relief: float) -> float:
     """The same with the room between the seals at the outer pressure."""
-    changes = reshaped(found.plunger.rings[0], relief)
-    low, high = (drained(found, p, **changes) for p in ENDS)
+    changes = reshaped(seals.plunger.rings[0], relief)
+    low, high = (drained(seals, p, **changes) for p in ENDS)
     return high / low
 
 
@@ -359,10 +359,10 @@ class Stress:
     width: Array
 
 
-def stress(found: Sealings) -> Stress:
+def stress(seals: Sealings) -> Stress:
     """By the closed form of `models.step_seal`."""
     pressures = np.array(STRESS_PRESSURES)
-    rows = [seal_contact(found.plunger.rings[0].at(pressure=p)) for p in STRESS_PRESSURES]
+    rows = [seal_contact(seals.plunger.rings[0].at(pressure=p)) for p in STRESS_PRESSURES]
     peak, excess, width = (
         np.array([float(getattr(row, name)) for row in rows])
         for name in ("peak", "excess", "width")
@@ -387,11 +387,11 @@ class Profile:
     mean: float
 
 
-def profiles(found: Sealings) -> tuple[Profile, ...]:
+def profiles(seals: Sealings) -> tuple[Profile, ...]:
     """Figure 18; without those that have no film."""
     every = []
     for pressure in FILM_PRESSURES:
-        solved = solve(found.plunger.row(pressure, FILM_SPEED))
+        solved = solve(seals.plunger.row(pressure, FILM_SPEED))
         if not solved.why:
             film = solved.films[0]
             every.append(Profile(pressure, film.x, film.film, film.mean_film))
@@ -467,16 +467,16 @@ def back_up_ring(
     return RingFilm(speed, film, pi * PAPER.plunger * film.viscous_drag)
 
 
-def ring_elastic(found: Sealings) -> Elastic:
+def ring_elastic(seals: Sealings) -> Elastic:
     """The PTFE of the design's first rod seal: the ring is of the same stuff."""
-    first = found.plunger.rings[0]
+    first = seals.plunger.rings[0]
     return Elastic(first["face_modulus"], first["face_poissons_ratio"])
 
 
-def ring_films(found: Sealings) -> tuple[RingFilm, ...]:
+def ring_films(seals: Sealings) -> tuple[RingFilm, ...]:
     """Figures 19 and 20."""
-    elastic = ring_elastic(found)
-    return tuple(back_up_ring(found.lubricant, elastic, v) for v in RING_SPEEDS)
+    elastic = ring_elastic(seals)
+    return tuple(back_up_ring(seals.lubricant, elastic, v) for v in RING_SPEEDS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -518,22 +518,22 @@ class Total:
 BACK_UP, CHAMBER = "back-up ring", "chamber"
 
 
-def total(found: Sealings, mapped: FilmMap, pressure: float, speed: float) -> Total:
+def total(seals: Sealings, mapped: FilmMap, pressure: float, speed: float) -> Total:
     """Equation 26 at a point of the plunger's map."""
     i, j = mapped.at(pressure, speed)
-    labels = [ring.label.replace("rod ", "") for ring in found.plunger.rings]
-    elastic = ring_elastic(found)
-    ring = back_up_ring(found.lubricant, elastic, speed)
-    ends = [back_up_ring(found.lubricant, elastic, speed, q).damping for q in CONTACT_PRESSURES]
+    labels = [ring.label.replace("rod ", "") for ring in seals.plunger.rings]
+    elastic = ring_elastic(seals)
+    ring = back_up_ring(seals.lubricant, elastic, speed)
+    ends = [back_up_ring(seals.lubricant, elastic, speed, q).damping for q in CONTACT_PRESSURES]
     forces = dict(zip(labels, map(float, mapped.parts[i, j]), strict=True))
     forces |= {BACK_UP: ring.drag, CHAMBER: chamber_drag(speed)}
     parts = {name: float(secant(friction=force, speed=speed)) for name, force in forces.items()}
     return Total(pressure, speed, parts, (ends[0], ends[1]))
 
 
-def dry_ring(found: Sealings) -> float:
+def dry_ring(seals: Sealings) -> float:
     """Friction of the back-up ring without oil, by the PTFE's dry coefficient [N]."""
-    coefficient = found.plunger.rings[0]["asperity_friction"]
+    coefficient = seals.plunger.rings[0]["asperity_friction"]
     return float(pi * PAPER.plunger * WIDTH * CONTACT_PRESSURE * coefficient)
 
 
@@ -572,9 +572,9 @@ class Readings:
     swapped: float
 
 
-def readings(found: Sealings) -> Readings:
+def readings(seals: Sealings) -> Readings:
     """What the missing shift and the swapped sides would do, of the plunger's first seal."""
-    row = found.plunger.alone(0).row(PRESSURE, FILM_SPEED)
+    row = seals.plunger.alone(0).row(PRESSURE, FILM_SPEED)
     solved, other = solve(row), solve(_swapped(row))
     if solved.why or other.why:
         return Readings(nan, nan, nan, nan, nan)
@@ -590,7 +590,9 @@ def readings(found: Sealings) -> Readings:
         asperity_radius=surface.asperity_radius,
         roughness=surface.roughness,
     )
-    loads = [float(np.trapezoid(one, film.x)) for one in (carried, contact.static_pressure)]
+    loads = [
+        float(np.trapezoid(pressure, film.x)) for pressure in (carried, contact.static_pressure)
+    ]
     return Readings(
         shift=film.rigid_shift,
         mean=film.mean_film,
@@ -657,24 +659,24 @@ class HuangStudy:
     drained: tuple[float, ...]
 
 
-def study(design: Design) -> HuangStudy:
+def study_of(design: Design) -> HuangStudy:
     """Both tests with the seals of a design."""
-    found = sealings(design)
-    plunger = plunger_map(found)
-    turn, reliefs, whole, drained = _reliefs(found)
+    seals = sealings(design)
+    plunger = plunger_map(seals)
+    turn, reliefs, whole, drained = _reliefs(seals)
     return HuangStudy(
-        sealings=found,
-        cylinder=cylinder_map(found),
+        sealings=seals,
+        cylinder=cylinder_map(seals),
         plunger=plunger,
-        fast=fast_map(found),
+        fast=fast_map(seals),
         published=tuple(map(huang_published.fitted, HUANG_TABLE_2)),
         films=_fitted(plunger),
-        rings=ring_films(found),
-        totals=tuple(total(found, plunger, p, v) for p, v in TOTALS),
-        kinds=kinds(found, plunger),
-        stress=stress(found),
-        profiles=profiles(found),
-        readings=readings(found),
+        rings=ring_films(seals),
+        totals=tuple(total(seals, plunger, p, v) for p, v in TOTALS),
+        kinds=kinds(seals, plunger),
+        stress=stress(seals),
+        profiles=profiles(seals),
+        readings=readings(seals),
         turn=turn,
         reliefs=reliefs,
         whole=whole,
@@ -696,21 +698,21 @@ def _fitted(mapped: FilmMap) -> tuple[tuple[float, CurveFits], ...]:
 
 
 def _reliefs(
-    found: Sealings,
+    seals: Sealings,
 ) -> tuple[Turn | None, tuple[Relief, ...], tuple[float, ...], tuple[float, ...]]:
     """What other reliefs of the step ring do to the trend over pressure."""
-    ring = found.plunger.rings[0]
+    ring = seals.plunger.rings[0]
     if "relief" not in ring.numbers:
         return None, (), (), ()
-    turned = turn(found)
+    turned = turn(seals)
     wanted = {*RELIEFS, ring["relief"]}
     if np.isfinite(turned.relief):
         wanted |= {turned.relief, *(turned.relief * share for share in BEYOND)}
-    lengths = [one for one in sorted(wanted) if one < 0.93 * ring["width"]]
-    two = len(found.plunger.rings) == 2
+    lengths = [relief for relief in sorted(wanted) if relief < 0.93 * ring["width"]]
+    two = len(seals.plunger.rings) == 2
     return (
         turned,
-        tuple(with_relief(found, one) for one in lengths),
-        tuple(tandem_rise(found, one) for one in lengths) if two else (),
-        tuple(drained_rise(found, one) for one in lengths) if two else (),
+        tuple(with_relief(seals, relief) for relief in lengths),
+        tuple(tandem_rise(seals, relief) for relief in lengths) if two else (),
+        tuple(drained_rise(seals, relief) for relief in lengths) if two else (),
     )

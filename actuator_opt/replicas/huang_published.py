@@ -86,15 +86,15 @@ class Claim(NamedTuple):
 def claim_at(speed: float) -> Claim:
     """What table 2 makes of the printed linear fall at a speed."""
     pressures = np.array([row.pressure for row in HUANG_TABLE_2])
-    found = np.array([float(secant_of(row, speed)) for row in HUANG_TABLE_2])
-    line = np.interp(pressures, pressures[[0, -1]], found[[0, -1]])
-    errors = (found[0] / PAPER.claimed[0] - 1, found[-1] / PAPER.claimed[1] - 1)
+    dampings = np.array([float(secant_of(row, speed)) for row in HUANG_TABLE_2])
+    line = np.interp(pressures, pressures[[0, -1]], dampings[[0, -1]])
+    errors = (dampings[0] / PAPER.claimed[0] - 1, dampings[-1] / PAPER.claimed[1] - 1)
     return Claim(
         speed=speed,
-        low=float(found[0]),
-        high=float(found[-1]),
+        low=float(dampings[0]),
+        high=float(dampings[-1]),
         errors=(float(errors[0]), float(errors[1])),
-        bend=float(np.max(np.abs(found / line - 1))),
+        bend=float(np.max(np.abs(dampings / line - 1))),
     )
 
 

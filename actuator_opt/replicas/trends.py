@@ -195,7 +195,7 @@ def trends(design: Design) -> Trends | None:
     (running,) = compute(subject, v).computed.metrics["friction_running"].values()
     index = max(moving, key=lambda i: np.nan_to_num(of_case(running, i)))
     case = design.load_cases[index]
-    dry, wet = (one.model_copy(update={"load_cases": (case,)}) for one in (dry, wet))
+    dry, wet = (fitted.model_copy(update={"load_cases": (case,)}) for fitted in (dry, wet))
     oiled = prepare(wet)
     return Trends(
         case=case.name,
@@ -243,12 +243,12 @@ def _model(subject: PreparedDesign) -> Model:
     """Friction of a design of one load case, and how every factor moves it."""
     nothing = (math.nan,) * len(FACTORS)
     try:
-        found = compute(subject, subject.values(_moved(subject))).computed.metrics
+        metrics = compute(subject, subject.values(_moved(subject))).computed.metrics
     except (InputError, Unsolvable) as error:
         return Model(math.nan, math.nan, nothing, error.diagnostics[0].message)
     columns = 2 * len(FACTORS) + 1
     (running,), (breakaway,) = (
-        found[name].values() for name in ("friction_running", "friction_breakaway")
+        metrics[name].values() for name in ("friction_running", "friction_breakaway")
     )
     row = np.broadcast_to(np.asarray(running, dtype=float), (1, columns))[0]
     if not (row > 0).all():
@@ -274,7 +274,7 @@ def _moved(subject: PreparedDesign) -> dict[str, np.ndarray]:
 
 def _paths(subject: PreparedDesign, factor: Factor, v: Values) -> Sequence[str]:
     """PATHs of a factor in a design; a groove's width may be left to its default."""
-    found = [
+    paths = [
         path.format(
             place=place,
             compound=getattr(subject.design.seals, place).compound,
@@ -283,7 +283,7 @@ def _paths(subject: PreparedDesign, factor: Factor, v: Values) -> Sequence[str]:
         for path in factor.paths
         for place in PLACES
     ]
-    return [path for path in dict.fromkeys(found) if path in v or path.endswith("groove_width")]
+    return [path for path in dict.fromkeys(paths) if path in v or path.endswith("groove_width")]
 
 
 TITLE = "Aalto thesis: what raises O-ring friction, its table 1"
@@ -306,28 +306,30 @@ OTHERWISE: Mapping[Verdict, str] = {
 
 def trends_table(evaluation: Evaluation) -> Table:
     """Table 1 beside the design's friction by coefficient and on the film."""
-    found = trends(evaluation.design)
-    printed = [f"{PRINTED[one.direction]} {one.name}" for one in FACTORS]
-    if found is None:
+    table_1 = trends(evaluation.design)
+    printed = [f"{PRINTED[factor.direction]} {factor.name}" for factor in FACTORS]
+    if table_1 is None:
         note = "No load case moves: friction that runs needs a speed above zero."
-        return text_table(TITLE, COLUMNS, [(one, text.DASH, text.DASH) for one in printed], note)
+        return text_table(
+            TITLE, COLUMNS, [(factor, text.DASH, text.DASH) for factor in printed], note
+        )
     facts = {
-        "ratio": text.trimmed(found.stribeck_ratio, 2),
-        "roughness": text.trimmed(found.roughness_ratio, 2),
-        "contact": f"{100 * found.contact_share:.0f} %",
+        "ratio": text.trimmed(table_1.stribeck_ratio, 2),
+        "roughness": text.trimmed(table_1.roughness_ratio, 2),
+        "contact": f"{100 * table_1.contact_share:.0f} %",
         "oil": "and thin oil acts like less speed: less friction as well"
-        if found.film.elasticities[_index("relative motion speed")] > 0
+        if table_1.film.elasticities[_index("relative motion speed")] > 0
         else "which counts for more than the lift that thin oil loses",
     }
     rows = [
         (
             words,
-            _cell(found.coefficient, COEFFICIENT, index).format(**facts),
-            _cell(found.film, FILM, index).format(**facts),
+            _cell(table_1.coefficient, COEFFICIENT, index).format(**facts),
+            _cell(table_1.film, FILM, index).format(**facts),
         )
         for index, words in enumerate(printed)
     ]
-    return text_table(TITLE, COLUMNS, rows, _note(found))
+    return text_table(TITLE, COLUMNS, rows, _note(table_1))
 
 
 def _cell(model: Model, known: Reasons, index: int) -> str:
@@ -340,12 +342,12 @@ def _cell(model: Model, known: Reasons, index: int) -> str:
     return f"{shown}{said}: {known.get(FACTORS[index].name, {}).get(said, OTHERWISE[said])}"
 
 
-def _note(found: Trends) -> str:
-    one, two = found.coefficient, found.film
+def _note(table_1: Trends) -> str:
+    dry, two = table_1.coefficient, table_1.film
     point = (
         f"Numbers: relative change of friction over that of the factor (no effect below "
         f"{text.trimmed(NEGLIGIBLE)}), both rings together, in the case "
-        f"{found.case}: {text.trimmed(one.running, 3)} N by coefficient, "
+        f"{table_1.case}: {text.trimmed(dry.running, 3)} N by coefficient, "
     )
     point += (
         f"no film ({two.why}). "
@@ -356,23 +358,23 @@ def _note(found: Trends) -> str:
     return (
         point
         + "Temperature is absolute: 1 % is 3 K. All pressures move together, squeeze stays a share "
-        "of the section. " + _rings(found) + _pressure(found) + _rest(found)
+        "of the section. " + _rings(table_1) + _pressure(table_1) + _rest(table_1)
     )
 
 
-def _rings(found: Trends) -> str:
-    if not found.replaced:
+def _rings(table_1: Trends) -> str:
+    if not table_1.replaced:
         return ""
     return (
-        f"The table is of O-rings: the design's {listed(found.replaced)} got one of "
+        f"The table is of O-rings: the design's {listed(table_1.replaced)} got one of "
         f"{ELASTOMER} with section and squeeze as they are. "
     )
 
 
-def _pressure(found: Trends) -> str:
+def _pressure(table_1: Trends) -> str:
     """The one row that the thesis prints against its own source."""
-    odd = [one.name for one in FACTORS if one.direction != one.handbook]
-    said = found.coefficient.verdict(_index("hydraulic pressure"))
+    odd = [factor.name for factor in FACTORS if factor.direction != factor.handbook]
+    said = table_1.coefficient.verdict(_index("hydraulic pressure"))
     ours = {
         "agrees": "ours falls too here",
         "disagrees": "ours rises, as an energised ring must",
@@ -386,10 +388,10 @@ def _pressure(found: Trends) -> str:
     )
 
 
-def _rest(found: Trends) -> str:
+def _rest(table_1: Trends) -> str:
     """What is ambiguous in print, and the order of significance."""
-    model = found.coefficient if found.film.why else found.film
-    order = found.order(model)
+    model = table_1.coefficient if table_1.film.why else table_1.film
+    order = table_1.order(model)
     significance = (
         f"The thesis lists the factors in order of significance, metal finish second; 1 % more "
         f"weighs most for {listed(order[:3])} here. "
@@ -405,4 +407,4 @@ def _rest(found: Trends) -> str:
 
 
 def _index(name: str) -> int:
-    return next(i for i, one in enumerate(FACTORS) if one.name == name)
+    return next(i for i, factor in enumerate(FACTORS) if factor.name == name)

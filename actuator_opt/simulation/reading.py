@@ -25,6 +25,13 @@ LAST = 0.1
 """Final share of the time used for creep."""
 RISE = 4
 """Least number of samples of a rise for reliable results (a choice)."""
+NOT_HERE = "does not apply to this scenario"
+NO_STEP = "the reference has no step"
+NO_MOTION = "the reference does not move on"
+NO_SINE = "no sinusoidal load acts on the rod"
+NO_STOP = "the piston does not reach a stop"
+EXPECTED = (NOT_HERE, NO_STEP, NO_MOTION, NO_SINE, NO_STOP)
+"""Reasons of missing results that follow from the scenario and need no report."""
 _STEP = ("rise_time", "settling_time", "overshoot", "steady_state_ratio")
 
 
@@ -66,9 +73,8 @@ def shaken(
     scenario: Scenario, time: Array, signals: Mapping[str, Array]
 ) -> tuple[HarmonicLoad | None, str]:
     """Dynamic stiffness along the stroke under a sinusoidal load, or the reason for none."""
-    none = "no sinusoidal load acts on the rod"
     if "position" not in signals:
-        return None, none
+        return None, NO_SINE
     load = scenario.load
     parts: list[SignalSegment] = [
         *load.force,
@@ -78,7 +84,8 @@ def shaken(
     sines = [part for part in parts if "frequency" in SHAPES[part.shape].needed]
     tones = set(frequencies(sines))
     if len(tones) != 1:
-        return None, none if not tones else "sinusoidal loads of several frequencies act on the rod"
+        several = "sinusoidal loads of several frequencies act on the rod"
+        return None, several if tones else NO_SINE
     tone = tones.pop()
     begin = max(part.start for part in sines)
     end = min(part.end or scenario.duration for part in sines)
@@ -134,8 +141,8 @@ def values(
 ) -> tuple[dict[str, float | None], dict[str, str]]:
     """Every result of `quantities.RESULTS`, None with a reason if it does not apply."""
     found: dict[str, float | None] = dict.fromkeys(RESULTS)
-    why = dict.fromkeys(RESULTS, "does not apply to this scenario")
-    why |= dict.fromkeys(_STEP, "the reference has no step")
+    why = dict.fromkeys(RESULTS, NOT_HERE)
+    why |= dict.fromkeys(_STEP, NO_STEP)
     if step is not None:
         figures, reasons = _answer(step, float(np.median(np.diff(time))))
         found |= figures
@@ -150,12 +157,12 @@ def values(
         found["hold_drift"] = _drift(scenario, records, time, signals)
         why["hold_drift"] = "signal, reference or load still cause motion in the last tenth"
         speed = _stop_speed(time, signals["speed"], events)
-        found["stop_speed"], why["stop_speed"] = speed, "the piston does not reach a stop"
+        found["stop_speed"], why["stop_speed"] = speed, NO_STOP
     loop, parts = reference(scenario)
     if loop == "position" and any(SHAPES[part.shape].moves_on for part in parts):
         late = time >= _settled_from(parts, scenario.duration)
         found["following_error"] = float(np.max(np.abs(signals["error"][late])))
-    why["following_error"] = "the reference does not move on"
+    why["following_error"] = NO_MOTION
     came = {flow.name: flow.energy for flow in balance.flows}
     if "supply" in came:
         found["supply_energy"] = came["supply"]

@@ -27,10 +27,8 @@ from actuator_opt.api import simulate
 from actuator_opt.base.tables import aligned
 from actuator_opt.models.fluid import ATMOSPHERIC_PRESSURE
 from actuator_opt.models.one_way_valve import one_way_flow
-from actuator_opt.pages.simulation_axes import names as named_above
-from actuator_opt.pages.simulation_comparison import comparison
 from actuator_opt.pages.simulation_comparison_figures import comparison_figure
-from actuator_opt.rendering.axes import Axes
+from actuator_opt.rendering.axes import Axes, names as named_above
 from actuator_opt.rendering.blocks import Drawing, Notes, Pair, Table
 from actuator_opt.rendering.ink import BLUE, GREY, RED, WHITE, Ink, text_width
 from actuator_opt.rendering.script_pages import (
@@ -319,8 +317,7 @@ def laid_over(quick: bool) -> Data:
     bench = Bench(ao.read(DESIGN).design)
     strokes = np.linspace(ALONG[0], ALONG[-1], 40)
     static = np.ravel(bench.motion.springs.stiffness(strokes))[: strokes.size]
-    both = comparison(runs, "20 Hz, our reducing valve")
-    return comparison_figure(both, 58.0, static=(strokes, static)).data()
+    return comparison_figure(runs, 58.0, static=(strokes, static)).data()
 
 
 def along(runs: Sequence[Simulation]) -> Simulation:

@@ -23,7 +23,6 @@ import actuator_opt as ao
 from actuator_opt.api import read_scenario, simulate
 from actuator_opt.base.tables import aligned
 from actuator_opt.models.tuning import ziegler_nichols
-from actuator_opt.pages.simulation_comparison import comparison
 from actuator_opt.pages.simulation_comparison_figures import LEAST, comparison_figure
 from actuator_opt.rendering.blocks import Block, Drawing, Notes, Table
 from actuator_opt.rendering.script_pages import (
@@ -510,7 +509,7 @@ def page(study: Study) -> Sheets:
     blocks: list[Block] = []
     for key, loop in LOOPS.items():
         runs = [(name, study.runs[key][name]) for name in SHOWN]
-        blocks.append(Drawing(loop.title, comparison_figure(comparison(runs, loop.title), LEAST)))
+        blocks.append(Drawing(loop.title, comparison_figure(runs, LEAST)))
         grid = loop_rows(loop, all_rows(data["loops"][key]), data["loops"][key]["linear"])
         blocks.append(_table("", grid, _NOTE if key == "position" else ""))
         if key == "position":  # what of the other tables has room on its sheet

@@ -20,6 +20,7 @@ import numpy as np
 import actuator_opt as ao
 from actuator_opt.base.tables import aligned
 from actuator_opt.identification import Record, synthetic
+from actuator_opt.rendering import terminal
 from actuator_opt.studies.bench import Bench, bench
 
 DESIGN = Path(__file__).resolve().parents[1] / "knee.yaml"
@@ -139,8 +140,6 @@ def _pages(
 
 def main() -> None:
     """Print what the record changes; write the pages where a folder is given."""
-    from actuator_opt.pages.calibration_text import calibration_text
-
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--out", type=Path, help="folder for the pages")
     parser.add_argument("--record", type=Path, help="write the synthetic record there and stop")
@@ -151,7 +150,7 @@ def main() -> None:
         return
     found = ao.identify(RECORD, design=knee)
     calibrated = ao.calibrate(found, design=knee)
-    print(calibration_text(calibrated.calibration, calibrated.redesign))
+    print(terminal.text(calibrated.page(), colour=False, unicode=True, width=100))
     print(aligned(recovered(calibrated), right=(1, 2, 3, 4, 5)))
     if asked.out is not None:
         for path in _pages(knee, found, calibrated, asked.out):

@@ -191,7 +191,7 @@ def _collect(
             else:
                 found.dropped.setdefault(limit.name, "no variable affects its traced value")
         if not rows and (first or limit.case is not None):
-            found.dropped[limit.name] = "its model is no closed expression"
+            found.dropped[limit.name] = "its model is not a closed expression"
 
 
 def _applying(out: MetricArrays, metric: str, case: str) -> Iterator[tuple[str, Any]]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...base.errors import Diagnostic, InputError
 from ...base.numeric import Array
-from ...rendering.axes import Axes
+from ...rendering.axes import Axes, even_ticks, spaced
 from ...rendering.heights import wrap
 from ...rendering.ink import (
     BLACK,
@@ -29,7 +29,6 @@ from ...rendering.ink import (
 )
 from ...rendering.text import trimmed
 from ...sweeps.field import Boundary, Field, field as field_of, require_grid
-from ..identification_axes import even_ticks, spaced
 from ..wall_figures import GREEN, OCHRE
 from .shared import ORIGINS, SweepFigure, SweepFigureData, heading
 

@@ -8,10 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...base.numeric import Array
-from ...rendering.axes import fitted
+from ...rendering.axes import even_range, even_ticks, fitted
 from ...rendering.ink import BLACK, GREY, RED, WHITE, Ink, Point, text_width
 from ...rendering.text import SENSES, trimmed
-from ..identification_axes import even_range, even_ticks
 from .shared import (
     BETTER,
     INFEASIBLE,

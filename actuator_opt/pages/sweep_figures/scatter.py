@@ -9,10 +9,9 @@ import numpy as np
 
 from ...base.errors import Diagnostic, UsageError
 from ...base.numeric import Array
-from ...rendering.axes import Axes, fitted
+from ...rendering.axes import Axes, even_range, even_ticks, fitted, spaced
 from ...rendering.ink import BLACK, GREY, PALE, RED, WHITE, Ink, text_width
 from ...sweeps.sample import better
-from ..identification_axes import even_range, even_ticks, spaced
 from .shared import BETTER, INFEASIBLE, SweepFigure, SweepFigureData, heading
 
 MOST = 2000

@@ -1,0 +1,688 @@
+"""A chart as ink: frames, legends and labels get their places by rule.
+
+Legends stand above their frame, names of limits and curve ends to its right, spread so that none
+touch. Curves are cut at the frame. A frame without values says why.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from . import contours
+from .axes import Axes, Box, Ticks, band, error_bar, fitted, thinned
+from .chart import Chart, Curve, Level, Panel, Points, Values
+from .chart_scale import Scale, known, scale
+from .heights import wrap
+from .ink import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    OCHRE,
+    PALE,
+    RED,
+    WHITE,
+    Anchor,
+    Ink,
+    Point,
+    hatch,
+    spread_within,
+    text_width,
+)  # fmt: skip
+
+LINES: tuple[dict[str, Any], ...] = (
+    {"stroke": BLUE, "pen": 0.4},
+    {"stroke": OCHRE, "pen": 0.4, "dash": (1.6, 0.8)},
+    {"stroke": GREEN, "pen": 0.35, "dash": (0.8, 0.5)},
+    {"stroke": "#7a5a8c", "pen": 0.4, "dash": (2.4, 0.7, 0.4, 0.7)},
+    {"stroke": BLACK, "pen": 0.35, "dash": (3.2, 0.8)},
+    {"stroke": "#4f86a8", "pen": 0.4, "dash": (0.4, 0.5)},
+)
+"""Curves differ in dash as well as in colour."""
+MARKS = (
+    (BLUE, WHITE), (BLACK, "#9ec3da"), (OCHRE, WHITE), (BLACK, BLUE), (GREEN, WHITE),
+    ("#7a5a8c", "#d9c9e3"),
+)  # fmt: skip
+"""Edge and fill of points."""
+THIN, GUIDE = 0.2, {"stroke": GREY, "pen": 0.18}
+LIMIT: dict[str, Any] = {"stroke": RED, "pen": 0.25, "dash": (1.8, 1.0)}
+SKETCH, BETWEEN = 4.6, 2.6
+"""Length of a line in the legend, room between its entries [mm]."""
+GAP, ROW, BELOW = 6.0, 3.7, 2.2
+"""Room between columns, of a row of words above a frame, and between two frames [mm]."""
+FOOT = 8.4
+"""Ticks and label below the last frame [mm]."""
+LEAST = 4.0
+"""Least height of a frame [mm]."""
+RIGHT, NAMES = 26.0, 36.0
+"""Most room for words right and left of a frame [mm]."""
+SHADES = 13.0
+"""Room of the scale of shades [mm]."""
+DENSE = 10.0
+"""Values of a curve and cells of points drawn per mm (a choice: finer than the pen)."""
+TITLE, SIZE, SMALL = 6.8, 6.5, 6.2
+Line: TypeAlias = list[Point]
+
+
+def drawn(chart: Chart, *, width: float = 180.0, height: float | None = None) -> Ink:
+    """The chart in ink; `height` in mm, default: its own."""
+    tall = chart.height if height is None else height
+    ink = Ink(width, tall)
+    columns = [_Column(panels) for panels in chart.columns if panels]
+    shares = [*chart.widths, *[1.0] * len(columns)][: len(columns)]
+    room = width - GAP * (len(columns) - 1)
+    wides = [room * share / sum(shares) for share in shares]
+    for _ in range(3):  # ticks need the height, heights need the rows of the legend
+        row = all(len(column.frames) == 1 for column in columns)
+        head = max((column.head for column in columns), default=0.0) if row else 0.0
+        for column, wide in zip(columns, wides, strict=True):
+            column.fit(wide, tall, head)
+    left = 0.0
+    for column, wide in zip(columns, wides, strict=True):
+        column.draw(ink, left)
+        left += wide + GAP
+    return ink
+
+
+# ---- layout ----
+
+
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """A name of the legend with its line, its point, or both."""
+
+    words: str
+    line: dict[str, Any] | None = None
+    point: tuple[str, str] | None = None
+    small: int | None = None
+
+    @property
+    def sketch(self) -> float:
+        """Width of what stands before the words."""
+        return SKETCH + 1.3 if self.line else 2.8
+
+    def width(self) -> float:
+        """With the gap after it."""
+        return self.sketch + text_width(self.words, SIZE) + BETWEEN
+
+
+@dataclass(slots=True)
+class _Frame:
+    """A panel with its scale of y, what stands above it, and its place."""
+
+    panel: Panel
+    x: Scale
+    y: Scale
+    why: str
+    label: str = ""
+    shared: bool = False
+    notes: list[str] = field(default_factory=list)
+    rows: list[list[_Entry]] = field(default_factory=list)
+    beside: bool = True
+    above: float = 0.0
+    right: float = 0.0
+    top: float = 0.0
+    height: float = 20.0
+
+    @property
+    def head(self) -> float:
+        """Height of title, note and legend."""
+        lines = len(self.rows) - (1 if self.rows and self.beside else 0)
+        return ROW * (1 + lines) + 3.0 * len(self.notes) + 0.9
+
+
+class _Column:
+    """Panels above each other; those with a common x axis are a group."""
+
+    def __init__(self, panels: Sequence[Panel]) -> None:
+        self.frames: list[_Frame] = []
+        group: list[Panel] = []
+        for panel in panels:
+            group.append(panel)
+            if panel.x.label or panel is panels[-1]:
+                x = _x_scale(group)
+                members = [_frame(member, x) for member in group]
+                members[-1].label = panel.x.label or " "
+                members[-1].shared = any(not member.why for member in members)
+                self.frames += members
+                group = []
+        self.left = self.right = self.wide = 0.0
+
+    @property
+    def head(self) -> float:
+        """Of the first panel."""
+        return self.frames[0].head
+
+    def fit(self, room: float, height: float, head: float) -> None:
+        """Places of the frames in a room [mm]; the first one begins below `head`."""
+        ticks = [words for frame in self.frames for _, words in _y_ticks(frame)]
+        self.left = min(max([text_width(w, SIZE) for w in ticks], default=0.0), NAMES) + 2.0
+        self.right = max(_right_room(frame) for frame in self.frames)
+        for frame in self.frames:
+            before, after = _overhang(frame, room - self.left - self.right)
+            self.left, self.right = max(self.left, before), max(self.right, after)
+        self.wide = max(room - self.left - self.right, 8.0)
+        for frame in self.frames:
+            _fit_head(frame, self.wide, self.right)
+        heads = [max(self.frames[0].head, head)]
+        for upper, lower in pairwise(self.frames):
+            heads.append((FOOT if upper.label else BELOW) + lower.head)
+        free = height - sum(heads) - FOOT
+        shares = [frame.panel.share for frame in self.frames]
+        top = 0.0
+        for frame, above, share in zip(self.frames, heads, shares, strict=True):
+            frame.top, frame.right = top + above, self.right
+            frame.above = frame.head if top else above
+            frame.height = max(free * share / sum(shares), LEAST)
+            top = frame.top + frame.height
+
+    def draw(self, ink: Ink, left: float) -> None:
+        """All frames."""
+        for frame in self.frames:
+            _draw(ink, (left + self.left, frame.top, self.wide, frame.height), frame, left)
+
+
+def _overhang(frame: _Frame, wide: float) -> tuple[float, float]:
+    """How far the numbers of x reach beyond both ends of a frame."""
+    low, high = frame.x.range
+    before = after = 0.0
+    for place, words in frame.x.ticks(wide, across=True) if frame.label else ():
+        half, at = text_width(words, SIZE) / 2, (place - low) / (high - low) * wide
+        before, after = max(before, half - at), max(after, at + half - wide)
+    return before, after
+
+
+def _x_scale(panels: Sequence[Panel]) -> Scale:
+    """The common scale of x; it ends at the values where there are only functions of x."""
+    axis = panels[-1].x
+    values = [
+        value
+        for panel in panels
+        for xs in _xs(panel)
+        for value in known(xs, log=axis.log and not axis.signed)
+    ]
+    for panel in panels:
+        for points in panel.points:
+            if points.across:
+                values += known([*points.low, *points.high])
+        if panel.surface is not None and not values:
+            values += known(panel.surface.xs)
+    bare = not any(panel.points for panel in panels)
+    functions = all(_rises(curve.xs) for panel in panels for curve in panel.curves)
+    return scale(axis, values, exact=bare and functions)
+
+
+def _xs(panel: Panel) -> list[Values]:
+    return [*(curve.xs for curve in panel.curves), *(points.xs for points in panel.points)]
+
+
+def _rises(values: Values) -> bool:
+    array = np.asarray(values, dtype=float)
+    return bool(np.all(np.diff(array[np.isfinite(array)]) >= 0))
+
+
+def _frame(panel: Panel, x: Scale) -> _Frame:
+    log = panel.y.log and not panel.y.signed
+    ends = [v for points in panel.points for v in known(points.ys, log=log)]
+    for points in panel.points:
+        if not points.across:
+            ends += known([*points.low, *points.high], log=log)
+    curves = [v for curve in panel.curves for v in _seen(curve, curve.ys, x, log)]
+    bands = [v for c in panel.curves for b in (c.low, c.high) for v in _seen(c, b, x, log)]
+    for more in (curves, [] if panel.points else bands):
+        ends += _near(ends, more, log) if ends else more
+    if panel.surface is not None and not ends:
+        ends += known(panel.surface.ys, log=log)
+    levels = known([level.value for level in panel.levels], log=log)
+    limits = known([level.value for level in panel.levels if level.sense], log=log)
+    why = "" if ends or levels else _why(panel)
+    if ends:
+        levels = _near(ends, levels, log, 3.0, cut=False)
+    return _Frame(panel, x, scale(panel.y, [*ends, *(levels or limits)]), why)
+
+
+def _seen(curve: Curve, values: Values, x: Scale, log: bool) -> list[float]:
+    """Values of a curve, or of a bound of its band, that lie within the x axis."""
+    if not len(values):
+        return []
+    places = x.at(curve.xs)
+    inside = (places >= x.range[0] - 1e-9) & (places <= x.range[1] + 1e-9)
+    return known(np.asarray(values, dtype=float)[inside], log=log)
+
+
+def _near(
+    ends: Sequence[float],
+    values: Sequence[float],
+    log: bool,
+    most: float = 0.5,
+    *,
+    cut: bool = True,
+) -> list[float]:
+    """Values at most so many spans beyond the ends; farther ones are cut there, or left out."""
+    low, high = (math.log10(f(ends)) if log else f(ends) for f in (min, max))
+    spare = most * ((high - low) or max(abs(high), 1.0))
+    low, high = (10.0**v if log else v for v in (low - spare, high + spare))
+    if not cut:
+        return [v for v in values if low <= v <= high]
+    return [min(max(v, low), high) for v in values]
+
+
+def _why(panel: Panel) -> str:
+    """Why a panel is empty."""
+    if panel.note:
+        return panel.note
+    if not any(len(xs) for xs in _xs(panel)):
+        return "No values."
+    logs = (panel.x.log and not panel.x.signed) or (panel.y.log and not panel.y.signed)
+    return "No value above zero." if logs else "No value that is a number."
+
+
+def _y_ticks(frame: _Frame) -> Ticks:
+    return [] if frame.why else frame.y.ticks(frame.height, across=False)
+
+
+def _fit_head(frame: _Frame, wide: float, right: float) -> None:
+    """Rows of the legend: beside the title where there is room, else below it."""
+    panel = frame.panel
+    note = "" if frame.why else panel.note
+    frame.notes = wrap(note, wide + right - 0.5, SMALL) if note else []
+    entries = [] if frame.why else list(_entries(frame, wide))
+    whole = text_width(panel.title, TITLE, bold=True) + 2.0 - BETWEEN
+    whole += sum(entry.width() for entry in entries)
+    frame.beside = not frame.notes and whole <= wide
+    frame.rows = []
+    room = 0.0
+    for entry in entries:
+        if not frame.rows or (not frame.beside and entry.width() > room + BETWEEN):
+            frame.rows.append([])
+            room = wide
+        frame.rows[-1].append(entry)
+        room -= entry.width()
+
+
+def _entries(frame: _Frame, wide: float) -> Iterator[_Entry]:
+    """Names of points, curves and whole levels, each once."""
+    panel, found = frame.panel, dict[str, _Entry]()
+
+    def add(words: str, **sketch: Any) -> None:
+        if words:
+            before = found.get(words)
+            line = sketch.get("line") or (before.line if before else None)
+            point = sketch.get("point") or (before.point if before else None)
+            room = wide - (SKETCH + 1.3 if line else 2.8)
+            found[words] = _Entry(fitted(words, room, SIZE), line, point, sketch.get("small"))
+
+    for k, points in enumerate(panel.points):
+        style = k if points.style is None else points.style
+        if points.small:
+            add(points.words, small=style)
+        else:
+            add(points.words, point=MARKS[style % len(MARKS)])
+    for k, curve in enumerate(panel.curves):
+        words = curve.words or ("" if curve in _at_end(frame) else curve.end)
+        if words:
+            add(words, line=_line(curve, k) | {"pen": 0.4})
+    for level in panel.levels:
+        if not level.sense and level.between is None:
+            add(level.words, line=_level_style(level))
+    yield from found.values()
+
+
+def _line(curve: Curve, index: int) -> dict[str, Any]:
+    if curve.weight == "guide":
+        return GUIDE
+    style = LINES[(index if curve.style is None else curve.style) % len(LINES)]
+    return style | {"pen": THIN} if curve.weight == "thin" else style
+
+
+def _level_style(level: Level) -> dict[str, Any]:
+    return LIMIT if level.sense else LINES[level.style % len(LINES)] | {"pen": 0.3}
+
+
+def _at_end(frame: _Frame) -> list[Curve]:
+    """Curves with words at their right end: none where the frame is too low for all of them."""
+    named = [curve for curve in frame.panel.curves if curve.end]
+    limits = sum(bool(level.sense) for level in frame.panel.levels)
+    return named if 2.7 * (len(named) + limits) <= frame.height - 1.0 else []
+
+
+def _right_room(frame: _Frame) -> float:
+    words = [curve.end for curve in _at_end(frame)]
+    words += [level.words + " ↑" for level in frame.panel.levels if level.sense]
+    room = min(max(text_width(w, SIZE) for w in words), RIGHT) + 2.0 if words else 0.5
+    return room + (SHADES if frame.panel.surface is not None and not frame.why else 0.0)
+
+
+# ---- drawing ----
+
+
+def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
+    """A frame with what it shows; `edge` is the left end of its column."""
+    panel, x, label = frame.panel, frame.x, frame.label
+    _head(ink, box, frame, edge)
+    axes = Axes(ink, box, x.range, frame.y.range)
+    x_ticks = x.ticks(box[2], across=True)
+    if frame.why:
+        _empty(ink, box, frame.why)
+        if frame.shared:
+            axes.frame_at("", label, x_ticks, [])
+        return
+    y_ticks = [(at, fitted(words, NAMES, SIZE)) for at, words in _y_ticks(frame)]
+    if panel.surface is not None:
+        bounds = _shaded(axes, frame, x)
+        _outside_ticks(axes, x_ticks, y_ticks, label)
+    else:
+        bounds = []
+        for curve in panel.curves:
+            if len(curve.low):
+                xs = x.at(curve.xs)
+                low, high = (frame.y.at(v) for v in (curve.low, curve.high))
+                band(axes, xs.tolist(), low.tolist(), high.tolist())
+        axes.frame_at("", label, x_ticks, y_ticks, upright=True)
+        _zero_lines(axes, frame, x)
+    lines = [_curve(axes, curve, k, frame.y, x) for k, curve in enumerate(panel.curves)]
+    for level in panel.levels:
+        _level(axes, level, frame.y, x)
+    spots = [_spots(axes, points, k, frame.y, x, bounds) for k, points in enumerate(panel.points)]
+    _right_words(axes, frame, lines)
+    taken = [p for part in lines for line in part for p in _dotted(line)]
+    taken += [spot for part in spots for spot in part]
+    for level in panel.levels:
+        if level.between is not None and level.words:
+            _beside(axes, level, frame.y, x, taken)
+
+
+def _head(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
+    """Title, note and legend, from the frame upwards."""
+    left, wide = box[0] - 1.4, box[2] + frame.right
+    title, y = frame.panel.title, box[1] - frame.above + 1.6
+    if text_width(title, TITLE, bold=True) > wide:
+        left, wide = edge, box[0] + box[2] + frame.right - edge
+    ink.text(left, y, fitted(title, wide / 1.1, TITLE), size=TITLE, bold=True)
+    for k, words in enumerate(frame.notes):
+        ink.text(box[0], y + ROW + 3.0 * k, words, size=SMALL, color=GREY)
+    if frame.beside and frame.rows:
+        long = sum(entry.width() for entry in frame.rows[0]) - BETWEEN
+        _legend(ink, box[0] + box[2] - long, y, frame.rows[0])
+        return
+    y += 3.0 * len(frame.notes)
+    for row in frame.rows:
+        y += ROW
+        _legend(ink, box[0], y, row)
+
+
+def _legend(ink: Ink, x: float, y: float, row: Sequence[_Entry]) -> None:
+    for entry in row:
+        if entry.line is not None:
+            ink.line((x, y), (x + SKETCH, y), **entry.line)
+        middle = x + (SKETCH / 2 if entry.line else 1.0)
+        if entry.point is not None:
+            ink.circle(middle, y, 0.75, fill=entry.point[1], stroke=entry.point[0], pen=0.3)
+        if entry.small is not None:
+            _small(ink, middle, y, entry.small)
+        ink.text(x + entry.sketch, y, entry.words, size=SIZE)
+        x += entry.width()
+
+
+def _empty(ink: Ink, box: Box, why: str) -> None:
+    ink.box(*box, stroke=PALE, pen=0.13)
+    lines = wrap(why, max(box[2] - 4.0, 8.0), SIZE)[: max(int((box[3] - 1.0) / 3.1), 1)]
+    first = box[1] + box[3] / 2 - 3.1 * (len(lines) - 1) / 2
+    for k, line in enumerate(lines):
+        ink.text(box[0] + box[2] / 2, first + 3.1 * k, line, anchor="center", color=GREY)
+
+
+def _zero_lines(axes: Axes, frame: _Frame, x: Scale) -> None:
+    """Lines at zero where zero lies inside a straight or signed axis."""
+    (left, right), (bottom, top) = axes.x_range, axes.y_range
+    own = frame.panel
+    if not (own.y.log and not own.y.signed) and not own.y.names and bottom < 0 < top:
+        axes.ink.line((axes.x(left), axes.y(0.0)), (axes.x(right), axes.y(0.0)), **GUIDE)
+    if not (own.x.log and not own.x.signed) and left < 0 < right:
+        axes.ink.line((axes.x(0.0), axes.y(bottom)), (axes.x(0.0), axes.y(top)), **GUIDE)
+
+
+def _curve(axes: Axes, curve: Curve, index: int, y: Scale, x: Scale) -> list[Line]:
+    """A curve on paper: thinned, interrupted where it has no value, cut at the frame."""
+    xs, ys = x.at(curve.xs), y.at(curve.ys)
+    style = _line(curve, index)
+    good = np.flatnonzero(np.isfinite(xs) & np.isfinite(ys))
+    lines: list[Line] = []
+    most = int(DENSE * axes.width)
+    for run in np.split(good, np.flatnonzero(np.diff(good) > 1) + 1):
+        if run.size == 1:
+            at = axes.x(float(xs[run[0]])), axes.y(float(ys[run[0]]))
+            if _inside(axes, at):
+                axes.ink.circle(*at, 0.4, fill=style["stroke"], stroke=None)
+                lines.append([at])
+            continue
+        if run.size:
+            kept = run[thinned(ys[run], max(8, most * run.size // good.size))]
+            paper = [(axes.x(float(xs[k])), axes.y(float(ys[k]))) for k in kept]
+            lines += _cut(paper, axes)
+    axes.ink.path([line for line in lines if len(line) > 1], **style)
+    return lines
+
+
+def _inside(axes: Axes, at: Point) -> bool:
+    right, bottom = axes.left + axes.width, axes.top + axes.height
+    return axes.left - 0.01 <= at[0] <= right + 0.01 and axes.top - 0.01 <= at[1] <= bottom + 0.01
+
+
+def _cut(line: Sequence[Point], axes: Axes) -> list[Line]:
+    """The parts of a line that lie inside the frame (Liang and Barsky 1984)."""
+    box = ((axes.left, axes.left + axes.width), (axes.top, axes.top + axes.height))
+    parts: list[Line] = []
+    for start, end in pairwise(line):
+        first, last = 0.0, 1.0
+        for k, (low, high) in enumerate(box):
+            step = end[k] - start[k]
+            if step == 0:
+                if not low - 1e-9 <= start[k] <= high + 1e-9:
+                    last = -1.0
+                continue
+            near, far = sorted(((low - start[k]) / step, (high - start[k]) / step))
+            first, last = max(first, near), min(last, far)
+        if first >= last:
+            continue
+        a, b = ((start[0] + t * (end[0] - start[0]), start[1] + t * (end[1] - start[1]))
+                for t in (first, last))  # fmt: skip
+        if first > 0.0 or not parts or parts[-1][-1] != start:
+            parts.append([a])
+        parts[-1].append(end if last == 1.0 else b)
+    return parts
+
+
+def _spots(
+    axes: Axes, points: Points, index: int, y: Scale, x: Scale, bounds: Sequence[float]
+) -> list[Point]:
+    """Points with their error bars; of many in a place only one is drawn."""
+    style = index if points.style is None else points.style
+    edge, fill = MARKS[style % len(MARKS)]
+    color = str(LINES[style % len(LINES)]["stroke"]) if points.small else edge
+    xs, ys = x.at(points.xs), y.at(points.ys)
+    good = np.flatnonzero(np.isfinite(xs) & np.isfinite(ys))
+    places = [(axes.x(float(xs[k])), axes.y(float(ys[k]))) for k in good]
+    inside = [n for n, at in enumerate(places) if _inside(axes, at)]
+    if len(inside) > 400:
+        cells = {(round(places[n][0] * 2), round(places[n][1] * 2)): n for n in inside}
+        inside = sorted(cells.values())
+    for n in inside:
+        at, k = places[n], int(good[n])
+        if len(points.low):
+            _bar(axes, points, k, at, y, x, color)
+        if points.small:
+            _small(axes.ink, *at, style)
+        elif len(points.shades) and bounds:
+            paints = contours.shades(len(bounds) - 1)
+            shade = min(max(bisect_right(bounds, points.shades[k]) - 1, 0), len(paints) - 1)
+            axes.ink.circle(*at, 1.15, fill=WHITE, stroke=None)
+            axes.ink.circle(*at, 0.9, fill=paints[shade], stroke=BLACK, pen=0.18)
+        else:
+            axes.ink.circle(*at, 0.75, fill=fill, stroke=edge, pen=0.3)
+    return [places[n] for n in inside]
+
+
+def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, color: str) -> None:
+    """An error bar; an end without a place lies beyond the frame."""
+    along = x if points.across else y
+    ends = along.at([points.low[k], points.high[k]])
+    low, high = (float(end) for end in ends)
+    bottom, top = along.range
+    low = low if math.isfinite(low) else bottom - 1.0
+    high = high if math.isfinite(high) else top + 1.0
+    if not points.across:
+        place = axes.x_range[0] + (at[0] - axes.left) / axes.width * (
+            axes.x_range[1] - axes.x_range[0]
+        )
+        error_bar(axes, place, low, high, color)
+        return
+    first, last = axes.x(max(low, bottom)), axes.x(min(high, top))
+    if last - first < 2.0:  # it lies behind its point
+        return
+    axes.ink.line((first, at[1]), (last, at[1]), pen=0.4, stroke=color)
+    for end in (low, high):
+        if bottom <= end <= top:
+            foot = axes.x(end)
+            axes.ink.line((foot, at[1] - 0.9), (foot, at[1] + 0.9), pen=0.4, stroke=color)
+
+
+def _small(ink: Ink, x: float, y: float, style: int) -> None:
+    """A small dot, or a cross for odd styles."""
+    color = LINES[style % len(LINES)]["stroke"]
+    if style % 2 == 0:
+        ink.circle(x, y, 0.6, fill=color, stroke=None)
+        return
+    for side in (-0.7, 0.7):
+        ink.line((x - 0.7, y - side), (x + 0.7, y + side), pen=0.25, stroke=color)
+
+
+def _level(axes: Axes, level: Level, y: Scale, x: Scale) -> None:
+    """A level; the forbidden side of a limit is hatched."""
+    place = y.place(level.value)
+    if not axes.y_range[0] <= place <= axes.y_range[1]:
+        return
+    at, left, right = axes.y(place), axes.left, axes.left + axes.width
+    if level.between is not None:
+        ends = (axes.x(float(v)) for v in x.at(level.between))
+        left, right = (min(max(end, left), right) for end in sorted(ends))
+    axes.ink.line((left, at), (right, at), **_level_style(level))
+    if level.sense:
+        side = 1.3 if level.sense == "min" else -1.3
+        edge = min(max(at + side, axes.top), axes.top + axes.height)
+        strip = [(left, at), (right, at), (right, edge), (left, edge)]
+        axes.ink.path(hatch([strip], angle=45.0, spacing=0.9), pen=0.1, stroke=RED)
+
+
+def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> None:
+    """Names of curve ends and limits right of the frame, nearest to their places."""
+    low, high = axes.top, axes.top + axes.height
+    named: list[tuple[float, str, str]] = []
+    ends = _at_end(frame)
+    for k, (curve, parts) in enumerate(zip(frame.panel.curves, lines, strict=True)):
+        if curve in ends and parts:
+            last = max((line[-1] for line in parts), key=lambda at: at[0])
+            named.append((last[1], curve.end, str(_line(curve, k)["stroke"])))
+    for level in frame.panel.levels:
+        if level.sense and level.words:
+            place = frame.y.place(level.value)
+            words = level.words
+            if not place >= axes.y_range[0]:
+                place, words = axes.y_range[0], f"{words} ↓"
+            elif place > axes.y_range[1]:
+                place, words = axes.y_range[1], f"{words} ↑"
+            named.append((axes.y(place), words, RED))
+    named.sort()
+    most = max(int((axes.height + 2.0) / 2.7), 1)
+    named = named[:most]
+    wanted = [y for y, _, _ in named]
+    places = spread_within(wanted, [2.9] * len(wanted), low + 0.5, high - 0.5)
+    right = axes.left + axes.width
+    for (y, words, color), at in zip(named, places, strict=True):
+        if abs(at - y) > 1.4:
+            axes.ink.line((right + 0.2, y), (right + 1.3, at), pen=0.1, stroke=color)
+        axes.ink.text(right + 1.6, at, fitted(words, RIGHT, SIZE), color=color)
+
+
+def _beside(axes: Axes, level: Level, y: Scale, x: Scale, taken: Sequence[Point]) -> None:
+    """The name of a short level at its nearest free side; none where no side is free."""
+    place = y.place(level.value)
+    if level.between is None or not axes.y_range[0] <= place <= axes.y_range[1]:
+        return
+    start, end = (axes.x(float(v)) for v in x.at(level.between))
+    way = 1.0 if end >= start else -1.0
+    before: Anchor = "right" if way > 0 else "left"
+    beyond: Anchor = "left" if way > 0 else "right"
+    at, wide = axes.y(place), text_width(level.words, 6.0)
+    sides: list[tuple[float, Anchor, float]] = []
+    for dy in (0.0, -2.6, 2.6):
+        sides += [(start - 1.2 * way, before, dy), (end + 1.2 * way, beyond, dy)]
+    sides += [((start + end) / 2, "center", dy) for dy in (-2.0, 2.0)]
+    best: tuple[int, float, Anchor, float] | None = None
+    written = [box[1:] for box in axes.ink.text_boxes()]
+    for across, anchor, dy in sides:
+        left = across - {"left": 0.0, "center": wide / 2, "right": wide}[anchor]
+        box = (left - 0.3, at + dy - 1.0, left + wide + 0.3, at + dy + 1.0)
+        if not (_inside(axes, box[:2]) and _inside(axes, box[2:])) or any(
+            box[0] < b[2] and b[0] < box[2] and box[1] < b[3] and b[1] < box[3] for b in written
+        ):
+            continue
+        crossed = sum(box[0] < p[0] < box[2] and box[1] < p[1] < box[3] for p in taken)
+        if best is None or crossed < best[0]:
+            best = (crossed, across, anchor, dy)
+    if best is not None:
+        color = str(_level_style(level)["stroke"])
+        crossed, across, anchor, dy = best
+        axes.ink.text(
+            across, at + dy, level.words, size=6.0, anchor=anchor, color=color, halo=crossed > 0
+        )
+
+
+def _dotted(line: Line) -> Iterator[Point]:
+    """Points along a line, half a millimetre apart."""
+    for a, b in pairwise(line):
+        count = max(1, int(2 * math.dist(a, b)))
+        for k in range(count):
+            yield a[0] + (b[0] - a[0]) * k / count, a[1] + (b[1] - a[1]) * k / count
+    yield from line[-1:]
+
+
+def _shaded(axes: Axes, frame: _Frame, x: Scale) -> list[float]:
+    """The surface in bands with its scale; the levels between them."""
+    surface = frame.panel.surface
+    assert surface is not None
+    shown = [value for points in frame.panel.points for value in known(points.shades, log=True)]
+    shown += known(np.asarray(surface.values).ravel(), log=True)
+    if not shown:
+        return []
+    bounds = contours.levels(min(shown), max(shown))
+    table = np.asarray(surface.values, dtype=float)
+    if table.size:
+        xs, ys = (along.at(values) for along, values in ((x, surface.xs), (frame.y, surface.ys)))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            logs = np.ma.masked_invalid(np.log10(np.where(table > 0, table, np.nan)))
+        contours.bands(axes, xs.tolist(), ys.tolist(), logs, bounds)
+    contours.scale(axes.ink, (axes.left, axes.top, axes.width, axes.height), bounds)
+    return bounds
+
+
+def _outside_ticks(axes: Axes, x_ticks: Ticks, y_ticks: Ticks, label: str) -> None:
+    """A closed frame with ticks outside: no grid crosses the bands."""
+    ink, bottom = axes.ink, axes.top + axes.height
+    for value, words in y_ticks:
+        y = axes.y(value)
+        ink.line((axes.left - 1.0, y), (axes.left, y), pen=0.13)
+        ink.text(axes.left - 1.6, y, words, anchor="right")
+    for value, words in x_ticks:
+        x = axes.x(value)
+        ink.line((x, bottom), (x, bottom + 1.0), pen=0.13)
+        ink.text(x, bottom + 3.0, words, anchor="center")
+    ink.box(axes.left, axes.top, axes.width, axes.height, pen=0.18)
+    ink.text(axes.left + axes.width / 2, bottom + 7.0, label, anchor="center", color=GREY)
