@@ -84,7 +84,7 @@ def test_an_objective_without_a_bound_says_so(setting, reason):
     assert found["lower_bound"] is None
     assert found["gap"] is None
     assert reason in found["sentence"]
-    assert "evidence, no proof" in found["evidence"]
+    assert "evidence, not proof" in found["evidence"]
 
 
 @pytest.mark.parametrize(
@@ -92,7 +92,7 @@ def test_an_objective_without_a_bound_says_so(setting, reason):
     [
         ({"layup": True}, "a rod of layers"),
         ({"linkage": True}, "a linkage"),
-        ({"film": True}, "a seal on its oil film"),
+        ({"film": True}, "a seal with an oil film"),
         ({}, ""),
     ],
 )
