@@ -15,6 +15,7 @@ from ..base.numeric import Array
 from ..evaluation.dynamics_study import DynamicsStudy, LoopStudy, Response
 from ..evaluation.result import Requirement
 from ..rendering.axes import (
+    SUPERSCRIPTS,
     Axes,
     Ticks,
     dot,
@@ -128,7 +129,7 @@ def damping_panel(
     low = min([0.0, *ys, friction])
     high = max([*ys, friction, *near, 0.0]) or 1.0
     axes = Axes(ink, box, (xs[0], xs[-1]), (1.08 * low, 1.08 * high))
-    unit = "" if power == 0 else f", 10{str(power).translate(_SUPERSCRIPTS)}"
+    unit = "" if power == 0 else f", 10{str(power).translate(SUPERSCRIPTS)}"
     axes.frame(f"Damping ratio{unit}", "piston position from the cap end, mm")
     ink.path(axes.clipped(xs, ys), **STYLES[0])
     for row, level in zip(requirements, limits, strict=True):

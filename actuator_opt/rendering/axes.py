@@ -44,7 +44,7 @@ _MOST_JUMPS = 500
 """Most instants with two samples that a thinned curve keeps."""
 _MILLISECONDS = 0.1
 """Time below which an axis counts milliseconds [s]."""
-_SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def ticks(low: float, high: float, count: int = 5) -> list[float]:
@@ -223,7 +223,7 @@ def level_words(value: float) -> str:
         return trimmed(value)
     power = math.floor(math.log10(value) + 1e-9)
     step = round(value / 10.0**power)
-    raised = f"10{str(power).translate(_SUPERSCRIPTS)}"
+    raised = f"10{str(power).translate(SUPERSCRIPTS)}"
     return raised if step == 1 else f"{step}×{raised}"
 
 
