@@ -90,7 +90,7 @@ def compare_materials(
     names: Annotated[list[str], typer.Argument(metavar="NAME", help="Two or more entries.")],
     as_json: Json = False,
 ) -> None:
-    """Compare properties side by side, with ratios to the first material."""
+    """Compare properties, with ratios to the first material."""
     from ..design.material_tables import compare_lines, to_dict
     from ..design.materials import load_library
 

@@ -35,8 +35,8 @@ def metrics(
     """Gland metrics of a ring; `growth` is the largest bore growth over it.
 
     Squeeze and fill are for worst tolerances, hot and cold, with rod and bore concentric as in
-    gland tables. Side load displaces the rod: the gap on one side is then larger by the clearance (and
-    the squeeze smaller, as the seal sheet shows).
+    gland tables. Side load displaces the rod: the gap on one side is then larger by the clearance
+    (and the squeeze smaller, as the seal sheet shows).
     """
     clearance, aside = clearances(geometry, state, ring)
     cold, hot = (

@@ -69,7 +69,7 @@ class Springs:
     geometry: Geometry
     topology: str
     pressure: Array
-    """Pressure difference across the piston, for the published form that needs it."""
+    """Pressure difference across the piston, used by a published form only."""
     rod_place: str = ""
 
     @property
@@ -98,7 +98,7 @@ class Springs:
         """Compliance by part at a position (m/N); the sum is 1/stiffness.
 
         Per chamber, the share of each part is its strain energy under a unit force: p^T C_part p
-        with the chamber pressures p of that force, and k x^2 for the seals; independent of part order.
+        with the chamber pressures p of that force, and k x^2 for the seals.
         """
         if self.topology != "per_chamber":
             parts = self._published(position)

@@ -100,7 +100,7 @@ def resampled(
     """
     if count < FEWEST:
         message = f"{count} resamples have no tail of 2.5 %"
-        raise InputError(Diagnostic(message, f"take {FEWEST} or more, 200 as a rule"))
+        raise InputError(Diagnostic(message, f"use {FEWEST} or more, usually 200"))
     first, second = (np.random.default_rng(one) for one in np.random.SeedSequence(seed).spawn(2))
     curve_known = stribeck if isinstance(stribeck, StribeckFit) else None
     if isinstance(lugre, LuGreFit):

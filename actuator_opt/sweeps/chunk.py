@@ -33,7 +33,7 @@ LOOKED = 1024
 WORTH = 2048
 """Designs from which a screen, some 20 ms of work, is worth it."""
 
-NO_ANSWER = "the models have no finite answer for these dimensions"
+NO_ANSWER = "not computable for these dimensions"
 MARGIN, MISSED, FEASIBLE = "least_margin", "governing_limit", "feasible"
 """Columns beside the metrics: the least margin, the number of its limit, whether all are met."""
 
