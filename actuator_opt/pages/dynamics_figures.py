@@ -15,7 +15,6 @@ from ..base.numeric import Array
 from ..evaluation.dynamics_study import DynamicsStudy, LoopStudy, Response
 from ..evaluation.result import Requirement
 from ..rendering.axes import (
-    SUPERSCRIPTS,
     Axes,
     Ticks,
     dot,
