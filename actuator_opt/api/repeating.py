@@ -18,8 +18,7 @@ from . import results
 from .actuator import Actuator, Plugins, plugins_of, read_as
 from .fronts import pareto
 from .optimum import evaluate, optimise
-from .record_form import run_fault
-from .recorded_runs import Run, differing
+from .recorded_runs import Run, differing, run_fault
 from .reports import Paper, is_date, verification_tables
 
 if TYPE_CHECKING:

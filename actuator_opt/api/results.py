@@ -151,7 +151,7 @@ KINDS = kinds(
         writes=lambda swept: False,  # rows are written as they come, figures by draw_sweep
     ),
     ResultKind(
-        "studies.seal_result:SealStudy", _converged, page="pages.seal:page",
+        "studies.seal:SealStudy", _converged, page="pages.seal:page",
         report="api:write_seal", csv=None, record=None,
     ),
     ResultKind(

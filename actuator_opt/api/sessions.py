@@ -161,8 +161,7 @@ class Session:
     """
 
     def __init__(self, actuator: Actuator, *, seed: int = 0) -> None:
-        from ..optimisation.actuator import build, require_movable_objective
-        from ..optimisation.outcome import Outcome
+        from ..optimisation.actuator import Outcome, build, require_movable_objective
         from ..optimisation.rounding import Wanted, sizes_of
         from ..optimisation.run import result_of
         from ..optimisation.solver import solve

@@ -51,8 +51,7 @@ def require_formats(formats: Sequence[str]) -> tuple[str, ...]:
 def _content(evaluation: Evaluation, name: str, date: str | None) -> bytes:
     program = f"actuator-opt {evaluation.version}"
     if name == "step":
-        from .solids import bodies
-        from .step import step
+        from .step import bodies, step
 
         made = step(bodies(evaluation), name=evaluation.name, program=program, date=date)
         return made.encode("ascii")

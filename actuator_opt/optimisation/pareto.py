@@ -19,8 +19,7 @@ from ..evaluation.governing import governing
 from ..evaluation.limits import MetricArrays
 from .actuator import ActuatorProblem, Fault, Goal, build, idle_metrics
 from .descents import FEASIBLE
-from .front.ends import NoEnd
-from .front.front import Front, Settings, front
+from .front.front import Front, NoEnd, Settings, front
 from .front.objectives import Objectives
 from .infeasibility_card import explained
 from .pareto_result import FrontPoint, Knee, ParetoFront, Wish

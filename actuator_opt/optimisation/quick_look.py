@@ -16,16 +16,14 @@ import numpy as np
 from ..design.choice_list import Value
 from ..evaluation import PreparedDesign
 from . import elastic, kkt, nlopt_wrapper
-from .actuator import ActuatorProblem
+from .actuator import ActuatorProblem, Solution
 from .descents import FEASIBLE
 from .evaluator import Evaluator, LimitReached, Point
-from .outcome import Solution
 from .problem import Vector
 from .resolve.boxes import ROUGH, stepped
-from .resolve.hessians import ScaledHessian, hessian_at
+from .resolve.steps import ScaledHessian, hessian_at
 from .result import How
-from .sampling import sweep
-from .solver import solve
+from .solver import solve, sweep
 
 EVALUATIONS = 40
 """Maximum evaluations of one descent; from a nearby design 10 to 30 suffice."""

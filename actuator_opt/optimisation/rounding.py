@@ -21,10 +21,9 @@ from ..design.model import Ply
 from ..design.sizes import groups
 from ..design.standard_sizes import WHOLE, along
 from ..evaluation import Evaluation, evaluate, prepare
-from .actuator import ActuatorProblem, Fault
+from .actuator import ActuatorProblem, Fault, Solution
 from .branch_and_bound import Found, search
 from .listed import SAME, Assignment, Listed
-from .outcome import Solution
 from .problem import Vector
 from .result import Optimisation, RoundedVariable, Rounding, RunnerUp
 from .size_remedies import size_remedies

@@ -13,7 +13,7 @@ from ..identification.calibration import Calibration
 from ..identification.points import Point, by_pressure
 from ..optimisation.redesign import Redesign, Shift, solved
 from ..rendering import text
-from ..rendering.blocks import (  # fmt: skip
+from ..rendering.blocks import (
     Block,
     Column,
     Notes,

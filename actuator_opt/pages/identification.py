@@ -15,12 +15,12 @@ from ..base.fitting import Parameter
 from ..base.quantities import Quantity
 from ..design.material_fits import Fit
 from ..identification.coefficient import Coefficient
-from ..identification.lugre_fit import LuGreFit
+from ..identification.lugre import LuGreFit
 from ..identification.record import CHANNELS, Record
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
 from ..metrics import METRICS
-from ..rendering.blocks import (  # fmt: skip
+from ..rendering.blocks import (
     Block,
     Column,
     Notes,
@@ -37,7 +37,7 @@ from ..rendering.blocks import (  # fmt: skip
 )
 from ..rendering.heights import HALF, height
 from ..rendering.series import Series
-from ..rendering.text import (  # fmt: skip
+from ..rendering.text import (
     DASH,
     decimals,
     fixed,
@@ -49,7 +49,7 @@ from ..rendering.text import (  # fmt: skip
     value_text,
     with_unit,
 )
-from .identification_figures import (  # fmt: skip
+from .identification_figures import (
     FORCE,
     LEAST,
     MOST,

@@ -19,8 +19,8 @@ from ..rendering.blocks import Block, Column, Notes, Page, Row, Table, Tile, Ver
 from ..rendering.ink import Ink
 from ..rendering.series import Coded, Field, Values, heading
 from ..sweeps import Swept
-from ..sweeps.axes import Axis
 from ..sweeps.chunk import Chunk, Study
+from ..sweeps.plan import Axis
 from ..version import VERSION
 from .sweep_figures.drawing import chosen
 from .sweep_figures.parallel import parallel_figure

@@ -20,7 +20,7 @@ from .axes import Axes, Box, Ticks, band, error_bar, fitted, thinned
 from .chart import Chart, Curve, Level, Panel, Points, Values
 from .chart_scale import Scale, known, scale
 from .heights import wrap
-from .ink import (  # fmt: skip
+from .ink import (
     BLACK,
     BLUE,
     GREEN,

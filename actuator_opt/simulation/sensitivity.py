@@ -23,7 +23,7 @@ from ..design.walls import Loc, child, child_at, leaves, number_of
 from ..evaluation.build import prepare
 from ..evaluation.kernel import PreparedDesign
 from ..studies.plant import plant
-from .gains import Tuned, tune
+from .linear import Tuned, tune
 from .parts.signals import Records
 from .result import Simulation
 from .run import run

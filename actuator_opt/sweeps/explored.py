@@ -21,9 +21,8 @@ from ..evaluation.plugin import Plugin, with_own
 from ..evaluation.shapes import Shapes, same_dimensions, shapes
 from ..metrics import METRICS
 from ..version import VERSION
-from .axes import Axis
 from .chunk import Study, key_head
-from .plan import Plan, Points
+from .plan import Axis, Plan, Points
 
 BEST = 100
 """Number of best feasible designs that thinning always keeps."""

@@ -21,8 +21,8 @@ from ..design.variable import Variable
 from ..evaluation import prepare
 from ..evaluation.build import TOLERANCE
 from ..optimisation.actuator import build
+from ..optimisation.certificate.certify import Claim, trace
 from ..optimisation.certificate.relaxation import Unknown
-from ..optimisation.certificate.trace import Claim, trace
 from .engine import Engine, Scores, array_library, fused
 
 ROOM = 2 * TOLERANCE

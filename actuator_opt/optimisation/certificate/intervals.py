@@ -13,7 +13,7 @@ from typing import Any
 
 from ...base.symbolic import Symbol
 from ...base.symbolic.expression import Bounds, at_end, bounds, bounds_of
-from .signomial import ROUNDING, Form, Signomial
+from .relaxation import ROUNDING, Form, Signomial
 
 ROUNDS = 30
 """Maximum passes over all values."""
