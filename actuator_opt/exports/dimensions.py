@@ -17,7 +17,7 @@ from .solids import Profile
 LAYER = "dimensions"
 STYLE = "TRUE"
 _COLOUR, _BY_LAYER, _BLACK_OR_WHITE = 153, 256, 7
-"""Of the lines, which show on black and on white; letters take the colour that the ground lacks."""
+"""Colour of the lines, visible on black and white; texts take the contrasting colour."""
 
 _SMALLEST = 1e-6
 """Shorter lengths (mm) are not dimensioned."""

@@ -9,7 +9,7 @@ from .components import ENDS, FRICTIONS, LAWS, SUPPLIES
 from .shapes import SHAPES
 
 Shape: TypeAlias = Annotated[str, choice_of("shape of this part of the signal", SHAPES)]
-Law: TypeAlias = Annotated[str, choice_of("control law", LAWS)]
+Law: TypeAlias = Annotated[str, choice_of("law of the controller", LAWS)]
 Tuning: TypeAlias = Annotated[
     Literal["margins", "ziegler_nichols", "stated"],
     Choice(
@@ -28,5 +28,7 @@ Ends: TypeAlias = Annotated[
 ]
 CushionEnd: TypeAlias = Annotated[
     Literal["both", "cap", "rod"],
-    Choice("cushioned ends; both: both ends; cap: end of retraction; rod: end of extension"),
+    Choice(
+        "which ends have a cushion; both: both ends; cap: end of retraction; rod: end of extension"
+    ),
 ]
