@@ -21,19 +21,11 @@ from scipy.special import betaincinv, ndtri
 import actuator_opt as ao
 from actuator_opt import api as verbs
 from actuator_opt.evaluation import prepare
-from actuator_opt.evaluation.reserve import YieldEstimate, without_reserve
-from actuator_opt.evaluation.result import Check, Unverified
+from actuator_opt.evaluation.result import Check, Unverified, YieldEstimate, without_reserve
 from actuator_opt.optimisation.recorded import from_plain, to_plain
 from actuator_opt.optimisation.result import Optimisation
 from actuator_opt.optimisation.robustness import Robust
-from actuator_opt.pages import (
-    calibration,
-    comparison,
-    pareto,
-    report as page,
-    runs,
-    sweep,
-)
+from actuator_opt.pages import calibration, comparison, pareto, report as page, runs, sweep
 from actuator_opt.rendering import paper, paper_plain as fallback, terminal as renderer
 from actuator_opt.rendering.terminal import blocks_text
 from actuator_opt.uncertainties.draw import normal_quantile

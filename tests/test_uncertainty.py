@@ -11,7 +11,7 @@ from hypothesis import given, settings, strategies as st
 from scipy.stats import binom, norm
 
 import actuator_opt as ao
-from actuator_opt.design.distributions import REACH
+from actuator_opt.design.uncertain import REACH
 from actuator_opt.models.elastomer import modulus_gent, modulus_ruess
 from actuator_opt.uncertainties import estimate
 from actuator_opt.uncertainties.draw import about

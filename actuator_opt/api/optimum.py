@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..design import Design
 from ..evaluation import Evaluation, PreparedDesign, evaluate as evaluate_subject, prepare
 from ..evaluation.plugin import Plugin
-from ..evaluation.reserve import YieldEstimate
+from ..evaluation.result import YieldEstimate
 from .actuator import Actuator, Plugins, answered, as_actuator, located, place
 
 if TYPE_CHECKING:

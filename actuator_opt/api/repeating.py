@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Unpack
 
 from ..base.bounds import CHECKS, FRONT, SEED, STARTS, Bounds
-from ..base.errors import Diagnostic, InputError
-from ..base.suggest import shown
+from ..base.errors import Diagnostic, InputError, shown
 from ..evaluation import Evaluation
 from ..version import VERSION
 from . import results

@@ -9,9 +9,8 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.errors import Diagnostic, InputError, UsageError, remedy
 from ..base.quantities import Quantity
-from ..base.suggest import remedy
 from ..base.tables import aligned
 from ..design import Design, canonical, get, quantity_of
 from ..evaluation import PreparedDesign

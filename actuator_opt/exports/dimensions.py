@@ -96,7 +96,7 @@ def _stations(lengths: Mapping[str, float]) -> dict[str, tuple[float, float]]:
     return {name: span for name, span in spans.items() if span[1] - span[0] > _SMALLEST}
 
 
-def _words(name: str, span: tuple[float, float]) -> str:
+def _dimension_words(name: str, span: tuple[float, float]) -> str:
     told = {"stroke": "stroke ", "closed length": "closed length "}.get(name, "")
     return told + number(span[1] - span[0])
 
@@ -123,7 +123,7 @@ def lengths_below(
     the lowest y coordinate used
     """
     spans = _stations(evaluated) | {f"skirt {k}": span for k, span in enumerate(skirts)}
-    lengths = [Length(*span, _words(name, span)) for name, span in spans.items()]
+    lengths = [Length(*span, _dimension_words(name, span)) for name, span in spans.items()]
     base = -max(r for profile in profiles for _, r in profile) - 1.2 * paper.row
     lowest = base
     for placed in rows(lengths, paper):

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from math import cos, radians, sin, sqrt, tan
 from typing import Any, TypeAlias
 
-from ..base.extras import library
+from ..base.errors import library
 from ..evaluation.outline import notes
 from ..evaluation.result import Evaluation, Outline
 from . import dimensions

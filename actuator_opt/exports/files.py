@@ -7,10 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..base.errors import Diagnostic, UsageError
-from ..base.extras import library
+from ..base.errors import Diagnostic, UsageError, library, shown
 from ..base.files import write_all
-from ..base.suggest import shown
 from ..evaluation.result import Evaluation
 
 FORMATS = ("step", "dxf", "xlsx")

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError, shown
 from ..base.numeric import Array
-from ..base.suggest import shown
 
 ABSENT = {"", "-", "--", "na", "n/a", "nan", "-nan", "null", "none", "#n/a", "inf", "-inf", "+inf"}
 """Cells that mark a missing sample, in small letters."""

@@ -11,9 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base import units
-from ..base.errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError, remedy as remedy_for, shown
 from ..base.numeric import Array
-from ..base.suggest import remedy as remedy_for, shown
 from ..models.fluid import ATMOSPHERIC_PRESSURE
 from .column_units import NONE, ColumnUnits
 from .csv_table import Sheet, numbers, read_sheet

@@ -12,8 +12,7 @@ from ..base.numeric import Array, real, where
 from ..base.quantities import Sense
 from ..evaluation import PreparedDesign, compute
 from ..evaluation.governing import extreme, worst_of
-from ..evaluation.limits import all_limits, margin
-from ..evaluation.rows import UNLIMITED, LimitRow, MetricArrays, rows_of
+from ..evaluation.limits import UNLIMITED, LimitRow, MetricArrays, all_limits, margin, rows_of
 from ..evaluation.values import Values as Numbers
 from .problem import BoxProblem, ParametricProblem, Values
 

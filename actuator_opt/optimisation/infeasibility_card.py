@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base.quantities import Quantity
 from ..design import quantity_of
-from ..evaluation.rows import LimitRow
+from ..evaluation.limits import LimitRow
 from ..metrics import METRICS
 from .actuator import ActuatorProblem
 from .cures import DIGITS, Cure, Cures, cures, outward

@@ -63,15 +63,15 @@ def sensitivities(actuator: ActuatorProblem, solution: Solution) -> tuple[Sensit
                 holds_until=price.holds_until,
                 next_active=price.change,
                 active=price.parameter in active,
-                price_up=_finite(shown(price.price_up)),
-                price_down=_finite(shown(price.price_down)),
+                price_up=_finite_price(shown(price.price_up)),
+                price_down=_finite_price(shown(price.price_down)),
                 movement=dict(zip(actuator.paths, price.movement.tolist(), strict=True)),
             )
         )
     return ranked(rows, shown(solution.objective))
 
 
-def _finite(value: float) -> float | None:
+def _finite_price(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 

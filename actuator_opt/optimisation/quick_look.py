@@ -127,7 +127,7 @@ def look_quickly(
             if look.feasible or DOUBTFUL < look.violation <= STUCK:
                 break
         if look.feasible and look.x is not None:
-            _settle(look, evaluator, look.x, seed)
+            _settle_quickly(look, evaluator, look.x, seed)
     except LimitReached:
         look.how = "not tried" if look.x is None else "quick"
 
@@ -158,7 +158,7 @@ def hessian_of(look: Look) -> ScaledHessian | None:
     return hessian_at(evaluator, point) if settled else None
 
 
-def _settle(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
+def _settle_quickly(look: Look, evaluator: Evaluator, x: Vector, seed: int) -> None:
     """Solve from a few starts if a descent stopped before an optimum."""
     found = kkt.check(evaluator, evaluator.point(evaluator.space.to_z(x)))
     if found.residual <= SETTLED or not evaluator.space.size:

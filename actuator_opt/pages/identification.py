@@ -20,7 +20,7 @@ from ..identification.record import CHANNELS, Record
 from ..identification.result import Identification
 from ..identification.stribeck_fit import StribeckFit
 from ..metrics import METRICS
-from ..rendering.blocks import (
+from ..rendering.blocks import (  # fmt: skip
     Block,
     Column,
     Notes,
@@ -34,10 +34,10 @@ from ..rendering.blocks import (
     Tile,
     Verdict,
     tile,
-)  # fmt: skip
+)
 from ..rendering.heights import HALF, height
 from ..rendering.series import Series
-from ..rendering.text import (
+from ..rendering.text import (  # fmt: skip
     DASH,
     decimals,
     fixed,
@@ -48,8 +48,8 @@ from ..rendering.text import (
     unit_text,
     value_text,
     with_unit,
-)  # fmt: skip
-from .identification_figures import (
+)
+from .identification_figures import (  # fmt: skip
     FORCE,
     LEAST,
     MOST,
@@ -57,7 +57,7 @@ from .identification_figures import (
     SPEED,
     STIFFNESS,
     identification_figure,
-)  # fmt: skip
+)
 
 DAMPING = METRICS["damping_seal"]
 MASS = METRICS["mass"]

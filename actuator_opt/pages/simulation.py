@@ -14,7 +14,7 @@ from ..base.quantities import INPUTS, RESULTS, SCENARIOS, Quantity
 from ..design.scenario.components import ENDS, FRICTIONS, SUPPLIES
 from ..design.scenario.model import SAMPLES, Scenario
 from ..design.scenario.shapes import SHAPES, height
-from ..evaluation.reserve import count_words
+from ..evaluation.result import count_words
 from ..rendering import text
 from ..rendering.blocks import (
     Bar,

@@ -6,9 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from ..base.errors import Diagnostic, InputError
+from ..base.errors import Diagnostic, InputError, remedy
 from ..base.quantities import RESULTS
-from ..base.suggest import remedy
 from ..rendering.blocks import (
     Block,
     Cell,

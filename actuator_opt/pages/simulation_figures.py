@@ -30,17 +30,7 @@ from ..rendering.axes import (
     x_axis,
 )
 from ..rendering.ink import BLACK, BLUE, OCHRE, WHITE, Ink, text_width
-from ..rendering.strips import (
-    ASKED,
-    LEVEL,
-    LIMIT,
-    MEASURED,
-    STYLES,
-    Curve,
-    Level,
-    Strip,
-    stack,
-)
+from ..rendering.strips import ASKED, LEVEL, LIMIT, MEASURED, STYLES, Curve, Level, Strip, stack
 from ..rendering.text import SENSES, number, trimmed, unit_text
 from ..simulation.harmonic import harmonic_fit
 from ..simulation.loops import LOOPS, Loop, loop_of

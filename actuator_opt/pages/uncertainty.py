@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from ..evaluation.reserve import count_words, without_reserve
+from ..evaluation.result import count_words, without_reserve
 from ..rendering import text
 from ..rendering.axes import Axes, fitted, ticks
 from ..rendering.blocks import (

@@ -20,7 +20,7 @@ from .axes import Axes, Box, Ticks, band, error_bar, fitted, thinned
 from .chart import Chart, Curve, Level, Panel, Points, Values
 from .chart_scale import Scale, known, scale
 from .heights import wrap
-from .ink import (
+from .ink import (  # fmt: skip
     BLACK,
     BLUE,
     GREEN,
@@ -35,7 +35,7 @@ from .ink import (
     hatch,
     spread_within,
     text_width,
-)  # fmt: skip
+)
 
 LINES: tuple[dict[str, Any], ...] = (
     {"stroke": BLUE, "pen": 0.4},

@@ -11,8 +11,7 @@ import numpy as np
 from ..base.numeric import Array
 from ..base.quantities import RESULTS, Quantity
 from ..design.scenario.model import Scenario
-from ..evaluation.reserve import without_reserve
-from ..evaluation.result import State
+from ..evaluation.result import State, without_reserve
 from ..studies.plant import Plant
 from .gains import Tuned
 from .integrate import Event

@@ -14,7 +14,7 @@ import numpy as np
 from ..base.numeric import Array
 from ..base.quantities import INPUTS
 from ..design.scenario.model import SAMPLES, Scenario
-from ..design.scenario.recorded import recorded_notes
+from ..design.scenario.reader import recorded_notes
 from ..evaluation.build import spec_hash
 from ..evaluation.kernel import PreparedDesign
 from ..models.supply import relief_flow

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.errors import Diagnostic, InputError
-from ..evaluation import contact_elements, gland_check
+from ..evaluation import gland_check, sealing as contacts_of_seals
 from ..evaluation.barrel import SEAL_STEP
-from ..evaluation.film import FilmRow, Solved, solve
-from ..evaluation.film_tables import floats, of_place
+from ..evaluation.film import FilmRow, Solved, floats, of_place, solve
 from ..evaluation.kernel import Base, PreparedDesign, base
 from ..evaluation.rings import Place, Ring
 from ..evaluation.seal_contact import seal_contact
@@ -141,8 +140,8 @@ def with_elements(
     """
     v = subject.values()
     ring = floats(of_place(base(subject, v).rings, place)[0], 0)
-    found = contact_elements.contacts(ring, float(v["supply.pressure"]))
-    design, stated = subject.design, contact_elements.profiles(found)
+    found = contacts_of_seals.contacts(ring, float(v["supply.pressure"]))
+    design, stated = subject.design, contacts_of_seals.profiles(found)
     seal = getattr(design.seals, place).model_copy(update={"contact": stated})
     seals = design.seals.model_copy(update={place: seal})
     return replace(subject, design=design.model_copy(update={"seals": seals}), films={}), found

@@ -10,10 +10,9 @@ from typing import TypeAlias
 import numpy as np
 
 from ..base import units
-from ..base.errors import Diagnostic, InputError, UsageError
+from ..base.errors import Diagnostic, InputError, UsageError, shown
 from ..base.numeric import Array
 from ..base.quantities import Quantity
-from ..base.suggest import shown
 from ..design import Design, with_values
 from ..design.materials import load_library
 from ..design.paths import canonical, get

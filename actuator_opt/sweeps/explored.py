@@ -10,8 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.database import Rows
-from ..base.database_reader import Reader, StoredRows, reading
+from ..base.database import Reader, Rows, StoredRows, reading
 from ..base.errors import Diagnostic, InputError
 from ..base.numeric import Array
 from ..design import Design, read_design

@@ -21,8 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base import progress
-from ..base.database import Database, opened, refused
-from ..base.database_reader import reading
+from ..base.database import Database, opened, reading, refused
 from ..base.numeric import Array
 from ..version import VERSION
 from .chunk import Chunk, Study

@@ -15,7 +15,7 @@ import numpy as np
 from ..base.errors import InputError
 from ..base.numeric import Array
 from ..base.symbolic import Symbol, vectorised
-from ..base.symbolic.order import needed
+from ..base.symbolic.expression import needed
 from ..design import Design
 from ..design.variable import Variable
 from ..evaluation import prepare

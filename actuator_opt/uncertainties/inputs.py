@@ -18,11 +18,10 @@ import numpy as np
 from ..base.errors import Diagnostic, InputError
 from ..base.quantities import Quantity
 from ..design import quantity_of
-from ..design.distributions import misfit
 from ..design.kinds import ValueFault
 from ..design.material import Property, Spread
-from ..design.standards import citation, tables
-from ..design.tolerances import source
+from ..design.standard_sizes import citation, tables
+from ..design.uncertain import misfit, source
 from ..evaluation import PreparedDesign, compute
 from ..models.elastomer import MODULUS_LAWS
 from .draw import Distribution, about

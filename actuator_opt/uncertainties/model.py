@@ -10,8 +10,7 @@ import numpy as np
 from ..base.errors import Diagnostic, InputError
 from ..evaluation import PreparedDesign, compute
 from ..evaluation.governing import governing
-from ..evaluation.limits import Limit, all_limits
-from ..evaluation.rows import UNLIMITED, MetricArrays, rows_of
+from ..evaluation.limits import UNLIMITED, Limit, MetricArrays, all_limits, rows_of
 from ..evaluation.values import Values
 from ..optimisation.problem import Vector
 from .inputs import Input

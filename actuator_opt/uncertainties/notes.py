@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ..evaluation import PreparedDesign
-from ..evaluation.film_tables import films_asked
+from ..evaluation.film import films_asked
 from .inputs import Input
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ..base.errors import ActuatorError
 from ..evaluation import Evaluation, PreparedDesign
-from ..evaluation.film_tables import films_asked
-from ..evaluation.reserve import YieldEstimate
+from ..evaluation.film import films_asked
+from ..evaluation.result import YieldEstimate
 from .inputs import inputs
 from .model import Model
 from .study import draw

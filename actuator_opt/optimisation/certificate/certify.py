@@ -11,8 +11,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from ...base.symbolic.bounds import bounds_of
-from ...base.symbolic.order import needed
+from ...base.symbolic.expression import bounds_of, needed
 from ...evaluation.kernel import ModelRun, compute
 from ..actuator import ActuatorProblem
 from ..outcome import MET

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ...base.symbolic import Symbol
-from ...base.symbolic.bounds import Bounds, at_end, bounds, bounds_of
+from ...base.symbolic.expression import Bounds, at_end, bounds, bounds_of
 from .signomial import ROUNDING, Form, Signomial
 
 ROUNDS = 30

@@ -16,8 +16,7 @@ import numpy as np
 
 from ...base.symbolic import Graph, Symbol
 from ...evaluation.kernel import ModelRun, Statics, compute, statics
-from ...evaluation.limits import Limit
-from ...evaluation.rows import MetricArrays
+from ...evaluation.limits import Limit, MetricArrays
 from ...evaluation.values import Values
 from ..actuator import ActuatorProblem
 from ..problem import Vector

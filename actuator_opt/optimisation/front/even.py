@@ -15,7 +15,7 @@ from ...base.progress import tell
 from ..descents import RESIDUAL
 from ..problem import Vector
 from . import dominance, references
-from .line import between
+from .line import between_on_line
 from .search import FrontSearch
 
 WIDEST = 3.0
@@ -88,7 +88,7 @@ def close(search: FrontSearch, count: int) -> None:
             levels = np.array([search.designs[k].level[0] for k in among])
             more = references.between(levels, search.units[:, among], PIECES - 1)
             places += more.tolist()
-        if not search.solve(between(search, places)):
+        if not search.solve(between_on_line(search, places)):
             return
 
 

@@ -33,11 +33,11 @@ def fill_line(search: FrontSearch, count: int) -> None:
         )
         if not len(more):
             break
-        search.solve(between(search, more), firmly=number > 0)
+        search.solve(between_on_line(search, more), firmly=number > 0)
     search.cross()
 
 
-def between(search: FrontSearch, places: Sequence[float] | Vector) -> list[Start]:
+def between_on_line(search: FrontSearch, places: Sequence[float] | Vector) -> list[Start]:
     """Starts at places u between the known designs, from their neighbours."""
     search.sort()
     known = [one.level[0] for one in search.designs]

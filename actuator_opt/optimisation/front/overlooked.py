@@ -50,7 +50,7 @@ def _reached(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[
     evaluators = [tracer.like(tracer.at(one.level, one.way)) for one in designs]
     parameters = np.stack([np.concatenate([one.level, one.way]) for one in designs], axis=1)
     given = tracer.parametric, evaluators, parameters
-    starts = _starts(tracer, designs, effort)
+    starts = _overlooked_starts(tracer, designs, effort)
     ended = descents_from(*given, starts, effort.seed, tolerance=TOLERANCE, rounds=ROUNDS)
     met = [[point for point in points if point.violation <= FEASIBLE] for points in ended]
     rest = [[] if good else distinct_ends(points) for good, points in zip(met, ended, strict=True)]
@@ -61,7 +61,9 @@ def _reached(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[
     ]
 
 
-def _starts(tracer: Tracer, designs: Sequence[Design], effort: Effort) -> list[list[Vector]]:
+def _overlooked_starts(
+    tracer: Tracer, designs: Sequence[Design], effort: Effort
+) -> list[list[Vector]]:
     """Coordinates for each level: the problem's own start, and the best of one shared sweep."""
     inner = Evaluator(tracer.objectives.alone(0))
     space, own = inner.space, tracer.objectives.problem.start

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.errors import Diagnostic, InputError
 from ...base.numeric import Array
-from ...design.scenario.recorded import gap_words, gaps
+from ...design.scenario.reader import gap_words, gaps
 from ...identification.column_units import NONE, ColumnUnits
 from ...identification.record import CHANNELS, Channel, Record, parse_record
 

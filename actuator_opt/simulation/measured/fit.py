@@ -10,10 +10,10 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
+from ...base.errors import shown
 from ...base.fitting import WEAK, Known, Parameter, rated
 from ...base.numeric import Array
 from ...base.progress import whole
-from ...base.suggest import shown
 from ...design.scenario.model import Scenario
 from ...studies.plant import Plant
 from ..gains import Tuned, tune

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ...base.errors import shown
 from ...base.numeric import Array
-from ...base.suggest import shown
-from ...design.scenario.recorded import WIDE
+from ...design.scenario.reader import WIDE
 from ...models.fluid import ATMOSPHERIC_PRESSURE
 from ..result import Simulation, Told
 from .file import FEWEST, SIGNALS, Measured, named

@@ -20,7 +20,7 @@ from ...studies.plant import Plant, plant
 from .stand import Stand, Tally
 
 WEAKEST = "weakest position"
-STEADY = 0.4
+STEADY_STEP = 0.4
 """Gain relative to the ultimate one that brings an oscillating loop to rest (a choice)."""
 SLOW = 0.05
 """Bandwidth relative to the resonance if the loop's is unknown (a choice)."""
@@ -102,7 +102,7 @@ class LinearTier:
         least = min(one.ultimate_gain for one in both)
         known = [one.bandwidth for one in both if one.bandwidth > 0]
         slow = min(known, default=SLOW * self.resonance(spot.case, spot.position))
-        return stand.but(gain=gain, steady_gain=min(gain, STEADY * least), bandwidth=slow)
+        return stand.but(gain=gain, steady_gain=min(gain, STEADY_STEP * least), bandwidth=slow)
 
     def _open_loop(self, position: float, extending: bool) -> loop.OpenLoop:
         place = np.array([[position]])
