@@ -324,7 +324,7 @@ _POLYMER = ((15.0, 1.2),)
 """Angle and spacing (mm of paper) of hatches, by material in order of appearance."""
 
 _COLOURS = (7, 23, 142, 94, 6, 42, 134, 200, 54, 213, 233, 74)
-"""Of the layers, by part: each shows on a black ground and on a white ground (7 is the other)."""
+"""Colours of the layers, by part: each is visible on black and white (7 adapts itself)."""
 
 _Corner: TypeAlias = tuple[float, float, float]
 """x, y and bulge of a polyline: tan of a quarter of the arc to the next corner."""

@@ -51,7 +51,7 @@ _FONT = {"name": "Calibri", "size": 11}
 _LINE = 15.0
 """Height of a line of text, points."""
 _PIXELS = 96 / 25.4
-"""Of a sheet, per millimetre."""
+"""Pixels of a sheet per millimetre."""
 _WIDEST = 110.0
 """Largest column width in characters."""
 _FIRST = 5

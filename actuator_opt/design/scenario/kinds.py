@@ -54,7 +54,7 @@ class StartPosition(PositionKind):
 Shape: TypeAlias = Annotated[str, choice_of("shape of this part of the signal", SHAPES)]
 
 
-Law: TypeAlias = Annotated[str, choice_of("control law", LAWS)]
+Law: TypeAlias = Annotated[str, choice_of("law of the controller", LAWS)]
 
 
 Tuning: TypeAlias = Annotated[
@@ -83,5 +83,7 @@ Ends: TypeAlias = Annotated[
 
 CushionEnd: TypeAlias = Annotated[
     Literal["both", "cap", "rod"],
-    Choice("cushioned ends; both: both ends; cap: end of retraction; rod: end of extension"),
+    Choice(
+        "which ends have a cushion; both: both ends; cap: end of retraction; rod: end of extension"
+    ),
 ]
