@@ -241,11 +241,10 @@ def _frame(panel: Panel, x: Scale) -> _Frame:
     if panel.surface is not None and not ends:
         ends += known(panel.surface.ys, log=log)
     levels = known([level.value for level in panel.levels], log=log)
-    limits = known([level.value for level in panel.levels if level.sense], log=log)
     why = "" if ends or levels else _why(panel)
     if ends:
         levels = _near(ends, levels, log, 3.0, cut=False)
-    return _Frame(panel, x, scale(panel.y, [*ends, *(levels or limits)]), why)
+    return _Frame(panel, x, scale(panel.y, [*ends, *levels]), why)
 
 
 def _seen(curve: Curve, values: Values, x: Scale, log: bool) -> list[float]:
@@ -268,7 +267,7 @@ def _near(
     """Values at most so many spans beyond the ends; farther ones are cut there, or left out."""
     low, high = (math.log10(f(ends)) if log else f(ends) for f in (min, max))
     spare = most * ((high - low) or max(abs(high), 1.0))
-    low, high = (10.0**v if log else v for v in (low - spare, high + spare))
+    low, high = (10.0 ** min(max(v, -100), 150) if log else v for v in (low - spare, high + spare))
     if not cut:
         return [v for v in values if low <= v <= high]
     return [min(max(v, low), high) for v in values]
@@ -382,9 +381,7 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
         bounds = []
         for curve in panel.curves:
             if len(curve.low):
-                xs = x.at(curve.xs)
-                low, high = (frame.y.at(v) for v in (curve.low, curve.high))
-                band(axes, xs.tolist(), low.tolist(), high.tolist())
+                _band(axes, curve, frame.y, x)
         axes.frame_at("", label, x_ticks, y_ticks, upright=True)
         _zero_lines(axes, frame, x)
     lines = [_curve(axes, curve, k, frame.y, x) for k, curve in enumerate(panel.curves)]
@@ -397,6 +394,15 @@ def _draw(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
     for level in panel.levels:
         if level.between is not None and level.words:
             _beside(axes, level, frame.y, x, taken)
+
+
+def _band(axes: Axes, curve: Curve, y: Scale, x: Scale) -> None:
+    """The band around a curve; on a logarithmic axis it goes down to the frame."""
+    xs, low, high = x.at(curve.xs), y.at(curve.low), y.at(curve.high)
+    low = np.where(np.asarray(curve.low) <= 0, np.fmax(low, axes.y_range[0]), low)
+    inside = (xs >= axes.x_range[0]) & (xs <= axes.x_range[1])
+    places = np.where(inside, xs, axes.x_range[0])
+    band(axes, places.tolist(), np.where(inside, low, np.nan).tolist(), high.tolist())
 
 
 def _head(ink: Ink, box: Box, frame: _Frame, edge: float) -> None:
@@ -571,14 +577,20 @@ def _level(axes: Axes, level: Level, y: Scale, x: Scale) -> None:
         return
     at, left, right = axes.y(place), axes.left, axes.left + axes.width
     if level.between is not None:
-        ends = (axes.x(float(v)) for v in x.at(level.between))
-        left, right = (min(max(end, left), right) for end in sorted(ends))
+        left, right = sorted(_ends(axes, level.between, x))
     axes.ink.line((left, at), (right, at), **_level_style(level))
     if level.sense:
         side = 1.3 if level.sense == "min" else -1.3
         edge = min(max(at + side, axes.top), axes.top + axes.height)
         strip = [(left, at), (right, at), (right, edge), (left, edge)]
         axes.ink.path(hatch([strip], angle=45.0, spacing=0.9), pen=0.1, stroke=RED)
+
+
+def _ends(axes: Axes, between: tuple[float, float], x: Scale) -> tuple[float, float]:
+    """Ends of a short level inside the frame [mm]; one without a place lies at the left."""
+    low, high = axes.x_range
+    start, end = np.clip(np.nan_to_num(x.at(between), nan=low), low, high)
+    return axes.x(float(start)), axes.x(float(end))
 
 
 def _right_words(axes: Axes, frame: _Frame, lines: Sequence[Sequence[Line]]) -> None:
@@ -616,7 +628,7 @@ def _beside(axes: Axes, level: Level, y: Scale, x: Scale, taken: Sequence[Point]
     place = y.place(level.value)
     if level.between is None or not axes.y_range[0] <= place <= axes.y_range[1]:
         return
-    start, end = (axes.x(float(v)) for v in x.at(level.between))
+    start, end = _ends(axes, level.between, x)
     way = 1.0 if end >= start else -1.0
     before: Anchor = "right" if way > 0 else "left"
     beyond: Anchor = "left" if way > 0 else "right"
