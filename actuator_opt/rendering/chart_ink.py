@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from . import shading
-from .axes import Axes, Box, Ticks, band, error_bar, fitted, thinned
+from .axes import Axes, Box, Ticks, band, fitted, thinned
 from .chart import Chart, Curve, Level, Panel, Points, Values
 from .chart_scale import Scale, known, scale
 from .heights import wrap
@@ -517,13 +517,14 @@ def _spots(
     good = np.flatnonzero(np.isfinite(xs) & np.isfinite(ys))
     places = [(axes.x(float(xs[k])), axes.y(float(ys[k]))) for k in good]
     inside = [n for n, at in enumerate(places) if _inside(axes, at)]
+    bars: list[Point] = []
     if len(inside) > 400:
         cells = {(round(places[n][0] * 2), round(places[n][1] * 2)): n for n in inside}
         inside = sorted(cells.values())
     for n in inside:
         at, k = places[n], int(good[n])
         if len(points.low):
-            _bar(axes, points, k, at, y, x, color)
+            bars += _bar(axes, points, k, at, y, x, color)
         if points.small:
             _small(axes.ink, *at, style)
         elif len(points.shades) and bounds:
@@ -533,31 +534,34 @@ def _spots(
             axes.ink.circle(*at, 0.9, fill=paints[shade], stroke=BLACK, pen=0.18)
         else:
             axes.ink.circle(*at, 0.75, fill=fill, stroke=edge, pen=0.3)
-    return [places[n] for n in inside]
+    return [*(places[n] for n in inside), *bars]
 
 
-def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, color: str) -> None:
-    """An error bar; an end without a place lies beyond the frame."""
-    along = x if points.across else y
-    ends = along.at([points.low[k], points.high[k]])
-    low, high = (float(end) for end in ends)
+def _bar(axes: Axes, points: Points, k: int, at: Point, y: Scale, x: Scale, color: str) -> Line:
+    """An error bar, cut at the frame, with feet where it ends inside; points along it."""
+    along, on_paper = (x, axes.x) if points.across else (y, axes.y)
     bottom, top = along.range
-    low = low if math.isfinite(low) else bottom - 1.0
+    given = (points.low[k], points.high[k])
+    if any(math.isnan(end) for end in given):
+        return []
+    low, high = (float(end) for end in along.at(given))
+    low = low if math.isfinite(low) else bottom - 1.0  # without a place: beyond the frame
     high = high if math.isfinite(high) else top + 1.0
-    if not points.across:
-        place = axes.x_range[0] + (at[0] - axes.left) / axes.width * (
-            axes.x_range[1] - axes.x_range[0]
-        )
-        error_bar(axes, place, low, high, color)
-        return
-    first, last = axes.x(max(low, bottom)), axes.x(min(high, top))
-    if last - first < 2.0:  # it lies behind its point
-        return
-    axes.ink.line((first, at[1]), (last, at[1]), pen=0.4, stroke=color)
-    for end in (low, high):
+    if high < bottom or low > top:
+        return []
+
+    def spot(place: float, aside: float = 0.0) -> Point:
+        return (place, at[1] + aside) if points.across else (at[0] + aside, place)
+
+    first, last = on_paper(max(low, bottom)), on_paper(min(high, top))
+    pen, foot = (0.4, 0.9) if points.across else (0.2, 0.7)
+    if points.across and last - first < 2.0:  # it lies behind its point
+        return []
+    axes.ink.line(spot(first), spot(last), pen=pen, stroke=color)
+    for end, place in ((low, first), (high, last)):
         if bottom <= end <= top:
-            foot = axes.x(end)
-            axes.ink.line((foot, at[1] - 0.9), (foot, at[1] + 0.9), pen=0.4, stroke=color)
+            axes.ink.line(spot(place, -foot), spot(place, foot), pen=pen, stroke=color)
+    return list(_dotted([spot(first), spot(last)]))
 
 
 def _small(ink: Ink, x: float, y: float, style: int) -> None:
